@@ -1,0 +1,31 @@
+# What every target of this project is compiled with.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+# Asserts stay on in optimised builds; a fused multiply-add would be another number (same bytes on every machine).
+string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
+string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
+string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
+
+add_library(spawnfield_options INTERFACE)
+target_compile_options(spawnfield_options INTERFACE
+  -ffp-contract=off -Wall -Wextra -Wconversion -Wshadow -Wno-sign-conversion
+  -Wno-restrict  # gcc 12 warns of std::string + std::string (GCC bug 105329)
+  $<$<BOOL:${SPAWNFIELD_WERROR}>:-Werror>)
+# Eigen's own asserts cost more than ours and find nothing after the debug tests.
+target_compile_definitions(spawnfield_options INTERFACE $<$<NOT:$<CONFIG:Debug>>:EIGEN_NO_DEBUG>)
+if(SPAWNFIELD_SANITIZE)
+  add_compile_options(-fsanitize=${SPAWNFIELD_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${SPAWNFIELD_SANITIZE})
+  if(SPAWNFIELD_SANITIZE MATCHES "undefined")
+    add_compile_options(-fno-sanitize-recover=undefined)
+  endif()
+endif()

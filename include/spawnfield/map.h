@@ -1,0 +1,63 @@
+#pragma once
+
+#include <spawnfield/occupancy.h>
+#include <spawnfield/terrain.h>
+
+#include <map>
+
+namespace spawnfield {
+
+/// A scene made ready for queries. `folder` is empty until it is written or read.
+struct Map {
+    std::string name;
+    Bounds bounds;                    ///< poses beyond them in x and y are `outside`
+    double resolution = 0.1;          ///< of the terrain, m
+    double occupancy_resolution = 0;  ///< m
+    Scene scene;
+    ColumnIndex index;
+    int layers = 0;                   ///< most terrain layers above one cell centre
+    std::string scene_file;           ///< name of the file it was baked from
+    std::string scene_hash;           ///< xxh64 of that file, 16 hexadecimal digits
+    std::string hash;                 ///< of the map: of its files' checksums, 16 hexadecimal digits
+    std::filesystem::path folder;
+};
+
+struct BakeOptions {
+    double resolution = 0;            ///< m; 0: 0.1 m, or coarser with a notice where that passes max_columns
+    double occupancy_resolution = 0;  ///< m; 0: 2.5 times the resolution, or coarser with a notice where OctoMap needs it
+    Bounds bounds;                    ///< empty: the scene's
+    bool allow_no_terrain = false;
+    int threads = 0;
+    Progress progress;
+};
+
+/// What a bake did, for its summary.
+struct BakeReport {
+    std::vector<std::string> notices;
+    std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order
+    int layers = 0;
+    std::size_t occupancy_leaves = 0;
+    std::uintmax_t bytes = 0;  ///< of the folder
+    std::string hash;          ///< as Map::hash
+};
+
+/// Writes the map folder: map.yaml, terrain.tiff, heightmap.png, occupancy.bt, geometry.bin, preview.png.
+///
+/// Written into a temporary folder beside it, then renamed: an old map stays whole until the new one is complete.
+/// Throws FileError if the scene has no terrain (unless allowed), ArgumentError for bad options, OutputError.
+BakeReport bake(Scene scene, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
+                const BakeOptions& options = {});
+
+/// What queries need: map.yaml and geometry.bin, sizes and checksums verified.
+/// Throws FileError, which names the file, for a map that is missing, damaged, cut short or newer.
+Map read_map(const std::filesystem::path& folder);
+
+/// The pages of terrain.tiff. Throws FileError.
+TerrainMap read_terrain(const Map& map);
+
+/// Sizes and checksums of all files of the folder. Throws FileError at the first that differs.
+void verify_map(const std::filesystem::path& folder);
+
+inline constexpr int map_format_version = 1;
+
+}  // namespace spawnfield

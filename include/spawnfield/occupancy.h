@@ -1,0 +1,42 @@
+#pragma once
+
+#include <spawnfield/column.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace spawnfield {
+
+/// Occupied, free and unknown space as an OctoMap (Hornung et al., OctoMap: An Efficient Probabilistic 3D Mapping
+/// Framework Based on Octrees, 2013).
+class OccupancyTree {
+public:
+    struct Impl;  // octomap is seen in src/ only
+    explicit OccupancyTree(std::unique_ptr<Impl> impl);
+    OccupancyTree(OccupancyTree&&) noexcept;
+    ~OccupancyTree();
+
+    double resolution() const;  ///< side of the smallest voxel, m
+    std::size_t leaves() const;
+    enum class State { Free, Occupied, Unknown };
+    State at(const Vec3& point) const;
+
+    void write(const std::filesystem::path& file) const;  ///< binary .bt; throws OutputError
+    const Impl& impl() const { return *impl_; }
+
+private:
+    std::unique_ptr<const Impl> impl_;
+};
+
+/// A voxel is occupied when any solid surface touches it or its centre is inside a solid; free elsewhere inside the
+/// bounds, unknown outside them. Pruned. Round primitives count as the polygons of 256 sides around them: up to 0.01 %
+/// of their radius too wide.
+/// Throws ArgumentError unless resolution > 0 and the bounds lie within 32768 voxels of the scene's origin (OctoMap's
+/// 16-bit keys).
+OccupancyTree build_occupancy(const Scene& scene, const ColumnIndex& index, const Bounds& bounds, double resolution,
+                              int threads = 0, const Progress& progress = {});
+
+/// Throws FileError.
+OccupancyTree read_occupancy(const std::filesystem::path& file);
+
+}  // namespace spawnfield

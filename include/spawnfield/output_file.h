@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+namespace spawnfield {
+
+/// A file that appears whole or not at all: written beside its name, renamed by commit(), removed if that never comes.
+/// What is no regular file (a pipe, /dev/null) is written directly.
+class OutputFile {
+public:
+    explicit OutputFile(std::filesystem::path file);  ///< throws OutputError
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    ~OutputFile();
+
+    void write(std::string_view bytes);  ///< throws OutputError
+    void commit();                       ///< throws OutputError
+
+private:
+    [[noreturn]] void fail(const std::string& reason) const;
+
+    std::filesystem::path file_, written_;
+    std::ofstream stream_;
+};
+
+/// All bytes of a file at once. Throws OutputError.
+void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace spawnfield

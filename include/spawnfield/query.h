@@ -1,0 +1,127 @@
+#pragma once
+
+#include <spawnfield/collision.h>
+#include <spawnfield/map.h>
+
+namespace spawnfield {
+
+/// What all queries share.
+struct QueryOptions {
+    double max_height = 1.0;  ///< m of the origin above its ground, inclusive, >= 0
+    double max_water_depth = std::numeric_limits<double>::infinity();  ///< m of water above the ground that count, >= 0
+    int threads = 0;          ///< 0: all cores; results are the same at any number
+    Progress progress;
+};
+
+/// The verdict on one pose with its reasons.
+struct Judgement {
+    Verdict verdict = Verdict::Outside;
+    std::optional<Ground> ground;     ///< also of poses outside the bounds
+    std::optional<CollisionHit> hit;  ///< collision only
+    bool exact_check = false;         ///< whether the collision checker was asked
+};
+
+/// The verdict table of DESIGN.md, in its order. `column` is the one at the pose's x and y.
+Judgement judge(const Map& map, const CollisionChecker& checker, const Column& column, const Pose& pose,
+                const QueryOptions& options = {});
+
+/// Judges every pose by itself.
+std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& checker, const std::vector<Pose>& poses,
+                                   const QueryOptions& options = {});
+
+/// Which layers of a column count. The index counts from the top, 0 first.
+struct LayerChoice {
+    enum class Kind { All, Top, Bottom, Index } kind = Kind::All;
+    int index = 0;
+
+    bool includes(int layer, int layer_count) const
+    {
+        switch (kind) {
+        case Kind::Top: return layer == 0;
+        case Kind::Bottom: return layer == layer_count - 1;
+        case Kind::Index: return layer == index;
+        case Kind::All: break;
+        }
+        return true;
+    }
+};
+
+struct RasterOptions : QueryOptions {
+    int dims = 2;                ///< 2: a pose per column and layer; 3: a pose per column and height
+    Bounds bounds;               ///< empty: the map's; two-dimensional rasters leave z aside
+    double step = 1.0;           ///< m between columns, > 0
+    double step_z = 0;           ///< m between heights, > 0; 0: as step
+    double offset = 0.1;         ///< m of the origin above its layer (2D)
+    double yaw = 0;              ///< rad
+    LayerChoice layers;          ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
+    bool height_check = true;    ///< false (3D only): collisions alone, at every pose
+};
+
+/// Columns x0 + i * step, y0 + j * step; heights z0 + k * step_z.
+struct RasterGrid {
+    double x0 = 0, y0 = 0, z0 = 0, step = 1, step_z = 1;
+    int cols = 0, rows = 0, heights = 0;
+
+    double x_of(int i) const { return x0 + i * step; }
+    double y_of(int j) const { return y0 + j * step; }
+    double z_of(int k) const { return z0 + k * step_z; }
+};
+
+struct RasterPose {
+    double x, y, z;
+    std::int32_t layer;  ///< the layer that is its ground, 0 the highest; -1: its ground is no layer
+    Verdict verdict;
+};
+
+struct RasterResult {
+    int dims = 2;
+    RasterGrid grid;
+    double yaw = 0;
+    std::vector<RasterPose> poses;  ///< y after y, x fastest, from the top down; of 3D rasters without the aerial ones
+    VerdictCounts counts{};         ///< of all poses, the aerial ones too
+    std::uint64_t exact_checks = 0;
+};
+
+/// Every pose of a raster. Throws ArgumentError for a step of 0, bounds the wrong way round, more than 2^31 columns.
+RasterResult raster(const Map& map, const CollisionChecker& checker, const RasterOptions& options);
+
+struct Spawn {
+    Vec3 position;
+    double yaw;  ///< rad
+};
+
+struct SpawnList {
+    std::vector<Spawn> spawns;    ///< in the order in which they were found
+    VerdictCounts counts{};       ///< of the positions that were judged
+    std::uint64_t draws = 0;      ///< all of them
+    std::uint64_t too_close = 0;  ///< draws nearer than min_distance to an earlier one
+    std::uint64_t exact_checks = 0;
+};
+
+struct SpawnOptions : QueryOptions {
+    std::size_t count = 1;       ///< >= 1
+    double min_distance = 0;     ///< m between positions, >= 0
+    Bounds bounds;               ///< empty: the map's; sample leaves z aside
+    bool random_yaw = false;     ///< uniform in [-pi, pi), else yaw
+    double yaw = 0;              ///< rad
+    std::uint64_t seed = 0;
+};
+
+struct SearchOptions : SpawnOptions {
+    std::uint64_t max_failures = 100000;  ///< draws in a row that gave nothing, >= 1
+};
+
+/// Random search (Ropelato): uniform draws in a box; each must keep min_distance to all positions checked before; stops
+/// after count valid ones or max_failures draws in a row without one.
+SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOptions& options);
+
+struct SampleOptions : SpawnOptions {
+    double offset = 0.1;  ///< m of the origin above its layer
+    LayerChoice layers;
+};
+
+/// Valid poses distributed uniformly by horizontal area over the feasible region of all chosen layers, each confirmed
+/// exactly, at least min_distance apart. Fewer than count if draws keep failing (1000 * count, at least 100000 in a row).
+SpawnList sample(const Map& map, const CollisionChecker& checker, const SampleOptions& options);
+
+}  // namespace spawnfield

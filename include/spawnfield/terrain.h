@@ -1,0 +1,59 @@
+#pragma once
+
+#include <spawnfield/column.h>
+
+#include <Eigen/Core>
+
+namespace spawnfield {
+
+/// A raster over the ground. Row 0 is the largest y, column 0 the smallest x.
+struct GridFrame {
+    double x0 = 0, y0 = 0;  ///< lower left corner of the raster, m
+    double cell = 0.1;      ///< side of a cell, m
+    int rows = 0, cols = 0;
+
+    double x_of(int col) const { return x0 + (col + 0.5) * cell; }         ///< of the cell's centre
+    double y_of(int row) const { return y0 + (rows - row - 0.5) * cell; }  ///< of the cell's centre
+};
+
+/// Cells of side `cell` that cover the bounds from their lower limits on. Throws ArgumentError unless cell > 0 and
+/// there are at most max_columns of them.
+GridFrame frame_around(const Bounds& bounds, double cell);
+inline constexpr double max_columns = 1e8;
+
+using HeightImage = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// What stands in each column of a raster, as pages of float32 metres; NaN where there is nothing.
+///
+/// height.K       layer K at the cell's centre, K = 0 the highest
+/// water          highest water surface at the cell's centre
+/// solid_top.K, solid_bottom.K   what is solid at the cell's centre, terrain and obstacles joined, from the top down
+/// bound_top.K, bound_bottom.K   intervals that hold all that is solid anywhere in the closed cell, rounded outwards
+///
+/// Pages are kept as deflated tiles of tile x tile cells, row after row, the last ones padded with NaN: a page of nothing
+/// takes about 300 bytes a tile.
+struct TerrainMap {
+    static constexpr int tile = 256;
+    struct Page {
+        std::string name;                ///< "height.0", …
+        std::vector<std::string> tiles;  ///< zlib streams, row after row of tiles
+    };
+    GridFrame frame;
+    std::vector<Page> pages;
+
+    int tile_rows() const { return (frame.rows + tile - 1) / tile; }
+    int tile_cols() const { return (frame.cols + tile - 1) / tile; }
+    const Page* find(const std::string& name) const;  ///< nullptr if there is no such page
+    int layers() const;                               ///< number of height pages
+};
+
+/// A whole page, frame.rows x frame.cols; all NaN if there is no such page. Throws std::runtime_error on damaged tiles.
+HeightImage page_image(const TerrainMap& terrain, const std::string& name);
+
+/// Vertical rays at the cells' centres, and the z range of every triangle and primitive clipped to each cell it meets.
+/// Solid intervals beyond the eighth are left out of solid_*, and joined over the smallest gaps in bound_*.
+/// O(elements + cells covered). Source of the clipping: Sutherland, Hodgman, Reentrant polygon clipping, 1974.
+TerrainMap rasterize_terrain(const Scene& scene, const ColumnIndex& index, const GridFrame& frame, int threads = 0,
+                             const Progress& progress = {});
+
+}  // namespace spawnfield

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+
+/// Everything is in metres and radians, right-handed, x forward, y left, z up (REP-103).
+namespace spawnfield {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+
+/// Axis-aligned box, closed. Empty while min > max.
+struct Bounds {
+    Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
+    Vec3 max = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+    bool is_empty() const { return !(min.array() <= max.array()).all(); }
+    bool contains_xy(double x, double y, double tolerance) const
+    {
+        return x >= min.x() - tolerance && x <= max.x() + tolerance && y >= min.y() - tolerance && y <= max.y() + tolerance;
+    }
+    void extend(const Vec3& point)
+    {
+        min = min.cwiseMin(point);
+        max = max.cwiseMax(point);
+    }
+};
+
+/// Place of a body in a parent frame: parent_point = rotation * body_point + position.
+struct Pose {
+    Vec3 position = Vec3::Zero();
+    Mat3 rotation = Mat3::Identity();
+};
+
+/// R = Rz(yaw) Ry(pitch) Rx(roll), as URDF's rpy.
+Mat3 rotation_from_rpy(double roll, double pitch, double yaw);
+
+/// outer_from_body where outer_from_inner and inner_from_body are given.
+inline Pose operator*(const Pose& outer, const Pose& inner)
+{
+    return {outer.rotation * inner.position + outer.position, outer.rotation * inner.rotation};
+}
+
+/// What a part of a scene is for a robot.
+enum class Label : std::uint8_t { Terrain, Obstacle, Water, Ignore };
+
+/// Verdict on a pose; the first that applies (DESIGN.md, Definitions). The first six need no settling or planning.
+enum class Verdict : std::uint8_t { Outside, Aerial, OffTerrain, Submerged, Collision, Valid };
+inline constexpr std::size_t verdict_count = 6;
+
+/// Poses per verdict, indexed by Verdict.
+using VerdictCounts = std::array<std::uint64_t, verdict_count>;
+
+const char* to_string(Label label);      ///< as in scene.yaml: "terrain", …
+const char* to_string(Verdict verdict);  ///< as in CSV files: "off_terrain", …
+
+/// Called now and then during long work with the share done, 0 .. 1, from any thread, one call at a time.
+/// May throw to stop the work.
+using Progress = std::function<void(double)>;
+
+std::string version();  ///< "0.1.0"
+
+}  // namespace spawnfield

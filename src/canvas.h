@@ -1,0 +1,55 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace spawnfield {
+
+/// Blue, green, red: OpenCV's order.
+using Colour = cv::Vec3b;
+using Image = cv::Mat_<Colour>;
+
+inline Colour rgb(unsigned hex)
+{
+    return {static_cast<std::uint8_t>(hex), static_cast<std::uint8_t>(hex >> 8), static_cast<std::uint8_t>(hex >> 16)};
+}
+
+inline const Colour white = rgb(0xffffff), ink = rgb(0x262626), muted = rgb(0x666666);
+
+/// 256 colours from low to high.
+using Ramp = std::array<Colour, 256>;
+
+Ramp viridis();
+Ramp ramp_through(const std::vector<Colour>& colours);  ///< at equal distances, linear in between; at least 2
+
+enum class Align { Left, Centre, Right };
+
+struct TextStyle {
+    double cap;  ///< height of capital letters, pixels
+    Colour colour = ink;
+    Align align = Align::Left;
+};
+
+/// Places and lengths are in pixels from the upper left corner of the image, y down, a pixel's centre at .5; what lies
+/// beyond the image is left out.
+///
+/// The font has ASCII only: of UTF-8 text, western letters lose their accents and other characters become question marks.
+void draw_text(Image& image, const std::string& text, cv::Point2d baseline, const TextStyle& style);
+double text_width(const std::string& text, double cap);
+std::string cut_to(std::string text, double cap, double width);  ///< ends in "..." if it was wider
+
+int whole(double pixels);  ///< rounded, at least 1
+void fill(Image& image, const cv::Rect& area, Colour colour);
+void outline(Image& image, const cv::Rect& area, int thickness, Colour colour);  ///< around the area, outside it
+void draw_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour inside, Colour edge, double edge_width);
+void draw_dot(Image& image, cv::Point2d centre, double radius, Colour inside, Colour edge, double edge_width);
+
+/// Throws OutputError.
+void write_png(const Image& image, const std::filesystem::path& file);
+
+}  // namespace spawnfield

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <spawnfield/scene.h>
+
+namespace spawnfield {
+
+/// An element is triangle e, or primitive e - triangles.
+inline std::size_t element_count(const Scene& scene) { return scene.triangles.size() + scene.primitives.size(); }
+
+inline bool is_triangle(const Scene& scene, std::uint32_t element) { return element < scene.triangles.size(); }
+
+inline const Primitive& primitive_of(const Scene& scene, std::uint32_t element)
+{
+    return scene.primitives[element - scene.triangles.size()];
+}
+
+inline std::array<Vec3, 3> corners_of(const Scene& scene, std::uint32_t triangle)
+{
+    const Triangle& t = scene.triangles[triangle];
+    return {scene.vertices[t[0]], scene.vertices[t[1]], scene.vertices[t[2]]};
+}
+
+inline Bounds element_bounds(const Scene& scene, std::uint32_t element)
+{
+    if (!is_triangle(scene, element)) return bounds_of(primitive_of(scene, element).shape);
+    Bounds box;
+    for (const Vec3& corner : corners_of(scene, element)) box.extend(corner);
+    return box;
+}
+
+inline Label element_label(const Scene& scene, std::uint32_t element)
+{
+    return is_triangle(scene, element) ? scene.triangle_labels[element] : primitive_of(scene, element).label;
+}
+
+inline std::uint32_t element_part(const Scene& scene, std::uint32_t element)
+{
+    return is_triangle(scene, element) ? scene.pieces[scene.triangle_pieces[element]].part
+                                       : primitive_of(scene, element).part;
+}
+
+}  // namespace spawnfield

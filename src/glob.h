@@ -1,0 +1,15 @@
+#pragma once
+
+#include <fnmatch.h>
+
+#include <string>
+
+namespace spawnfield {
+
+/// Shell glob over the whole name, case-insensitive (POSIX fnmatch).
+inline bool matches(const std::string& pattern, const std::string& name)
+{
+    return fnmatch(pattern.c_str(), name.c_str(), FNM_CASEFOLD) == 0;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,91 @@
+#include "octomap_file.h"
+
+#include "input_file.h"
+#include "number.h"
+
+#include <spawnfield/error.h>
+
+#include <sstream>
+
+namespace spawnfield {
+namespace {
+
+constexpr std::string_view binary_magic = "# Octomap OcTree binary file";
+constexpr int max_depth = 16;
+
+/// Header of a .bt file: lines of `key value` up to `data` (octomap/AbstractOcTree.cpp).
+struct BinaryHeader {
+    std::size_t nodes = 0;
+    double resolution = 0;
+    std::size_t data = 0;  ///< where the nodes start
+};
+
+BinaryHeader read_header(const std::filesystem::path& file, const std::string& bytes)
+{
+    const auto refuse = [&](const std::string& what) { throw FileError(file.string(), "is no binary OctoMap (.bt): " + what); };
+    if (!bytes.starts_with(binary_magic)) refuse("its first line is not \"" + std::string(binary_magic) + "\"");
+    const std::size_t data = bytes.find("\ndata\n");
+    if (data == std::string::npos) refuse("its header has no line `data`");
+    BinaryHeader header{0, 0, data + 6};
+    std::istringstream lines(bytes.substr(0, data));
+    for (std::string key, value, line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        words >> key >> value;
+        double number = 0;
+        if (key == "size" && parse_number(value, number) && number >= 0) header.nodes = std::size_t(number);
+        if (key == "res" && parse_number(value, number)) header.resolution = number;
+    }
+    if (!(header.resolution > 0)) refuse("its header has no line `res` with a number > 0");
+    return header;
+}
+
+/// Nodes of the tree, two bits for each of eight children; 0 if it is deeper than a tree can be or the bytes end in it.
+/// octomap itself reads on past the end, so this looks first.
+std::size_t count_nodes(std::string_view data, int depth, std::size_t& at)
+{
+    if (depth >= max_depth || at + 2 > data.size()) return 0;
+    const unsigned bits = static_cast<unsigned char>(data[at]) | unsigned(static_cast<unsigned char>(data[at + 1])) << 8;
+    at += 2;
+    std::size_t count = 1;
+    for (unsigned child = 0; child < 8; ++child) {
+        const unsigned code = bits >> (2 * child) & 3;
+        if (code == 1 || code == 2) ++count;
+        if (code != 3) continue;
+        const std::size_t below = count_nodes(data, depth + 1, at);
+        if (below == 0) return 0;
+        count += below;
+    }
+    return count;
+}
+
+std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
+{
+    const std::string bytes = read_file(file);
+    const BinaryHeader header = read_header(file, bytes);
+    const std::string_view data = std::string_view(bytes).substr(header.data);
+    std::size_t at = 0;
+    const std::size_t nodes = header.nodes == 0 ? 0 : count_nodes(data, 0, at);
+    if (nodes != header.nodes)
+        throw FileError(file.string(), "is cut short or damaged: its header says " + std::to_string(header.nodes) + " nodes");
+    auto tree = std::make_unique<octomap::OcTree>(header.resolution);
+    if (nodes == 0) return tree;
+    std::istringstream stream{std::string(data), std::ios::binary};
+    tree->readBinaryData(stream);
+    return tree;
+}
+
+}  // namespace
+
+std::unique_ptr<octomap::OcTree> read_octomap(const std::filesystem::path& file)
+{
+    if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
+    if (file.extension() != ".ot") return read_binary(file);
+    std::istringstream stream(read_file(file), std::ios::binary);
+    std::unique_ptr<octomap::AbstractOcTree> any(octomap::AbstractOcTree::read(stream));
+    auto* const tree = dynamic_cast<octomap::OcTree*>(any.get());
+    if (tree == nullptr) throw FileError(file.string(), "is no OctoMap of type OcTree, or is cut short");
+    any.release();
+    return std::unique_ptr<octomap::OcTree>(tree);
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,3 @@
+#pragma once
+
+#include <spawnfield/output_file.h>

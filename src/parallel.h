@@ -1,0 +1,34 @@
+#pragma once
+
+#include <spawnfield/types.h>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <cstddef>
+#include <mutex>
+
+namespace spawnfield {
+
+/// Calls body(i) for each i < count on `threads` threads (0: all cores). Each i must write to its own slot only.
+/// `progress` hears of it after each item; an exception from there or from body ends the loop and is thrown on.
+template <class Body>
+void parallel_for(std::size_t count, int threads, const Progress& progress, const Body& body)
+{
+    std::atomic<std::size_t> done{0};
+    std::mutex telling;
+    const auto run = [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            body(i);
+            if (!progress) continue;
+            const std::size_t now = ++done;
+            if (const std::unique_lock lock(telling, std::try_to_lock); lock) progress(double(now) / double(count));
+        }
+    };
+    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), run); });
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "draw.h"
+#include "parallel.h"
+#include "spaced_points.h"
+
+#include <spawnfield/query.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace spawnfield {
+
+/// Throws ArgumentError unless count, distances and bounds are in their limits.
+void check_spawn_options(const char* function, const SpawnOptions& options);
+
+/// The box in which positions are drawn: the map's bounds, or the part of them that was asked for.
+Bounds draw_bounds(const Map& map, const SpawnOptions& options);
+
+inline double draw_yaw(const SpawnOptions& options, Draw& draw)
+{
+    return options.random_yaw ? draw.uniform(-std::numbers::pi, std::numbers::pi) : options.yaw;
+}
+
+/// A draw that was looked at: judged only if it was clear of the points that stood before its batch.
+struct Candidate {
+    bool on_ground = false;  ///< whether the draw gave a pose at all
+    bool clear = false;
+    Spawn spawn;
+    Judgement judgement;
+};
+
+/// Draws 0, 1, 2, … in batches that all cores judge ahead; `take` gets them one by one in their order, and stops the
+/// work by returning false. How far ahead they are judged never shows in the result.
+template <class Look, class Take>
+void draw_in_order(int threads, const Look& look, const Take& take)
+{
+    constexpr std::size_t first_batch = 256, largest_batch = 16384;
+    std::vector<Candidate> batch;
+    std::uint64_t next = 0;
+    for (std::size_t size = first_batch;; size = std::min(2 * size, largest_batch)) {
+        batch.assign(size, {});
+        parallel_for(size, threads, {}, [&](std::size_t i) { batch[i] = look(next + i); });
+        for (const Candidate& candidate : batch)
+            if (!take(candidate)) return;
+        next += size;
+    }
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,11 @@
+#pragma once
+
+// Debian 12 has Catch2 v2 (one header), Ubuntu 24.04 v3.
+#if __has_include(<catch2/catch_all.hpp>)
+#include <catch2/catch_all.hpp>
+using Catch::Approx;
+using Catch::Matchers::Contains;
+#else
+#include <catch2/catch.hpp>
+using Catch::Matchers::Contains;
+#endif

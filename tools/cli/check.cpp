@@ -1,0 +1,48 @@
+#include "cli.h"
+
+namespace spawnfield::cli {
+namespace {
+
+struct CheckArgs : QueryArgs {
+    std::string poses, out;
+};
+
+int run_check(const CheckArgs& args)
+{
+    Summary summary("check", args);
+    QueryOptions options;
+    fill(options, args, "check");
+    const PoseTable table = read_poses(args.poses);
+    const auto session = open_session(args);
+    summary.lap("load");
+    const std::vector<Judgement> judgements = check_poses(session->map, *session->checker, table.poses, options);
+    summary.lap("exact");
+    VerdictCounts counts{};
+    for (const Judgement& judged : judgements) {
+        ++counts[std::size_t(judged.verdict)];
+        summary.exact_checks += judged.exact_check;
+    }
+    write_output(args.out, [&](const auto& sink) { sink(verdicts_csv(table, judgements, session->map.scene)); });
+    summary.lap("write");
+    summary.set_counts(counts);
+    summary.map_hash = session->map.hash;
+    summary.finish();
+    return done;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Run& run)
+{
+    auto args = std::make_shared<CheckArgs>();
+    CLI::App& command = *app.add_subcommand("check", "Verdict and reason for each pose of a CSV file");
+    add_query(command, *args);
+    command.add_option("--poses,-p", args->poses, "CSV file: x,y,z[,roll,pitch,yaw | ,qx,qy,qz,qw]; m, rad; other columns are kept")->required();
+    command.add_option("--out,-o", args->out, "CSV file to write (default: standard output)");
+    command.footer("Example:\n"
+                   "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/poses.csv\n"
+                   "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/poses.csv");
+    command.callback([=, &run] { run = [=] { return run_check(*args); }; });
+}
+
+}  // namespace spawnfield::cli

@@ -1,0 +1,194 @@
+#include "cli.h"
+
+#include "interrupt.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/output_file.h>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+namespace spawnfield::cli {
+namespace {
+
+std::atomic<bool> interrupt_seen{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+void note_interrupt(int signal)
+{
+    interrupt_seen = true;
+    std::signal(signal, SIG_DFL);
+}
+
+bool bar_shown = false;
+
+std::vector<double> parse_numbers(const std::string& option, const std::string& text)
+{
+    std::vector<double> out;
+    for (std::size_t start = 0; start <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', start), text.size());
+        double value = 0;
+        const char* const end = text.data() + comma;
+        const auto [stop, error] = std::from_chars(text.data() + start, end, value);
+        if (error != std::errc{} || stop != end || !std::isfinite(value))
+            throw ArgumentError(option + ": \"" + text.substr(start, comma - start) + "\" is no finite number");
+        out.push_back(value);
+        start = comma + 1;
+    }
+    return out;
+}
+
+}  // namespace
+
+void catch_interrupts()
+{
+    std::signal(SIGINT, note_interrupt);
+    std::signal(SIGTERM, note_interrupt);
+}
+
+bool was_interrupted() { return interrupt_seen; }
+
+void add_common(CLI::App& command, CommonArgs& args)
+{
+    command.add_option("--threads", args.threads, "Threads; 0: all cores. The result is the same at any number")
+        ->check(CLI::Range(0, 1024));
+    command.add_flag("--quiet,-q", args.quiet, "No notices, no progress, no summary line");
+    command.add_option("--summary", args.summary, "Write the summary to this file as JSON");
+}
+
+void add_query(CLI::App& command, QueryArgs& args)
+{
+    command.add_option("map", args.map, "Map folder, from `spawnfield bake`")->required();
+    command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, or box:LX,LY,LZ[@x,y,z] (m)")->required();
+    command.add_option("--package-path", args.package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
+    command.add_option("--max-height", args.max_height, "Most metres of the robot's origin above its ground (default 1)");
+    command.add_option("--max-water-depth", args.max_water_depth, "Water higher than this above the ground does not count, m (default: all does)");
+    command.add_option("--collision", args.collision, "What the robot must not touch: geometry (exact), or octree (the baked voxels)")
+        ->check(CLI::IsMember({"geometry", "octree"}));
+    add_common(command, args);
+}
+
+void notice(const CommonArgs& args, const std::string& text)
+{
+    if (args.quiet) return;
+    clear_progress_bar();
+    std::cerr << "notice: " << text << "\n";
+}
+
+Progress progress_bar(const CommonArgs& args, const std::string& label)
+{
+    const bool shown = !args.quiet && isatty(STDERR_FILENO) != 0;
+    using Clock = std::chrono::steady_clock;
+    auto last = std::make_shared<Clock::time_point>(Clock::now());
+    return [=](double share) {
+        if (was_interrupted()) throw Interrupted{};
+        const auto now = Clock::now();
+        if (!shown || now - *last < std::chrono::milliseconds(100)) return;
+        *last = now;
+        const int width = 30, full = int(share * width);
+        std::fprintf(stderr, "\r%s [%s%s] %3d %%", label.c_str(), std::string(full, '#').c_str(),
+                     std::string(width - full, ' ').c_str(), int(share * 100));
+        bar_shown = true;
+    };
+}
+
+void clear_progress_bar()
+{
+    if (bar_shown) std::fprintf(stderr, "\r%70s\r", "");
+    bar_shown = false;
+}
+
+Bounds parse_bounds(const std::string& text, bool flat_allowed)
+{
+    const auto v = parse_numbers("--bounds", text);
+    Bounds bounds;
+    if (v.size() == 6) {
+        bounds = {Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
+    } else if (v.size() == 4 && flat_allowed) {
+        bounds = {Vec3(v[0], v[1], 0), Vec3(v[2], v[3], 0)};
+    } else {
+        throw ArgumentError("--bounds has " + std::to_string(v.size()) + " numbers, needs 6: x0,y0,z0,x1,y1,z1" +
+                            (flat_allowed ? " (or 4: x0,y0,x1,y1)" : ""));
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        if (bounds.min[axis] > bounds.max[axis])
+            throw ArgumentError("--bounds", std::string(1, "xyz"[axis]) + "1", bounds.max[axis],
+                                "at least " + std::string(1, "xyz"[axis]) + "0: the lower corner comes first");
+    return bounds;
+}
+
+LayerChoice parse_layers(const std::string& text)
+{
+    if (text == "all") return {LayerChoice::Kind::All, 0};
+    if (text == "top") return {LayerChoice::Kind::Top, 0};
+    if (text == "bottom") return {LayerChoice::Kind::Bottom, 0};
+    int index = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    if (error != std::errc{} || stop != text.data() + text.size() || index < 0)
+        throw ArgumentError("--layers is \"" + text + "\", needs all, top, bottom or a number from 0 (the highest) on");
+    return {LayerChoice::Kind::Index, index};
+}
+
+bool parse_yaw(const std::string& text, double& yaw)
+{
+    if (text == "random") return false;
+    const auto values = parse_numbers("--yaw", text);
+    if (values.size() != 1) throw ArgumentError("--yaw is \"" + text + "\", needs radians or random");
+    yaw = values[0];
+    return true;
+}
+
+double parse_positive(const std::string& option, double value)
+{
+    if (!(value > 0) || !std::isfinite(value)) throw ArgumentError("spawnfield", option, value, "> 0");
+    return value;
+}
+
+std::unique_ptr<Session> open_session(const QueryArgs& args)
+{
+    auto session = std::make_unique<Session>();
+    session->robot = load_robot(args.robot, {{args.package_paths.begin(), args.package_paths.end()}});
+    for (const std::string& text : session->robot.notices) notice(args, text);
+    session->map = read_map(args.map);
+    if (args.collision == "octree") {
+        auto tree = std::make_shared<const OccupancyTree>(read_occupancy(session->map.folder / "occupancy.bt"));
+        session->checker = std::make_unique<CollisionChecker>(std::move(tree), session->robot);
+    } else {
+        session->checker = std::make_unique<CollisionChecker>(session->map.scene, session->map.index, session->robot);
+    }
+    return session;
+}
+
+void fill(QueryOptions& options, const QueryArgs& args, const std::string& label)
+{
+    options.max_height = args.max_height;
+    options.max_water_depth = args.max_water_depth;
+    options.threads = args.threads;
+    options.progress = progress_bar(args, label);
+    if (!(options.max_height >= 0)) throw ArgumentError("spawnfield", "--max-height", options.max_height, ">= 0 m");
+    if (!(options.max_water_depth >= 0)) throw ArgumentError("spawnfield", "--max-water-depth", options.max_water_depth, ">= 0 m");
+}
+
+void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer)
+{
+    clear_progress_bar();
+    if (file.empty() || file == "-") {
+        writer([](std::string_view text) { std::cout << text; });
+        std::cout.flush();
+        if (!std::cout) throw OutputError("standard output", "cannot be written");
+        return;
+    }
+    OutputFile out(file);
+    writer([&](std::string_view text) { out.write(text); });
+    if (was_interrupted()) throw Interrupted{};
+    out.commit();
+}
+
+}  // namespace spawnfield::cli

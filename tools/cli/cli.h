@@ -1,0 +1,101 @@
+#pragma once
+
+#include <spawnfield/poses.h>
+#include <spawnfield/query.h>
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace spawnfield::cli {
+
+enum ExitStatus { done = 0, failure = 1, wrong_usage = 2, fewer_found = 3, input_refused = 4, interrupted = 130 };
+
+/// The user pressed Ctrl-C; nothing was written.
+struct Interrupted {};
+
+/// Options that every command has.
+struct CommonArgs {
+    int threads = 0;
+    bool quiet = false;
+    std::string summary;
+};
+void add_common(CLI::App& command, CommonArgs& args);
+
+/// Options of every command that asks a map about a robot.
+struct QueryArgs : CommonArgs {
+    std::string map, robot, collision = "geometry";
+    std::vector<std::string> package_paths;
+    double max_height = 1.0;
+    double max_water_depth = std::numeric_limits<double>::infinity();
+};
+void add_query(CLI::App& command, QueryArgs& args);
+
+/// Words for people: notices, one at a time on standard error, unless --quiet.
+void notice(const CommonArgs& args, const std::string& text);
+
+/// A bar on standard error while it is a terminal; without one it only notices Ctrl-C.
+Progress progress_bar(const CommonArgs& args, const std::string& label);
+void clear_progress_bar();
+
+/// "x0,y0,z0,x1,y1,z1", or "x0,y0,x1,y1" where heights do not count. Throws ArgumentError.
+Bounds parse_bounds(const std::string& text, bool flat_allowed);
+LayerChoice parse_layers(const std::string& text);  ///< all|top|bottom|N
+/// "random" or radians; false if it is random.
+bool parse_yaw(const std::string& text, double& yaw);
+double parse_positive(const std::string& option, double value);
+
+/// What a run did. Written as one line and, with --summary, as JSON (DESIGN.md, Commands).
+class Summary {
+public:
+    Summary(std::string command, const CommonArgs& args);
+
+    void lap(const std::string& stage);  ///< seconds since the last lap go to this stage
+    void set_counts(const VerdictCounts& counts);
+
+    std::uint64_t poses = 0, exact_checks = 0, seed = 0;
+    std::string map_hash;
+    std::vector<std::string> extra;                           ///< further words for the line, in front
+    std::vector<std::pair<std::string, double>> more_stages;  ///< a bake's own
+
+    void finish();  ///< tells standard error and writes the JSON
+
+private:
+    std::string line(double total) const;
+    std::string json(double total) const;
+    double seconds_of(const std::string& stage) const;
+
+    std::string command_;
+    const CommonArgs& args_;
+    bool has_counts_ = false;
+    VerdictCounts counts_{};
+    std::vector<std::pair<std::string, double>> seconds_;
+    double start_, last_;
+};
+
+/// A map and a robot, ready to be asked.
+struct Session {
+    Map map;
+    Robot robot;
+    std::unique_ptr<CollisionChecker> checker;
+};
+/// Heap-held: the checker keeps references into it.
+std::unique_ptr<Session> open_session(const QueryArgs& args);
+void fill(QueryOptions& options, const QueryArgs& args, const std::string& label);
+
+/// `-o FILE`, whole or not at all, or standard output where the file is empty or "-".
+void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer);
+
+/// Each adds its command to the app; `run` is set when it is chosen.
+using Run = std::function<int()>;
+void add_bake(CLI::App& app, Run& run);
+void add_info(CLI::App& app, Run& run);
+void add_check(CLI::App& app, Run& run);
+void add_raster(CLI::App& app, Run& run);
+void add_search(CLI::App& app, Run& run);
+void add_sample(CLI::App& app, Run& run);
+void add_heatmap(CLI::App& app, Run& run);
+
+}  // namespace spawnfield::cli

@@ -1,0 +1,83 @@
+#include "cli.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/heatmap.h>
+
+#include <algorithm>
+
+namespace spawnfield::cli {
+namespace {
+
+struct HeatmapArgs : QueryArgs {
+    std::string out, quantity = "verdict", layers = "all", spawns, bounds;
+    double step = 0, offset = 0.1, yaw = 0;
+    int size = 1000;
+};
+
+/// About 300 columns along the longer side: fine enough to look at, and quick.
+double default_step(const Map& map, const RasterOptions& options)
+{
+    const Bounds bounds = options.bounds.is_empty() ? map.bounds : options.bounds;
+    const double longest = std::max(bounds.max.x() - bounds.min.x(), bounds.max.y() - bounds.min.y());
+    return std::max(map.resolution, longest / 300);
+}
+
+HeatmapQuantity quantity_of(const std::string& name)
+{
+    if (name == "height") return HeatmapQuantity::Height;
+    if (name == "clearance") return HeatmapQuantity::Clearance;
+    return name == "slope" ? HeatmapQuantity::Slope : HeatmapQuantity::Verdict;
+}
+
+int run_heatmap(const HeatmapArgs& args, bool step_given)
+{
+    Summary summary("heatmap", args);
+    RasterOptions options;
+    fill(options, args, "heatmap");
+    options.offset = args.offset;
+    options.yaw = args.yaw;
+    options.layers = parse_layers(args.layers);
+    if (!args.bounds.empty()) options.bounds = parse_bounds(args.bounds, true);
+    HeatmapOptions picture;
+    picture.quantity = quantity_of(args.quantity);
+    picture.pixels = args.size;
+    if (!args.spawns.empty()) picture.spawns = read_spawns(args.spawns);
+    const auto session = open_session(args);
+    options.step = step_given ? parse_positive("--step", args.step) : default_step(session->map, options);
+    const TerrainMap terrain = read_terrain(session->map);
+    summary.lap("load");
+    const RasterResult result = raster(session->map, *session->checker, options);
+    summary.lap("exact");
+    picture.title = session->map.name + ", " + session->robot.name;
+    write_heatmap(session->map, terrain, result, picture, args.out);
+    summary.lap("write");
+    summary.set_counts(result.counts);
+    summary.exact_checks = result.exact_checks;
+    summary.map_hash = session->map.hash;
+    summary.extra = {args.out};
+    summary.finish();
+    return done;
+}
+
+}  // namespace
+
+void add_heatmap(CLI::App& app, Run& run)
+{
+    auto args = std::make_shared<HeatmapArgs>();
+    CLI::App& command = *app.add_subcommand("heatmap", "Picture of where the robot can stand");
+    add_query(command, *args);
+    command.add_option("--out,-o", args->out, "PNG file to draw")->required();
+    command.add_option("--quantity", args->quantity, "verdict, height, clearance or slope (default verdict)")
+        ->check(CLI::IsMember({"verdict", "height", "clearance", "slope"}));
+    command.add_option("--spawns", args->spawns, "CSV file of spawns to draw as arrows");
+    command.add_option("--layers,--layer", args->layers, "all (valid if one layer is), top, bottom, or N from the top (0 first)");
+    auto* step = command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
+    command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
+    command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
+    command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
+    command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000)")->check(CLI::Range(200, 16000));
+    command.footer("Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png");
+    command.callback([=, &run] { run = [=] { return run_heatmap(*args, step->count() > 0); }; });
+}
+
+}  // namespace spawnfield::cli

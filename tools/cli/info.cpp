@@ -1,0 +1,209 @@
+#include "cli.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/map.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace spawnfield::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+struct InfoArgs : CommonArgs {
+    std::string what, up;
+    double scale = 1;
+    std::vector<std::string> package_paths;
+    bool json = false, verify = false;
+};
+
+Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json json_of(const Bounds& bounds) { return {{"min", json_of(bounds.min)}, {"max", json_of(bounds.max)}}; }
+
+Json json_of(const Scene& scene)
+{
+    Json out;
+    std::array<std::uint64_t, 4> triangles{}, primitives{};
+    for (const Label label : scene.triangle_labels) ++triangles[std::size_t(label)];
+    for (const Primitive& primitive : scene.primitives) ++primitives[std::size_t(primitive.label)];
+    for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water})
+        out["labels"][to_string(label)] = {{"triangles", triangles[std::size_t(label)]}, {"primitives", primitives[std::size_t(label)]}};
+    out["parts"] = Json::array();
+    for (const Part& part : scene.parts)
+        out["parts"].push_back({{"name", part.name}, {"kind", part.kind}, {"label", to_string(part.label)},
+                                {"triangles", part.triangles}, {"solid_pieces", part.solid_pieces},
+                                {"sheet_pieces", part.sheet_pieces}, {"open_edges", part.open_edges}});
+    return out;
+}
+
+Json scene_json(const Scene& scene)
+{
+    Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.bounds())}};
+    out.update(json_of(scene));
+    out["notices"] = scene.notices;
+    return out;
+}
+
+Json map_json(const Map& map, bool verified)
+{
+    Json out = {{"kind", "map"}, {"name", map.name}, {"bounds", json_of(map.bounds)}, {"resolution", map.resolution},
+                {"occupancy_resolution", map.occupancy_resolution}, {"layers", map.layers},
+                {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
+    if (verified) out["verified"] = true;
+    for (const auto& entry : fs::directory_iterator(map.folder)) out["files"][entry.path().filename().string()] = entry.file_size();
+    out.update(json_of(map.scene));
+    return out;
+}
+
+const char* kind_of(const RobotPart& part)
+{
+    constexpr std::array names{"box", "sphere", "cylinder", "capsule", "convex hull"};
+    return names[std::size_t(part.shape.kind)];
+}
+
+Json robot_json(const Robot& robot)
+{
+    Json out = {{"kind", "robot"}, {"name", robot.name}, {"bounds", json_of(robot.bounds())}};
+    out["parts"] = Json::array();
+    for (const RobotPart& part : robot.parts) {
+        Json entry = {{"shape", kind_of(part)}, {"bounds", json_of(part.bounds())}};
+        if (part.shape.kind == ShapeKind::Hull) entry["vertices"] = part.hull_vertices.size();
+        else entry["size"] = json_of(part.shape.size);
+        out["parts"].push_back(entry);
+    }
+    out["contacts"] = Json::array();
+    for (const Vec3& contact : robot.contacts) out["contacts"].push_back(json_of(contact));
+    return out;
+}
+
+std::string metres(const Json& vector)
+{
+    std::ostringstream out;
+    out.precision(6);
+    for (std::size_t i = 0; i < vector.size(); ++i) out << (i ? ", " : "") << vector[i].get<double>();
+    return out.str();
+}
+
+std::string extent_lines(const Json& bounds)
+{
+    std::ostringstream out;
+    out.precision(6);
+    out << "  from  " << metres(bounds["min"]) << " m\n  to    " << metres(bounds["max"]) << " m\n  size  ";
+    for (int axis = 0; axis < 3; ++axis)
+        out << (axis ? " x " : "") << bounds["max"][std::size_t(axis)].get<double>() - bounds["min"][std::size_t(axis)].get<double>();
+    out << " m\n";
+    return out.str();
+}
+
+/// Says what is filled and what is a shell, as nothing surprises more.
+std::string part_line(const Json& part)
+{
+    std::string line = "  " + part["name"].get<std::string>() + ": " + part["kind"].get<std::string>() + ", " + part["label"].get<std::string>();
+    if (part["triangles"] > 0) line += ", " + part["triangles"].dump() + " triangles";
+    if (part["solid_pieces"] > 0) line += ", " + part["solid_pieces"].dump() + " solid";
+    if (part["sheet_pieces"] > 0) {
+        line += ", " + part["sheet_pieces"].dump() + (part["kind"] == "mesh" ? " shell" : " sheet") + " (without thickness, not filled";
+        if (part["open_edges"] > 0) line += "; " + part["open_edges"].dump() + " open edges";
+        line += ")";
+    }
+    if (part["solid_pieces"] == 0 && part["sheet_pieces"] == 0) line += ", left out";
+    return line + "\n";
+}
+
+std::string scene_lines(const Json& scene)
+{
+    std::string out = "labels\n";
+    for (const auto& [label, counts] : scene["labels"].items())
+        out += "  " + label + ": " + counts["triangles"].dump() + " triangles, " + counts["primitives"].dump() + " primitives\n";
+    out += "parts\n";
+    for (const Json& part : scene["parts"]) out += part_line(part);
+    return out;
+}
+
+std::string map_lines(const Json& map)
+{
+    std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() + ", hash " +
+                      map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
+    out += "  terrain cells of " + map["resolution"].dump() + " m, " + map["layers"].dump() + " layers; voxels of " +
+           map["occupancy_resolution"].dump() + " m\n";
+    out += scene_lines(map) + "files\n";
+    for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
+    if (map.contains("verified")) out += "all files match their checksums\n";
+    return out;
+}
+
+std::string robot_lines(const Json& robot)
+{
+    std::string out = "robot " + robot["name"].get<std::string>() + "\n" + extent_lines(robot["bounds"]) + "parts\n";
+    for (const Json& part : robot["parts"]) {
+        out += "  " + part["shape"].get<std::string>();
+        if (part.contains("vertices")) out += " of " + part["vertices"].dump() + " vertices";
+        out += ", from " + metres(part["bounds"]["min"]) + " to " + metres(part["bounds"]["max"]) + " m\n";
+    }
+    if (!robot["contacts"].empty()) out += "contacts\n";
+    for (const Json& contact : robot["contacts"]) out += "  " + metres(contact) + " m\n";
+    return out;
+}
+
+bool is_robot(const std::string& what)
+{
+    if (what.starts_with("box:") || fs::path(what).extension() == ".urdf") return true;
+    if (!what.ends_with(".yaml") && !what.ends_with(".yml")) return false;
+    std::ifstream file(what);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str().find("spawnfield-robot/") != std::string::npos;
+}
+
+int run_info(const InfoArgs& args)
+{
+    const Progress listen = progress_bar(args, "info");
+    Json out;
+    if (fs::is_directory(args.what)) {
+        if (args.verify) verify_map(args.what);
+        out = map_json(read_map(args.what), args.verify);
+    } else if (is_robot(args.what)) {
+        out = robot_json(load_robot(args.what, {{args.package_paths.begin(), args.package_paths.end()}}));
+    } else {
+        SceneOptions options;
+        options.up = args.up.empty() ? char{0} : args.up[0];
+        options.scale = args.scale;
+        const Scene scene = load_scene(args.what, options);
+        for (const std::string& text : scene.notices) notice(args, text);
+        out = scene_json(scene);
+    }
+    listen(1);
+    const std::string kind = out["kind"];
+    const std::string text = args.json          ? out.dump(2) + "\n"
+                             : kind == "map"    ? map_lines(out)
+                             : kind == "robot"  ? robot_lines(out)
+                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + scene_lines(out);
+    write_output("", [&](const auto& sink) { sink(text); });
+    return done;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Run& run)
+{
+    auto args = std::make_shared<InfoArgs>();
+    CLI::App& command = *app.add_subcommand("info", "What a map, a scene or a robot holds");
+    command.add_option("what", args->what, "Map folder, scene file, robot.yaml, .urdf or box:LX,LY,LZ")->required();
+    command.add_flag("--json", args->json, "As JSON");
+    command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
+    command.add_option("--up", args->up, "Up axis of a bare mesh: y or z")->check(CLI::IsMember({"y", "z"}));
+    command.add_option("--scale", args->scale, "Metres per unit of a bare mesh");
+    command.add_option("--package-path", args->package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
+    add_common(command, *args);
+    command.footer("Example:\n  spawnfield info maps/training/scene.yaml");
+    command.callback([=, &run] { run = [=] { return run_info(*args); }; });
+}
+
+}  // namespace spawnfield::cli

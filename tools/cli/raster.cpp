@@ -1,0 +1,81 @@
+#include "cli.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/heatmap.h>
+
+namespace spawnfield::cli {
+namespace {
+
+struct RasterArgs : QueryArgs {
+    int dims = 2;
+    double step = 0, step_z = 0, offset = 0.1, yaw = 0;
+    std::string bounds, layers = "all", out, heatmap;
+    bool no_height_check = false, write_aerial = false, exhaustive = false;
+};
+
+RasterOptions options_of(const RasterArgs& args, bool step_z_given)
+{
+    RasterOptions options;
+    fill(options, args, "raster");
+    options.dims = args.dims;
+    options.step = parse_positive("--step", args.step);
+    if (step_z_given) options.step_z = parse_positive("--step-z", args.step_z);
+    options.offset = args.offset;
+    options.yaw = args.yaw;
+    options.layers = parse_layers(args.layers);
+    options.height_check = !args.no_height_check;
+    if (!args.bounds.empty()) options.bounds = parse_bounds(args.bounds, args.dims == 2);
+    if (args.write_aerial && args.dims == 2) throw ArgumentError("--write-aerial is for --dims 3");
+    return options;
+}
+
+int run_raster(const RasterArgs& args, bool step_z_given)
+{
+    Summary summary("raster", args);
+    const RasterOptions options = options_of(args, step_z_given);
+    const auto session = open_session(args);
+    summary.lap("load");
+    const RasterResult result = raster(session->map, *session->checker, options);
+    summary.lap("exact");
+    if (!args.heatmap.empty()) {
+        HeatmapOptions picture;
+        picture.title = session->map.name + ", " + session->robot.name;
+        write_heatmap(session->map, read_terrain(session->map), result, picture, args.heatmap);
+    }
+    if (!args.out.empty() || args.heatmap.empty())
+        write_output(args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink); });
+    summary.lap("write");
+    summary.set_counts(result.counts);
+    summary.exact_checks = result.exact_checks;
+    summary.map_hash = session->map.hash;
+    summary.finish();
+    return done;
+}
+
+}  // namespace
+
+void add_raster(CLI::App& app, Run& run)
+{
+    auto args = std::make_shared<RasterArgs>();
+    CLI::App& command = *app.add_subcommand("raster", "Verdict at every position of a 2D or 3D raster");
+    add_query(command, *args);
+    command.add_option("--dims", args->dims, "2: a pose per column and layer; 3: a pose per column and height")
+        ->required()
+        ->check(CLI::IsMember({2, 3}));
+    command.add_option("--step", args->step, "Between columns, m")->required();
+    auto* step_z = command.add_option("--step-z", args->step_z, "Between heights, m (default: --step)");
+    command.add_option("--offset", args->offset, "Of the robot's origin above its layer in 2D, m (default 0.1)");
+    command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
+    command.add_option("--bounds", args->bounds, "x0,y0,z0,x1,y1,z1 in m; 2D takes x0,y0,x1,y1 too and leaves z aside (default: the map's)");
+    command.add_option("--layers,--layer", args->layers, "all, top, bottom, or N from the top (0 first)");
+    command.add_flag("--no-height-check", args->no_height_check, "3D: collisions alone, at every pose");
+    command.add_flag("--write-aerial", args->write_aerial, "3D: write aerial poses too");
+    command.add_flag("--exhaustive", args->exhaustive, "Decide every pose by itself (today always so)");
+    command.add_option("--out,-o", args->out, "CSV file to write (default: standard output, or none with --heatmap)");
+    command.add_option("--heatmap", args->heatmap, "PNG file to draw");
+    command.footer("Example:\n"
+                   "  spawnfield raster /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --step 0.5 --offset 0.5 -o /tmp/raster.csv");
+    command.callback([=, &run] { run = [=] { return run_raster(*args, step_z->count() > 0); }; });
+}
+
+}  // namespace spawnfield::cli

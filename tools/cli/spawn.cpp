@@ -1,0 +1,108 @@
+#include "cli.h"
+
+#include <spawnfield/error.h>
+
+#include <cmath>
+
+namespace spawnfield::cli {
+namespace {
+
+struct SpawnArgs : QueryArgs {
+    long long count = 0, max_failures = 100000;
+    std::uint64_t seed = 0;
+    double min_distance = 0, offset = 0.1;
+    std::string bounds, region, layers = "all", yaw = "0", format = "csv", out;
+};
+
+void fill_spawn(SpawnOptions& options, const SpawnArgs& args, const std::string& bounds, const std::string& label)
+{
+    fill(options, args, label);
+    if (args.count < 1) throw ArgumentError("spawnfield", "-n", double(args.count), ">= 1");
+    options.count = std::size_t(args.count);
+    options.min_distance = args.min_distance;
+    options.seed = args.seed;
+    options.random_yaw = !parse_yaw(args.yaw, options.yaw);
+    if (!bounds.empty()) options.bounds = parse_bounds(bounds, label == "sample");
+}
+
+int finish(Summary& summary, const SpawnArgs& args, const Session& session, const SpawnOptions& options, const SpawnList& list,
+           const std::string& command)
+{
+    summary.lap("exact");
+    write_output(args.out, [&](const auto& sink) {
+        sink(args.format == "json" ? spawns_json(list, session.map, session.robot, options, command) : spawns_csv(list));
+    });
+    summary.lap("write");
+    summary.set_counts(list.counts);
+    summary.exact_checks = list.exact_checks;
+    summary.map_hash = session.map.hash;
+    summary.seed = args.seed;
+    summary.extra = {std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns",
+                     std::to_string(list.draws) + " draws, " + std::to_string(list.too_close) + " too close"};
+    summary.finish();
+    return list.spawns.size() < options.count ? fewer_found : done;
+}
+
+int run_search(const SpawnArgs& args)
+{
+    Summary summary("search", args);
+    SearchOptions options;
+    fill_spawn(options, args, args.bounds, "search");
+    if (args.max_failures < 1) throw ArgumentError("spawnfield", "--max-failures", double(args.max_failures), ">= 1");
+    options.max_failures = std::uint64_t(args.max_failures);
+    const auto session = open_session(args);
+    summary.lap("load");
+    const SpawnList list = search(session->map, *session->checker, options);
+    return finish(summary, args, *session, options, list, "search");
+}
+
+int run_sample(const SpawnArgs& args)
+{
+    Summary summary("sample", args);
+    SampleOptions options;
+    fill_spawn(options, args, args.region, "sample");
+    options.offset = args.offset;
+    options.layers = parse_layers(args.layers);
+    const auto session = open_session(args);
+    summary.lap("load");
+    const SpawnList list = sample(session->map, *session->checker, options);
+    return finish(summary, args, *session, options, list, "sample");
+}
+
+void add_spawn_options(CLI::App& command, SpawnArgs& args)
+{
+    add_query(command, args);
+    command.add_option("-n,--count", args.count, "Spawns wanted")->required();
+    command.add_option("--min-distance", args.min_distance, "Between positions, m (default 0)");
+    command.add_option("--yaw", args.yaw, "rad, or random (default 0)");
+    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)");
+    command.add_option("--format", args.format, "csv or json (default csv)")->check(CLI::IsMember({"csv", "json"}));
+    command.add_option("--out,-o", args.out, "File to write (default: standard output)");
+}
+
+}  // namespace
+
+void add_search(CLI::App& app, Run& run)
+{
+    auto args = std::make_shared<SpawnArgs>();
+    CLI::App& command = *app.add_subcommand("search", "N spawns by random search in a box, away from all positions checked before");
+    add_spawn_options(command, *args);
+    command.add_option("--max-failures", args->max_failures, "Draws in a row that gave nothing, after which it stops (default 100000)");
+    command.add_option("--bounds", args->bounds, "Box of the draws: x0,y0,z0,x1,y1,z1 in m (default: the map's)");
+    command.footer("Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 --max-failures 10000");
+    command.callback([=, &run] { run = [=] { return run_search(*args); }; });
+}
+
+void add_sample(CLI::App& app, Run& run)
+{
+    auto args = std::make_shared<SpawnArgs>();
+    CLI::App& command = *app.add_subcommand("sample", "N valid spawns, uniform by area");
+    add_spawn_options(command, *args);
+    command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
+    command.add_option("--region", args->region, "x0,y0,x1,y1 in m (default: the map's bounds)");
+    command.add_option("--layers,--layer", args->layers, "all, top, bottom, or N from the top (0 first)");
+    command.footer("Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");
+    command.callback([=, &run] { run = [=] { return run_sample(*args); }; });
+}
+
+}  // namespace spawnfield::cli

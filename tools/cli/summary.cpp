@@ -1,0 +1,101 @@
+#include "cli.h"
+
+#include <spawnfield/output_file.h>
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <thread>
+
+namespace spawnfield::cli {
+namespace {
+
+double now()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::uint64_t peak_memory_bytes()
+{
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;  // Linux counts KiB
+}
+
+}  // namespace
+
+Summary::Summary(std::string command, const CommonArgs& args) : command_(std::move(command)), args_(args), start_(now()), last_(start_) {}
+
+void Summary::lap(const std::string& stage)
+{
+    const double time = now();
+    seconds_.emplace_back(stage, time - last_);
+    last_ = time;
+}
+
+void Summary::set_counts(const VerdictCounts& counts)
+{
+    counts_ = counts;
+    has_counts_ = true;
+    poses = 0;
+    for (const std::uint64_t count : counts) poses += count;
+}
+
+double Summary::seconds_of(const std::string& stage) const
+{
+    double sum = 0;
+    for (const auto& [name, seconds] : seconds_)
+        if (name == stage) sum += seconds;
+    return sum;
+}
+
+std::string Summary::line(double total) const
+{
+    std::string text = "spawnfield " + command_ + ": ";
+    for (const std::string& words : extra) text += words + "; ";
+    if (has_counts_) {
+        text += std::to_string(poses) + (poses == 1 ? " pose" : " poses");
+        std::string verdicts;
+        for (std::size_t v = verdict_count; v-- > 0;)  // valid first
+            if (counts_[v] > 0) verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(counts_[v]) + " " + to_string(Verdict(v));
+        text += verdicts + "; " + std::to_string(exact_checks) + " exact checks; ";
+    }
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, "%.3f s", total);
+    return text + seconds;
+}
+
+std::string Summary::json(double total) const
+{
+    nlohmann::ordered_json out;
+    out["command"] = command_;
+    out["poses"] = poses;
+    out["counts"] = nlohmann::ordered_json::object();
+    if (has_counts_)
+        for (std::size_t v = 0; v < verdict_count; ++v) out["counts"][to_string(Verdict(v))] = counts_[v];
+    out["exact_checks"] = exact_checks;
+    const double load = seconds_of("load"), write = seconds_of("write");
+    out["seconds"] = {{"load", load}, {"query", total - load - write}, {"mask", 0.0}, {"exact", seconds_of("exact")},
+                      {"write", write}, {"total", total}};
+    for (const auto& [stage, seconds] : more_stages) out["seconds"][stage] = seconds;
+    out["peak_memory_bytes"] = peak_memory_bytes();
+    out["threads"] = args_.threads > 0 ? unsigned(args_.threads) : std::thread::hardware_concurrency();
+    out["seed"] = seed;
+    out["map_hash"] = map_hash;
+    out["version"] = version();
+    return out.dump(2) + "\n";
+}
+
+void Summary::finish()
+{
+    const double total = now() - start_;
+    if (!args_.summary.empty()) write_file_atomically(args_.summary, json(total));
+    clear_progress_bar();
+    if (!args_.quiet) std::cerr << line(total) << "\n";
+}
+
+}  // namespace spawnfield::cli
