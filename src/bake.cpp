@@ -1,4 +1,5 @@
 #include "checksum.h"
+#include "chosen_bounds.h"
 #include "geometry_file.h"
 #include "input_file.h"
 #include "map_yaml.h"
@@ -26,8 +27,7 @@ class NewFolder {
 public:
     explicit NewFolder(const fs::path& target) : target_(without_slash(target)), suffix_("-" + std::to_string(getpid()))
     {
-        if (fs::exists(target_) && !fs::is_regular_file(target_ / "map.yaml") &&
-            !(fs::is_directory(target_) && fs::is_empty(target_)))
+        if (fs::exists(target_) && !is_map_folder(target_) && !(fs::is_directory(target_) && fs::is_empty(target_)))
             throw OutputError(target_.string(), "exists and is no map; choose another name or remove it");
         folder_ = target_.string() + ".tmp" + suffix_;
         std::error_code error;
@@ -58,6 +58,13 @@ public:
     }
 
 private:
+    /// Others have a map.yaml too: nav2's map server.
+    static bool is_map_folder(const fs::path& folder)
+    {
+        const fs::path file = folder / "map.yaml";
+        return fs::is_regular_file(file) && read_file(file).starts_with("format: spawnfield-map/");
+    }
+
     static fs::path without_slash(fs::path path) { return path.has_filename() ? path : path.parent_path(); }
 
     fs::path target_, folder_;
@@ -122,9 +129,12 @@ Map plan_map(Scene scene, const fs::path& scene_file, const BakeOptions& options
     if (!options.allow_no_terrain && !scene.has_terrain())
         throw FileError(scene_file.string(), "has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') "
                                              "or pass --allow-no-terrain");
+    if (!(options.resolution >= 0)) throw ArgumentError("bake", "resolution", options.resolution, "> 0 m (0: chosen)");
+    if (!(options.occupancy_resolution >= 0))
+        throw ArgumentError("bake", "occupancy_resolution", options.occupancy_resolution, "> 0 m (0: chosen)");
     Map map;
     map.name = scene.name;
-    map.bounds = options.bounds.is_empty() ? scene.bounds() : options.bounds;
+    map.bounds = chosen_bounds("bake", options.bounds, scene.bounds());
     map.resolution = options.resolution > 0 ? options.resolution : default_resolution(map.bounds, report);
     map.occupancy_resolution = options.occupancy_resolution > 0
                                    ? options.occupancy_resolution

@@ -83,7 +83,13 @@ public:
         if (count > 0) std::memcpy(static_cast<void*>(values.data()), take(count * sizeof(T)), count * sizeof(T));
         return values;
     }
-    bool is_at_end() const { return rest_.empty(); }
+    /// Number of records that follow; each has at least a byte.
+    std::uint32_t get_count()
+    {
+        const auto count = get<std::uint32_t>();
+        if (count > rest_.size()) throw std::out_of_range("count");
+        return count;
+    }
 
 private:
     const char* take(std::size_t size)
@@ -115,7 +121,7 @@ std::string write_parts(const Scene& scene)
 void read_parts(Reader in, Scene& scene)
 {
     scene.name = in.get_text();
-    scene.parts.resize(in.get<std::uint32_t>());
+    scene.parts.resize(in.get_count());
     for (Part& part : scene.parts) {
         part.name = in.get_text();
         part.kind = in.get_text();
@@ -140,7 +146,7 @@ std::string write_pieces(const Scene& scene)
 
 void read_pieces(Reader in, Scene& scene)
 {
-    scene.pieces.resize(in.get<std::uint32_t>());
+    scene.pieces.resize(in.get_count());
     for (Piece& piece : scene.pieces) {
         for (std::uint32_t* n : {&piece.part, &piece.first_triangle, &piece.triangle_count}) *n = in.get<std::uint32_t>();
         piece.solid = in.get<std::uint8_t>() != 0;
@@ -166,7 +172,7 @@ std::string write_primitives(const Scene& scene)
 
 void read_primitives(Reader in, Scene& scene)
 {
-    scene.primitives.resize(in.get<std::uint32_t>());
+    scene.primitives.resize(in.get_count());
     for (Primitive& primitive : scene.primitives) {
         primitive.shape.kind = ShapeKind(in.get<std::uint8_t>());
         primitive.label = Label(in.get<std::uint8_t>());
@@ -197,7 +203,7 @@ void read_index(Reader in, ColumnIndex& index)
 {
     index.x0 = in.get<double>();
     index.y0 = in.get<double>();
-    index.levels.resize(in.get<std::uint32_t>());
+    index.levels.resize(in.get_count());
     for (ColumnIndex::Level& level : index.levels) {
         level.cell = in.get<double>();
         level.cols = in.get<std::uint32_t>();
@@ -244,10 +250,14 @@ bool is_consistent(const Scene& scene, const ColumnIndex& index)
     if (!below(scene.triangle_pieces, scene.pieces.size())) return false;
     for (const Triangle& triangle : scene.triangles)
         if (!below(triangle, scene.vertices.size())) return false;
+    const auto is_kept = [](Label label) { return label < Label::Ignore; };
+    if (!std::all_of(scene.triangle_labels.begin(), scene.triangle_labels.end(), is_kept)) return false;
+    for (const Part& part : scene.parts)
+        if (part.label > Label::Ignore) return false;
     for (const Piece& piece : scene.pieces)
-        if (piece.part >= scene.parts.size()) return false;
+        if (piece.part >= scene.parts.size() || std::size_t(piece.first_triangle) + piece.triangle_count > triangles) return false;
     for (const Primitive& primitive : scene.primitives)
-        if (primitive.part >= scene.parts.size() || primitive.shape.kind > ShapeKind::Capsule) return false;
+        if (primitive.part >= scene.parts.size() || primitive.shape.kind > ShapeKind::Capsule || !is_kept(primitive.label)) return false;
     for (const ColumnIndex::Level& level : index.levels) {
         const std::size_t bins = std::size_t(level.cols) * level.rows;
         if (!(level.cell > 0) || bins == 0 || level.offsets.size() != bins + 1 || level.offsets.back() != level.elements.size())

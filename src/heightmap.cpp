@@ -6,6 +6,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace spawnfield {
@@ -14,7 +15,12 @@ namespace {
 cv::Mat read_grey(const std::filesystem::path& file)
 {
     if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
-    cv::Mat image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+    cv::Mat image;
+    try {
+        image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+    } catch (const cv::Exception& error) {
+        throw FileError(file.string(), "cannot be read as an image: " + error.err);
+    }
     if (image.empty()) throw FileError(file.string(), "cannot be read as an image, needs PNG or TIFF");
     if (image.channels() != 1)
         throw FileError(file.string(), "has " + std::to_string(image.channels()) + " channels, needs 1 (grey)");
@@ -59,26 +65,29 @@ Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptio
                                                    " is infinite, needs a finite height or NaN (no ground)");
             map.heights.push_back(z);
         }
+    if (std::all_of(map.heights.begin(), map.heights.end(), [](double z) { return std::isnan(z); }))
+        throw FileError(file.string(), "has no heights: every pixel is NaN");
     return map;
 }
 
 void append_heightmap(Scene& scene, std::uint32_t part, const Heightmap& map, const Pose& pose, bool sides_up)
 {
     const double dx = map.size[0] / (map.cols - 1), dy = map.size[1] / (map.rows - 1);
+    constexpr std::uint32_t unused = 0xffffffff;
     std::vector<Vec3> vertices;
-    std::vector<std::uint32_t> index(map.heights.size());
-    for (int row = 0; row < map.rows; ++row)
-        for (int col = 0; col < map.cols; ++col) {
-            const std::size_t pixel = std::size_t(row) * map.cols + col;
-            index[pixel] = static_cast<std::uint32_t>(vertices.size());
-            if (std::isnan(map.heights[pixel])) continue;
+    std::vector<std::uint32_t> index(map.heights.size(), unused);
+    const auto vertex = [&](std::size_t pixel) {
+        if (index[pixel] == unused) {
+            const double row = double(pixel / std::size_t(map.cols)), col = double(pixel % std::size_t(map.cols));
             const Vec3 local(col * dx - map.size[0] / 2, map.size[1] / 2 - row * dy, map.heights[pixel]);
+            index[pixel] = static_cast<std::uint32_t>(vertices.size());
             vertices.push_back(pose.rotation * local + pose.position);
         }
+        return index[pixel];
+    };
     std::vector<Triangle> triangles;
     const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-        if (std::isnan(map.heights[a] + map.heights[b] + map.heights[c])) return;
-        triangles.push_back({index[a], index[b], index[c]});
+        if (!std::isnan(map.heights[a] + map.heights[b] + map.heights[c])) triangles.push_back({vertex(a), vertex(b), vertex(c)});
     };
     for (int row = 0; row + 1 < map.rows; ++row)
         for (int col = 0; col + 1 < map.cols; ++col) {

@@ -61,6 +61,14 @@ TerrainMap read_terrain(const Map& map)
     return terrain;
 }
 
+OccupancyTree read_occupancy(const Map& map)
+{
+    const MapYaml yaml = read_map_yaml(map.folder);
+    check_size(map.folder, listed(yaml, "occupancy.bt"));
+    check_sum(map.folder, listed(yaml, "occupancy.bt"));
+    return read_occupancy(map.folder / "occupancy.bt");
+}
+
 void verify_map(const fs::path& folder)
 {
     for (const ListedFile& file : read_map_yaml(folder).files) {

@@ -1,4 +1,5 @@
 #include "mesh.h"
+#include "number.h"
 
 #include <spawnfield/error.h>
 
@@ -89,8 +90,8 @@ private:
         if (is_new) {
             const Eigen::Vector4d point = transform_ * Eigen::Vector4d(v.x, v.y, v.z, 1);
             if (!point.allFinite())
-                throw FileError(file_, "node \"" + node_.name + "\": vertex " + std::to_string(node_.vertices.size()) +
-                                           " is not finite, needs finite coordinates");
+                throw FileError(file_, "node \"" + node_.name + "\": a vertex is (" + number(v.x) + ", " + number(v.y) + ", " +
+                                           number(v.z) + "), needs finite coordinates");
             node_.vertices.push_back(point.head<3>());
         }
         return entry->second;
@@ -125,6 +126,7 @@ FileMesh read_mesh(const std::filesystem::path& file)
     Assimp::Importer importer;
     // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
     if (scene == nullptr || scene->mRootNode == nullptr)

@@ -24,7 +24,7 @@ inline std::string number(double value)
 /// The whole of text as a number; false if any of it is something else.
 inline bool parse_number(std::string_view text, double& value)
 {
-    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc{} && end == text.data() + text.size();
 }

@@ -5,6 +5,7 @@
 
 #include <spawnfield/error.h>
 
+#include <cmath>
 #include <sstream>
 
 namespace spawnfield {
@@ -35,7 +36,7 @@ BinaryHeader read_header(const std::filesystem::path& file, const std::string& b
         if (key == "size" && parse_number(value, number) && number >= 0) header.nodes = std::size_t(number);
         if (key == "res" && parse_number(value, number)) header.resolution = number;
     }
-    if (!(header.resolution > 0)) refuse("its header has no line `res` with a number > 0");
+    if (!(header.resolution > 0) || !std::isfinite(header.resolution)) refuse("its header has no line `res` with a number > 0");
     return header;
 }
 
@@ -74,18 +75,41 @@ std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
     return tree;
 }
 
+/// Whether the bytes hold a whole tree: of each node a float, a mask of its children, then these (octomap/OcTreeBaseImpl.hxx).
+bool is_whole(std::string_view data, int depth, std::size_t& at)
+{
+    constexpr std::size_t value_size = sizeof(float);
+    if (depth > max_depth || at + value_size + 1 > data.size()) return false;
+    const unsigned children = static_cast<unsigned char>(data[at + value_size]);
+    at += value_size + 1;
+    for (unsigned child = 0; child < 8; ++child)
+        if ((children >> child & 1) != 0 && !is_whole(data, depth + 1, at)) return false;
+    return true;
+}
+
+std::unique_ptr<octomap::OcTree> read_full(const std::filesystem::path& file)
+{
+    const std::string bytes = read_file(file);
+    const std::size_t data = bytes.find("\ndata\n");
+    if (!bytes.starts_with("# Octomap OcTree file") || data == std::string::npos || bytes.find("\nid OcTree\n") > data)
+        throw FileError(file.string(), "is no OctoMap of type OcTree (.ot), or is cut short");
+    std::size_t at = 0;
+    if (!is_whole(std::string_view(bytes).substr(data + 6), 0, at)) throw FileError(file.string(), "is cut short or damaged");
+    std::istringstream stream(bytes, std::ios::binary);
+    std::unique_ptr<octomap::AbstractOcTree> any(octomap::AbstractOcTree::read(stream));
+    auto* const tree = dynamic_cast<octomap::OcTree*>(any.get());
+    if (tree == nullptr) throw FileError(file.string(), "is no OctoMap of type OcTree (.ot)");
+    any.release();
+    return std::unique_ptr<octomap::OcTree>(tree);
+}
+
 }  // namespace
 
 std::unique_ptr<octomap::OcTree> read_octomap(const std::filesystem::path& file)
 {
     if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
-    if (file.extension() != ".ot") return read_binary(file);
-    std::istringstream stream(read_file(file), std::ios::binary);
-    std::unique_ptr<octomap::AbstractOcTree> any(octomap::AbstractOcTree::read(stream));
-    auto* const tree = dynamic_cast<octomap::OcTree*>(any.get());
-    if (tree == nullptr) throw FileError(file.string(), "is no OctoMap of type OcTree, or is cut short");
-    any.release();
-    return std::unique_ptr<octomap::OcTree>(tree);
+    const std::string extension = file.extension().string();
+    return extension == ".ot" || extension == ".OT" ? read_full(file) : read_binary(file);
 }
 
 }  // namespace spawnfield

@@ -3,6 +3,8 @@
 #include <spawnfield/types.h>
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -27,7 +29,9 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
             if (const std::unique_lock lock(telling, std::try_to_lock); lock) progress(double(now) / double(count));
         }
     };
-    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    if (threads == 0) threads = tbb::info::default_concurrency();
+    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+    tbb::task_arena arena(threads);
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), run); });
 }
 

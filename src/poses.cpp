@@ -73,6 +73,7 @@ public:
                 has_header = true;
                 continue;
             }
+            if (std::count(line.begin(), line.end(), '"') % 2 != 0) fail("has a quote that is not closed");
             table.poses.push_back(read_pose(split_line(line), columns));
             table.rows.push_back(std::move(line));
         }

@@ -1,3 +1,4 @@
+#include "chosen_bounds.h"
 #include "parallel.h"
 
 #include <spawnfield/error.h>
@@ -19,7 +20,7 @@ int count_steps(double from, double to, double step, const char* axis)
 
 RasterGrid grid_of(const Map& map, const RasterOptions& options)
 {
-    const Bounds bounds = options.bounds.is_empty() ? map.bounds : options.bounds;
+    const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
     RasterGrid grid;
     grid.x0 = bounds.min.x();
     grid.y0 = bounds.min.y();
@@ -40,7 +41,9 @@ void check(const RasterOptions& options)
     if (!(options.step > 0) || !std::isfinite(options.step)) throw ArgumentError("raster", "step", options.step, "> 0 m");
     if (!(options.step_z >= 0) || !std::isfinite(options.step_z)) throw ArgumentError("raster", "step_z", options.step_z, "> 0 m");
     if (!(options.max_height >= 0)) throw ArgumentError("raster", "max_height", options.max_height, ">= 0 m");
+    if (!(options.max_water_depth >= 0)) throw ArgumentError("raster", "max_water_depth", options.max_water_depth, ">= 0 m");
     if (!std::isfinite(options.offset)) throw ArgumentError("raster", "offset", options.offset, "a finite number, m");
+    if (!std::isfinite(options.yaw)) throw ArgumentError("raster", "yaw", options.yaw, "a finite number, rad");
     if (!options.height_check && options.dims != 3)
         throw ArgumentError("raster: without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
 }

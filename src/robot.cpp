@@ -80,18 +80,19 @@ RobotPart read_hull(const YamlMap& map, const std::filesystem::path& folder)
     const std::filesystem::path file = folder / map.text("mesh");
     const Vec3 scale = map.scale();
     const Pose pose = map.pose();
+    const char given_up = map.has("up") ? map.one_of("up", {"y", "z"}, "z")[0] : char{0};
     try {
         const FileMesh mesh = read_mesh(file);
-        const char up = map.has("up") ? map.one_of("up", {"y", "z"}, "z")[0] : mesh.up;
+        const char up = given_up != 0 ? given_up : mesh.up;
         std::vector<Vec3> points;
         for (const FileMesh::Node& node : mesh.nodes)
             for (const Vec3& vertex : node.vertices)
                 points.push_back(pose.rotation * turned_up(vertex.cwiseProduct(scale), up) + pose.position);
         return convex_hull(points);
     } catch (const std::domain_error& error) {
-        map.fail("mesh", file.string() + ": its convex hull has no volume: " + error.what());
+        map.fail("mesh", "cannot be used: " + file.string() + ": its convex hull has no volume: " + error.what());
     } catch (const FileError& error) {
-        throw FileError(map.file(), map.place() + ": " + error.what());
+        map.fail("mesh", std::string("cannot be used: ") + error.what());
     }
 }
 

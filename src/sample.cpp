@@ -1,3 +1,4 @@
+#include "chosen_bounds.h"
 #include "spawning.h"
 
 #include <spawnfield/error.h>
@@ -25,7 +26,7 @@ std::vector<double> chosen_layers(const Column& column, const LayerChoice& choic
 class Sampler {
 public:
     Sampler(const Map& map, const CollisionChecker& checker, const SampleOptions& options, std::size_t slots)
-        : map_(map), checker_(checker), options_(options), query_(options), box_(draw_bounds(map, options)), slots_(slots),
+        : map_(map), checker_(checker), options_(options), query_(options), box_(chosen_bounds("sample", options.bounds, map.bounds, 2)), slots_(slots),
           taken_(options.min_distance)
     {
         query_.max_height = std::numeric_limits<double>::infinity();  // poses stand on their layer by definition
@@ -35,7 +36,7 @@ public:
     bool run(SpawnList& out)
     {
         std::uint64_t failures = 0;
-        draw_in_order(options_.threads, [this](std::uint64_t index) { return look(index); }, [&](const Candidate& candidate) {
+        draw_in_order(options_.threads, share_found(options_, out), [this](std::uint64_t index) { return look(index); }, [&](const Candidate& candidate) {
             ++out.draws;
             ++failures;
             if (overfull_) return false;
@@ -77,7 +78,6 @@ private:
         if (candidate.judgement.verdict != Verdict::Valid) return false;
         taken_.add(candidate.spawn.position);
         out.spawns.push_back(candidate.spawn);
-        if (options_.progress) options_.progress(double(out.spawns.size()) / double(options_.count));
         return true;
     }
 

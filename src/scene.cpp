@@ -69,15 +69,15 @@ std::vector<FaceRule> either_rules(const std::vector<LabelRule>& rules)
     return out;
 }
 
-/// Reads a file that the part names; what is wrong with it is told with the part.
+/// Reads a file that the part names; what is wrong with it is told with part and key.
 template <class Read>
 void in_part(const YamlMap& map, const std::string& key, Read read)
 {
+    const std::string file = map.text(key);
     try {
-        read(map.text(key));
+        read(file);
     } catch (const FileError& error) {
-        if (std::string(error.what()).starts_with(map.file() + ":")) throw;
-        throw FileError(map.file(), map.place() + ": " + error.what());
+        map.fail(key, std::string("cannot be used: ") + error.what());
     }
 }
 
@@ -168,9 +168,12 @@ Scene read_bare_file(const std::filesystem::path& file, const std::string& exten
         scene.notices.push_back(file.string() + ": no label given, so everything is terrain (--label 'GLOB=LABEL' tells it apart)");
     }
     if (is_octomap(extension)) {
+        if (options.up != 0 || options.scale != 1.0)
+            throw ArgumentError("load_scene: up and scale are for a mesh; " + file.string() + " is an OctoMap, in metres and z up");
         for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
             if (matches(rule->pattern, scene.name)) fallback = rule->label;
-        append_octomap(scene, add_part(scene, scene.name, "octomap", fallback), file, {});
+        const std::uint32_t part = add_part(scene, scene.name, "octomap", fallback);
+        if (fallback != Label::Ignore) append_octomap(scene, part, file, {});
         return scene;
     }
     MeshOptions mesh;
@@ -201,7 +204,7 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options)
     if (yaml && (options.up != 0 || options.scale != 1.0))
         throw ArgumentError("load_scene: up and scale are for a bare mesh; give them in " + file.string() + " (keys up, scale)");
     Scene scene = yaml ? read_scene_yaml(file, options) : read_bare_file(file, extension, options);
-    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: every face is ignored");
+    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored");
     return scene;
 }
 

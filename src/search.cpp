@@ -1,3 +1,4 @@
+#include "chosen_bounds.h"
 #include "spawning.h"
 
 #include <spawnfield/error.h>
@@ -12,18 +13,15 @@ void check_spawn_options(const char* function, const SpawnOptions& options)
     if (!(options.min_distance >= 0) || !std::isfinite(options.min_distance))
         throw ArgumentError(function, "min_distance", options.min_distance, ">= 0 m");
     if (!(options.max_height >= 0)) throw ArgumentError(function, "max_height", options.max_height, ">= 0 m");
-}
-
-Bounds draw_bounds(const Map& map, const SpawnOptions& options)
-{
-    return options.bounds.is_empty() ? map.bounds : options.bounds;
+    if (!(options.max_water_depth >= 0)) throw ArgumentError(function, "max_water_depth", options.max_water_depth, ">= 0 m");
+    if (!std::isfinite(options.yaw)) throw ArgumentError(function, "yaw", options.yaw, "a finite number, rad");
 }
 
 SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOptions& options)
 {
     check_spawn_options("search", options);
     if (options.max_failures < 1) throw ArgumentError("search", "max_failures", double(options.max_failures), ">= 1");
-    const Bounds box = draw_bounds(map, options);
+    const Bounds box = chosen_bounds("search", options.bounds, map.bounds);
     SpacedPoints checked(options.min_distance);
 
     const auto look = [&](std::uint64_t index) {
@@ -41,7 +39,7 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
     };
     SpawnList out;
     std::uint64_t failures = 0;
-    draw_in_order(options.threads, look, [&](const Candidate& candidate) {
+    draw_in_order(options.threads, share_found(options, out), look, [&](const Candidate& candidate) {
         ++out.draws;
         ++failures;
         if (!candidate.clear || !checked.is_clear(candidate.spawn.position)) {
@@ -53,7 +51,6 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
             if (candidate.judgement.verdict == Verdict::Valid) {
                 out.spawns.push_back(candidate.spawn);
                 failures = 0;
-                if (options.progress) options.progress(double(out.spawns.size()) / double(options.count));
             }
         }
         return out.spawns.size() < options.count && failures < options.max_failures;

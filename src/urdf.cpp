@@ -85,13 +85,15 @@ private:
         const std::filesystem::path file = resolve(link, mesh.filename);
         const Vec3 scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
         std::vector<Vec3> points;
-        // As Gazebo takes COLLADA: its <unit> counts, its <up_axis> does not.
-        for (const FileMesh::Node& node : read_mesh(file).nodes)
-            for (const Vec3& vertex : node.vertices) points.push_back(pose.rotation * vertex.cwiseProduct(scale) + pose.position);
         try {
+            // As Gazebo takes COLLADA: its <unit> counts, its <up_axis> does not.
+            for (const FileMesh::Node& node : read_mesh(file).nodes)
+                for (const Vec3& vertex : node.vertices) points.push_back(pose.rotation * vertex.cwiseProduct(scale) + pose.position);
             return convex_hull(points);
         } catch (const std::domain_error& error) {
-            fail(link, "mesh " + file.string() + ": its convex hull has no volume: " + error.what());
+            fail(link, "<mesh> cannot be used: " + file.string() + ": its convex hull has no volume: " + error.what());
+        } catch (const FileError& error) {
+            fail(link, std::string("<mesh> cannot be used: ") + error.what());
         }
     }
 

@@ -69,11 +69,10 @@ double YamlMap::number_in(const YAML::Node& node, const std::string& key) const
 {
     double value = 0;
     const std::string text = scalar_of(node);
-    const bool special = text.find("nan") != std::string::npos || text.find("inf") != std::string::npos;
-    if (!node.IsScalar() || (!parse_number(text, value) && !special)) {
-        if (!YAML::convert<double>::decode(node, value)) fail(key, "is \"" + text + "\", needs a number");
-    }
-    if (special || !std::isfinite(value)) fail(key, "is " + text + ", needs a finite number");
+    // YAML's own spellings of no finite number (.inf, .nan) are left to yaml-cpp.
+    const bool is_number = node.IsScalar() && (parse_number(text, value) || YAML::convert<double>::decode(node, value));
+    if (!is_number) fail(key, "is \"" + text + "\", needs a number");
+    if (!std::isfinite(value)) fail(key, "is " + text + ", needs a finite number");
     return value;
 }
 

@@ -1,0 +1,133 @@
+#include "catch.h"
+#include "hand_scene.h"
+#include "test_map.h"
+
+#include <numbers>
+
+using namespace spawnfield;
+
+namespace {
+
+bool is_free(const Scene& scene, const std::string& robot, const Vec3& position, double yaw = 0)
+{
+    const ColumnIndex index = build_column_index(scene);
+    return CollisionChecker(scene, index, load_robot(robot)).is_free({position, rotation_from_rpy(0, 0, yaw)});
+}
+
+Robot round_robot(ShapeKind kind, const Vec3& size, const Vec3& centre)
+{
+    RobotPart part;
+    part.shape.kind = kind;
+    part.shape.size = size;
+    part.shape.pose.position = centre;
+    return {"round", {part}, {}, {}};
+}
+
+Robot hull_robot()  // a square pyramid, point down
+{
+    RobotPart part;
+    part.shape.kind = ShapeKind::Hull;
+    part.hull_vertices = {{0, 0, 0}, {1, 1, 1}, {-1, 1, 1}, {-1, -1, 1}, {1, -1, 1}};
+    part.hull_faces = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {1, 4, 3}, {1, 3, 2}};
+    return {"hull", {part}, {}, {}};
+}
+
+}  // namespace
+
+TEST_CASE("a touching pair collides, and 1e-5 m of room is free, for all robots on sheets and boxes of all sizes")
+{
+    const std::vector<Robot> robots = {load_robot("box:0.99,0.67,0.39"), round_robot(ShapeKind::Sphere, {0.3, 0, 0}, {0, 0, 0.3}),
+                                       round_robot(ShapeKind::Cylinder, {0.3, 0.4, 0}, {0, 0, 0.2}),
+                                       round_robot(ShapeKind::Capsule, {0.2, 0.4, 0}, {0, 0, 0.4}), hull_robot()};
+    for (const double size : {0.5, 20.0, 500.0})
+        for (const bool sheet : {false, true})
+            for (const double far : {0.0, 5000.0}) {
+                Scene scene;
+                const Pose at{{far, -far, 0.25}, Mat3::Identity()};
+                if (sheet) hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(size, size), at));
+                else hand::add_mesh(scene, Label::Terrain, hand::moved(hand::box({size, size, 1}), {at.position - Vec3(0, 0, 0.5), at.rotation}));
+                const ColumnIndex index = build_column_index(scene);
+                for (std::size_t r = 0; r < robots.size(); ++r) {
+                    const CollisionChecker checker(scene, index, robots[r]);
+                    for (const double yaw : {0.0, 0.3, 0.7853981633974483, 1.5707963267948966}) {
+                        CAPTURE(size, sheet, far, r, yaw);
+                        const auto free_at = [&](double gap) {
+                            return checker.is_free({at.position + Vec3(0.01, 0.02, gap), rotation_from_rpy(0, 0, yaw)});
+                        };
+                        CHECK_FALSE(free_at(0));
+                        CHECK_FALSE(free_at(-1e-5));
+                        CHECK(free_at(1e-5));
+                    }
+                }
+            }
+}
+
+TEST_CASE("a closed house is solid, the same house with a face missing is a shell")
+{
+    Scene closed, open;
+    hand::add_mesh(closed, Label::Obstacle, hand::box({6, 6, 4}));
+    hand::add_mesh(open, Label::Obstacle, hand::without(hand::box({6, 6, 4}), 0, 1));
+    const std::string robot = "box:0.5,0.5,0.5@0,0,0";
+    CHECK(is_free(closed, robot, {3.3, 0, 0}));
+    CHECK_FALSE(is_free(closed, robot, {0, 0, 0}));
+    CHECK_FALSE(is_free(closed, robot, {1, -1, 1}));
+    CHECK(is_free(open, robot, {0, 0, 0}));
+    CHECK_FALSE(is_free(open, robot, {0, 0, 1.8}));  // through its roof
+}
+
+TEST_CASE("a robot around a small solid collides with it")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Obstacle, hand::box({0.1, 0.1, 0.1}));
+    CHECK_FALSE(is_free(scene, "box:2,2,2@0,0,0", {0.2, 0.1, 0}));
+    CHECK(is_free(scene, "box:2,2,2@0,0,0", {1.06, 0, 0}));
+}
+
+TEST_CASE("each convex part of a robot counts, and the space between them is free")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Obstacle, hand::box({0.2, 0.2, 0.2}));
+    Robot table = load_robot("box:0.1,0.1,1@1,0,0");
+    table.parts.push_back(load_robot("box:0.1,0.1,1@-1,0,0").parts[0]);
+    const ColumnIndex index = build_column_index(scene);
+    const CollisionChecker checker(scene, index, table);
+    CHECK(checker.is_free({{0, 0, 0}, Mat3::Identity()}));
+    CHECK_FALSE(checker.is_free({{1, 0, 0}, Mat3::Identity()}));
+    CHECK_FALSE(checker.is_free({{-1, 0, 0}, Mat3::Identity()}));
+    CHECK_FALSE(checker.is_free({{0, 1, 0}, rotation_from_rpy(0, 0, std::numbers::pi / 2)}));
+}
+
+TEST_CASE("the hit is the first part in the scene's order, be it triangles or a primitive")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Water, hand::box({9, 9, 9}));  // collides with nothing
+    Shape ball;
+    ball.kind = ShapeKind::Sphere;
+    ball.size[0] = 1;
+    hand::add_shape(scene, Label::Obstacle, ball);
+    hand::add_mesh(scene, Label::Terrain, hand::box({8, 8, 0.2}));
+    const ColumnIndex index = build_column_index(scene);
+    const CollisionChecker checker(scene, index, load_robot("box:0.5,0.5,0.5@0,0,0"));
+    REQUIRE(checker.find_hit({{0, 0, 0}, Mat3::Identity()}));
+    CHECK(checker.find_hit({{0, 0, 0}, Mat3::Identity()})->part == 1);
+    CHECK(checker.find_hit({{3, 3, 0}, Mat3::Identity()})->part == 2);
+    CHECK_FALSE(checker.find_hit({{3, 3, 2}, Mat3::Identity()}));
+}
+
+TEST_CASE("against the occupancy tree a pose is free where no occupied voxel is")
+{
+    const Map map = training_map();
+    const auto tree = std::make_shared<const OccupancyTree>(build_occupancy(map.scene, map.index, map.bounds, 0.1));
+    const CollisionChecker voxels(tree, husky());
+    const CollisionChecker exact = checker_of(map, husky());
+    std::size_t both_free = 0, only_exact = 0;
+    for (const Pose& pose : random_poses(map.scene, 5, 3000)) {
+        if (!map.bounds.contains_xy(pose.position.x(), pose.position.y(), -1)) continue;
+        const bool voxel_free = voxels.is_free(pose), exact_free = exact.is_free(pose);
+        CHECK((exact_free || !voxel_free));  // voxels hold all that is solid
+        both_free += voxel_free;
+        only_exact += exact_free && !voxel_free;
+    }
+    CHECK(both_free > 500);
+    CHECK(only_exact < both_free / 3);
+}

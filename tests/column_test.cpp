@@ -1,0 +1,176 @@
+#include "catch.h"
+#include "hand_scene.h"
+#include "test_map.h"
+
+#include <numbers>
+
+using namespace spawnfield;
+
+namespace {
+
+using Heights = std::vector<double>;
+
+Shape box_at(const Vec3& size, const Vec3& centre)
+{
+    Shape shape;
+    shape.size = size;
+    shape.pose.position = centre;
+    return shape;
+}
+
+Column column(const Scene& scene, double x, double y) { return column_at(scene, build_column_index(scene), x, y); }
+
+std::optional<Ground> ground(const Scene& scene, const Vec3& p) { return ground_below(column(scene, p.x(), p.y()), p.z()); }
+
+}  // namespace
+
+TEST_CASE("a bridge has a layer on it and one under it")
+{
+    Scene scene;
+    hand::add_shape(scene, Label::Terrain, box_at({10, 10, 1}, {0, 0, -0.5}));
+    hand::add_shape(scene, Label::Terrain, box_at({4, 2, 0.5}, {0, 0, 3.25}));
+    CHECK(column(scene, 0, 0).layers == Heights{3.5, 0});
+    CHECK(column(scene, 0, 3).layers == Heights{0});
+    CHECK(column(scene, 20, 0).layers.empty());
+}
+
+TEST_CASE("a line along the edge of a box belongs to it, of a primitive as of a mesh")
+{
+    Scene primitive, mesh;
+    hand::add_shape(primitive, Label::Terrain, box_at({2, 4, 1}, {0.1, 0.2, 0.3}));
+    hand::add_mesh(mesh, Label::Terrain, hand::moved(hand::box({2, 4, 1}), {{0.1, 0.2, 0.3}, Mat3::Identity()}));
+    for (const double x : {-0.9, -0.3, 0.1, 1.1})
+        for (const double y : {-1.8, 0.0, 0.2, 2.2}) {
+            CAPTURE(x, y);
+            REQUIRE(column(primitive, x, y).spans.size() == 1);
+            REQUIRE(column(mesh, x, y).spans.size() == 1);
+            CHECK(column(primitive, x, y).spans[0].top == Approx(0.8).margin(1e-12));
+            CHECK(column(mesh, x, y).spans[0].top == Approx(0.8).margin(1e-12));
+            CHECK(column(mesh, x, y).spans[0].bottom == Approx(-0.2).margin(1e-12));
+        }
+    CHECK(column(primitive, 1.1 + 1e-6, 0).spans.empty());
+    CHECK(column(mesh, 1.1 + 1e-6, 0).spans.empty());
+}
+
+TEST_CASE("a closed piece within another makes no cavity, and both have an upper end")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Terrain, hand::box({4, 4, 4}));
+    hand::add_piece(scene, hand::flipped(hand::box({2, 2, 2})));
+    const Column inside = column(scene, 0.3, 0.1);
+    CHECK(inside.layers == Heights{2});
+    REQUIRE(inside.spans.size() == 2);
+    CHECK(inside.spans[1].top == 1);
+    CHECK(ground(scene, {0.3, 0.1, 1.5})->height == 1);
+}
+
+TEST_CASE("intervals of stacked and sunken terrain are joined")
+{
+    Scene scene;
+    hand::add_shape(scene, Label::Terrain, box_at({4, 4, 1}, {0, 0, 0.5}));
+    hand::add_shape(scene, Label::Terrain, box_at({2, 2, 1}, {0, 0, 1.5}));           // stands on it
+    hand::add_shape(scene, Label::Terrain, box_at({1, 1, 0.5}, {1.5, 1.5, 0.5}));      // is sunk in it
+    hand::add_shape(scene, Label::Obstacle, box_at({1, 1, 1}, {-1.5, -1.5, 1.5}));     // stands on it too
+    CHECK(column(scene, 0, 0).layers == Heights{2});
+    CHECK(column(scene, 1.5, 1.5).layers == Heights{1});
+    CHECK(column(scene, -1.6, -1.6).layers == Heights{1});  // under the obstacle
+    CHECK(ground(scene, {0, 0, 1.2})->height == 1);          // single pieces count for the ground
+    CHECK_FALSE(ground(scene, {-1.6, -1.6, 2.5})->terrain);
+    CHECK_FALSE(ground(scene, {1.5, 1.5, 0.2}));             // inside the hill: none
+}
+
+TEST_CASE("terrain wins over an obstacle at the same height")
+{
+    Scene scene;
+    hand::add_shape(scene, Label::Obstacle, box_at({2, 2, 1}, {0, 0, 0.5}));
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(2, 2), {{0, 0, 1 - 5e-10}, Mat3::Identity()}));
+    CHECK(ground(scene, {0, 0.1, 1})->terrain);
+    CHECK(ground(scene, {0, 0.1, 1})->part == 1);
+}
+
+TEST_CASE("each crossing of a sheet is a layer unless only its upper side counts")
+{
+    for (const bool up : {false, true}) {
+        Scene scene;
+        const hand::Mesh sheet = hand::rectangle(4, 4);
+        hand::add_mesh(scene, Label::Terrain, sheet, {.fill = false, .sides_up = up});
+        hand::add_mesh(scene, Label::Terrain, hand::moved(hand::flipped(sheet), {{0, 0, 2}, Mat3::Identity()}),
+                       {.fill = false, .sides_up = up});
+        CAPTURE(up);
+        CHECK(column(scene, 0.5, 0.3).layers == (up ? Heights{0} : Heights{2, 0}));
+        CHECK(ground(scene, {0.5, 0.3, 2.5})->height == 2);
+        CHECK(ground(scene, {0.5, 0.3, 2.5})->terrain == !up);
+    }
+}
+
+TEST_CASE("a line through a common edge or corner of a sheet gives one layer")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Terrain, hand::relief(8, 8, [](double x, double y) { return 0.25 * x + 0.5 * y; }));
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, std::pair{0.5, 0.0}, std::pair{0.5, -0.5}, std::pair{-4.0, 4.0}, std::pair{0.5, 0.5}}) {
+        CAPTURE(x, y);
+        REQUIRE(column(scene, x, y).layers.size() == 1);
+        CHECK(column(scene, x, y).layers[0] == Approx(0.25 * x + 0.5 * y).margin(1e-12));
+    }
+}
+
+TEST_CASE("columns through round bodies end where their equations say")
+{
+    Scene scene;
+    Shape ball;
+    ball.kind = ShapeKind::Sphere;
+    ball.size[0] = 3;
+    ball.pose.position = {1, 2, -1};
+    hand::add_shape(scene, Label::Terrain, ball);
+    Shape lying;  // a cylinder along y
+    lying.kind = ShapeKind::Cylinder;
+    lying.size = {0.5, 4, 0};
+    lying.pose = {{10, 0, 0}, rotation_from_rpy(std::numbers::pi / 2, 0, 0)};
+    hand::add_shape(scene, Label::Terrain, lying);
+    Shape standing = lying;
+    standing.kind = ShapeKind::Capsule;
+    standing.pose = {{20, 0, 0}, Mat3::Identity()};
+    hand::add_shape(scene, Label::Terrain, standing);
+    for (const double d : {0.0, 0.7, 2.9}) CHECK(column(scene, 1 + d, 2).layers[0] == Approx(-1 + std::sqrt(9 - d * d)));
+    CHECK(column(scene, 4.01, 2).layers.empty());
+    for (const double d : {0.0, 0.3, 0.49}) {
+        CHECK(column(scene, 10 + d, 1.9).layers[0] == Approx(std::sqrt(0.25 - d * d)));
+        CHECK(column(scene, 20 + d, 0).layers[0] == Approx(2 + std::sqrt(0.25 - d * d)));
+    }
+    CHECK(column(scene, 10, 2.1).layers.empty());
+}
+
+TEST_CASE("water is the crossings of a sheet and the top of a solid, and collides with nothing")
+{
+    Scene scene;
+    hand::add_shape(scene, Label::Terrain, box_at({10, 10, 1}, {0, 0, -0.5}));
+    hand::add_mesh(scene, Label::Water, hand::moved(hand::rectangle(4, 4), {{0, 0, 0.4}, Mat3::Identity()}));
+    hand::add_shape(scene, Label::Water, box_at({1, 1, 3}, {0, 0, 1.5}));
+    CHECK(column(scene, 0.2, 0.2).water == Heights{3, 0.4});
+    CHECK(column(scene, 1.5, 1.4).water == Heights{0.4});
+    const Map map = map_of(scene);
+    const Robot robot = load_robot("box:0.3,0.3,0.3");
+    const CollisionChecker checker = checker_of(map, robot);
+    const Pose pose{{1.5, 1.4, 0.3}, Mat3::Identity()};
+    CHECK(checker.is_free(pose));
+    const Column here = column(scene, 1.5, 1.4);
+    CHECK(judge(map, checker, here, pose).verdict == Verdict::Submerged);
+    QueryOptions shallow;
+    shallow.max_water_depth = 0.3;
+    CHECK(judge(map, checker, here, pose, shallow).verdict == Verdict::Valid);
+    shallow.max_water_depth = 0.4;
+    CHECK(judge(map, checker, here, pose, shallow).verdict == Verdict::Submerged);
+}
+
+TEST_CASE("a mesh filled by wish is inside under its lowest crossing")
+{
+    Scene scene;  // a box without its bottom
+    const hand::Mesh open = hand::without(hand::box({2, 2, 2}), 8, 1);
+    hand::add_mesh(scene, Label::Obstacle, open);
+    scene.pieces[0].solid = true;
+    for (const double x : {-0.7, 0.1, 0.6}) {
+        REQUIRE(column(scene, x, 0.2).spans.size() == 1);
+        CHECK(column(scene, x, 0.2).spans[0].bottom == -1);
+        CHECK(column(scene, x, 0.2).spans[0].top == 1);
+    }
+}

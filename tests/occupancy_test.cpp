@@ -1,0 +1,88 @@
+#include "catch.h"
+#include "hand_scene.h"
+#include "slow.h"
+#include "test_map.h"
+
+#include <spawnfield/error.h>
+
+using namespace spawnfield;
+using State = OccupancyTree::State;
+
+TEST_CASE("a voxel is occupied when a surface touches it or its centre is inside, free in the bounds, unknown outside")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Obstacle, hand::moved(hand::box({2, 2, 2}), {{0.05, 0, 0}, Mat3::Identity()}));  // -0.95 .. 1.05
+    Map map = map_of(scene);
+    map.bounds = {Vec3(-3, -3, -3), Vec3(3, 3, 3)};
+    const OccupancyTree tree = build_occupancy(map.scene, map.index, map.bounds, 0.25);
+    CHECK(tree.resolution() == 0.25);
+    CHECK(tree.at({0, 0, 0}) == State::Occupied);         // deep inside
+    CHECK(tree.at({1.1, 0, 0}) == State::Occupied);       // the surface at 1.05 lies in 1.00 .. 1.25
+    CHECK(tree.at({1.3, 0, 0}) == State::Free);
+    CHECK(tree.at({0, 1.1, 0}) == State::Occupied);       // touched: the surface is its lower side
+    CHECK(tree.at({0, 1.3, 0}) == State::Free);
+    CHECK(tree.at({-1.01, 0, 0}) == State::Free);         // ends 0.05 before the surface
+    CHECK(tree.at({2.9, 2.9, 2.9}) == State::Free);
+    CHECK(tree.at({3.1, 0, 0}) == State::Unknown);
+    CHECK(tree.at({0, 0, -3.1}) == State::Unknown);
+}
+
+TEST_CASE("water is free space")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Water, hand::rectangle(2, 2));
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(2, 2), {{0, 0, -1}, Mat3::Identity()}));
+    const Map map = map_of(scene);
+    const OccupancyTree tree = build_occupancy(map.scene, map.index, map.bounds, 0.25);
+    CHECK(tree.at({0.1, 0.1, -0.1}) == State::Free);
+    CHECK(tree.at({0.1, 0.1, -0.9}) == State::Occupied);
+}
+
+TEST_CASE("voxels of random scenes are what a box of their size meets")
+{
+    std::size_t occupied = 0, free = 0;
+    for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+        const Map map = map_of(random_scene(seed));
+        Random random(seed);
+        const double side = random.between(0.1, 0.5);
+        const OccupancyTree tree = build_occupancy(map.scene, map.index, map.bounds, side);
+        RobotPart voxel;
+        voxel.shape.size = Vec3::Constant(side);
+        const Robot robot{"voxel", {voxel}, {}, {}};
+        for (int i = 0; i < 300; ++i) {
+            Vec3 p;
+            for (int axis = 0; axis < 3; ++axis)
+                p[axis] = (std::floor(random.between(map.bounds.min[axis], map.bounds.max[axis]) / side) + 0.5) * side;
+            const State state = tree.at(p);
+            const slow::Answer answer = slow::collision(map.scene, robot, {p, Mat3::Identity()}, 1e-3);
+            CAPTURE(seed, side, p.transpose());
+            if (answer == slow::Answer::Yes) CHECK(state == State::Occupied);
+            if (answer == slow::Answer::No) CHECK(state == State::Free);
+            (answer == slow::Answer::Yes ? occupied : free) += 1;
+        }
+    }
+    CHECK(occupied > 500);
+    CHECK(free > 500);
+}
+
+TEST_CASE("an occupancy tree has the same leaves at any thread count and is pruned")
+{
+    const Map map = map_of(random_scene(3));
+    const OccupancyTree one = build_occupancy(map.scene, map.index, map.bounds, 0.1, 1);
+    const OccupancyTree two = build_occupancy(map.scene, map.index, map.bounds, 0.1, 2);
+    CHECK(one.leaves() == two.leaves());
+    Scene empty;
+    hand::add_mesh(empty, Label::Terrain, hand::moved(hand::rectangle(0.1, 0.1), {{0.3, 0.3, 0.3}, Mat3::Identity()}));
+    const Map large = map_of(empty);
+    const OccupancyTree tree = build_occupancy(large.scene, large.index, {Vec3(0, 0, 0), Vec3(64, 64, 64)}, 1);
+    CHECK(tree.leaves() < 64);  // 262,144 voxels, all but one free
+}
+
+TEST_CASE("bounds beyond OctoMap's keys are refused with the resolution that would do")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(2, 2), {{5000, 0, 0}, Mat3::Identity()}));
+    const Map map = map_of(scene);
+    CHECK_THROWS_WITH(build_occupancy(map.scene, map.index, map.bounds, 0.1), Contains("resolution is 0.1, needs at least 0.15"));
+    CHECK_THROWS_WITH(build_occupancy(map.scene, map.index, map.bounds, 0), "build_occupancy: resolution is 0, needs > 0 m");
+}

@@ -1,0 +1,214 @@
+#include "catch.h"
+#include "hand_scene.h"
+#include "test_map.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/poses.h>
+
+using namespace spawnfield;
+
+namespace {
+
+std::string csv(const RasterResult& raster, bool aerial = false)
+{
+    std::string text;
+    write_raster_csv(raster, aerial, [&](std::string_view piece) { text += piece; });
+    return text;
+}
+
+Verdict judged(const Map& map, const CollisionChecker& checker, const RasterPose& pose, double yaw, double max_height)
+{
+    QueryOptions options;
+    options.max_height = max_height;
+    return judge(map, checker, column_at(map.scene, map.index, pose.x, pose.y),
+                 {Vec3(pose.x, pose.y, pose.z), rotation_from_rpy(0, 0, yaw)}, options).verdict;
+}
+
+}  // namespace
+
+TEST_CASE("the thesis's 2D raster of the training arena has 41 x 41 columns and a pose per layer")
+{
+    const Map map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    RasterOptions options;
+    options.step = 0.5;
+    options.offset = 0.5;
+    options.bounds = {Vec3(-10, -10, 0), Vec3(10, 10, 0)};
+    const RasterResult result = raster(map, checker, options);
+    CHECK(result.grid.cols == 41);
+    CHECK(result.grid.rows == 41);
+    std::size_t expected = 0;
+    for (int j = 0; j < 41; ++j)
+        for (int i = 0; i < 41; ++i)
+            expected += column_at(map.scene, map.index, -10 + 0.5 * i, -10 + 0.5 * j).layers.size();
+    CHECK(result.poses.size() == expected);
+    CHECK(result.poses.size() > 1681);  // the floor goes on under platform, ramp and the flying box, and the underground box has its own top
+    for (const RasterPose& pose : result.poses) CHECK(pose.verdict == judged(map, checker, pose, 0, 1e9));
+}
+
+TEST_CASE("rows run y after y, x fastest, each column from the top down")
+{
+    const Map map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    for (const int dims : {2, 3}) {
+        RasterOptions options;
+        options.dims = dims;
+        options.step = 0.7;
+        const RasterResult result = raster(map, checker, options);
+        for (std::size_t i = 1; i < result.poses.size(); ++i) {
+            const RasterPose &a = result.poses[i - 1], &b = result.poses[i];
+            const bool later = b.y > a.y || (b.y == a.y && (b.x > a.x || (b.x == a.x && b.z < a.z)));
+            CHECK(later);
+        }
+    }
+}
+
+TEST_CASE("a 3D raster has the verdicts of every pose asked by itself")
+{
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        const Map map = map_of(seed == 1 ? training_map().scene : random_scene(seed));
+        const Robot robot = random_robot(seed);
+        const CollisionChecker checker = checker_of(map, robot);
+        RasterOptions options;
+        options.dims = 3;
+        options.step = 1.3;
+        options.step_z = 0.35;
+        options.yaw = 0.4;
+        options.max_height = 0.8;
+        const RasterResult result = raster(map, checker, options);
+        VerdictCounts counts{};
+        auto next = result.poses.begin();
+        for (int j = 0; j < result.grid.rows; ++j)
+            for (int i = 0; i < result.grid.cols; ++i)
+                for (int k = result.grid.heights - 1; k >= 0; --k) {
+                    const RasterPose pose{result.grid.x_of(i), result.grid.y_of(j), result.grid.z_of(k), 0, Verdict::Valid};
+                    const Verdict verdict = judged(map, checker, pose, 0.4, 0.8);
+                    ++counts[std::size_t(verdict)];
+                    if (verdict == Verdict::Aerial) continue;
+                    REQUIRE(next != result.poses.end());
+                    CHECK(next->z == pose.z);
+                    CHECK(next->verdict == verdict);
+                    ++next;
+                }
+        CHECK(next == result.poses.end());
+        CHECK(counts == result.counts);
+    }
+}
+
+TEST_CASE("upper limits of bounds and max_height belong to the raster")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Terrain, hand::rectangle(2, 2));
+    const Map map = map_of(scene);
+    const CollisionChecker checker = checker_of(map, load_robot("box:0.1,0.1,0.05"));
+    RasterOptions options;
+    options.dims = 3;
+    options.step = 0.1;
+    options.bounds = {Vec3(0, 0, 0.1), Vec3(0.7, 0.3, 1.2)};
+    options.max_height = 0.3;
+    const RasterResult result = raster(map, checker, options);
+    CHECK(result.grid.cols == 8);  // 0.7 / 0.1 is 6.999…
+    CHECK(result.grid.rows == 4);
+    CHECK(result.grid.heights == 12);
+    CHECK(result.counts[std::size_t(Verdict::Valid)] == 8 * 4 * 3);  // 0.1, 0.2 and 0.3
+    CHECK(result.counts[std::size_t(Verdict::Aerial)] == 8 * 4 * 9);
+}
+
+TEST_CASE("aerial poses are written in their places when asked for")
+{
+    const Map map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    RasterOptions options;
+    options.dims = 3;
+    options.step = 2;
+    const RasterResult result = raster(map, checker, options);
+    const std::string all = csv(result, true), few = csv(result, false);
+    const auto lines = [](const std::string& text) { return std::size_t(std::count(text.begin(), text.end(), '\n')); };
+    CHECK(lines(all) == 1 + std::size_t(result.grid.cols) * result.grid.rows * result.grid.heights);
+    CHECK(lines(few) == 1 + result.poses.size());
+    CHECK(lines(few) < lines(all));
+}
+
+TEST_CASE("without height check every pose is asked for collisions alone")
+{
+    const Map map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    RasterOptions options;
+    options.dims = 3;
+    options.step = 1.5;
+    options.height_check = false;
+    const RasterResult result = raster(map, checker, options);
+    CHECK(result.poses.size() == std::size_t(result.grid.cols) * result.grid.rows * result.grid.heights);
+    CHECK(result.exact_checks == result.poses.size());
+    for (const RasterPose& pose : result.poses)
+        CHECK((pose.verdict == Verdict::Valid) == checker.is_free({Vec3(pose.x, pose.y, pose.z), Mat3::Identity()}));
+    CHECK(result.counts[std::size_t(Verdict::Valid)] > 0);
+    CHECK(result.counts[std::size_t(Verdict::Collision)] > 0);
+}
+
+TEST_CASE("layers narrow a raster to some of each column")
+{
+    const Map map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    const auto poses = [&](LayerChoice choice) {
+        RasterOptions options;
+        options.step = 0.5;
+        options.layers = choice;
+        return raster(map, checker, options).poses;
+    };
+    const auto all = poses({}), top = poses({LayerChoice::Kind::Top, 0}), bottom = poses({LayerChoice::Kind::Bottom, 0});
+    const auto first = poses({LayerChoice::Kind::Index, 0}), second = poses({LayerChoice::Kind::Index, 1});
+    CHECK(top.size() == bottom.size());
+    CHECK(first.size() == top.size());
+    CHECK(first.size() + second.size() == all.size());
+    CHECK(second.size() > 50);
+    for (const RasterPose& pose : top) CHECK(pose.layer == 0);
+    for (const RasterPose& pose : second) CHECK(pose.layer == 1);
+}
+
+TEST_CASE("columns outside the map are outside")
+{
+    const Map map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    RasterOptions options;
+    options.dims = 3;
+    options.step = 1;
+    options.bounds = {Vec3(12, 0, 0), Vec3(13, 1, 2)};
+    const RasterResult result = raster(map, checker, options);
+    CHECK(result.counts[std::size_t(Verdict::Outside)] == 2 * 2 * 3);
+    CHECK(result.poses.size() == 12);
+}
+
+TEST_CASE("a raster is the same bytes at any thread count")
+{
+    const Map map = map_of(random_scene(4));
+    const CollisionChecker checker = checker_of(map, random_robot(4));
+    std::string first;
+    for (const int threads : {1, 2, 8})
+        for (const int dims : {2, 3}) {
+            RasterOptions options;
+            options.dims = dims;
+            options.step = 0.4;
+            options.threads = threads;
+            const std::string text = csv(raster(map, checker, options));
+            std::string& reference = first;
+            if (threads == 1) reference += text;
+            else CHECK(reference.find(text) != std::string::npos);
+        }
+}
+
+TEST_CASE("a raster refuses steps and heights out of their limits")
+{
+    const Map map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    const auto run = [&](auto change) {
+        RasterOptions options;
+        change(options);
+        return raster(map, checker, options);
+    };
+    CHECK_THROWS_WITH(run([](RasterOptions& o) { o.step = 0; }), "raster: step is 0, needs > 0 m");
+    CHECK_THROWS_WITH(run([](RasterOptions& o) { o.step = 1e-9; }), Contains("steps along x is 202"));
+    CHECK_THROWS_WITH(run([](RasterOptions& o) { o.max_height = -1; }), "raster: max_height is -1, needs >= 0 m");
+    CHECK_THROWS_WITH(run([](RasterOptions& o) { o.dims = 4; }), "raster: dims is 4, needs 2 or 3");
+    CHECK_THROWS_AS(run([](RasterOptions& o) { o.height_check = false; }), ArgumentError);
+}

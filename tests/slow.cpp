@@ -1,0 +1,583 @@
+#include "slow.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace spawnfield;
+
+namespace slow {
+namespace {
+
+using Real = long double;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// ---- Convex bodies ----
+
+/// All points within `radius` of the hull of `corners`: a point, a segment, a triangle or a solid polytope.
+struct Convex {
+    std::vector<Vec3> corners;
+    std::vector<std::array<int, 2>> edges;  ///< a point's only one leads to itself
+    std::vector<std::array<int, 3>> faces;
+    std::vector<Vec3> normals, directions;  ///< of faces and edges, unit length; one of parallel ones is enough
+    double radius = 0;
+
+    bool has_volume() const { return faces.size() > 1; }
+};
+
+enum class Rounding { Inscribed, Circumscribed };
+
+Vec3 moved(const Pose& pose, const Vec3& point)
+{
+    return pose.rotation * point + pose.position;
+}
+
+Convex segment(const Vec3& a, const Vec3& b, double radius)
+{
+    return {{a, b}, {{0, 1}}, {}, {}, {(b - a).normalized()}, radius};
+}
+
+Convex polytope(std::vector<Vec3> corners, std::vector<std::array<int, 3>> faces)
+{
+    Convex body;
+    std::set<std::array<int, 2>> edges;
+    for (const auto& [a, b, c] : faces) {
+        body.normals.push_back((corners[b] - corners[a]).cross(corners[c] - corners[a]).normalized());
+        for (const auto& [from, to] : {std::array{a, b}, {b, c}, {c, a}})
+            edges.insert({std::min(from, to), std::max(from, to)});
+    }
+    for (const auto& [a, b] : edges) body.directions.push_back((corners[b] - corners[a]).normalized());
+    body.edges.assign(edges.begin(), edges.end());
+    body.corners = std::move(corners);
+    body.faces = std::move(faces);
+    return body;
+}
+
+/// Upright prism over a polygon that is symmetric about the origin, moved to its place.
+Convex prism(const std::vector<Eigen::Vector2d>& polygon, double half_height, const Pose& pose)
+{
+    const int n = int(polygon.size());
+    Convex body;
+    for (const double z : {-half_height, half_height})
+        for (const auto& corner : polygon) body.corners.push_back(moved(pose, {corner.x(), corner.y(), z}));
+    const Vec3 axis = pose.rotation.col(2);
+    body.normals = body.directions = {axis};
+    for (int i = 0; i < n; ++i) {
+        const int next = (i + 1) % n;
+        body.edges.insert(body.edges.end(), {{i, next}, {n + i, n + next}, {i, n + i}});
+        body.faces.insert(body.faces.end(), {{i, next, n + next}, {i, n + next, n + i}});
+        if (i > 1) body.faces.insert(body.faces.end(), {{0, i - 1, i}, {n, n + i - 1, n + i}});
+        if (i >= n / 2) continue;  // parallel to the side across
+        body.directions.push_back((body.corners[next] - body.corners[i]).normalized());
+        body.normals.push_back(body.directions.back().cross(axis).normalized());
+    }
+    return body;
+}
+
+std::vector<Eigen::Vector2d> polygon_of_circle(double radius, Rounding rounding)
+{
+    constexpr int sides = 96;
+    const double reach = rounding == Rounding::Inscribed ? radius : radius / std::cos(M_PI / sides);
+    std::vector<Eigen::Vector2d> polygon;
+    for (int i = 0; i < sides; ++i)
+        polygon.emplace_back(reach * std::cos(2 * M_PI * i / sides), reach * std::sin(2 * M_PI * i / sides));
+    return polygon;
+}
+
+Convex convex_of(const Shape& shape, const Pose& pose, Rounding rounding)
+{
+    const Vec3 half = shape.size / 2;
+    const Vec3 along = pose.rotation.col(2) * half.y();
+    switch (shape.kind) {
+    case ShapeKind::Box:
+        return prism({{-half.x(), -half.y()}, {half.x(), -half.y()}, {half.x(), half.y()}, {-half.x(), half.y()}},
+                     half.z(), pose);
+    case ShapeKind::Cylinder: return prism(polygon_of_circle(shape.size.x(), rounding), half.y(), pose);
+    case ShapeKind::Capsule: return segment(pose.position - along, pose.position + along, shape.size.x());
+    case ShapeKind::Sphere:
+    case ShapeKind::Hull: break;  // hulls have their corners elsewhere
+    }
+    return {{pose.position}, {{0, 0}}, {}, {}, {}, shape.size.x()};
+}
+
+Convex convex_of(const RobotPart& part, const Pose& scene_from_robot, Rounding rounding)
+{
+    if (part.shape.kind != ShapeKind::Hull) return convex_of(part.shape, scene_from_robot * part.shape.pose, rounding);
+    std::vector<Vec3> corners;
+    for (const Vec3& corner : part.hull_vertices) corners.push_back(moved(scene_from_robot, corner));
+    return polytope(std::move(corners), part.hull_faces);
+}
+
+Vec3 middle(const Convex& body)
+{
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& corner : body.corners) sum += corner;
+    return sum / double(body.corners.size());
+}
+
+// ---- Distances ----
+
+double distance_to_segment(const Vec3& point, const Vec3& a, const Vec3& b)
+{
+    const double length2 = (b - a).squaredNorm();
+    const double t = length2 > 0 ? std::clamp((point - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
+    return (a + t * (b - a) - point).norm();
+}
+
+/// The least is where the two lines are nearest, if that is on both segments, or else at one of the four ends.
+double distance_of_segments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+    double best = std::min({distance_to_segment(a, c, d), distance_to_segment(b, c, d), distance_to_segment(c, a, b),
+                            distance_to_segment(d, a, b)});
+    const Vec3 u = b - a, v = d - c, w = a - c;
+    const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), determinant = uu * vv - uv * uv;
+    if (!(determinant > 1e-18 * uu * vv)) return best;  // parallel, or a point: an end is as near as any
+    const double s = (uv * v.dot(w) - vv * u.dot(w)) / determinant;
+    const double t = (uu * v.dot(w) - uv * u.dot(w)) / determinant;
+    if (s < 0 || s > 1 || t < 0 || t > 1) return best;
+    return std::min(best, (w + s * u - t * v).norm());
+}
+
+/// Whether the line through `point` along the triangle's normal runs through the triangle.
+bool is_over(const Vec3& point, const std::array<Vec3, 3>& triangle, const Vec3& normal)
+{
+    for (int i = 0; i < 3; ++i) {
+        const Vec3& from = triangle[i];
+        if ((triangle[(i + 1) % 3] - from).cross(point - from).dot(normal) < 0) return false;
+    }
+    return true;
+}
+
+double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& triangle)
+{
+    const auto& [a, b, c] = triangle;
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    if (normal.squaredNorm() > 0.5 && is_over(point, triangle, normal)) return std::abs((point - a).dot(normal));
+    return std::min({distance_to_segment(point, a, b), distance_to_segment(point, b, c),
+                     distance_to_segment(point, c, a)});
+}
+
+bool crosses(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& triangle)
+{
+    const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
+    const double before = (from - triangle[0]).dot(normal), after = (to - triangle[0]).dot(normal);
+    if (before * after > 0 || before == after) return false;
+    return is_over(from + (to - from) * (before / (before - after)), triangle, normal);
+}
+
+/// From the corners and edges of one body to the faces of the other.
+double distance_to_faces(const Convex& body, const Convex& other)
+{
+    double best = infinity;
+    for (const auto& [a, b, c] : other.faces) {
+        const std::array<Vec3, 3> triangle = {other.corners[a], other.corners[b], other.corners[c]};
+        for (const Vec3& corner : body.corners) best = std::min(best, distance_to_triangle(corner, triangle));
+        for (const auto& [from, to] : body.edges)
+            if (crosses(body.corners[from], body.corners[to], triangle)) return 0;
+    }
+    return best;
+}
+
+/// Between the hulls of the corners, radii aside; 0 if their surfaces meet. Two convex bodies are nearest each other
+/// between a corner and a face, or between two edges.
+double distance(const Convex& a, const Convex& b)
+{
+    double best = std::min(distance_to_faces(a, b), distance_to_faces(b, a));
+    for (const auto& [a0, a1] : a.edges)
+        for (const auto& [b0, b1] : b.edges)
+            best = std::min(best, distance_of_segments(a.corners[a0], a.corners[a1], b.corners[b0], b.corners[b1]));
+    return best;
+}
+
+// ---- Separating axes ----
+
+double gap_along(const Vec3& axis, const Convex& a, const Convex& b)
+{
+    const auto range = [&](const Convex& body) {
+        std::array<double, 2> ends = {infinity, -infinity};
+        for (const Vec3& corner : body.corners) {
+            const double place = axis.dot(corner);
+            ends = {std::min(ends[0], place), std::max(ends[1], place)};
+        }
+        return ends;
+    };
+    const auto [a0, a1] = range(a);
+    const auto [b0, b1] = range(b);
+    return std::max(b0 - a1, a0 - b1);
+}
+
+/// The widest gap between the hulls along any axis that matters; below 0, minus the shift that would part them.
+/// Stops at the first gap wider than `enough`. Source: Gottschalk, Separating axis theorem, 1996.
+double widest_gap(const Convex& a, const Convex& b, double enough)
+{
+    std::vector<Vec3> axes = a.normals;
+    axes.insert(axes.end(), b.normals.begin(), b.normals.end());
+    for (const Vec3& u : a.directions)
+        for (const Vec3& v : b.directions) axes.push_back(u.cross(v));
+    double widest = -infinity;
+    for (const Vec3& axis : axes) {
+        if (axis.norm() < 1e-9) continue;  // parallel edges: the faces beside them give the axis
+        widest = std::max(widest, gap_along(axis.normalized(), a, b));
+        if (widest > enough) break;
+    }
+    return widest;
+}
+
+bool touches(const Convex& a, const Convex& b, double grow)
+{
+    const double reach = a.radius + b.radius + grow;
+    for (int i = 0; i < 3; ++i)
+        if (gap_along(Vec3::Unit(i), a, b) > reach) return false;  // quick, as any axis may tell them apart
+    if (a.has_volume() || b.has_volume()) {  // else the axes would miss those within a common plane
+        const double gap = widest_gap(a, b, reach);
+        if (gap > reach) return false;
+        if (gap <= 0) return true;
+    }
+    return distance(a, b) <= reach;
+}
+
+// ---- Lines through meshes ----
+
+/// Line through a point; rises by 1 while it moves by `lean`. Vertical where lean is 0.
+struct Line {
+    Vec3 through;
+    double lean_x = 0, lean_y = 0;
+};
+
+struct Crossing {
+    double z = 0;
+    Label label = Label::Obstacle;
+    bool from_above = false;  ///< the side from which the triangle is wound counterclockwise looks up
+};
+
+using Point2 = std::array<Real, 2>;
+
+Real area(const Point2& a, const Point2& b, const Point2& c)
+{
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/// One decision per edge, whichever of its triangles asks: so a line through an edge crosses just one of them.
+bool is_left_of(const Point2& from, const Point2& to, const Point2& point)
+{
+    if (to < from) return !is_left_of(to, from, point);
+    return area(from, to, point) > 0;
+}
+
+std::optional<Crossing> crossing(const Scene& scene, std::uint32_t triangle, const Line& line)
+{
+    std::array<Point2, 3> seen;  // along the line
+    std::array<Real, 3> z;
+    for (int i = 0; i < 3; ++i) {
+        const Vec3& vertex = scene.vertices[scene.triangles[triangle][i]];
+        z[i] = vertex.z();
+        const Real rise = z[i] - Real(line.through.z());
+        seen[i] = {vertex.x() - line.lean_x * rise, vertex.y() - line.lean_y * rise};
+    }
+    const Point2 point = {line.through.x(), line.through.y()};
+    const bool left = is_left_of(seen[0], seen[1], point);
+    if (is_left_of(seen[1], seen[2], point) != left || is_left_of(seen[2], seen[0], point) != left) return {};
+    const Real a = area(seen[1], seen[2], point), b = area(seen[2], seen[0], point), c = area(seen[0], seen[1], point);
+    if (a + b + c == 0) return {};
+    const auto [low, high] = std::minmax_element(z.begin(), z.end());
+    const Real height = std::clamp((a * z[0] + b * z[1] + c * z[2]) / (a + b + c), *low, *high);
+    return Crossing{double(height), scene.triangle_labels[triangle], left};
+}
+
+/// From the lowest up.
+std::vector<Crossing> crossings(const Scene& scene, const Piece& piece, const Line& line)
+{
+    std::vector<Crossing> found;
+    for (std::uint32_t i = 0; i < piece.triangle_count; ++i)
+        if (const auto hit = crossing(scene, piece.first_triangle + i, line)) found.push_back(*hit);
+    std::sort(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) { return a.z < b.z; });
+    return found;
+}
+
+bool is_inside(const Scene& scene, const Piece& piece, const Vec3& point)
+{
+    if (!piece.solid || scene.triangle_labels[piece.first_triangle] == Label::Water) return false;
+    // Leaning by no round number, the line meets no edge of walls and floors but by chance.
+    const auto found = crossings(scene, piece, {point, 0.0917, 0.0583});
+    return std::count_if(found.begin(), found.end(), [&](const Crossing& hit) { return hit.z > point.z(); }) % 2 == 1;
+}
+
+// ---- Collision of one robot part ----
+
+bool is_solid(Label label)
+{
+    return label == Label::Terrain || label == Label::Obstacle;
+}
+
+bool touches_triangles(const Scene& scene, const Convex& body, double grow)
+{
+    Bounds near;
+    for (const Vec3& corner : body.corners) near.extend(corner);
+    near.min.array() -= body.radius + std::max(grow, 0.0);
+    near.max.array() += body.radius + std::max(grow, 0.0);
+    for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+        if (!is_solid(scene.triangle_labels[i])) continue;
+        const Triangle& t = scene.triangles[i];
+        const Vec3 &a = scene.vertices[t[0]], &b = scene.vertices[t[1]], &c = scene.vertices[t[2]];
+        const bool beside = (a.cwiseMin(b).cwiseMin(c).array() > near.max.array()).any() ||
+                            (a.cwiseMax(b).cwiseMax(c).array() < near.min.array()).any();
+        if (!beside && touches(body, polytope({a, b, c}, {{0, 1, 2}}), grow)) return true;
+    }
+    return false;
+}
+
+bool touches_primitives(const Scene& scene, const Convex& body, double grow, Rounding rounding)
+{
+    return std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
+        return is_solid(primitive.label) &&
+               touches(body, convex_of(primitive.shape, primitive.shape.pose, rounding), grow);
+    });
+}
+
+/// A part that touches no triangle lies wholly inside a filled mesh or wholly outside.
+bool is_inside_mesh(const Scene& scene, const Convex& body)
+{
+    const Vec3 point = middle(body);
+    return std::any_of(scene.pieces.begin(), scene.pieces.end(),
+                       [&](const Piece& piece) { return is_inside(scene, piece, point); });
+}
+
+// ---- Vertical lines through primitives ----
+
+/// Stretch of a line, by its parameter.
+struct Stretch {
+    Real from = -infinity, to = infinity;
+
+    bool is_empty() const { return !(from <= to); }
+    void clip(const Stretch& other) { *this = {std::max(from, other.from), std::min(to, other.to)}; }
+};
+constexpr Stretch nowhere = {1, 0};
+
+/// Where |start + t * step| <= half.
+Stretch within_slab(Real start, Real step, Real half)
+{
+    if (std::abs(step) < 1e-15L) return std::abs(start) <= half ? Stretch{} : nowhere;
+    const Real s = (-half - start) / step, t = (half - start) / step;
+    return {std::min(s, t), std::max(s, t)};
+}
+
+/// Where a t^2 + 2 b t + c <= 0, a >= 0.
+Stretch below_zero(Real a, Real b, Real c)
+{
+    if (a < 1e-24L) return c <= 0 ? Stretch{} : nowhere;
+    const Real discriminant = b * b - a * c;
+    if (discriminant < 0) return nowhere;
+    const Real root = std::sqrt(discriminant);
+    return {(-b - root) / a, (-b + root) / a};
+}
+
+using Real3 = Eigen::Matrix<Real, 3, 1>;
+
+Stretch within_ball(Real3 start, const Real3& step, const Real3& centre, Real radius)
+{
+    start -= centre;
+    return below_zero(step.dot(step), start.dot(step), start.dot(start) - radius * radius);
+}
+
+Stretch within_tube(const Real3& start, const Real3& step, Real radius, Real half_length)
+{
+    const Real a = step.x() * step.x() + step.y() * step.y();
+    const Real b = start.x() * step.x() + start.y() * step.y();
+    const Real c = start.x() * start.x() + start.y() * start.y() - radius * radius;
+    Stretch stretch = below_zero(a, b, c);
+    stretch.clip(within_slab(start.z(), step.z(), half_length));
+    return stretch;
+}
+
+Stretch within_capsule(const Real3& start, const Real3& step, Real radius, Real half_length)
+{
+    Stretch all = nowhere;
+    for (const Stretch& part : {within_tube(start, step, radius, half_length),
+                                within_ball(start, step, {0, 0, half_length}, radius),
+                                within_ball(start, step, {0, 0, -half_length}, radius)}) {
+        if (part.is_empty()) continue;
+        all = all.is_empty() ? part : Stretch{std::min(all.from, part.from), std::max(all.to, part.to)};
+    }
+    return all;
+}
+
+/// z of the vertical line through (x, y) within the shape.
+Stretch vertical_stretch(const Shape& shape, double x, double y)
+{
+    const Eigen::Matrix<Real, 3, 3> shape_from_scene = shape.pose.rotation.transpose().cast<Real>();
+    const Real3 start = shape_from_scene * (Real3{x, y, 0} - shape.pose.position.cast<Real>());
+    const Real3 step = shape_from_scene.col(2);
+    const Real3 size = shape.size.cast<Real>();
+    switch (shape.kind) {
+    case ShapeKind::Sphere: return within_ball(start, step, Real3::Zero(), size.x());
+    case ShapeKind::Cylinder: return within_tube(start, step, size.x(), size.y() / 2);
+    case ShapeKind::Capsule: return within_capsule(start, step, size.x(), size.y() / 2);
+    case ShapeKind::Box:
+    case ShapeKind::Hull: break;  // scenes hold no hulls
+    }
+    Stretch stretch;
+    for (int i = 0; i < 3; ++i) stretch.clip(within_slab(start[i], step[i], size[i] / 2));
+    return stretch;
+}
+
+// ---- Columns ----
+
+constexpr double touch = 1e-9;  // DESIGN.md: closer surfaces are one, and terrain wins
+
+/// The part of a solid that lies under one triangle or primitive.
+void add_solid(Column& column, double bottom, double top, Label label, std::size_t owner)
+{
+    if (label == Label::Water) column.water.push_back(top);
+    else if (is_solid(label)) column.spans.push_back({bottom, top, label == Label::Terrain, owner});
+}
+
+/// Solid between odd and even crossings. Where one interval ends and the next begins there is no gap to stand in.
+void add_filled_piece(Column& column, const std::vector<Crossing>& hits, std::size_t owner)
+{
+    for (std::size_t i = 0; i + 1 < hits.size(); i += 2) {
+        const double bottom = hits[i].z;
+        while (i + 3 < hits.size() && hits[i + 2].z - hits[i + 1].z <= touch) i += 2;
+        add_solid(column, bottom, hits[i + 1].z, hits[i + 1].label, owner);
+    }
+}
+
+void add_sheet(Column& column, const std::vector<Crossing>& hits, const Piece& piece, std::size_t owner)
+{
+    for (const Crossing& hit : hits) {
+        const bool hidden = piece.sides_up && !hit.from_above && hit.label == Label::Terrain;
+        add_solid(column, hit.z, hit.z, hidden ? Label::Obstacle : hit.label, owner);
+    }
+}
+
+// ---- The verdict table ----
+
+struct Limits {
+    const Bounds& bounds;
+    double max_height, max_water_depth;
+};
+
+/// A verdict that leaves collisions aside: Valid where nothing else applies.
+struct Footing {
+    Verdict verdict = Verdict::Valid;
+    std::optional<Span> ground;
+};
+
+std::optional<Span> ground_below(const Column& column, double z)
+{
+    std::optional<Span> ground;
+    for (const Span& span : column.spans)
+        if (span.top <= z && (!ground || span.top > ground->top)) ground = span;
+    for (const Span& span : column.spans)
+        if (ground && span.top <= z && span.top >= ground->top - touch) ground->terrain |= span.terrain;
+    return ground;
+}
+
+/// `rise` lifts the water.
+Footing footing(const Column& column, const Vec3& position, const Limits& limits, double rise)
+{
+    const std::optional<Span> ground = ground_below(column, position.z());
+    if (!limits.bounds.contains_xy(position.x(), position.y(), 0)) return {Verdict::Outside, ground};
+    if (!ground || position.z() - ground->top > limits.max_height) return {Verdict::Aerial, ground};
+    if (!ground->terrain) return {Verdict::OffTerrain, ground};
+    const bool wet = std::any_of(column.water.begin(), column.water.end(), [&](double surface) {
+        const double depth = surface + rise - ground->top;
+        return depth >= 0 && depth <= limits.max_water_depth;
+    });
+    return {wet ? Verdict::Submerged : Verdict::Valid, ground};
+}
+
+/// Steep ground of one piece may change quickly; between two pieces any step is another ground.
+bool is_same(const Footing& a, const Footing& b, double margin)
+{
+    if (a.verdict != b.verdict || a.ground.has_value() != b.ground.has_value()) return false;
+    if (!a.ground) return true;
+    const double limit = a.ground->owner == b.ground->owner ? 20 * margin : 1e-6;
+    return std::abs(a.ground->top - b.ground->top) <= limit;
+}
+
+bool is_settled(const Scene& scene, const Vec3& position, const Limits& limits, const Footing& here, double margin)
+{
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 beside = position + margin * Vec3{std::cos(M_PI / 4 * i), std::sin(M_PI / 4 * i), 0};
+        if (!is_same(here, footing(column(scene, beside.x(), beside.y()), beside, limits, 0), margin)) return false;
+    }
+    const Column centre = column(scene, position.x(), position.y());
+    for (const double shift : {-margin, margin}) {
+        if (!is_same(here, footing(centre, position + Vec3{0, 0, shift}, limits, 0), margin)) return false;
+        if (!is_same(here, footing(centre, position, limits, shift), margin)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+bool collides(const Scene& scene, const Robot& robot, const Pose& scene_from_robot, double grow)
+{
+    const Rounding rounding = grow < 0 ? Rounding::Inscribed : Rounding::Circumscribed;
+    return std::any_of(robot.parts.begin(), robot.parts.end(), [&](const RobotPart& part) {
+        const Convex body = convex_of(part, scene_from_robot, rounding);
+        return touches_triangles(scene, body, grow) || touches_primitives(scene, body, grow, rounding) ||
+               is_inside_mesh(scene, body);
+    });
+}
+
+Answer collision(const Scene& scene, const Robot& robot, const Pose& scene_from_robot, double margin)
+{
+    if (!collides(scene, robot, scene_from_robot, margin)) return Answer::No;
+    return collides(scene, robot, scene_from_robot, -margin) ? Answer::Yes : Answer::TooClose;
+}
+
+Column column(const Scene& scene, double x, double y)
+{
+    Column column;
+    for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+        const Piece& piece = scene.pieces[i];
+        const auto hits = crossings(scene, piece, {{x, y, 0}, 0, 0});
+        if (piece.solid) add_filled_piece(column, hits, i);
+        else add_sheet(column, hits, piece, i);
+    }
+    for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
+        const Stretch stretch = vertical_stretch(scene.primitives[i].shape, x, y);
+        if (stretch.is_empty()) continue;
+        add_solid(column, double(stretch.from), double(stretch.to), scene.primitives[i].label, scene.pieces.size() + i);
+    }
+    return column;
+}
+
+std::vector<double> layers(const Scene& scene, double x, double y)
+{
+    constexpr double tolerance = 1e-6;
+    std::vector<Span> terrain = column(scene, x, y).spans;
+    std::erase_if(terrain, [](const Span& span) { return !span.terrain; });
+    std::sort(terrain.begin(), terrain.end(), [](const Span& a, const Span& b) { return a.bottom < b.bottom; });
+    std::vector<double> tops;
+    for (const Span& span : terrain) {
+        if (!tops.empty() && span.bottom <= tops.back() + tolerance) tops.back() = std::max(tops.back(), span.top);
+        else tops.push_back(span.top);
+    }
+    std::reverse(tops.begin(), tops.end());
+    return tops;
+}
+
+Decision decide(const Scene& scene, const Bounds& map_bounds, const Robot& robot, const Pose& scene_from_robot,
+                double max_height, double max_water_depth, double margin)
+{
+    const Limits limits = {map_bounds, max_height, max_water_depth};
+    const Vec3& position = scene_from_robot.position;
+    const Footing here = footing(column(scene, position.x(), position.y()), position, limits, 0);
+    Decision decision;
+    if (here.ground) decision.ground = here.ground->top;
+    if (!is_settled(scene, position, limits, here, margin)) return decision;
+    decision.verdict = here.verdict;
+    if (here.verdict != Verdict::Valid) return decision;
+    switch (collision(scene, robot, scene_from_robot, margin)) {
+    case Answer::No: break;
+    case Answer::Yes: decision.verdict = Verdict::Collision; break;
+    case Answer::TooClose: decision.verdict.reset(); break;
+    }
+    return decision;
+}
+
+}  // namespace slow
