@@ -133,7 +133,7 @@ Map plan_map(Scene scene, const fs::path& scene_file, const BakeOptions& options
     if (!(options.occupancy_resolution >= 0))
         throw ArgumentError("bake", "occupancy_resolution", options.occupancy_resolution, "> 0 m (0: chosen)");
     Map map;
-    map.name = scene.name;
+    map.name = scene.name.empty() ? scene_file.stem().string() : scene.name;
     map.bounds = chosen_bounds("bake", options.bounds, scene.bounds());
     map.resolution = options.resolution > 0 ? options.resolution : default_resolution(map.bounds, report);
     map.occupancy_resolution = options.occupancy_resolution > 0

@@ -1,3 +1,4 @@
+#include "bins.h"
 #include "elements.h"
 
 #include <spawnfield/column.h>
@@ -133,6 +134,19 @@ void join(std::vector<Hit>& intervals, double tolerance)
     intervals.resize(kept);
 }
 
+/// Whether the line may meet the element at all: cheap, and most elements of a bin are out.
+bool may_meet(const Scene& scene, std::uint32_t element, double x, double y)
+{
+    if (!is_triangle(scene, element)) return true;
+    const Triangle& t = scene.triangles[element];
+    const Vec3 &a = scene.vertices[t[0]], &b = scene.vertices[t[1]], &c = scene.vertices[t[2]];
+    const double reach = touch_tolerance;
+    return !((a.x() > x + reach && b.x() > x + reach && c.x() > x + reach) ||
+             (a.x() < x - reach && b.x() < x - reach && c.x() < x - reach) ||
+             (a.y() > y + reach && b.y() > y + reach && c.y() > y + reach) ||
+             (a.y() < y - reach && b.y() < y - reach && c.y() < y - reach));
+}
+
 class ColumnBuilder {
 public:
     ColumnBuilder(const Scene& scene, double x, double y) : scene_(scene), x_(x), y_(y) {}
@@ -207,7 +221,12 @@ private:
 Column column_at(const Scene& scene, const ColumnIndex& index, double x, double y)
 {
     thread_local std::vector<std::uint32_t> elements;
-    find_elements(index, x, y, x, y, elements);
+    elements.clear();
+    visit_bins_at(index, x, y, [&](const std::uint32_t* first, const std::uint32_t* last) {
+        for (; first != last; ++first)
+            if (may_meet(scene, *first, x, y)) elements.push_back(*first);
+    });
+    std::sort(elements.begin(), elements.end());
     ColumnBuilder builder(scene, x, y);
     const std::uint32_t* const end = elements.data() + elements.size();
     for (const std::uint32_t* e = elements.data(); e != end;) {

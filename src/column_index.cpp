@@ -1,3 +1,4 @@
+#include "bins.h"
 #include "elements.h"
 
 #include <spawnfield/column.h>
@@ -15,15 +16,10 @@ struct CellRange {
     std::uint32_t col0, col1, row0, row1;  // inclusive
 };
 
-std::uint32_t clamp_cell(double offset, double cell, std::uint32_t count)
-{
-    return static_cast<std::uint32_t>(std::clamp(std::floor(offset / cell), 0.0, double(count - 1)));
-}
-
 CellRange cells_of(const ColumnIndex& index, const ColumnIndex::Level& level, double x0, double y0, double x1, double y1)
 {
-    return {clamp_cell(x0 - index.x0, level.cell, level.cols), clamp_cell(x1 - index.x0, level.cell, level.cols),
-            clamp_cell(y0 - index.y0, level.cell, level.rows), clamp_cell(y1 - index.y0, level.cell, level.rows)};
+    return {bin_number(x0 - index.x0, level.cell, level.cols), bin_number(x1 - index.x0, level.cell, level.cols),
+            bin_number(y0 - index.y0, level.cell, level.rows), bin_number(y1 - index.y0, level.cell, level.rows)};
 }
 
 template <class Visit>
@@ -63,8 +59,8 @@ ColumnIndex build_column_index(const Scene& scene)
     const double depth = bounds.max.y() - bounds.min.y() + 2 * pad;
     const double extent = std::max(width, depth);
 
-    // About one element a bin where they are spread evenly; never more than 2^24 bins however thin the scene is.
-    const double finest = std::max(std::sqrt(width * depth / double(elements)), extent / 4096);
+    // About four bins an element where they are spread evenly; never more than 2^24 bins however thin the scene is.
+    const double finest = std::max(std::sqrt(width * depth / double(elements)) / 2, extent / 4096);
     std::vector<std::vector<std::uint32_t>> members(1);
     for (std::uint32_t element = 0; element < elements; ++element) {
         const Bounds box = element_bounds(scene, element);

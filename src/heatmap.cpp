@@ -44,10 +44,7 @@ std::string count_and_share(std::uint64_t count, std::uint64_t total)
     std::string text = with_commas(count);
     if (count == 0) return text;
     const double percent = 100 * static_cast<double>(count) / static_cast<double>(total);
-    if (percent < 0.05) return text + "   < 0.1 %";
-    char buffer[16];
-    std::snprintf(buffer, sizeof buffer, "   %.1f %%", percent);
-    return text + buffer;
+    return text + "   " + (percent < 0.05 ? "< 0.1" : fixed(percent, 1)) + " %";
 }
 
 // ---------------------------------------------------------------- columns
@@ -57,7 +54,7 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
     const RasterGrid& grid = raster.grid;
     if (options.pixels < 200 || options.pixels > 16000)
         throw ArgumentError("write_heatmap", "pixels", options.pixels, "200 .. 16000");
-    if (!(grid.step > 0)) throw ArgumentError("write_heatmap", "raster.grid.step", grid.step, "> 0 m");
+    if (!(grid.step > 0) || !std::isfinite(grid.step)) throw ArgumentError("write_heatmap", "raster.grid.step", grid.step, "> 0 m");
     if (grid.cols < 1) throw ArgumentError("write_heatmap", "raster.grid.cols", grid.cols, ">= 1");
     if (grid.rows < 1) throw ArgumentError("write_heatmap", "raster.grid.rows", grid.rows, ">= 1");
 }

@@ -103,16 +103,19 @@ GridFrame read_frame(const YamlMap& root)
     return frame;
 }
 
-/// Cuts the last line, which holds the checksum of all before it.
+/// The last line, which holds the checksum of all before it.
+std::string hash_line(const std::string& hash) { return hash_key + "\"" + hash + "\"\n"; }
+
 std::string verified_hash(const fs::path& file, const std::string& text)
 {
-    const std::size_t line = text.rfind("\n" + hash_key);
-    if (line == std::string::npos) throw FileError(file.string(), "is cut short: its last line, hash, is missing; bake the map again");
-    std::string found = text.substr(line + 1 + hash_key.size());
-    std::erase_if(found, [](char c) { return c == '\n' || c == '"'; });
-    if (found != checksum(std::string_view(text).substr(0, line + 1)))
+    const std::size_t size = hash_line(checksum("")).size();
+    const std::size_t line = text.size() < size ? 0 : text.size() - size;
+    if (text.compare(line, hash_key.size(), hash_key) != 0 || text.back() != '\n')
+        throw FileError(file.string(), "is cut short: its last line, hash, is missing; bake the map again");
+    const std::string hash = checksum(std::string_view(text).substr(0, line));
+    if (text.substr(line) != hash_line(hash))
         throw FileError(file.string(), "differs from the hash in its last line: it was altered; bake the map again");
-    return found;
+    return hash;
 }
 
 /// Newer maps are refused before anything else of them is looked at.
@@ -153,7 +156,7 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
     text += "labels:\n" + label_counts(map.scene) + "parts:\n" + part_lines(map.scene);
     text += "files:\n" + file_lines(folder);
     const std::string hash = checksum(text);
-    write_file_atomically(folder / "map.yaml", text + hash_key + "\"" + hash + "\"\n");
+    write_file_atomically(folder / "map.yaml", text + hash_line(hash));
     return hash;
 }
 

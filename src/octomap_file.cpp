@@ -11,29 +11,30 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::string_view binary_magic = "# Octomap OcTree binary file";
 constexpr int max_depth = 16;
 
-/// Header of a .bt file: lines of `key value` up to `data` (octomap/AbstractOcTree.cpp).
-struct BinaryHeader {
-    std::size_t nodes = 0;
-    double resolution = 0;
+/// Header of a .bt or .ot file: lines of `key value` up to `data` (octomap/AbstractOcTree.cpp).
+struct Header {
+    std::string id;
+    double nodes = 0, resolution = 0;
     std::size_t data = 0;  ///< where the nodes start
 };
 
-BinaryHeader read_header(const std::filesystem::path& file, const std::string& bytes)
+Header read_header(const std::filesystem::path& file, const std::string& bytes, const std::string& kind, const std::string& magic)
 {
-    const auto refuse = [&](const std::string& what) { throw FileError(file.string(), "is no binary OctoMap (.bt): " + what); };
-    if (!bytes.starts_with(binary_magic)) refuse("its first line is not \"" + std::string(binary_magic) + "\"");
+    const auto refuse = [&](const std::string& what) { throw FileError(file.string(), "is no " + kind + ": " + what); };
+    if (!bytes.starts_with(magic)) refuse("its first line is not \"" + magic + "\"");
     const std::size_t data = bytes.find("\ndata\n");
     if (data == std::string::npos) refuse("its header has no line `data`");
-    BinaryHeader header{0, 0, data + 6};
+    Header header;
+    header.data = data + 6;
     std::istringstream lines(bytes.substr(0, data));
-    for (std::string key, value, line; std::getline(lines, line);) {
-        std::istringstream words(line);
-        words >> key >> value;
+    for (std::string line; std::getline(lines, line);) {
+        std::string key, value;
+        std::istringstream(line) >> key >> value;
         double number = 0;
-        if (key == "size" && parse_number(value, number) && number >= 0) header.nodes = std::size_t(number);
+        if (key == "id") header.id = value;
+        if (key == "size" && parse_number(value, number)) header.nodes = number;
         if (key == "res" && parse_number(value, number)) header.resolution = number;
     }
     if (!(header.resolution > 0) || !std::isfinite(header.resolution)) refuse("its header has no line `res` with a number > 0");
@@ -62,12 +63,12 @@ std::size_t count_nodes(std::string_view data, int depth, std::size_t& at)
 std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
 {
     const std::string bytes = read_file(file);
-    const BinaryHeader header = read_header(file, bytes);
+    const Header header = read_header(file, bytes, "binary OctoMap (.bt)", "# Octomap OcTree binary file");
     const std::string_view data = std::string_view(bytes).substr(header.data);
     std::size_t at = 0;
     const std::size_t nodes = header.nodes == 0 ? 0 : count_nodes(data, 0, at);
-    if (nodes != header.nodes)
-        throw FileError(file.string(), "is cut short or damaged: its header says " + std::to_string(header.nodes) + " nodes");
+    if (double(nodes) != header.nodes)
+        throw FileError(file.string(), "is cut short or damaged: its header says " + number(header.nodes) + " nodes");
     auto tree = std::make_unique<octomap::OcTree>(header.resolution);
     if (nodes == 0) return tree;
     std::istringstream stream{std::string(data), std::ios::binary};
@@ -90,17 +91,16 @@ bool is_whole(std::string_view data, int depth, std::size_t& at)
 std::unique_ptr<octomap::OcTree> read_full(const std::filesystem::path& file)
 {
     const std::string bytes = read_file(file);
-    const std::size_t data = bytes.find("\ndata\n");
-    if (!bytes.starts_with("# Octomap OcTree file") || data == std::string::npos || bytes.find("\nid OcTree\n") > data)
-        throw FileError(file.string(), "is no OctoMap of type OcTree (.ot), or is cut short");
+    const Header header = read_header(file, bytes, "full OctoMap (.ot)", "# Octomap OcTree file");
+    if (header.id != "OcTree") throw FileError(file.string(), "is an OctoMap of type " + header.id + ", needs OcTree");
+    auto tree = std::make_unique<octomap::OcTree>(header.resolution);
+    if (header.nodes == 0) return tree;
+    const std::string_view data = std::string_view(bytes).substr(header.data);
     std::size_t at = 0;
-    if (!is_whole(std::string_view(bytes).substr(data + 6), 0, at)) throw FileError(file.string(), "is cut short or damaged");
-    std::istringstream stream(bytes, std::ios::binary);
-    std::unique_ptr<octomap::AbstractOcTree> any(octomap::AbstractOcTree::read(stream));
-    auto* const tree = dynamic_cast<octomap::OcTree*>(any.get());
-    if (tree == nullptr) throw FileError(file.string(), "is no OctoMap of type OcTree (.ot)");
-    any.release();
-    return std::unique_ptr<octomap::OcTree>(tree);
+    if (!is_whole(data, 0, at)) throw FileError(file.string(), "is cut short or damaged");
+    std::istringstream stream{std::string(data), std::ios::binary};
+    tree->readData(stream);
+    return tree;
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include "hull.h"
 #include "mesh.h"
+#include "number.h"
 
 #include <spawnfield/error.h>
 
+#include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <Eigen/Geometry>
@@ -23,6 +25,24 @@ Pose pose_of(const urdf::Pose& pose)
             Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix()};
 }
 
+/// Keeps what urdfdom says from standard error, and the first error of it; warnings are about looks.
+class UrdfdomErrors : public console_bridge::OutputHandler {
+public:
+    UrdfdomErrors() { console_bridge::useOutputHandler(this); }
+    UrdfdomErrors(const UrdfdomErrors&) = delete;
+    UrdfdomErrors& operator=(const UrdfdomErrors&) = delete;
+    ~UrdfdomErrors() override { console_bridge::restorePreviousOutputHandler(); }
+
+    void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override
+    {
+        if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) first_ = text;
+    }
+    const std::string& first() const { return first_; }
+
+private:
+    std::string first_;
+};
+
 class UrdfReader {
 public:
     UrdfReader(std::filesystem::path file, const RobotOptions& options) : file_(std::move(file)), options_(options) {}
@@ -34,8 +54,11 @@ public:
             throw FileError(file_.string(), "does not exist; is the path right?");
         std::stringstream text;
         text << stream.rdbuf();
+        UrdfdomErrors errors;
         const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text.str());
-        if (!model || !model->getRoot()) throw FileError(file_.string(), "is no valid URDF (urdfdom's reason stands above)");
+        // urdfdom goes on with a link that it could not read to its end, and that would make the robot smaller.
+        if (!errors.first().empty()) throw FileError(file_.string(), "is no valid URDF: " + errors.first());
+        if (!model || !model->getRoot()) throw FileError(file_.string(), "is no valid URDF");
         robot_.name = model->getName();
         add_link(*model->getRoot(), {});
         if (robot_.parts.empty()) throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
@@ -114,7 +137,7 @@ private:
 
     void require_positive(const urdf::Link& link, const std::string& what, double value) const
     {
-        if (!(value > 0) || !std::isfinite(value)) fail(link, what + " is " + std::to_string(value) + ", needs > 0");
+        if (!(value > 0) || !std::isfinite(value)) fail(link, what + " is " + number(value) + ", needs > 0");
     }
 
     [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const

@@ -25,10 +25,10 @@ struct Map {
 struct BakeOptions {
     double resolution = 0;            ///< m; 0: 0.1 m, or coarser with a notice where that passes max_columns
     double occupancy_resolution = 0;  ///< m; 0: 2.5 times the resolution, or coarser with a notice where OctoMap needs it
-    Bounds bounds;                    ///< empty: the scene's
+    Bounds bounds = {};               ///< empty: the scene's
     bool allow_no_terrain = false;
     int threads = 0;
-    Progress progress;
+    Progress progress = {};
 };
 
 /// What a bake did, for its summary.
@@ -54,6 +54,9 @@ Map read_map(const std::filesystem::path& folder);
 
 /// The pages of terrain.tiff. Throws FileError.
 TerrainMap read_terrain(const Map& map);
+
+/// occupancy.bt. Throws FileError.
+OccupancyTree read_occupancy(const Map& map);
 
 /// Sizes and checksums of all files of the folder. Throws FileError at the first that differs.
 void verify_map(const std::filesystem::path& folder);

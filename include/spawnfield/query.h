@@ -10,7 +10,7 @@ struct QueryOptions {
     double max_height = 1.0;  ///< m of the origin above its ground, inclusive, >= 0
     double max_water_depth = std::numeric_limits<double>::infinity();  ///< m of water above the ground that count, >= 0
     int threads = 0;          ///< 0: all cores; results are the same at any number
-    Progress progress;
+    Progress progress = {};
 };
 
 /// The verdict on one pose with its reasons.
@@ -48,12 +48,12 @@ struct LayerChoice {
 
 struct RasterOptions : QueryOptions {
     int dims = 2;                ///< 2: a pose per column and layer; 3: a pose per column and height
-    Bounds bounds;               ///< empty: the map's; two-dimensional rasters leave z aside
+    Bounds bounds = {};          ///< empty: the map's; two-dimensional rasters leave z aside
     double step = 1.0;           ///< m between columns, > 0
     double step_z = 0;           ///< m between heights, > 0; 0: as step
     double offset = 0.1;         ///< m of the origin above its layer (2D)
     double yaw = 0;              ///< rad
-    LayerChoice layers;          ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
+    LayerChoice layers = {};     ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
     bool height_check = true;    ///< false (3D only): collisions alone, at every pose
 };
 
@@ -101,7 +101,7 @@ struct SpawnList {
 struct SpawnOptions : QueryOptions {
     std::size_t count = 1;       ///< >= 1
     double min_distance = 0;     ///< m between positions, >= 0
-    Bounds bounds;               ///< empty: the map's; sample leaves z aside
+    Bounds bounds = {};          ///< empty: the map's; sample leaves z aside
     bool random_yaw = false;     ///< uniform in [-pi, pi), else yaw
     double yaw = 0;              ///< rad
     std::uint64_t seed = 0;
@@ -117,7 +117,7 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
 
 struct SampleOptions : SpawnOptions {
     double offset = 0.1;  ///< m of the origin above its layer
-    LayerChoice layers;
+    LayerChoice layers = {};
 };
 
 /// Valid poses distributed uniformly by horizontal area over the feasible region of all chosen layers, each confirmed

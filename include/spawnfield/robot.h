@@ -28,7 +28,7 @@ struct Robot {
 };
 
 struct RobotOptions {
-    std::vector<std::filesystem::path> package_paths;  ///< folders that hold ROS packages, for package:// URIs
+    std::vector<std::filesystem::path> package_paths = {};  ///< folders that hold ROS packages, for package:// URIs
 };
 
 /// Reads robot.yaml (format spawnfield-robot/1), a .urdf, or `box:LX,LY,LZ[@x,y,z]`.

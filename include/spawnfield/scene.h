@@ -60,9 +60,9 @@ struct LabelRule {
 };
 
 struct SceneOptions {
-    std::vector<LabelRule> labels;  ///< come before the file's own rules; the first match wins
-    char up = 0;                    ///< 'y' or 'z' for a bare mesh; 0: what the format says, else z
-    double scale = 1.0;             ///< m per unit of a bare mesh, > 0
+    std::vector<LabelRule> labels = {};  ///< come before the file's own rules; the first match wins
+    char up = 0;                         ///< 'y' or 'z' for a bare mesh; 0: what the format says, else z
+    double scale = 1.0;                  ///< m per unit of a bare mesh, > 0
 };
 
 /// Reads a scene.yaml (format spawnfield-scene/1), an OctoMap (.bt, .ot) or any mesh that assimp reads.

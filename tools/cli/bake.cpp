@@ -38,11 +38,11 @@ int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
     SceneOptions scene_options;
     for (const std::string& label : args.labels) scene_options.labels.push_back(parse_label(label));
     scene_options.up = args.up.empty() ? char{0} : args.up[0];
-    scene_options.scale = args.scale;
+    scene_options.scale = parse_positive("--scale", args.scale);
     BakeOptions options;
     if (resolution_given) options.resolution = parse_positive("--resolution", args.resolution);
     if (occupancy_given) options.occupancy_resolution = parse_positive("--occupancy-resolution", args.occupancy_resolution);
-    if (!args.bounds.empty()) options.bounds = parse_bounds(args.bounds, false);
+    if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, false);
     options.allow_no_terrain = args.allow_no_terrain;
     options.threads = args.threads;
     options.progress = progress_bar(args, "bake");

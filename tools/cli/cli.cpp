@@ -105,22 +105,28 @@ void clear_progress_bar()
     bar_shown = false;
 }
 
-Bounds parse_bounds(const std::string& text, bool flat_allowed)
+ArgumentError bad_value(const std::string& option, double value, const std::string& limit)
 {
-    const auto v = parse_numbers("--bounds", text);
+    char text[32];
+    return ArgumentError(option + " is " + std::string(text, std::to_chars(text, text + sizeof text, value).ptr) + ", needs " + limit);
+}
+
+Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed)
+{
+    const auto v = parse_numbers(option, text);
     Bounds bounds;
     if (v.size() == 6) {
         bounds = {Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
     } else if (v.size() == 4 && flat_allowed) {
         bounds = {Vec3(v[0], v[1], 0), Vec3(v[2], v[3], 0)};
     } else {
-        throw ArgumentError("--bounds has " + std::to_string(v.size()) + " numbers, needs 6: x0,y0,z0,x1,y1,z1" +
+        throw ArgumentError(option + " has " + std::to_string(v.size()) + " numbers, needs 6: x0,y0,z0,x1,y1,z1" +
                             (flat_allowed ? " (or 4: x0,y0,x1,y1)" : ""));
     }
     for (int axis = 0; axis < 3; ++axis)
         if (bounds.min[axis] > bounds.max[axis])
-            throw ArgumentError("--bounds", std::string(1, "xyz"[axis]) + "1", bounds.max[axis],
-                                "at least " + std::string(1, "xyz"[axis]) + "0: the lower corner comes first");
+            throw bad_value(option + ": " + "xyz"[axis] + "1", bounds.max[axis],
+                            std::string("at least ") + "xyz"[axis] + "0: the lower corner comes first");
     return bounds;
 }
 
@@ -147,7 +153,7 @@ bool parse_yaw(const std::string& text, double& yaw)
 
 double parse_positive(const std::string& option, double value)
 {
-    if (!(value > 0) || !std::isfinite(value)) throw ArgumentError("spawnfield", option, value, "> 0");
+    if (!(value > 0) || !std::isfinite(value)) throw bad_value(option, value, "> 0");
     return value;
 }
 
@@ -158,7 +164,7 @@ std::unique_ptr<Session> open_session(const QueryArgs& args)
     for (const std::string& text : session->robot.notices) notice(args, text);
     session->map = read_map(args.map);
     if (args.collision == "octree") {
-        auto tree = std::make_shared<const OccupancyTree>(read_occupancy(session->map.folder / "occupancy.bt"));
+        auto tree = std::make_shared<const OccupancyTree>(read_occupancy(session->map));
         session->checker = std::make_unique<CollisionChecker>(std::move(tree), session->robot);
     } else {
         session->checker = std::make_unique<CollisionChecker>(session->map.scene, session->map.index, session->robot);
@@ -172,8 +178,8 @@ void fill(QueryOptions& options, const QueryArgs& args, const std::string& label
     options.max_water_depth = args.max_water_depth;
     options.threads = args.threads;
     options.progress = progress_bar(args, label);
-    if (!(options.max_height >= 0)) throw ArgumentError("spawnfield", "--max-height", options.max_height, ">= 0 m");
-    if (!(options.max_water_depth >= 0)) throw ArgumentError("spawnfield", "--max-water-depth", options.max_water_depth, ">= 0 m");
+    if (!(options.max_height >= 0)) throw bad_value("--max-height", options.max_height, ">= 0 m");
+    if (!(options.max_water_depth >= 0)) throw bad_value("--max-water-depth", options.max_water_depth, ">= 0 m");
 }
 
 void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/error.h>
 #include <spawnfield/poses.h>
 #include <spawnfield/query.h>
 
@@ -41,11 +42,13 @@ Progress progress_bar(const CommonArgs& args, const std::string& label);
 void clear_progress_bar();
 
 /// "x0,y0,z0,x1,y1,z1", or "x0,y0,x1,y1" where heights do not count. Throws ArgumentError.
-Bounds parse_bounds(const std::string& text, bool flat_allowed);
+Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed);
 LayerChoice parse_layers(const std::string& text);  ///< all|top|bottom|N
 /// "random" or radians; false if it is random.
 bool parse_yaw(const std::string& text, double& yaw);
 double parse_positive(const std::string& option, double value);
+/// "--step is 0, needs > 0", to be thrown.
+ArgumentError bad_value(const std::string& option, double value, const std::string& limit);
 
 /// What a run did. Written as one line and, with --summary, as JSON (DESIGN.md, Commands).
 class Summary {

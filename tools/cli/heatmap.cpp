@@ -37,7 +37,7 @@ int run_heatmap(const HeatmapArgs& args, bool step_given)
     options.offset = args.offset;
     options.yaw = args.yaw;
     options.layers = parse_layers(args.layers);
-    if (!args.bounds.empty()) options.bounds = parse_bounds(args.bounds, true);
+    if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     HeatmapOptions picture;
     picture.quantity = quantity_of(args.quantity);
     picture.pixels = args.size;

@@ -165,27 +165,34 @@ bool is_robot(const std::string& what)
 int run_info(const InfoArgs& args)
 {
     const Progress listen = progress_bar(args, "info");
+    Summary summary("info", args);
     Json out;
     if (fs::is_directory(args.what)) {
         if (args.verify) verify_map(args.what);
-        out = map_json(read_map(args.what), args.verify);
+        const Map map = read_map(args.what);
+        summary.map_hash = map.hash;
+        out = map_json(map, args.verify);
     } else if (is_robot(args.what)) {
         out = robot_json(load_robot(args.what, {{args.package_paths.begin(), args.package_paths.end()}}));
     } else {
         SceneOptions options;
         options.up = args.up.empty() ? char{0} : args.up[0];
-        options.scale = args.scale;
+        options.scale = parse_positive("--scale", args.scale);
         const Scene scene = load_scene(args.what, options);
         for (const std::string& text : scene.notices) notice(args, text);
         out = scene_json(scene);
     }
     listen(1);
+    summary.lap("load");
     const std::string kind = out["kind"];
     const std::string text = args.json          ? out.dump(2) + "\n"
                              : kind == "map"    ? map_lines(out)
                              : kind == "robot"  ? robot_lines(out)
                                                 : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + scene_lines(out);
     write_output("", [&](const auto& sink) { sink(text); });
+    summary.lap("write");
+    summary.extra = {args.what};
+    summary.finish();
     return done;
 }
 

@@ -24,8 +24,10 @@ RasterOptions options_of(const RasterArgs& args, bool step_z_given)
     options.yaw = args.yaw;
     options.layers = parse_layers(args.layers);
     options.height_check = !args.no_height_check;
-    if (!args.bounds.empty()) options.bounds = parse_bounds(args.bounds, args.dims == 2);
+    if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, args.dims == 2);
     if (args.write_aerial && args.dims == 2) throw ArgumentError("--write-aerial is for --dims 3");
+    if (args.write_aerial && options.layers.kind != LayerChoice::Kind::All)
+        throw ArgumentError("--write-aerial needs --layers all: aerial poses are above no layer");
     return options;
 }
 

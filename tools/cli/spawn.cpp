@@ -14,15 +14,16 @@ struct SpawnArgs : QueryArgs {
     std::string bounds, region, layers = "all", yaw = "0", format = "csv", out;
 };
 
-void fill_spawn(SpawnOptions& options, const SpawnArgs& args, const std::string& bounds, const std::string& label)
+void fill_spawn(SpawnOptions& options, const SpawnArgs& args, const std::string& label)
 {
     fill(options, args, label);
-    if (args.count < 1) throw ArgumentError("spawnfield", "-n", double(args.count), ">= 1");
+    if (args.count < 1) throw bad_value("-n", double(args.count), ">= 1");
     options.count = std::size_t(args.count);
     options.min_distance = args.min_distance;
     options.seed = args.seed;
     options.random_yaw = !parse_yaw(args.yaw, options.yaw);
-    if (!bounds.empty()) options.bounds = parse_bounds(bounds, label == "sample");
+    if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, false);
+    if (!args.region.empty()) options.bounds = parse_bounds("--region", args.region, true);
 }
 
 int finish(Summary& summary, const SpawnArgs& args, const Session& session, const SpawnOptions& options, const SpawnList& list,
@@ -47,8 +48,8 @@ int run_search(const SpawnArgs& args)
 {
     Summary summary("search", args);
     SearchOptions options;
-    fill_spawn(options, args, args.bounds, "search");
-    if (args.max_failures < 1) throw ArgumentError("spawnfield", "--max-failures", double(args.max_failures), ">= 1");
+    fill_spawn(options, args, "search");
+    if (args.max_failures < 1) throw bad_value("--max-failures", double(args.max_failures), ">= 1");
     options.max_failures = std::uint64_t(args.max_failures);
     const auto session = open_session(args);
     summary.lap("load");
@@ -60,7 +61,7 @@ int run_sample(const SpawnArgs& args)
 {
     Summary summary("sample", args);
     SampleOptions options;
-    fill_spawn(options, args, args.region, "sample");
+    fill_spawn(options, args, "sample");
     options.offset = args.offset;
     options.layers = parse_layers(args.layers);
     const auto session = open_session(args);

@@ -1,0 +1,249 @@
+#include "catch.h"
+#include "temp_folder.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/poses.h>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include <limits>
+#include <sstream>
+
+using namespace spawnfield;
+
+namespace {
+
+PoseTable read(const std::string& text)
+{
+    const TempFolder folder;
+    return read_poses(folder.write("poses.csv", text));
+}
+
+/// What is said about a file, without its name.
+std::string complaint(const std::string& text)
+{
+    const TempFolder folder;
+    const auto file = folder.write("poses.csv", text);
+    try {
+        read_poses(file);
+    } catch (const FileError& error) {
+        const std::string what = error.what(), start = file.string() + ": ";
+        return what.starts_with(start) ? what.substr(start.size()) : "does not name its file: " + what;
+    }
+    return "";
+}
+
+std::vector<std::string> lines_of(const std::string& text)
+{
+    std::vector<std::string> out;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) out.push_back(line);
+    return out;
+}
+
+std::string raster_csv(const RasterResult& raster, bool aerial)
+{
+    std::string out;
+    write_raster_csv(raster, aerial, [&](std::string_view text) { out += text; });
+    return out;
+}
+
+/// Numbers whose shortest texts are of all kinds.
+const std::vector<double> odd_numbers = {0.1, 1.0 / 3, 1e-300, -123456789.123456789, 5e22, std::numeric_limits<double>::denorm_min(),
+                                         std::nextafter(1.0, 2.0), 4503599627370497.5, 0};
+
+}  // namespace
+
+TEST_CASE("poses are read in any column order, with angles that default to 0")
+{
+    const PoseTable table = read("yaw,z,x,y\n0.5,3,1,2\n-1e-1,+6,4e0,5\n");
+    REQUIRE(table.poses.size() == 2);
+    CHECK(table.poses[0].position == Vec3(1, 2, 3));
+    CHECK(table.poses[0].rotation == rotation_from_rpy(0, 0, 0.5));
+    CHECK(table.poses[1].position == Vec3(4, 5, 6));
+    CHECK(table.poses[1].rotation == rotation_from_rpy(0, 0, -0.1));
+    CHECK(read("x,y,z\n1,2,3\n").poses[0].rotation == Mat3::Identity());
+    const Pose turned = read("x,y,z,roll,pitch,yaw\n0,0,0,0.1,0.2,0.3\n").poses[0];
+    CHECK(turned.rotation == rotation_from_rpy(0.1, 0.2, 0.3));
+}
+
+TEST_CASE("quaternions are x, y, z, w and may be a little off unit length")
+{
+    const double half = std::sqrt(0.5);
+    const std::string h = std::to_string(half);  // six digits
+    const Pose pose = read("x,y,z,qx,qy,qz,qw\n1,2,3,0,0," + h + "," + h + "\n").poses[0];
+    CHECK(pose.rotation.isApprox(rotation_from_rpy(0, 0, 1.5707963267948966), 1e-12));
+    const Pose rolled = read("qw,qx,qz,qy,x,y,z\n" + h + "," + h + ",0,0,1,2,3\n").poses[0];
+    CHECK((rolled.rotation * Vec3::UnitY()).isApprox(Vec3::UnitZ(), 1e-12));
+    CHECK((rolled.rotation * rolled.rotation.transpose()).isApprox(Mat3::Identity(), 1e-14));
+}
+
+TEST_CASE("rows and header are kept as they stand, extra columns and all")
+{
+    const PoseTable table = read("name,x,y,z,note\n\"a, b\",1, 2 ,3,\"say \"\"hi\"\"\"\nc,4,5,6,\n");
+    CHECK(table.header == "name,x,y,z,note");
+    REQUIRE(table.rows.size() == 2);
+    CHECK(table.rows[0] == "\"a, b\",1, 2 ,3,\"say \"\"hi\"\"\"");
+    CHECK(table.rows[1] == "c,4,5,6,");
+    CHECK(table.poses[0].position == Vec3(1, 2, 3));
+}
+
+TEST_CASE("line ends of Windows, a byte order mark, empty lines and a missing last line end do no harm")
+{
+    const PoseTable table = read("\xEF\xBB\xBFx,y,z\r\n1,2,3\r\n\r\n  \n4,5,6");
+    CHECK(table.header == "x,y,z");
+    REQUIRE(table.poses.size() == 2);
+    CHECK(table.rows[0] == "1,2,3");
+    CHECK(table.poses[1].position == Vec3(4, 5, 6));
+    CHECK(read("\"x\",\"y\",\"z\"\n\"1\",\"2\",\"3\"\n").poses[0].position == Vec3(1, 2, 3));
+    CHECK(read("x,y,z\n").poses.empty());
+}
+
+TEST_CASE("a poses file that makes no sense is told by line and column")
+{
+    CHECK(complaint("") == "is empty, needs a header x,y,z,roll,pitch,yaw");
+    CHECK(complaint("\n \n") == "is empty, needs a header x,y,z,roll,pitch,yaw");
+    CHECK(complaint("x,y\n1,2\n") == "line 1: column z is missing, needs a header x,y,z,roll,pitch,yaw");
+    CHECK(complaint("1,2,3\n4,5,6\n") == "line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw");
+    CHECK(complaint("x,y,z,x\n1,2,3,4\n") == "line 1: column x is given twice");
+    CHECK(complaint("x,y,z,qx,qw\n1,2,3,0,1\n") == "line 1: has some of the columns qx,qy,qz,qw, needs all four or none");
+    CHECK(complaint("x,y,z,yaw,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n") ==
+          "line 1: has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
+    CHECK(complaint("x,y,z\n1,2,3\n1,two,3\n") == "line 3: column y is \"two\", needs a number");
+    CHECK(complaint("x,y,z\n1,,3\n") == "line 2: column y is \"\", needs a number");
+    CHECK(complaint("x,y,z\n1,2,3m\n") == "line 2: column z is \"3m\", needs a number");
+    CHECK(complaint("x,y,z\n1,2,+-3\n") == "line 2: column z is \"+-3\", needs a number");
+    CHECK(complaint("x,y,z,yaw\n1,2,3,nan\n") == "line 2: column yaw is nan, needs a finite number");
+    CHECK(complaint("x,y,z\n-inf,2,3\n") == "line 2: column x is -inf, needs a finite number");
+    CHECK(complaint("x,y,z\n\n1,2\n") == "line 3: has 2 fields, the header has 3");
+    CHECK(complaint("x,y,z\n1,2,3,4\n") == "line 2: has 4 fields, the header has 3");
+    CHECK(complaint("x,y,z,name\n1,2,3,\"a\n") == "line 2: has a quote that is not closed");
+    CHECK(complaint("x,y,z,qx,qy,qz,qw\n0,0,0,1,1,0,0\n") == "line 2: the quaternion's length is 1.4142135623730951, needs 1 (to 0.001)");
+    CHECK(complaint("x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0\n") == "line 2: the quaternion's length is 0, needs 1 (to 0.001)");
+    CHECK_THROWS_WITH(read_poses("/none/poses.csv"), "/none/poses.csv: is missing or cannot be read");
+}
+
+TEST_CASE("spawns that were written read back to the same doubles")
+{
+    SpawnList list;
+    for (std::size_t i = 0; i + 3 < odd_numbers.size(); ++i)
+        list.spawns.push_back({{odd_numbers[i], odd_numbers[i + 1], odd_numbers[i + 2]}, 0.1 * double(i) - 0.3});
+    const std::string text = spawns_csv(list);
+    CHECK(lines_of(text)[0] == "x,y,z,roll,pitch,yaw");
+    const PoseTable table = read(text);
+    const TempFolder folder;
+    const std::vector<Spawn> spawns = read_spawns(folder.write("spawns.csv", text));
+    REQUIRE(table.poses.size() == list.spawns.size());
+    REQUIRE(spawns.size() == list.spawns.size());
+    for (std::size_t i = 0; i < spawns.size(); ++i) {
+        CHECK(table.poses[i].position == list.spawns[i].position);
+        CHECK(table.poses[i].rotation == rotation_from_rpy(0, 0, list.spawns[i].yaw));
+        CHECK(spawns[i].position == list.spawns[i].position);
+        CHECK(spawns[i].yaw == Approx(list.spawns[i].yaw));
+    }
+}
+
+TEST_CASE("spawns of none are a header")
+{
+    CHECK(spawns_csv({}) == "x,y,z,roll,pitch,yaw\n");
+}
+
+TEST_CASE("verdicts stand behind the columns they were asked about")
+{
+    const PoseTable table = read("id,x,y,z\n7,0,0,0.1\n8,0,0,5\n9,0,0,0.3\n10,0,0,1\n");
+    Scene scene;
+    scene.parts.resize(2);
+    scene.parts[1].name = "wall, \"north\"";
+    std::vector<Judgement> judgements(4);
+    judgements[0].verdict = Verdict::Valid;
+    judgements[0].ground = Ground{-0.05, true, 0};
+    judgements[2].verdict = Verdict::Collision;
+    judgements[2].ground = Ground{0.2, true, 0};
+    judgements[2].hit = CollisionHit{1};
+    judgements[3].verdict = Verdict::Collision;
+    judgements[3].ground = Ground{0, true, 0};
+    judgements[3].hit = CollisionHit{};
+    CHECK(verdicts_csv(table, judgements, scene) == "id,x,y,z,verdict,ground,height_above,hit\n"
+                                                    "7,0,0,0.1,valid,-0.05,0.15000000000000002,\n"
+                                                    "8,0,0,5,outside,,,\n"
+                                                    "9,0,0,0.3,collision,0.2,0.09999999999999998,\"wall, \"\"north\"\"\"\n"
+                                                    "10,0,0,1,collision,0,1,occupancy\n");
+}
+
+TEST_CASE("a raster is written as it is listed; a pose whose ground is no layer has none")
+{
+    RasterResult raster;
+    raster.yaw = 0.5;
+    raster.poses = {{1, 2, 0.1, 0, Verdict::Valid}, {1, 2, -3, 1, Verdict::Collision}, {1.5, 2, 1.0 / 3, -1, Verdict::OffTerrain}};
+    CHECK(raster_csv(raster, false) == "x,y,z,yaw,layer,verdict\n1,2,0.1,0.5,0,valid\n1,2,-3,0.5,1,collision\n"
+                                       "1.5,2,0.3333333333333333,0.5,,off_terrain\n");
+}
+
+TEST_CASE("aerial poses are written in their places only when asked for")
+{
+    RasterResult raster;
+    raster.dims = 3;
+    raster.grid = {.x0 = 0, .y0 = 10, .z0 = -1, .step = 0.5, .step_z = 0.1, .cols = 2, .rows = 1, .heights = 3};
+    const double top = raster.grid.z_of(2), middle = raster.grid.z_of(1), low = raster.grid.z_of(0);
+    raster.poses = {{0, 10, middle, 0, Verdict::Valid}, {0.5, 10, low, -1, Verdict::OffTerrain}};
+    CHECK(lines_of(raster_csv(raster, false)).size() == 3);
+    const auto lines = lines_of(raster_csv(raster, true));
+    REQUIRE(lines.size() == 7);
+    CHECK(lines[1] == "0,10,-0.8,0,,aerial");
+    CHECK(lines[2] == "0,10,-0.9,0,0,valid");
+    CHECK(lines[3] == "0,10,-1,0,,aerial");
+    CHECK(lines[4] == "0.5,10,-0.8,0,,aerial");
+    CHECK(lines[5] == "0.5,10,-0.9,0,,aerial");
+    CHECK(lines[6] == "0.5,10,-1,0,,off_terrain");
+    const PoseTable table = read(raster_csv(raster, true));
+    CHECK(table.poses[0].position.z() == top);
+}
+
+TEST_CASE("a long raster comes in pieces of whole lines")
+{
+    RasterResult raster;
+    for (int i = 0; i < 60000; ++i) raster.poses.push_back({double(i), 0.25, -1, 0, Verdict::Valid});
+    std::size_t pieces = 0, lines = 0, most = 0;
+    bool whole = true;
+    write_raster_csv(raster, false, [&](std::string_view text) {
+        ++pieces;
+        most = std::max(most, text.size());
+        lines += std::size_t(std::count(text.begin(), text.end(), '\n'));
+        whole = whole && (text.empty() || text.back() == '\n');
+    });
+    CHECK(lines == 60001);
+    CHECK(pieces > 1);
+    CHECK(whole);
+    CHECK(most < (1 << 20) + 100);
+}
+
+TEST_CASE("spawns as JSON have quaternions of unit length, their settings and the map they hold in")
+{
+    SpawnList list;
+    list.spawns = {{{1, 2, 3}, 0.5}};
+    list.counts[std::size_t(Verdict::Valid)] = 1;
+    Map map;
+    map.name = "arena";
+    map.hash = "0123456789abcdef";
+    Robot robot;
+    robot.name = "rover";
+    SpawnOptions options;
+    options.count = 4;
+    options.min_distance = 0.25;
+    options.seed = 42;
+    options.random_yaw = true;
+    const auto json = nlohmann::json::parse(spawns_json(list, map, robot, options, "sample"));
+    CHECK(json["map"]["hash"] == "0123456789abcdef");
+    CHECK(json["robot"] == "rover");
+    CHECK(json["command"] == "sample");
+    CHECK(json["settings"]["count"] == 4);
+    CHECK(json["settings"]["min_distance"] == 0.25);
+    CHECK(json["settings"]["seed"] == 42);
+    CHECK(json["settings"]["yaw"] == "random");
+    CHECK(json["counts"]["valid"] == 1);
+    REQUIRE(json["poses"].size() == 1);
+    CHECK(json["poses"][0]["position"] == std::vector<double>{1, 2, 3});
+    const auto q = json["poses"][0]["quaternion"].get<std::vector<double>>();
+    CHECK(Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix().isApprox(rotation_from_rpy(0, 0, 0.5), 1e-14));
+}

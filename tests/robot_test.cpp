@@ -1,0 +1,313 @@
+#include "catch.h"
+#include "hull.h"
+#include "mesh_text.h"
+#include "shared_scenes.h"
+#include "temp_folder.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/robot.h>
+
+#include <Eigen/Geometry>
+
+#include <set>
+
+using namespace spawnfield;
+
+namespace {
+
+void check_bounds(const Bounds& bounds, const Vec3& min, const Vec3& max, double margin = 1e-9)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        CHECK(bounds.min[axis] == Approx(min[axis]).margin(margin));
+        CHECK(bounds.max[axis] == Approx(max[axis]).margin(margin));
+    }
+}
+
+Robot load_parts(const TempFolder& folder, const std::string& parts, const std::string& more = "")
+{
+    return load_robot(folder.write("robot.yaml", "format: spawnfield-robot/1\nname: test\nparts:\n" + parts + more).string());
+}
+
+std::string urdf(const std::string& inside) { return "<?xml version=\"1.0\"?>\n<robot name=\"test\">\n" + inside + "\n</robot>\n"; }
+
+std::string link_of(const std::string& name, const std::string& geometry, const std::string& origin = "xyz=\"0 0 0\"")
+{
+    return "<link name=\"" + name + "\"><collision><origin " + origin + "/><geometry>" + geometry + "</geometry></collision></link>\n";
+}
+
+std::string joint_of(const std::string& parent, const std::string& child, const std::string& origin, const std::string& type = "fixed")
+{
+    return "<joint name=\"" + parent + "_" + child + "\" type=\"" + type + "\"><origin " + origin + "/><parent link=\"" + parent +
+           "\"/><child link=\"" + child + "\"/><axis xyz=\"0 0 1\"/><limit lower=\"1\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>\n";
+}
+
+Robot load_urdf(const TempFolder& folder, const std::string& inside, const RobotOptions& options = {})
+{
+    return load_robot(folder.write("robot.urdf", urdf(inside)).string(), options);
+}
+
+const std::string small_box = "<box size=\"0.2 0.4 0.6\"/>";
+
+}  // namespace
+
+TEST_CASE("box:LX,LY,LZ stands on the origin")
+{
+    const Robot robot = load_robot("box:0.99,0.67,0.39");
+    REQUIRE(robot.parts.size() == 1);
+    CHECK(robot.parts[0].shape.kind == ShapeKind::Box);
+    CHECK(robot.parts[0].shape.size == Vec3(0.99, 0.67, 0.39));
+    check_bounds(robot.bounds(), {-0.495, -0.335, 0}, {0.495, 0.335, 0.39});
+    CHECK(robot.name == "box:0.99,0.67,0.39");
+    CHECK(robot.contacts.empty());
+}
+
+TEST_CASE("box:LX,LY,LZ@x,y,z has its centre there")
+{
+    check_bounds(load_robot("box:1,2,3@0.5,-1,0").bounds(), {0, -2, -1.5}, {1, 0, 1.5});
+    check_bounds(load_robot("box:1,2,3@0,0,1e-1").bounds(), {-0.5, -1, -1.4}, {0.5, 1, 1.6});
+}
+
+TEST_CASE("a box robot that makes no sense is wrong usage, and told why")
+{
+    const std::pair<std::string, std::string> cases[] = {
+        {"box:", "\"\" is no finite number"},
+        {"box:1,2", "has 2 side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])"},
+        {"box:1,2,3,4", "has 4 side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])"},
+        {"box:1,2,x", "\"x\" is no finite number"},
+        {"box:1,2,3m", "\"3m\" is no finite number"},
+        {"box:1,,3", "\"\" is no finite number"},
+        {"box:1,nan,3", "\"nan\" is no finite number"},
+        {"box:1,2,inf", "\"inf\" is no finite number"},
+        {"box:1,0,3", "side length is 0, needs > 0 m"},
+        {"box:1,-2,3", "side length is -2, needs > 0 m"},
+        {"box:1,2,3@0,0", "has 2 coordinates after @, needs 3"},
+        {"box:1,2,3@0,0,", "\"\" is no finite number"},
+    };
+    for (const auto& [robot, wanted] : cases) {
+        CHECK_THROWS_AS(load_robot(robot), ArgumentError);
+        CHECK_THROWS_WITH(load_robot(robot), "robot \"" + robot + "\": " + wanted);
+    }
+}
+
+TEST_CASE("robot.yaml holds boxes, spheres, cylinders, capsules and contacts")
+{
+    const TempFolder folder;
+    const Robot robot = load_parts(folder, "  - {name: base, box: [1, 2, 3], xyz: [0, 0, 1.5]}\n  - {sphere: 0.5, xyz: [2, 0, 0]}\n"
+                                           "  - {cylinder: {radius: 0.1, length: 4}, rpy_deg: [90, 0, 0]}\n"
+                                           "  - {capsule: {radius: 0.25, length: 1}, xyz: [0, 0, 5]}\n",
+                                   "contacts: [[0.5, 1, 0], [-0.5, -1, 0]]\n");
+    CHECK(robot.name == "test");
+    REQUIRE(robot.parts.size() == 4);
+    check_bounds(robot.parts[0].bounds(), {-0.5, -1, 0}, {0.5, 1, 3});
+    check_bounds(robot.parts[1].bounds(), {1.5, -0.5, -0.5}, {2.5, 0.5, 0.5});
+    check_bounds(robot.parts[2].bounds(), {-0.1, -2, -0.1}, {0.1, 2, 0.1});
+    check_bounds(robot.parts[3].bounds(), {-0.25, -0.25, 4.25}, {0.25, 0.25, 5.75});
+    check_bounds(robot.bounds(), {-0.5, -2, -0.5}, {2.5, 2, 5.75});
+    REQUIRE(robot.contacts.size() == 2);
+    CHECK(robot.contacts[1] == Vec3(-0.5, -1, 0));
+    CHECK(robot.parts[1].centre() == Vec3(2, 0, 0));
+}
+
+TEST_CASE("the Husky of maps/robots is the thesis's")
+{
+    const Robot robot = load_robot((std::filesystem::path(SPAWNFIELD_SOURCE) / "maps/robots/husky.yaml").string());
+    check_bounds(robot.bounds(), {-0.495, -0.335, 0}, {0.495, 0.335, 0.39});
+    CHECK(robot.contacts.size() == 4);
+}
+
+TEST_CASE("a robot's mesh becomes its convex hull: scaled, turned up, turned, moved")
+{
+    const TempFolder folder;
+    // An L of two boxes: the hull bridges the corner.
+    folder.write("l.obj", mesh_text::obj({{.name = "a", .mesh = mesh_text::box({0, 0, 0}, {4, 1, 1})},
+                                          {.name = "b", .mesh = mesh_text::box({0, 1, 0}, {1, 3, 1})}}));
+    const Robot robot = load_parts(folder, "  - {mesh: l.obj, scale: 0.5, xyz: [10, 0, 0], rpy_deg: [0, 0, 90]}\n");
+    REQUIRE(robot.parts.size() == 1);
+    const RobotPart& hull = robot.parts[0];
+    CHECK(hull.shape.kind == ShapeKind::Hull);
+    check_bounds(hull.bounds(), {10 - 1.5, 0, 0}, {10, 2, 0.5});
+    CHECK(hull.hull_vertices.size() == 10);  // of 16 corners four lie in walls of the hull and two are shared
+    double volume = 0;
+    for (const auto& f : hull.hull_faces) {
+        const Vec3 a = hull.hull_vertices[std::size_t(f[0])] - hull.centre(), b = hull.hull_vertices[std::size_t(f[1])] - hull.centre(),
+                   c = hull.hull_vertices[std::size_t(f[2])] - hull.centre();
+        CHECK(a.dot(b.cross(c)) >= 0);  // counterclockwise from outside
+        volume += a.dot(b.cross(c)) / 6;
+    }
+    // Area of (0,0) (4,0) (4,1) (1,3) (0,3) is 9.
+    CHECK(volume == Approx(9 * 0.125));
+    check_bounds(load_parts(folder, "  - {mesh: l.obj, up: y}\n").bounds(), {0, -1, 0}, {4, 0, 3});
+}
+
+TEST_CASE("the hull of a cloud of points holds them all, and its corners are among them")
+{
+    std::vector<Vec3> points;
+    for (int i = 0; i < 500; ++i) points.emplace_back(std::sin(i * 1.1), std::sin(i * 1.7 + 1), std::sin(i * 2.3 + 2));
+    const RobotPart hull = convex_hull(points);
+    double farthest = -1;
+    for (const auto& f : hull.hull_faces) {
+        const Vec3 a = hull.hull_vertices[std::size_t(f[0])];
+        const Vec3 normal = (hull.hull_vertices[std::size_t(f[1])] - a).cross(hull.hull_vertices[std::size_t(f[2])] - a);
+        if (normal.norm() < 1e-12) continue;
+        for (const Vec3& point : points) farthest = std::max(farthest, normal.normalized().dot(point - a));
+    }
+    CHECK(farthest < 1e-9);
+    for (const Vec3& vertex : hull.hull_vertices) CHECK(std::find(points.begin(), points.end(), vertex) != points.end());
+    std::set<std::pair<int, int>> edges;  // closed: each edge once in each direction
+    for (const auto& f : hull.hull_faces)
+        for (std::size_t i = 0; i < 3; ++i) CHECK(edges.insert({f[i], f[(i + 1) % 3]}).second);
+    for (const auto& [from, to] : edges) CHECK(edges.count({to, from}) == 1);
+}
+
+TEST_CASE("a grown hull holds the margin on every side")
+{
+    const hand::Mesh cube = hand::box({1, 2, 3});
+    const RobotPart hull = grown(convex_hull(cube.vertices), 0.1);
+    check_bounds(hull.bounds(), {-0.6, -1.1, -1.6}, {0.6, 1.1, 1.6});
+}
+
+TEST_CASE("a URDF is the union of its links' collision shapes at zero joints")
+{
+    const TempFolder folder;
+    const Robot robot = load_urdf(folder, link_of("base", small_box, "xyz=\"0 0 1\"") +
+                                              "<link name=\"eye\"><visual><geometry><mesh filename=\"package://none/eye.dae\"/></geometry></visual></link>" +
+                                              joint_of("base", "eye", "xyz=\"9 9 9\"") + link_of("ball", "<sphere radius=\"0.5\"/>") +
+                                              joint_of("base", "ball", "xyz=\"0 3 0\""));
+    CHECK(robot.name == "test");
+    REQUIRE(robot.parts.size() == 2);  // never what is only seen
+    check_bounds(robot.parts[0].bounds(), {-0.1, -0.2, 0.7}, {0.1, 0.2, 1.3});
+    check_bounds(robot.parts[1].bounds(), {-0.5, 2.5, -0.5}, {0.5, 3.5, 0.5});
+}
+
+TEST_CASE("several collisions of one link all count")
+{
+    const TempFolder folder;
+    const Robot robot = load_urdf(folder, "<link name=\"a\"><collision><origin xyz=\"0 0 0\"/><geometry><box size=\"1 1 1\"/></geometry></collision>"
+                                          "<collision><origin xyz=\"5 0 0\"/><geometry><cylinder radius=\"1\" length=\"2\"/></geometry></collision></link>");
+    REQUIRE(robot.parts.size() == 2);
+    CHECK(robot.parts[1].shape.kind == ShapeKind::Cylinder);
+    check_bounds(robot.bounds(), {-0.5, -1, -1}, {6, 1, 1});
+}
+
+TEST_CASE("origins add up along a chain of joints, whatever their type and limits")
+{
+    const TempFolder folder;
+    const std::string type = GENERATE("fixed", "revolute", "continuous", "prismatic");
+    const Robot robot = load_urdf(folder, "<link name=\"base\"/>" + joint_of("base", "arm", "xyz=\"1 0 0\" rpy=\"0 0 1.5707963267948966\"", type) +
+                                              "<link name=\"arm\"/>" + joint_of("arm", "hand", "xyz=\"2 0 0\" rpy=\"1.5707963267948966 0 0\"", type) +
+                                              link_of("hand", small_box, "xyz=\"0 0 3\" rpy=\"0 0 0\""));
+    REQUIRE(robot.parts.size() == 1);
+    // hand frame: x is the base's y, y its z, z its x. Its origin is at (1, 2, 0), the box's centre 3 further along its z.
+    const Pose& pose = robot.parts[0].shape.pose;
+    const Vec3 centre = Vec3(1, 2, 0) + 3 * Vec3::UnitX();
+    CHECK(pose.position.isApprox(centre, 1e-12));
+    CHECK((pose.rotation * Vec3::UnitX()).isApprox(Vec3::UnitY(), 1e-12));
+    CHECK((pose.rotation * Vec3::UnitY()).isApprox(Vec3::UnitZ(), 1e-12));
+    check_bounds(robot.bounds(), {4 - 0.3, 2 - 0.1, -0.2}, {4 + 0.3, 2 + 0.1, 0.2});
+}
+
+TEST_CASE("roll, pitch and yaw of a URDF turn about fixed axes")
+{
+    const TempFolder folder;
+    const Robot robot = load_urdf(folder, link_of("a", small_box, "xyz=\"0 0 0\" rpy=\"0.3 -0.4 2.5\""));
+    CHECK(robot.parts[0].shape.pose.rotation.isApprox(rotation_from_rpy(0.3, -0.4, 2.5), 1e-12));
+}
+
+TEST_CASE("package:// is found by --package-path first, then by looking upward from the file")
+{
+    const TempFolder folder;
+    folder.write("ws/my_robot/meshes/hull.stl", mesh_text::stl(hand::box({1, 1, 1})));
+    folder.write("other/my_robot/meshes/hull.stl", mesh_text::stl(hand::box({3, 3, 3})));
+    const std::string text = urdf(link_of("a", "<mesh filename=\"package://my_robot/meshes/hull.stl\" scale=\"2 1 1\"/>"));
+    const auto inside = folder.write("ws/my_robot/urdf/deep/robot.urdf", text), outside = folder.write("robot.urdf", text);
+    check_bounds(load_robot(inside.string()).bounds(), {-1, -0.5, -0.5}, {1, 0.5, 0.5});
+    check_bounds(load_robot(outside.string(), {{folder / "ws"}}).bounds(), {-1, -0.5, -0.5}, {1, 0.5, 0.5});
+    check_bounds(load_robot(inside.string(), {{folder / "none", folder / "other"}}).bounds(), {-3, -1.5, -1.5}, {3, 1.5, 1.5});
+    CHECK_THROWS_WITH(load_robot(outside.string()),
+                      outside.string() + ": link \"a\": package://my_robot/meshes/hull.stl is found neither in --package-path nor in the "
+                                         "folders above the file");
+}
+
+TEST_CASE("file:// and relative mesh names work too; COLLADA's unit counts, its up axis does not")
+{
+    const TempFolder folder;
+    const auto file = folder.write("meshes/a.dae", mesh_text::dae({{.mesh = mesh_text::box({0, 0, 0}, {1, 2, 3})}}, {.up = "Y_UP", .unit = 0.1}));
+    for (const std::string& name : {"file://" + file.string(), std::string("meshes/a.dae")})
+        check_bounds(load_urdf(folder, link_of("a", "<mesh filename=\"" + name + "\"/>")).bounds(), {0, 0, 0}, {0.1, 0.2, 0.3}, 1e-7);
+}
+
+TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
+{
+    const TempFolder folder;
+    folder.write("flat.obj", mesh_text::obj(hand::rectangle(1, 1)));
+    const std::string yaml = (folder / "robot.yaml").string(), xml = (folder / "robot.urdf").string();
+    const std::pair<std::string, std::string> parts[] = {
+        {"  - {box: [1, 0, 1]}\n", "part 1: box has 0, needs > 0 (line 4)"},
+        {"  - {box: [1, 1, 1]}\n  - {sphere: .nan}\n", "part 2: sphere is .nan, needs a finite number (line 5)"},
+        {"  - {box: [1, 1, 1], colour: red}\n", "part 1: colour is no known key; known: name, xyz, rpy, rpy_deg, box (line 4)"},
+        {"  - {name: a}\n", "part 1: has no geometry, needs one of box, sphere, cylinder, capsule, mesh (line 4)"},
+        {"  - {box: [1, 1, 1], sphere: 1}\n", "part 1: sphere stands beside box, needs one geometry per part (line 4)"},
+        {"  []\n", "parts is empty, needs at least one part (line 3)"},
+        {"  - {mesh: none.stl}\n", "part 1: mesh cannot be used: " + (folder / "none.stl").string() + ": does not exist; is the path right? (line 4)"},
+        {"  - {mesh: flat.obj, up: x}\n", "part 1: up is \"x\", needs one of y, z (line 4)"},
+        {"  - {mesh: flat.obj}\n", "part 1: mesh cannot be used: " + (folder / "flat.obj").string() +
+                                       ": its convex hull has no volume: its points lie in a plane (line 4)"},
+        {"  - {sphere: 1}\ncontacts: [[1, 2]]\n", "contacts has 2 numbers, needs 3 (line 5)"},
+    };
+    for (const auto& [text, wanted] : parts) CHECK_THROWS_WITH(load_parts(folder, text), yaml + ": " + wanted);
+
+    const std::pair<std::string, std::string> links[] = {
+        {"<link name=\"a\"/>", "has no <collision>, needs at least one (<visual> does not count)"},
+        {link_of("a", "<box size=\"1 0 1\"/>"), "link \"a\": <box size> is 0, needs > 0"},
+        {link_of("a", "<sphere radius=\"-0.5\"/>"), "link \"a\": <sphere radius> is -0.5, needs > 0"},
+        {link_of("a", "<cylinder radius=\"1\" length=\"0\"/>"), "link \"a\": <cylinder> is 0, needs > 0"},
+        {link_of("a", "<mesh filename=\"none.stl\"/>"),
+         "link \"a\": <mesh> cannot be used: " + (folder / "none.stl").string() + ": does not exist; is the path right?"},
+        {link_of("a", "<mesh filename=\"flat.obj\"/>"), "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
+                                                         ": its convex hull has no volume: its points lie in a plane"},
+        {"<link", "is no valid URDF: Error reading Attributes."},
+        {link_of("a", small_box) + link_of("b", small_box), "is no valid URDF: Failed to find root link: Two root links found: [a] and [b]"},
+        {link_of("a", "<box size=\"1 x 1\"/>"), "is no valid URDF: Unable to parse component [x] to a double (while parsing a vector value)"},
+        {link_of("a", "<box size=\"1 nan 1\"/>"), "is no valid URDF: Unable to parse component [nan] to a double (while parsing a vector value)"},
+        // urdfdom would drop the link's box for this and go on.
+        {"<link name=\"a\"><inertial><mass value=\"x\"/></inertial><collision><geometry>" + small_box + "</geometry></collision></link>" +
+             link_of("b", small_box) + joint_of("a", "b", "xyz=\"0 0 0\""),
+         "is no valid URDF: Inertial: mass [x] is not a float"},
+    };
+    for (const auto& [text, wanted] : links) CHECK_THROWS_WITH(load_urdf(folder, text), xml + ": " + wanted);
+
+    CHECK_THROWS_WITH(load_robot((folder / "none.yaml").string()),
+                      (folder / "none.yaml").string() + ": does not exist; a robot is a robot.yaml, a .urdf or box:LX,LY,LZ[@x,y,z]");
+    const auto odd = folder.write("robot.txt", "");
+    CHECK_THROWS_WITH(load_robot(odd.string()), odd.string() + ": is no known robot format, needs .yaml, .urdf or box:LX,LY,LZ[@x,y,z]");
+}
+
+TEST_CASE("real robots have the bounds that their sources tell")
+{
+    const auto shared = shared_scenes();
+    if (!shared) return;
+    struct Wanted {
+        const char* file;
+        Vec3 min, max;
+        std::size_t boxes, spheres, cylinders, hulls;
+    };
+    const Wanted robots[] = {
+        {"robot_husky/husky_description/urdf/husky.urdf", {-0.494, -0.343, -0.132}, {0.494, 0.343, 0.251}, 2, 0, 4, 1},
+        {"robot_jackal/jackal_description/urdf/jackal.urdf", {-0.229, -0.208, -0.064}, {0.229, 0.208, 0.184}, 1, 0, 4, 0},
+        {"robot_turtlebot3/turtlebot3_description/urdf/turtlebot3_burger.urdf", {-0.102, -0.089, 0}, {0.038, 0.089, 0.191}, 2, 0, 3, 0},
+        {"robot_turtlebot3/turtlebot3_description/urdf/turtlebot3_waffle.urdf", {-0.197, -0.153, 0}, {0.073, 0.153, 0.141}, 4, 0, 3, 0},
+        {"robot_anymal_c/anymal_c_simple_description/urdf/anymal.urdf", {-0.525, -0.331, -0.630}, {0.525, 0.331, 0.194}, 12, 4, 29, 0},
+    };
+    for (const Wanted& wanted : robots) {
+        INFO(wanted.file);
+        const Robot robot = load_robot((*shared / wanted.file).string());
+        check_bounds(robot.bounds(), wanted.min, wanted.max, 1e-3);
+        const auto count = [&](ShapeKind kind) {
+            return std::size_t(std::count_if(robot.parts.begin(), robot.parts.end(), [&](const auto& p) { return p.shape.kind == kind; }));
+        };
+        CHECK(count(ShapeKind::Box) == wanted.boxes);
+        CHECK(count(ShapeKind::Sphere) == wanted.spheres);
+        CHECK(count(ShapeKind::Cylinder) == wanted.cylinders);
+        CHECK(count(ShapeKind::Hull) == wanted.hulls);
+    }
+}
