@@ -10,12 +10,38 @@ namespace spawnfield {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Pipes, devices, and whatever standard output is where it goes by a name (/dev/stdout, /proc/self/fd/1).
+bool is_special(const fs::path& file)
+{
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) return false;
+    const std::string name = fs::absolute(file, ignored).lexically_normal().string();
+    const bool of_system = name.starts_with("/dev/") || name.starts_with("/proc/");
+    return !fs::is_regular_file(file, ignored) || (of_system && fs::is_symlink(file, ignored));
+}
+
+/// Links are followed, so that they stay links.
+fs::path target_of(const fs::path& file)
+{
+    std::error_code error;
+    const fs::path target = fs::canonical(file, error);
+    return error ? file : target;
+}
+
+}  // namespace
+
 OutputFile::OutputFile(fs::path file) : file_(std::move(file))
 {
     std::error_code ignored;
     if (fs::is_directory(file_, ignored)) fail("is a folder");
-    const bool special = fs::exists(file_, ignored) && !fs::is_regular_file(file_, ignored);
-    written_ = special ? file_ : fs::path(file_.string() + ".tmp-" + std::to_string(getpid()));
+    if (is_special(file_)) {
+        written_ = file_;
+    } else {
+        target_ = target_of(file_);
+        written_ = target_.string() + ".tmp-" + std::to_string(getpid());
+    }
     stream_.open(written_, std::ios::binary);
     if (!stream_) fail(std::strerror(errno));
 }
@@ -23,7 +49,7 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file))
 OutputFile::~OutputFile()
 {
     std::error_code ignored;
-    if (stream_.is_open() && written_ != file_) fs::remove(written_, ignored);
+    if (stream_.is_open() && !target_.empty()) fs::remove(written_, ignored);
 }
 
 void OutputFile::write(std::string_view bytes)
@@ -36,9 +62,9 @@ void OutputFile::commit()
 {
     stream_.flush();
     if (!stream_) fail(std::strerror(errno));
-    if (written_ != file_) {
+    if (!target_.empty()) {
         std::error_code error;
-        fs::rename(written_, file_, error);
+        fs::rename(written_, target_, error);
         if (error) fail(error.message());
     }
     stream_.close();

@@ -98,7 +98,7 @@ RobotPart read_hull(const YamlMap& map, const std::filesystem::path& folder)
 
 RobotPart read_robot_part(const YamlMap& map, const std::filesystem::path& folder)
 {
-    const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "mesh"});
+    const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "mesh"}, {"name", "xyz", "rpy", "rpy_deg", "scale", "up"});
     if (kind == "mesh") {
         map.only({"name", "mesh", "xyz", "rpy", "rpy_deg", "scale", "up"});
         return read_hull(map, folder);

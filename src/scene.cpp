@@ -99,7 +99,8 @@ MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
 
 void read_part(const YamlMap& map, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene)
 {
-    const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"});
+    const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
+                                      {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels"});
     if (kind == "mesh") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "mesh", "up", "scale", "solid", "sides", "labels"});
     else if (kind == "plane") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "plane", "sides"});
     else if (kind == "heightmap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "heightmap", "sides"});

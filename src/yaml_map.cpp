@@ -30,13 +30,13 @@ YamlMap::YamlMap(const YAML::Node& node, std::string file, std::string place)
         if (!seen.insert(scalar_of(entry.first)).second) fail(scalar_of(entry.first), "is given twice");
 }
 
-void YamlMap::only(std::initializer_list<const char*> known) const
+void YamlMap::only(const std::vector<std::string>& known) const
 {
     for (const auto& entry : node_) {
         const std::string key = scalar_of(entry.first);
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         std::string names;
-        for (const char* name : known) names += (names.empty() ? "" : ", ") + std::string(name);
+        for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
         fail(key, "is no known key; known: " + names);
     }
 }
@@ -203,7 +203,7 @@ YamlMap read_yaml(const std::filesystem::path& file, const std::string& format)
     return map;
 }
 
-std::string only_key(const YamlMap& map, std::initializer_list<const char*> keys)
+std::string only_key(const YamlMap& map, std::initializer_list<const char*> keys, std::initializer_list<const char*> others)
 {
     std::string found, names;
     for (const char* key : keys) {
@@ -212,8 +212,11 @@ std::string only_key(const YamlMap& map, std::initializer_list<const char*> keys
         if (!found.empty()) map.fail(key, "stands beside " + found + ", needs one geometry per part");
         found = key;
     }
-    if (found.empty()) map.fail("has no geometry, needs one of " + names);
-    return found;
+    if (!found.empty()) return found;
+    std::vector<std::string> known(keys.begin(), keys.end());
+    known.insert(known.end(), others.begin(), others.end());
+    map.only(known);
+    map.fail("has no geometry, needs one of " + names);
 }
 
 Shape read_shape(const YamlMap& map, const std::string& key)

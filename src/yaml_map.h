@@ -20,7 +20,7 @@ public:
     bool has(const std::string& key) const { return node_[key].IsDefined(); }
     bool is_list(const std::string& key) const { return node_[key].IsSequence(); }
     /// Throws FileError at the first key that is not one of `known`.
-    void only(std::initializer_list<const char*> known) const;
+    void only(const std::vector<std::string>& known) const;
 
     std::vector<std::string> keys() const;  ///< in the file's order
     std::string text(const std::string& key) const;
@@ -55,8 +55,9 @@ private:
 /// The root mapping of a YAML file whose `format` is as given. Throws FileError for a file that is missing or malformed.
 YamlMap read_yaml(const std::filesystem::path& file, const std::string& format);
 
-/// Exactly one of the keys that the map has; throws FileError if none or several.
-std::string only_key(const YamlMap& map, std::initializer_list<const char*> keys);
+/// Exactly one of the keys that the map has; throws FileError if none or several. If none, a key that is neither of them
+/// nor one of `others` is told instead: it is the misspelt one.
+std::string only_key(const YamlMap& map, std::initializer_list<const char*> keys, std::initializer_list<const char*> others);
 
 /// Shape of a `box:`, `sphere:`, `cylinder:` or `capsule:` key, with the map's pose.
 Shape read_shape(const YamlMap& map, const std::string& key);

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <map>
 
 using namespace spawnfield;
 
@@ -13,11 +12,18 @@ namespace {
 /// Edges with an odd number of faces: none where a piece is watertight.
 std::uint32_t open_edges(const Mesh& mesh)
 {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> faces;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    edges.reserve(3 * mesh.triangles.size());
     for (const Triangle& t : mesh.triangles)
-        for (int i = 0; i < 3; ++i) ++faces[std::minmax(t[i], t[(i + 1) % 3])];
-    const auto is_open = [](const auto& edge) { return edge.second % 2 == 1; };
-    return std::uint32_t(std::count_if(faces.begin(), faces.end(), is_open));
+        for (int i = 0; i < 3; ++i) edges.push_back(std::minmax(t[i], t[(i + 1) % 3]));
+    std::sort(edges.begin(), edges.end());
+    std::uint32_t open = 0;
+    for (auto first = edges.begin(); first != edges.end();) {
+        const auto last = std::find_if(first, edges.end(), [&](const auto& edge) { return edge != *first; });
+        open += (last - first) % 2 == 1;
+        first = last;
+    }
+    return open;
 }
 
 void add_part(Scene& scene, const std::string& kind, Label label)

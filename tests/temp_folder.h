@@ -35,6 +35,7 @@ public:
     {
         const std::filesystem::path file = path_ / name;
         std::filesystem::create_directories(file.parent_path());
+        std::filesystem::remove(file);  // ext4 waits for the disk where a file is truncated and written anew
         std::ofstream stream(file, std::ios::binary);
         stream.write(bytes.data(), std::streamsize(bytes.size()));
         if (!stream.flush()) throw std::runtime_error("no room for tests: " + file.string());

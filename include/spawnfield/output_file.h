@@ -7,7 +7,7 @@
 namespace spawnfield {
 
 /// A file that appears whole or not at all: written beside its name, renamed by commit(), removed if that never comes.
-/// What is no regular file (a pipe, /dev/null) is written directly.
+/// What is no regular file (a pipe, /dev/null, /dev/stdout) is written directly; of a link, what it leads to is written.
 class OutputFile {
 public:
     explicit OutputFile(std::filesystem::path file);  ///< throws OutputError
@@ -21,7 +21,9 @@ public:
 private:
     [[noreturn]] void fail(const std::string& reason) const;
 
-    std::filesystem::path file_, written_;
+    std::filesystem::path file_;     ///< as it was asked for
+    std::filesystem::path written_;  ///< what the stream writes
+    std::filesystem::path target_;   ///< what it becomes; empty if it is written directly
     std::ofstream stream_;
 };
 

@@ -76,7 +76,7 @@ void add_spawn_options(CLI::App& command, SpawnArgs& args)
     command.add_option("-n,--count", args.count, "Spawns wanted")->required();
     command.add_option("--min-distance", args.min_distance, "Between positions, m (default 0)");
     command.add_option("--yaw", args.yaw, "rad, or random (default 0)");
-    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)");
+    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)")->check(CLI::NonNegativeNumber);
     command.add_option("--format", args.format, "csv or json (default csv)")->check(CLI::IsMember({"csv", "json"}));
     command.add_option("--out,-o", args.out, "File to write (default: standard output)");
 }

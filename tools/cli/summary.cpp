@@ -48,8 +48,9 @@ void Summary::set_counts(const VerdictCounts& counts)
 double Summary::seconds_of(const std::string& stage) const
 {
     double sum = 0;
-    for (const auto& [name, seconds] : seconds_)
-        if (name == stage) sum += seconds;
+    for (const auto* const stages : {&seconds_, &more_stages})
+        for (const auto& [name, seconds] : *stages)
+            if (name == stage) sum += seconds;
     return sum;
 }
 
@@ -81,7 +82,7 @@ std::string Summary::json(double total) const
     const double load = seconds_of("load"), write = seconds_of("write");
     out["seconds"] = {{"load", load}, {"query", total - load - write}, {"mask", 0.0}, {"exact", seconds_of("exact")},
                       {"write", write}, {"total", total}};
-    for (const auto& [stage, seconds] : more_stages) out["seconds"][stage] = seconds;
+    for (const auto& [stage, seconds] : more_stages) out["seconds"][stage] = seconds_of(stage);
     out["peak_memory_bytes"] = peak_memory_bytes();
     out["threads"] = args_.threads > 0 ? unsigned(args_.threads) : std::thread::hardware_concurrency();
     out["seed"] = seed;

@@ -1,0 +1,110 @@
+#include "workbench.h"
+
+#include <spawnfield/output_file.h>
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <thread>
+
+namespace {
+
+using namespace bench;
+using namespace spawnfield;
+
+struct BenchArgs {
+    int rounds = 5;
+    std::vector<int> threads;
+    std::string csv, maps, only;
+    bool quick = false, full = false;
+};
+
+void add_options(CLI::App& app, BenchArgs& args)
+{
+    app.add_option("--rounds", args.rounds, "Timed rounds after an untimed one (default 5)")->check(CLI::Range(1, 1000));
+    app.add_option("--threads", args.threads, "Numbers of threads (default: 1 and all cores)")->delimiter(',')->check(CLI::Range(1, 1024));
+    app.add_option("--only", args.only, "Stages whose \"scene stage\" has this in it, as \"hills raster2d\"");
+    app.add_option("--csv", args.csv, "Write scene,stage,threads,items,ms,per_second,hash to this file; ms is the minimum");
+    app.add_option("--write-maps", args.maps, "Bake the scenes into this folder instead");
+    auto* quick = app.add_flag("--quick", args.quick, "Small scenes, one round, 1 and 2 threads: does it all work and compute the same?");
+    app.add_flag("--full", args.full, "hills with cells of 0.1 m and rasters of 0.5 m")->excludes(quick);
+    app.footer("Example:\n"
+               "  spawnfield_bench --only \"hills sample\" --threads 1,2\n"
+               "  spawnfield_bench --write-maps /tmp/maps && spawnfield heatmap /tmp/maps/hills -o /tmp/hills.png \\\n"
+               "      --robot maps/robots/husky.yaml --offset 0.3");
+}
+
+Extent extent_of(const BenchArgs& args)
+{
+    if (args.quick) return Extent::Quick;
+    return args.full ? Extent::Full : Extent::Usual;
+}
+
+std::vector<int> thread_counts(const BenchArgs& args)
+{
+    if (!args.threads.empty()) return args.threads;
+    const int cores = int(std::thread::hardware_concurrency());
+    if (args.quick || cores == 2) return {1, 2};
+    return cores > 1 ? std::vector<int>{1, cores} : std::vector<int>{1};
+}
+
+Row run(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds)
+{
+    stage.run(threads);
+    reset_peak_memory();
+    std::vector<Measurement> measured;
+    for (int round = 0; round < rounds; ++round) measured.push_back(stage.run(threads));
+    return row_of(scene, stage.name, threads, measured);
+}
+
+std::vector<Row> run_all(const BenchArgs& args)
+{
+    std::vector<Row> rows;
+    for (const Setting& setting : settings(extent_of(args))) {
+        Workbench workbench(setting);
+        for (const Workbench::Stage& stage : workbench.stages()) {
+            if ((setting.name + " " + stage.name).find(args.only) == std::string::npos) continue;
+            for (const int threads : stage.parallel ? thread_counts(args) : std::vector<int>{1}) {
+                rows.push_back(run(setting.name, stage, threads, args.quick ? 1 : args.rounds));
+                std::cout << table_line(rows.back()) << std::flush;
+            }
+        }
+    }
+    return rows;
+}
+
+void write_maps(const BenchArgs& args)
+{
+    for (const Setting& setting : settings(extent_of(args))) {
+        const std::filesystem::path folder = std::filesystem::path(args.maps) / setting.name;
+        Workbench(setting).bake_into(folder, setting.make(), 0);
+        std::cout << folder.string() << "\n";
+    }
+}
+
+void measure(const BenchArgs& args)
+{
+    std::cout << machine() << "\n\n" << table_head() << std::flush;
+    const std::vector<Row> rows = run_all(args);
+    check_same(rows);
+    if (rows.empty()) throw std::runtime_error("no stage has \"" + args.only + "\" in its name");
+    if (!args.csv.empty()) write_file_atomically(args.csv, csv(rows));
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    CLI::App app{"Times every stage of spawnfield on its benchmark scenes, and checks that it computes the same at any number of threads."};
+    BenchArgs args;
+    add_options(app, args);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        if (args.maps.empty()) measure(args);
+        else write_maps(args);
+    } catch (const std::exception& error) {
+        std::cerr << "spawnfield_bench: " << error.what() << "\n";
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,105 @@
+#include "report.h"
+
+#include <spawnfield/types.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+namespace bench {
+namespace {
+
+template <class... Values>
+std::string formatted(const char* format, Values... values)
+{
+    char text[256];
+    std::snprintf(text, sizeof text, format, values...);
+    return text;
+}
+
+std::string hex(std::uint64_t hash) { return formatted("%016llx", static_cast<unsigned long long>(hash)); }
+
+/// What follows `key` on its line of a file under /proc, without the colon; empty if there is none.
+std::string proc_value(const char* file, const std::string& key)
+{
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);) {
+        const std::size_t value = line.find_first_not_of(" \t:", key.size());
+        if (line.starts_with(key) && value != std::string::npos) return line.substr(value);
+    }
+    return {};
+}
+
+[[noreturn]] void fail_differing(const Row& row, std::uint64_t other, const std::string& when)
+{
+    throw std::runtime_error(row.scene + " " + row.stage + " at " + std::to_string(row.threads) + " threads gave " + hex(row.hash) +
+                             ", but " + hex(other) + " " + when);
+}
+
+}  // namespace
+
+Row row_of(const std::string& scene, const std::string& stage, int threads, const std::vector<Measurement>& rounds)
+{
+    Row row{scene, stage, threads, rounds.front().items, rounds.front().hash};
+    std::vector<double> seconds;
+    for (const Measurement& round : rounds) {
+        if (round.items == 0) throw std::runtime_error(scene + " " + stage + " did nothing");
+        if (round.hash != row.hash) fail_differing(row, round.hash, "in another round");
+        seconds.push_back(round.seconds);
+    }
+    std::sort(seconds.begin(), seconds.end());
+    row.least = seconds.front();
+    row.median = (seconds[(seconds.size() - 1) / 2] + seconds[seconds.size() / 2]) / 2;
+    row.peak_memory = peak_memory_bytes();
+    return row;
+}
+
+void check_same(const std::vector<Row>& rows)
+{
+    for (const Row& row : rows)
+        for (const Row& other : rows)
+            if (row.scene == other.scene && row.stage == other.stage && row.hash != other.hash)
+                fail_differing(row, other.hash, "at " + std::to_string(other.threads));
+}
+
+std::string table_head()
+{
+    return formatted("%-9s %-13s %7s %11s %10s %10s %10s %17s %8s\n", "scene", "stage", "threads", "items", "ms", "median ms",
+                     "items/s", "hash", "peak MB");
+}
+
+std::string table_line(const Row& row)
+{
+    return formatted("%-9s %-13s %7d %11llu %10.2f %10.2f %10.4g %17s %8.0f\n", row.scene.c_str(), row.stage.c_str(), row.threads,
+                     static_cast<unsigned long long>(row.items), row.least * 1e3, row.median * 1e3, row.per_second(),
+                     hex(row.hash).c_str(), double(row.peak_memory) / 1e6);
+}
+
+std::string csv(const std::vector<Row>& rows)
+{
+    std::string out = "scene,stage,threads,items,ms,per_second,hash\n";
+    for (const Row& row : rows)
+        out += formatted("%s,%s,%d,%llu,%.4f,%.6g,%s\n", row.scene.c_str(), row.stage.c_str(), row.threads,
+                         static_cast<unsigned long long>(row.items), row.least * 1e3, row.per_second(), hex(row.hash).c_str());
+    return out;
+}
+
+std::string machine()
+{
+    const std::string model = proc_value("/proc/cpuinfo", "model name");
+    const unsigned cores = std::thread::hardware_concurrency();
+    return "spawnfield " + spawnfield::version() + " on " + (model.empty() ? "an unknown CPU" : model) + ", " +
+           std::to_string(cores) + (cores == 1 ? " core" : " cores");
+}
+
+void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5\n"; }
+
+std::uint64_t peak_memory_bytes()
+{
+    const std::string value = proc_value("/proc/self/status", "VmHWM");  // "123456 kB"
+    return value.empty() ? 0 : std::stoull(value) * 1024;
+}
+
+}  // namespace bench

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bench {
+
+/// What one run of a stage gave.
+struct Measurement {
+    std::uint64_t items = 0;  ///< cells, poses, draws, …
+    double seconds = 0;
+    std::uint64_t hash = 0;   ///< of the result's bytes
+};
+
+/// A stage of a scene at a number of threads, over all its rounds.
+struct Row {
+    std::string scene, stage;
+    int threads = 1;
+    std::uint64_t items = 0, hash = 0;
+    double least = 0, median = 0;       ///< s
+    std::uint64_t peak_memory = 0;      ///< bytes of the whole process during these rounds
+
+    double per_second() const { return double(items) / least; }
+};
+
+/// Throws std::runtime_error if a round did nothing or computed something else than the others.
+Row row_of(const std::string& scene, const std::string& stage, int threads, const std::vector<Measurement>& rounds);
+
+/// Throws std::runtime_error if a stage gave something else at one number of threads than at another.
+void check_same(const std::vector<Row>& rows);
+
+std::string table_head();
+std::string table_line(const Row& row);
+std::string csv(const std::vector<Row>& rows);
+
+/// "spawnfield 0.1.0 on <CPU>, 2 cores".
+std::string machine();
+
+/// Starts a new peak, where the kernel lets us; else the peak is that of the whole run.
+void reset_peak_memory();
+std::uint64_t peak_memory_bytes();
+
+}  // namespace bench

@@ -1,0 +1,189 @@
+#include "things.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+using namespace spawnfield;
+
+namespace bench {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+
+Mat3 turned(double angle, const Vec3& axis)
+{
+    return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+hand::Mesh box(const Vec3& size, const Vec3& centre)
+{
+    return hand::moved(hand::box(size), {centre, Mat3::Identity()});
+}
+
+std::vector<Vec2> circle(int corners, double radius)
+{
+    std::vector<Vec2> polygon;
+    for (int i = 0; i < corners; ++i) {
+        const double angle = 2 * std::numbers::pi * i / corners;
+        polygon.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    return polygon;
+}
+
+hand::Mesh cone(int corners, double radius, double bottom, double top)
+{
+    hand::Mesh mesh;
+    for (const Vec2& corner : circle(corners, radius)) mesh.vertices.emplace_back(corner.x(), corner.y(), bottom);
+    mesh.vertices.emplace_back(0, 0, top);
+    const auto n = std::uint32_t(corners);
+    for (std::uint32_t i = 0; i < n; ++i) mesh.triangles.push_back({i, (i + 1) % n, n});
+    for (std::uint32_t i = 2; i < n; ++i) mesh.triangles.push_back({0, i, i - 1});
+    return mesh;
+}
+
+hand::Mesh icosahedron()
+{
+    const double t = std::numbers::phi;
+    hand::Mesh mesh = {{{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0}, {0, -1, t}, {0, 1, t}, {0, -1, -t}, {0, 1, -t},
+                        {t, 0, -1}, {t, 0, 1}, {-t, 0, -1}, {-t, 0, 1}},
+                       {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2},
+                        {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5},
+                        {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}}};
+    for (Vec3& vertex : mesh.vertices) vertex.normalize();
+    return mesh;
+}
+
+/// Each triangle of a ball in four, the new corners on the ball too.
+hand::Mesh subdivided(const hand::Mesh& ball)
+{
+    hand::Mesh out = {ball.vertices, {}};
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+        const auto [found, is_new] = middles.try_emplace(std::minmax(a, b), std::uint32_t(out.vertices.size()));
+        if (is_new) out.vertices.push_back((ball.vertices[a] + ball.vertices[b]).normalized());
+        return found->second;
+    };
+    for (const auto& [a, b, c] : ball.triangles) {
+        const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+        out.triangles.insert(out.triangles.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    }
+    return out;
+}
+
+/// A ball of 80 or, where fine, 320 triangles that is dented here and there.
+hand::Mesh rough_ball(Random& random, bool fine, const Vec3& radii, const Vec3& centre)
+{
+    static const hand::Mesh coarse_ball = subdivided(icosahedron()), fine_ball = subdivided(coarse_ball);
+    hand::Mesh mesh = fine ? fine_ball : coarse_ball;
+    for (Vec3& vertex : mesh.vertices) vertex = centre + random.between(0.8, 1.1) * vertex.cwiseProduct(radii);
+    return mesh;
+}
+
+/// A profile in y and z, counterclockwise seen from +x, extruded along x.
+hand::Mesh along_x(const std::vector<Vec2>& profile, double length)
+{
+    Mat3 rotation;
+    rotation << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    return hand::moved(hand::extruded(profile, -length / 2, length / 2), {Vec3::Zero(), rotation});
+}
+
+struct Gable {
+    double length, width, walls, ridge;  ///< m; walls and ridge above the ground
+};
+
+void add_gabled_house(const Gable& size, double foundation, const Pose& pose, Pieces& out)
+{
+    const double half = size.width / 2, pitch = (size.ridge - size.walls) / half;
+    const std::vector<Vec2> walls = {
+        {-half, -foundation}, {half, -foundation}, {half, size.walls}, {0, size.ridge}, {-half, size.walls}};
+    const double eave = half + 0.5, inner = size.ridge - 0.05, outer = size.ridge + 0.2;
+    const std::vector<Vec2> roof = {{0, inner}, {eave, inner - pitch * eave}, {eave, outer - pitch * eave},
+                                    {0, outer}, {-eave, outer - pitch * eave}, {-eave, inner - pitch * eave}};
+    out.push_back(hand::moved(along_x(walls, size.length), pose));
+    out.push_back(hand::moved(along_x(roof, size.length + 0.8), pose));
+}
+
+void add_conifer(Random& random, Pieces& out)
+{
+    const double height = random.between(5, 14), bare = random.between(0.6, 2), radius = 0.2 * height;
+    out.push_back(hand::extruded(circle(6, 0.02 * height), -0.6, bare + 0.5));
+    for (int tier = 0; tier < 3; ++tier) {
+        const double bottom = bare + tier * 0.25 * (height - bare);
+        out.push_back(cone(10, radius * (1 - 0.25 * tier), bottom, bottom + 0.5 * (height - bare)));
+    }
+}
+
+void add_leaf_tree(Random& random, Pieces& out)
+{
+    const double height = random.between(4, 11), bare = random.between(1, 2.5), width = random.between(0.25, 0.4) * height;
+    out.push_back(hand::extruded(circle(8, 0.03 * height), -0.6, (bare + height) / 2));
+    out.push_back(rough_ball(random, false, {width, width, (height - bare) / 2}, {0, 0, (bare + height) / 2}));
+}
+
+}  // namespace
+
+Pieces house(Random& random, double foundation)
+{
+    Pieces out;
+    const double length = random.between(8, 13), width = random.between(6, 8.5), walls = random.between(2.6, 5.4);
+    const double ridge = walls + width / 2 * random.between(0.6, 1.1);
+    add_gabled_house({length, width, walls, ridge}, foundation, {}, out);
+    const double chimney = random.between(-0.3, 0.3) * length;
+    out.push_back(box({0.6, 0.6, ridge - walls + 0.8}, {chimney, 0.8, (walls + ridge + 0.8) / 2}));
+    if (random.chance(0.5)) {
+        const double side = random.chance(0.5) ? 1 : -1;
+        const Pose pose = {{0.2 * length, side * width / 2, 0}, turned(std::numbers::pi / 2, Vec3::UnitZ())};
+        add_gabled_house({6, 0.4 * length, 0.8 * walls, 0.8 * walls + 0.16 * length}, foundation, pose, out);
+    }
+    return out;
+}
+
+Pieces tree(Random& random)
+{
+    Pieces out;
+    if (random.chance(0.5)) add_conifer(random, out);
+    else add_leaf_tree(random, out);
+    return out;
+}
+
+Pieces car(Random& random)
+{
+    const double scale = random.between(0.9, 1.15);
+    const std::vector<Vec2> side = {{-2.1, 0.3}, {2.1, 0.3},  {2.1, 0.75},  {1.1, 0.9},
+                                    {0.5, 1.4},  {-1.0, 1.4}, {-1.7, 0.95}, {-2.1, 0.9}};
+    const Mat3 upright = turned(std::numbers::pi / 2, Vec3::UnitX());
+    Pieces out = {hand::moved(hand::extruded(side, -0.85, 0.85), {Vec3::Zero(), upright})};
+    for (const double x : {-1.3, 1.3})
+        for (const double y : {-0.8, 0.8})
+            out.push_back(hand::moved(hand::extruded(circle(8, 0.32), -0.1, 0.1), {{x, y, 0.32}, upright}));
+    for (hand::Mesh& mesh : out)
+        for (Vec3& vertex : mesh.vertices) vertex *= scale;
+    return out;
+}
+
+Pieces rock(Random& random)
+{
+    const bool boulder = random.chance(0.1);
+    const double size = boulder ? random.between(1.2, 3) : random.between(0.15, 1);
+    const double length = size * random.between(0.8, 1.4), width = size * random.between(0.7, 1), height = size * random.between(0.5, 0.9);
+    return {rough_ball(random, boulder, {length, width, height}, {0, 0, 0.2 * height})};
+}
+
+Pieces fence_panel(Random& random, const Vec3& from, const Vec3& to)
+{
+    const Vec3 along = to - from;
+    const double yaw = std::atan2(along.y(), along.x()), pitch = -std::asin(along.z() / along.norm());
+    const Mat3 rotation = rotation_from_rpy(0, pitch, yaw);
+    const double thickness = random.between(0.02, 0.04);
+    Pieces out = {hand::moved(hand::box({0.05, 0.05, 1.6}), {from + Vec3(0, 0, 0.4), rotation_from_rpy(0, 0, yaw)})};
+    for (const double height : {0.45, 0.95}) {
+        const Pose pose = {(from + to) / 2 + Vec3(0, 0, height), rotation};
+        out.push_back(hand::moved(hand::box({along.norm(), thickness, 0.12}), pose));
+    }
+    return out;
+}
+
+}  // namespace bench

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "../hand_scene.h"
+#include "../random_scene.h"
+
+/// What stands in the benchmark's landscapes: closed pieces around their own origin, the ground at z = 0, metres.
+namespace bench {
+
+using Pieces = std::vector<hand::Mesh>;
+
+/// Walls with gables, a roof that juts out, a chimney, at times a wing; `foundation` m deep. Along x.
+Pieces house(Random& random, double foundation);
+
+Pieces tree(Random& random);  ///< trunk and crown, either of needles (cones) or of leaves (a rough ball)
+Pieces car(Random& random);   ///< a coarse body on four wheels, along x
+Pieces rock(Random& random);  ///< a rough ball, half sunk
+
+/// A post at `from`, and two rails 2 to 4 cm thick from there to `to`.
+Pieces fence_panel(Random& random, const spawnfield::Vec3& from, const spawnfield::Vec3& to);
+
+}  // namespace bench

@@ -1,0 +1,194 @@
+#include "catch.h"
+#include "program.h"
+
+#include <set>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What the program must say after `spawnfield `: the whole of standard error, but for the usage hint.
+struct Refusal {
+    std::string arguments, message;
+};
+
+const std::string husky = " --robot '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml' ";
+
+/// A folder with a map, poses, and an old result that must not be touched.
+class Desk : public TempFolder {
+public:
+    Desk()
+    {
+        write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: floor, label: terrain, box: [8, 8, 1]}, {name: b, sphere: 1}]\n");
+        write("poses.csv", "x,y,z\n3,3,0.6\n");
+        write("out", "old");
+        REQUIRE(run_program(*this, "bake scene.yaml -o map --resolution 0.5").status == 0);
+        before_ = names();
+    }
+
+    void check(const Refusal& refusal, int status) const
+    {
+        CAPTURE(refusal.arguments);
+        const ProgramRun run = run_program(*this, refusal.arguments);
+        CHECK(run.status == status);
+        CHECK(run.out.empty());
+        CHECK(run.err == refusal.message + "\n");
+        check_untouched();
+    }
+
+    void check_untouched() const
+    {
+        CHECK(bytes_of(*this / "out") == "old");
+        CHECK(names() == before_);
+    }
+
+    /// Further files of a test belong to the desk.
+    void remember() { before_ = names(); }
+
+private:
+    std::set<std::string> names() const
+    {
+        std::set<std::string> out;
+        for (const auto& entry : fs::recursive_directory_iterator(path())) out.insert(entry.path().string());
+        return out;
+    }
+    std::set<std::string> before_;
+};
+
+const std::string hint = "\nRun with --help for more information.";
+
+}  // namespace
+
+TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
+{
+    const Desk desk;
+    const std::string raster = "raster map -o out --dims 2 --step 1" + husky, sample = "sample map -o out" + husky,
+                      search = "search map -o out --min-distance 1" + husky;
+    const Refusal refusals[] = {
+        {"", "A subcommand is required" + hint},
+        {"bake", "scene is required" + hint},
+        {"bake scene.yaml", "--out is required" + hint},
+        {"check map --poses poses.csv -o out", "--robot is required" + hint},
+        {"raster map -o out --dims 2" + husky, "--step is required" + hint},
+        {"raster map -o out --step 1" + husky, "--dims is required" + hint},
+        {"raster map -o out --dims 2 --step 0" + husky, "spawnfield: --step is 0, needs > 0"},
+        {"raster map -o out --dims 3 --step 1 --step-z 0" + husky, "spawnfield: --step-z is 0, needs > 0"},
+        {raster + "--layers low", "spawnfield: --layers is \"low\", needs all, top, bottom or a number from 0 (the highest) on"},
+        {raster + "--bounds 0,0,-1,5", "spawnfield: --bounds: x1 is -1, needs at least x0: the lower corner comes first"},
+        {raster + "--bounds 0,0,1", "spawnfield: --bounds has 3 numbers, needs 6: x0,y0,z0,x1,y1,z1 (or 4: x0,y0,x1,y1)"},
+        {"raster map -o out --dims 3 --step 1 --bounds 0,0,1,1" + husky, "spawnfield: --bounds has 4 numbers, needs 6: x0,y0,z0,x1,y1,z1"},
+        {raster + "--max-height -1", "spawnfield: --max-height is -1, needs >= 0 m"},
+        {raster + "--max-water-depth nan", "spawnfield: --max-water-depth is nan, needs >= 0 m"},
+        {raster + "--yaw inf", "spawnfield: raster: yaw is inf, needs a finite number, rad"},
+        {raster + "--write-aerial", "spawnfield: --write-aerial is for --dims 3"},
+        {"raster map -o out --dims 3 --step 1 --write-aerial --layers top" + husky,
+         "spawnfield: --write-aerial needs --layers all: aerial poses are above no layer"},
+        {raster + "--no-height-check",
+         "spawnfield: raster: without height check needs dims 3: a pose of a 2D raster stands on its layer by definition"},
+        {sample + "-n 0", "spawnfield: -n is 0, needs >= 1"},
+        {sample + "-n 5 --min-distance -1", "spawnfield: sample: min_distance is -1, needs >= 0 m"},
+        {sample + "-n 5 --yaw north", "spawnfield: --yaw: \"north\" is no finite number"},
+        {sample + "-n 5 --region 1,1,0,0", "spawnfield: --region: x1 is 0, needs at least x0: the lower corner comes first"},
+        {search + "-n 5 --max-failures 0", "spawnfield: --max-failures is 0, needs >= 1"},
+        {search + "-n 5 --max-failures 9 --bounds 0,0,5,1,1,4", "spawnfield: --bounds: z1 is 4, needs at least z0: the lower corner comes first"},
+        {"sample map -o out -n 5 --robot box:1,0,1", "spawnfield: robot \"box:1,0,1\": side length is 0, needs > 0 m"},
+        {"sample map -o out -n 5 --robot box:1,1", "spawnfield: robot \"box:1,1\": has 2 side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])"},
+        {"bake scene.yaml -o new --resolution 0", "spawnfield: --resolution is 0, needs > 0"},
+        {"bake scene.yaml -o new --bounds 0,0,0,1,1,-1", "spawnfield: --bounds: z1 is -1, needs at least z0: the lower corner comes first"},
+        {"bake scene.yaml -o new --label a=grass",
+         "spawnfield: --label is \"a=grass\", needs GLOB=terrain, GLOB=obstacle, GLOB=water or GLOB=ignore"},
+        {"bake scene.yaml -o new --scale 2", "spawnfield: load_scene: up and scale are for a bare mesh; give them in scene.yaml (keys up, scale)"},
+        {"bake scene.yaml -o new --scale 0", "spawnfield: --scale is 0, needs > 0"},
+    };
+    for (const Refusal& refusal : refusals) desk.check(refusal, 2);
+    for (const std::string arguments : {"fly map", "raster map --dims 4 --step 1", "raster map --dims 2 --step x", "sample map -n many",
+                                        "sample map -n 5 --seed -1", "sample map -n 5 --format xml", "info map --threads -1",
+                                        "heatmap map -o out --size 20", "check map --poses poses.csv --collision guess"}) {
+        CAPTURE(arguments);
+        const ProgramRun run = run_program(desk, arguments + (arguments.starts_with("raster") || arguments.starts_with("sample") ||
+                                                              arguments.starts_with("heatmap") || arguments.starts_with("check") ? husky : ""));
+        CHECK(run.status == 2);
+        CHECK(run.err.size() > 20);
+        CHECK(run.out.empty());
+    }
+    desk.check_untouched();
+}
+
+TEST_CASE("refused input ends with 4, and says which file, place, value and limit; no output is touched")
+{
+    Desk desk;
+    desk.write("no_terrain.yaml", "format: spawnfield-scene/1\nparts: [{name: b, sphere: 1}]\n");
+    desk.write("typo.yaml", "format: spawnfield-scene/1\nparts:\n  - {name: b, spere: 1}\n");
+    desk.write("label.yaml", "format: spawnfield-scene/1\nparts:\n  - {name: b, label: lava, sphere: 1}\n");
+    desk.write("nan.obj", "o a\nv 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    desk.write("robot.yaml", "format: spawnfield-robot/1\nparts: []\n");
+    desk.write("word.csv", "x,y,z\n1,2,3\n1,two,3\n");
+    desk.write("column.csv", "x,z\n1,2\n");
+    desk.remember();
+    const std::string keys = "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, scale, solid, "
+                             "sides, labels";
+    const Refusal refusals[] = {
+        {"bake none.yaml -o map", "spawnfield: none.yaml: does not exist; is the path right?"},
+        {"bake no_terrain.yaml -o map", "spawnfield: no_terrain.yaml: has no terrain, so no robot can stand anywhere; label a part `terrain` "
+                                        "(--label 'GLOB=terrain') or pass --allow-no-terrain"},
+        {"bake typo.yaml -o map", "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
+        {"bake label.yaml -o new", "spawnfield: label.yaml: part \"b\": label is \"lava\", needs one of terrain, obstacle, water, ignore (line 3)"},
+        {"bake nan.obj -q -o new", "spawnfield: nan.obj: node \"a\": a vertex is (0, 0, nan), needs finite coordinates"},
+        {"info typo.yaml", "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
+        {"info none", "spawnfield: none: does not exist; is the path right?"},
+        {"check map --poses none.csv -o out" + husky, "spawnfield: none.csv: is missing or cannot be read"},
+        {"check map --poses word.csv -o out" + husky, "spawnfield: word.csv: line 3: column y is \"two\", needs a number"},
+        {"check map --poses column.csv -o out" + husky, "spawnfield: column.csv: line 1: column y is missing, needs a header x,y,z,roll,pitch,yaw"},
+        {"check map --poses poses.csv -o out --robot robot.yaml", "spawnfield: robot.yaml: parts is empty, needs at least one part (line 2)"},
+        {"check none --poses poses.csv -o out" + husky, "spawnfield: none: does not exist; is the path right?"},
+        {"raster none -o out --dims 2 --step 1" + husky, "spawnfield: none: does not exist; is the path right?"},
+        {"sample none -o out -n 5" + husky, "spawnfield: none: does not exist; is the path right?"},
+        {"search scene.yaml -o out -n 5 --min-distance 0" + husky, "spawnfield: scene.yaml: is no map folder"},
+        {"heatmap none -o out" + husky, "spawnfield: none: does not exist; is the path right?"},
+        {"heatmap map -o out --spawns word.csv" + husky, "spawnfield: word.csv: line 3: column y is \"two\", needs a number"},
+        {"sample map -o out -n 5 --robot none.urdf", "spawnfield: none.urdf: does not exist; a robot is a robot.yaml, a .urdf or box:LX,LY,LZ[@x,y,z]"},
+    };
+    for (const Refusal& refusal : refusals) desk.check(refusal, 4);
+}
+
+TEST_CASE("a damaged map is refused by every command, with the file named")
+{
+    Desk desk;
+    const std::string queries[] = {"info map", "check map --poses poses.csv -o out" + husky, "raster map -o out --dims 2 --step 1" + husky,
+                                   "search map -o out -n 1 --min-distance 0" + husky, "sample map -o out -n 1" + husky,
+                                   "heatmap map -o out" + husky};
+    const std::string good = bytes_of(desk / "map/geometry.bin");
+    std::string bad = good;
+    bad[bad.size() / 2] = char(bad[bad.size() / 2] ^ 4);
+    desk.write("map/geometry.bin", bad);
+    for (const std::string& query : queries)
+        desk.check({query, "spawnfield: map/geometry.bin: differs from its checksum in map.yaml: it was altered; bake the map again"}, 4);
+    desk.write("map/geometry.bin", good);
+
+    const std::string tree = bytes_of(desk / "map/occupancy.bt");
+    bad = tree;
+    bad.back() = char(bad.back() ^ 1);
+    desk.write("map/occupancy.bt", bad);
+    const std::string altered = "spawnfield: map/occupancy.bt: differs from its checksum in map.yaml: it was altered; bake the map again";
+    desk.check({"check map --poses poses.csv -o out --collision octree" + husky, altered}, 4);
+    desk.check({"info map --verify", altered}, 4);
+    desk.write("map/occupancy.bt", tree);
+
+    const std::string yaml = bytes_of(desk / "map/map.yaml");
+    desk.write("map/map.yaml", "format: spawnfield-map/99" + yaml.substr(yaml.find('\n')));
+    for (const std::string& query : queries)
+        desk.check({query, "spawnfield: map/map.yaml: has format version 99, this program reads 1; bake the map again or use a newer spawnfield"}, 4);
+}
+
+TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
+{
+    const Desk desk;
+    const std::string sample = "sample map -n 1 -q" + husky;
+    desk.check({sample + "-o none/spawns.csv", "spawnfield: none/spawns.csv: cannot be written: No such file or directory"}, 1);
+    desk.check({sample + "-o map", "spawnfield: map: cannot be written: is a folder"}, 1);
+    desk.check({sample + "-o /dev/full", "spawnfield: /dev/full: cannot be written: No space left on device"}, 1);
+    const ProgramRun full = run_program(desk, sample + ">/dev/full 2>err || (cat err >&2; rm err; exit 1)");
+    CHECK(full.status == 1);
+    CHECK(full.err == "spawnfield: standard output: cannot be written\n");
+    desk.check({"bake scene.yaml -q -o out", "spawnfield: out: exists and is no map; choose another name or remove it"}, 1);
+}

@@ -1,0 +1,334 @@
+#include "catch.h"
+#include "program.h"
+
+#include <spawnfield/map.h>
+#include <spawnfield/poses.h>
+
+#include <nlohmann/json.hpp>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <set>
+
+namespace fs = std::filesystem;
+using spawnfield::read_poses;
+
+namespace {
+
+const std::string scene = "'" SPAWNFIELD_SOURCE "/maps/training/scene.yaml'";
+const std::string husky = " --robot '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml' ";
+const std::vector<std::string> commands = {"bake", "info", "check", "raster", "search", "sample", "heatmap"};
+
+/// A folder with a copy of one baked arena in `map`.
+class Arena : public TempFolder {
+public:
+    Arena() { fs::copy(baked() / "map", *this / "map"); }
+
+    ProgramRun operator()(const std::string& arguments) const { return run_program(*this, arguments); }
+
+    std::set<std::string> names() const
+    {
+        std::set<std::string> out;
+        for (const auto& entry : fs::directory_iterator(path())) out.insert(entry.path().filename().string());
+        return out;
+    }
+
+private:
+    static const TempFolder& baked()
+    {
+        static const TempFolder folder;
+        static const ProgramRun run = run_program(folder, "bake " + scene + " -o map --resolution 0.2");
+        REQUIRE(run.status == 0);
+        return folder;
+    }
+};
+
+std::size_t lines(const std::string& text) { return std::size_t(std::count(text.begin(), text.end(), '\n')); }
+
+/// The header's names of a CSV text with the fields of one row, counted from 1.
+std::string row(const std::string& csv, std::size_t number)
+{
+    std::istringstream stream(csv);
+    std::string line;
+    for (std::size_t i = 0; i <= number; ++i) std::getline(stream, line);
+    return line;
+}
+
+/// The summary has all that DESIGN.md names.
+nlohmann::json summary(const fs::path& file, const std::string& command)
+{
+    const auto json = nlohmann::json::parse(bytes_of(file));
+    CHECK(json["command"] == command);
+    for (const char* key : {"poses", "exact_checks", "peak_memory_bytes", "threads", "seed"}) CHECK(json.at(key).is_number_unsigned());
+    for (const char* key : {"load", "query", "mask", "exact", "write", "total"}) {
+        CHECK(json.at("seconds").at(key).is_number());
+        CHECK(json["seconds"][key] >= 0.0);
+    }
+    CHECK(json["seconds"]["load"].get<double>() + json["seconds"]["query"].get<double>() + json["seconds"]["write"].get<double>() ==
+          Approx(json["seconds"]["total"].get<double>()));
+    CHECK(json.at("counts").is_object());
+    CHECK(json.at("map_hash").is_string());
+    CHECK(json.at("version") == spawnfield::version());
+    CHECK(json["peak_memory_bytes"] > 1000000);
+    return json;
+}
+
+}  // namespace
+
+TEST_CASE("every command has help with an example, and the program tells its version")
+{
+    const TempFolder folder;
+    for (const std::string& command : commands) {
+        const ProgramRun run = run_program(folder, command + " --help");
+        CHECK(run.status == 0);
+        CHECK(run.err.empty());
+        const std::size_t example = run.out.find("Example:");
+        REQUIRE(example != std::string::npos);
+        CHECK(run.out.find("spawnfield " + command + " ", example) != std::string::npos);
+        CHECK_THAT(run.out, Contains("--threads"));
+    }
+    CHECK(run_program(folder, "--help").status == 0);
+    const ProgramRun version = run_program(folder, "--version");
+    CHECK(version.status == 0);
+    CHECK(version.out == spawnfield::version() + "\n");
+}
+
+TEST_CASE("bake writes a map, tells what it made, and its summary")
+{
+    const TempFolder folder;
+    const ProgramRun run = run_program(folder, "bake " + scene + " -o deep/map --resolution 0.25 --summary s.json");
+    CHECK(run.status == 0);
+    CHECK(run.out.empty());
+    CHECK_THAT(run.err, Contains("spawnfield bake: deep/map; 2 layers, "));
+    CHECK(lines(run.err) == 1);
+    const auto json = summary(folder / "s.json", "bake");
+    const spawnfield::Map map = spawnfield::read_map(folder / "deep/map");
+    CHECK(json["map_hash"] == map.hash);
+    CHECK(map.resolution == 0.25);
+    for (const char* stage : {"index", "terrain", "occupancy"}) CHECK(json["seconds"].at(stage) >= 0.0);
+}
+
+TEST_CASE("bake passes its options on")
+{
+    const TempFolder folder;
+    folder.write("a.obj", "o road\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no house\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 4 5 6\n");
+    CHECK(run_program(folder, "bake a.obj -o map --scale 2 --up y --label 'ro*=terrain' --resolution 0.5 --occupancy-resolution 0.5 "
+                              "--bounds -1,-4,-1,3,1,5").status == 0);
+    const spawnfield::Map map = spawnfield::read_map(folder / "map");
+    CHECK(map.bounds.min == spawnfield::Vec3(-1, -4, -1));
+    CHECK(map.bounds.max == spawnfield::Vec3(3, 1, 5));
+    CHECK(map.occupancy_resolution == 0.5);
+    CHECK(map.scene.bounds().max.isApprox(spawnfield::Vec3(2, 0, 2)));
+    CHECK(map.scene.triangle_labels == std::vector{spawnfield::Label::Terrain, spawnfield::Label::Obstacle});
+    const ProgramRun plain = run_program(folder, "bake a.obj -o map --quiet");
+    CHECK(plain.status == 0);
+    CHECK(plain.err.empty());
+    CHECK_THAT(run_program(folder, "bake a.obj -o map").err, Contains("notice: a.obj: no label given, so everything is terrain"));
+    CHECK(run_program(folder, "bake a.obj -o map --label '*=obstacle'").status == 4);
+    CHECK(run_program(folder, "bake a.obj -o map --label '*=obstacle' --allow-no-terrain").status == 0);
+}
+
+TEST_CASE("a bake over a map replaces it; a folder that is no map stays as it is")
+{
+    const Arena arena;
+    const std::string before = bytes_of(arena / "map/map.yaml");
+    CHECK(arena("bake " + scene + " -o map --resolution 0.5").status == 0);
+    CHECK(spawnfield::read_map(arena / "map").resolution == 0.5);
+    CHECK(bytes_of(arena / "map/map.yaml") != before);
+    CHECK(arena.names() == std::set<std::string>{"map"});
+
+    arena.write("work/thesis.tex", "years");
+    const ProgramRun run = arena("bake " + scene + " -o work");
+    CHECK(run.status == 1);
+    CHECK(run.err == "spawnfield: work: exists and is no map; choose another name or remove it\n");
+    CHECK(bytes_of(arena / "work/thesis.tex") == "years");
+    CHECK(arena.names() == std::set<std::string>{"map", "work"});
+}
+
+TEST_CASE("info tells of maps, scenes and robots, in words or JSON")
+{
+    const Arena arena;
+    const auto map = nlohmann::json::parse(arena("info map --json --verify").out);
+    CHECK(map["kind"] == "map");
+    CHECK(map["layers"] == 2);
+    CHECK(map["verified"] == true);
+    CHECK(map["hash"] == spawnfield::read_map(arena / "map").hash);
+    CHECK(map["parts"].size() == 16);
+    CHECK_THAT(arena("info map --verify").out, Contains("all files match their checksums"));
+
+    const auto described = nlohmann::json::parse(arena("info " + scene + " --json").out);
+    CHECK(described["kind"] == "scene");
+    CHECK(described["labels"]["terrain"]["primitives"] == 5);
+    CHECK(described["bounds"]["max"][0].get<double>() == Approx(10.1));
+    const auto robot = nlohmann::json::parse(arena("info box:1,2,3 --json").out);
+    CHECK(robot["kind"] == "robot");
+    CHECK(robot["bounds"]["max"] == std::vector<double>{0.5, 1, 3});
+    CHECK_THAT(arena("info '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml'").out, Contains("robot husky\n  from  -0.495, -0.335, 0 m"));
+    CHECK(arena("info map --summary s.json").status == 0);
+    summary(arena / "s.json", "info");
+}
+
+TEST_CASE("info says of a house with a face missing that it is a shell")
+{
+    const TempFolder folder;
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n", faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\n";
+    folder.write("closed.obj", corners + faces + "f 1 4 3\n");
+    folder.write("open.obj", corners + faces);
+    CHECK_THAT(run_program(folder, "info closed.obj").out, Contains("closed: mesh, terrain, 4 triangles, 1 solid\n"));
+    CHECK_THAT(run_program(folder, "info open.obj").out,
+               Contains("open: mesh, terrain, 3 triangles, 1 shell (without thickness, not filled; 3 open edges)\n"));
+}
+
+TEST_CASE("check adds verdicts to the poses it is given, on standard output or into a file")
+{
+    const Arena arena;
+    arena.write("poses.csv", "id,x,y,z,yaw\n1,0,0,0.1,0\n2,0,0,5,0\n3,99,0,0.1,0\n4,7.5,-7.5,0.1,0\n5,-2,0,0.1,0\n6,6.5,0,4,0\n7,0,9.9,0.1,0\n");
+    const ProgramRun run = arena("check map --poses poses.csv --max-height 2 --summary s.json" + husky);
+    CHECK(run.status == 0);
+    CHECK(row(run.out, 0) == "id,x,y,z,yaw,verdict,ground,height_above,hit");
+    CHECK(row(run.out, 1) == "1,0,0,0.1,0,valid,-0.05,0.15000000000000002,");
+    CHECK(row(run.out, 2) == "2,0,0,5,0,aerial,-0.05,5.05,");
+    CHECK_THAT(row(run.out, 3), Contains("3,99,0,0.1,0,outside,,,"));
+    CHECK_THAT(row(run.out, 4), Contains(",submerged,-0.05,"));
+    CHECK(row(run.out, 5).ends_with(",collision,-0.05,0.15000000000000002,diagonal_wall"));
+    CHECK_THAT(row(run.out, 6), Contains(",off_terrain,2.95,"));
+    CHECK(row(run.out, 7).ends_with(",wall_north"));
+    CHECK_THAT(run.err, Contains("spawnfield check: 7 poses: 1 valid, 2 collision, 1 submerged, 1 off_terrain, 1 aerial, 1 outside; 3 exact checks; "));
+    const auto json = summary(arena / "s.json", "check");
+    CHECK(json["poses"] == 7);
+    CHECK(json["counts"]["collision"] == 2);
+    CHECK(json["exact_checks"] == 3);
+    CHECK(json["map_hash"] == spawnfield::read_map(arena / "map").hash);
+
+    const ProgramRun file = arena("check map --poses poses.csv --max-height 2 -o out.csv" + husky);
+    CHECK(file.out.empty());
+    CHECK(bytes_of(arena / "out.csv") == run.out);
+    CHECK(arena("check map --poses poses.csv --max-height 2 -o - --quiet --threads 1" + husky).out == run.out);
+    const ProgramRun voxels = arena("check map --poses poses.csv --max-height 2 --collision octree" + husky);
+    CHECK(voxels.status == 0);
+    CHECK(row(voxels.out, 5).ends_with(",occupancy"));
+}
+
+TEST_CASE("raster writes each column's layers, and its counts are those of the rows")
+{
+    const Arena arena;
+    const ProgramRun run = arena("raster map --dims 2 --step 0.5 --offset 0.5 --bounds -10,-10,10,10 --summary s.json" + husky);
+    CHECK(run.status == 0);
+    const auto json = summary(arena / "s.json", "raster");
+    CHECK(lines(run.out) == json["poses"].get<std::size_t>() + 1);
+    CHECK(json["poses"] > 41 * 41);
+    std::size_t valid = 0;
+    for (std::size_t at = run.out.find(",valid\n"); at != std::string::npos; at = run.out.find(",valid\n", at + 1)) ++valid;
+    CHECK(json["counts"]["valid"] == valid);
+    CHECK(valid > 100);
+    CHECK(row(run.out, 1).starts_with("-10,-10,0.45,0,0,"));
+
+    CHECK(arena("raster map --dims 2 --step 1 --heatmap a.png" + husky).out.empty());
+    CHECK(cv::imread((arena / "a.png").string()).cols > 200);
+    const ProgramRun aerial = arena("raster map --dims 3 --step 2 --step-z 0.5 --write-aerial" + husky);
+    CHECK(lines(aerial.out) == 1 + 11 * 11 * 13);
+    CHECK_THAT(aerial.out, Contains(",aerial\n"));
+    CHECK(arena("raster map --dims 2 --step 1 --layers 7" + husky).out == "x,y,z,yaw,layer,verdict\n");
+}
+
+TEST_CASE("sample and search find what they are asked for, the same at any thread count")
+{
+    const Arena arena;
+    for (const std::string command : {"sample map -n 40 --min-distance 0.5 --yaw random --seed 9",
+                                      "search map -n 40 --min-distance 0.1 --max-failures 100000 --seed 9"}) {
+        const ProgramRun run = arena(command + " --threads 1 -o spawns.csv --summary s.json" + husky);
+        CHECK(run.status == 0);
+        CHECK(run.out.empty());
+        CHECK_THAT(run.err, Contains("40 of 40 spawns"));
+        CHECK(read_poses(arena / "spawns.csv").poses.size() == 40);
+        CHECK(row(bytes_of(arena / "spawns.csv"), 0) == "x,y,z,roll,pitch,yaw");
+        CHECK(arena(command + " --threads 2" + husky).out == bytes_of(arena / "spawns.csv"));
+        const auto json = summary(arena / "s.json", command.substr(0, 6));
+        CHECK(json["seed"] == 9);
+        CHECK(json["threads"] == 1);
+        CHECK(json["counts"]["valid"] == 40);
+        const ProgramRun checked = arena("check map --poses spawns.csv --quiet" + husky);
+        CHECK(lines(checked.out) == 41);
+        CHECK(checked.out.find(",collision") == std::string::npos);
+    }
+    const auto json = nlohmann::json::parse(arena("sample map -n 3 --format json" + husky).out);
+    CHECK(json["poses"].size() == 3);
+}
+
+TEST_CASE("fewer spawns than asked for end with 3, and those found are written")
+{
+    const Arena arena;
+    const ProgramRun run = arena("sample map -n 50 --min-distance 15 -o spawns.csv --summary s.json" + husky);
+    CHECK(run.status == 3);
+    const std::size_t found = read_poses(arena / "spawns.csv").poses.size();
+    CHECK(found > 0);
+    CHECK(found < 10);
+    CHECK_THAT(run.err, Contains(std::to_string(found) + " of 50 spawns"));
+    CHECK(summary(arena / "s.json", "sample")["counts"]["valid"] >= found);
+    CHECK(arena("search map -n 5 --min-distance 100 --max-failures 50" + husky).status == 3);
+}
+
+TEST_CASE("heatmap draws a picture")
+{
+    const Arena arena;
+    const ProgramRun run = arena("heatmap map -o a.png --size 400 --step 0.5 --quantity clearance" + husky);
+    CHECK(run.status == 0);
+    const cv::Mat picture = cv::imread((arena / "a.png").string());
+    CHECK(std::max(picture.cols, picture.rows) == 400);
+}
+
+TEST_CASE("--quiet silences all but errors")
+{
+    const Arena arena;
+    arena.write("poses.csv", "x,y,z\n0,0,0.1\n");
+    for (const std::string& arguments : {"bake " + scene + " -o new -q", std::string("info map -q"), "check map -q --poses poses.csv" + husky,
+                                         "raster map -q --dims 2 --step 2" + husky, "sample map -q -n 2" + husky,
+                                         "search map -q -n 2 --min-distance 0 --max-failures 9999" + husky,
+                                         "heatmap map -q --step 2 -o a.png" + husky}) {
+        INFO(arguments);
+        const ProgramRun run = arena(arguments);
+        CHECK(run.status == 0);
+        CHECK(run.err.empty());
+    }
+    CHECK(arena("info none -q").err == "spawnfield: none: does not exist; is the path right?\n");
+}
+
+TEST_CASE("a pipe and /dev/null are written directly")
+{
+    const Arena arena;
+    CHECK(arena("sample map -n 2 -o /dev/null" + husky).status == 0);
+    CHECK(fs::is_character_file("/dev/null"));
+    CHECK(lines(arena("sample map -n 2 -q -o /dev/stdout" + husky + "| cat").out) == 3);
+    CHECK(lines(arena("sample map -n 2 -q -o /proc/self/fd/1" + husky).out) == 3);
+    CHECK(fs::is_symlink("/dev/stdout"));  // written through, not replaced
+}
+
+TEST_CASE("a link is written through, and stays a link")
+{
+    const Arena arena;
+    arena.write("far/spawns.csv", "old");
+    fs::create_symlink("far/spawns.csv", arena / "near.csv");
+    CHECK(arena("sample map -n 2 -o near.csv" + husky).status == 0);
+    CHECK(fs::is_symlink(arena / "near.csv"));
+    CHECK(lines(bytes_of(arena / "far/spawns.csv")) == 3);
+    CHECK(std::distance(fs::directory_iterator(arena / "far"), {}) == 1);
+}
+
+TEST_CASE("Ctrl-C ends long work with 130 and leaves old files as they were")
+{
+    const Arena arena;
+    arena.write("out.csv", "old");
+    const std::string before = bytes_of(arena / "map/map.yaml");
+    const std::string cases[] = {"raster map --dims 3 --step 0.02 --no-height-check -o out.csv" + husky,
+                                 "search map -n 5 --min-distance 0 --max-failures 2000000000 --bounds 0,0,50,1,1,60 -o out.csv" + husky,
+                                 "bake " + scene + " -o map --resolution 0.0025"};
+    for (const std::string& arguments : cases) {
+        INFO(arguments);
+        const ProgramRun run = interrupt_program(arena, arguments, 0.4);
+        CHECK(run.status == 130);
+        CHECK(run.err == "spawnfield: interrupted; nothing was written\n");
+        CHECK(bytes_of(arena / "out.csv") == "old");
+        CHECK(bytes_of(arena / "map/map.yaml") == before);
+        CHECK(arena.names() == std::set<std::string>{"map", "out.csv"});
+    }
+}

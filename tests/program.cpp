@@ -1,0 +1,26 @@
+#include "program.h"
+
+#include <sys/wait.h>
+
+namespace {
+
+ProgramRun run(const TempFolder& folder, const std::string& before, const std::string& arguments)
+{
+    const std::string out = (folder / ".out").string(), err = (folder / ".err").string();
+    const std::string command = "exec </dev/null >'" + out + "' 2>'" + err + "'; cd '" + folder.path().string() + "' && " + before +
+                                " '" SPAWNFIELD_CLI "' " + arguments;
+    const int status = std::system(command.c_str());
+    const ProgramRun result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(out), bytes_of(err)};
+    std::filesystem::remove(out);
+    std::filesystem::remove(err);
+    return result;
+}
+
+}  // namespace
+
+ProgramRun run_program(const TempFolder& folder, const std::string& arguments) { return run(folder, "", arguments); }
+
+ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds)
+{
+    return run(folder, "timeout --preserve-status --signal=INT --kill-after=30 " + std::to_string(seconds), arguments);
+}
