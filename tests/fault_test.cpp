@@ -1,5 +1,5 @@
 #include "catch.h"
-#include "geometry_file.h"
+#include "map/geometry_file.h"
 #include "mesh_text.h"
 #include "scene_text.h"
 #include "test_map.h"

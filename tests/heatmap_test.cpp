@@ -1,4 +1,4 @@
-#include "relief.h"
+#include "picture/relief.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>

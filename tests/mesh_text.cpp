@@ -1,6 +1,6 @@
 #include "mesh_text.h"
 
-#include "number.h"
+#include "base/number.h"
 
 #include <cstring>
 

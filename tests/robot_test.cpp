@@ -1,5 +1,5 @@
 #include "catch.h"
-#include "hull.h"
+#include "robot/hull.h"
 #include "mesh_text.h"
 #include "shared_scenes.h"
 #include "temp_folder.h"

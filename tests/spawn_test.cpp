@@ -2,7 +2,7 @@
 #include "hand_scene.h"
 #include "test_map.h"
 
-#include "draw.h"
+#include "query/draw.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>

@@ -1,4 +1,4 @@
-#include "ticks.h"
+#include "picture/ticks.h"
 
 #include "catch.h"
 

@@ -3,7 +3,7 @@
 #include "../random_scene.h"
 #include "digest.h"
 #include "hills.h"
-#include "stopwatch.h"
+#include "base/stopwatch.h"
 
 #include <numbers>
 #include <numeric>

@@ -1,0 +1,43 @@
+#include "base/number.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/types.h>
+
+#include <cmath>
+
+namespace spawnfield {
+
+ArgumentError::ArgumentError(const std::string& function, const std::string& argument, double value,
+                             const std::string& limit)
+    : std::invalid_argument(function + ": " + argument + " is " + number(value) + ", needs " + limit)
+{
+}
+
+Mat3 rotation_from_rpy(double roll, double pitch, double yaw)
+{
+    const double cr = std::cos(roll), sr = std::sin(roll);
+    const double cp = std::cos(pitch), sp = std::sin(pitch);
+    const double cy = std::cos(yaw), sy = std::sin(yaw);
+    Mat3 rotation;
+    rotation << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,
+                sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
+                -sp,     cp * sr,                cp * cr;
+    return rotation;
+}
+
+const char* to_string(Label label)
+{
+    constexpr std::array names{"terrain", "obstacle", "water", "ignore"};
+    return names[static_cast<std::size_t>(label)];
+}
+
+const char* to_string(Verdict verdict)
+{
+    constexpr std::array<const char*, verdict_count> names{"outside",   "aerial",    "off_terrain",
+                                                           "submerged", "collision", "valid"};
+    return names[static_cast<std::size_t>(verdict)];
+}
+
+std::string version() { return SPAWNFIELD_VERSION; }
+
+}  // namespace spawnfield

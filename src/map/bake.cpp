@@ -1,0 +1,181 @@
+#include "base/checksum.h"
+#include "base/chosen_bounds.h"
+#include "base/input_file.h"
+#include "base/number.h"
+#include "base/stopwatch.h"
+#include "map/geometry_file.h"
+#include "map/map_yaml.h"
+#include "map/terrain_file.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/heatmap.h>
+#include <spawnfield/output_file.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <unistd.h>
+
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder beside the one that is wanted; takes its place when all is written, and goes if it is not.
+class NewFolder {
+public:
+    explicit NewFolder(const fs::path& target) : target_(without_slash(target)), suffix_("-" + std::to_string(getpid()))
+    {
+        if (fs::exists(target_) && !is_map_folder(target_) && !(fs::is_directory(target_) && fs::is_empty(target_)))
+            throw OutputError(target_.string(), "exists and is no map; choose another name or remove it");
+        folder_ = target_.string() + ".tmp" + suffix_;
+        std::error_code error;
+        fs::create_directories(folder_, error);
+        if (error) throw OutputError(folder_.string(), "cannot be made: " + error.message());
+    }
+    NewFolder(const NewFolder&) = delete;
+    NewFolder& operator=(const NewFolder&) = delete;
+    ~NewFolder()
+    {
+        std::error_code ignored;
+        fs::remove_all(folder_, ignored);
+    }
+
+    const fs::path& path() const { return folder_; }
+
+    void commit()
+    {
+        std::error_code error, ignored;
+        const fs::path old = target_.string() + ".old" + suffix_;
+        if (fs::exists(target_)) fs::rename(target_, old, error);
+        if (!error) fs::rename(folder_, target_, error);
+        if (error) {
+            if (fs::exists(old)) fs::rename(old, target_, ignored);
+            throw OutputError(target_.string(), "cannot be written: " + error.message());
+        }
+        fs::remove_all(old, ignored);
+    }
+
+private:
+    /// Others have a map.yaml too: nav2's map server.
+    static bool is_map_folder(const fs::path& folder)
+    {
+        const fs::path file = folder / "map.yaml";
+        return fs::is_regular_file(file) && read_file(file).starts_with("format: spawnfield-map/");
+    }
+
+    static fs::path without_slash(fs::path path) { return path.has_filename() ? path : path.parent_path(); }
+
+    fs::path target_, folder_;
+    std::string suffix_;
+};
+
+double default_resolution(const Bounds& bounds, BakeReport& report)
+{
+    double resolution = 0.1;
+    const auto columns = [&] {
+        return std::ceil((bounds.max.x() - bounds.min.x()) / resolution) * std::ceil((bounds.max.y() - bounds.min.y()) / resolution);
+    };
+    while (columns() > max_columns) resolution *= 2;
+    if (resolution > 0.1)
+        report.notices.push_back("resolution is " + number(resolution) + " m, as 0.1 m would pass 100 million columns (--resolution sets it)");
+    return resolution;
+}
+
+double default_occupancy_resolution(const Bounds& bounds, double resolution, BakeReport& report)
+{
+    const double wanted = 2.5 * resolution;
+    double voxel = wanted;
+    const double reach = std::max(bounds.min.cwiseAbs().maxCoeff(), bounds.max.cwiseAbs().maxCoeff());
+    while (reach / voxel > 32767) voxel *= 2;
+    if (voxel > wanted)
+        report.notices.push_back("occupancy resolution is " + number(voxel) + " m, as OctoMap reaches 32768 voxels from the origin and the scene lies " +
+                                 number(reach) + " m out (--occupancy-resolution sets it)");
+    return voxel;
+}
+
+/// 16-bit image of the top layer: 0 where there is none, 1 .. 65535 from the lowest height to the highest. The pair is
+/// what 0 and 65535 stand for, as `heightmap: {z: [..]}` in a scene file takes it.
+std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::path& file)
+{
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const float z : top.reshaped())
+        if (!std::isnan(z)) {
+            low = std::min(low, double(z));
+            high = std::max(high, double(z));
+        }
+    if (!(low <= high)) low = high = 0;
+    const double step = high > low ? (high - low) / 65534 : 1e-3;
+    cv::Mat image(int(top.rows()), int(top.cols()), CV_16U, cv::Scalar(0));
+    for (int row = 0; row < image.rows; ++row)
+        for (int col = 0; col < image.cols; ++col)
+            if (!std::isnan(top(row, col))) image.at<std::uint16_t>(row, col) = std::uint16_t(std::lround(1 + (top(row, col) - low) / step));
+    std::vector<unsigned char> bytes;
+    if (!cv::imencode(".png", image, bytes)) throw OutputError(file.string(), "cannot be encoded");
+    write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    return {low - step, low + 65534 * step};
+}
+
+/// The stages' share of the progress bar.
+Progress part_of(const Progress& progress, double from, double to)
+{
+    if (!progress) return {};
+    return [=](double share) { progress(from + share * (to - from)); };
+}
+
+Map plan_map(Scene scene, const fs::path& scene_file, const BakeOptions& options, BakeReport& report)
+{
+    if (!options.allow_no_terrain && !scene.has_terrain())
+        throw FileError(scene_file.string(), "has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') "
+                                             "or pass --allow-no-terrain");
+    if (!(options.resolution >= 0)) throw ArgumentError("bake", "resolution", options.resolution, "> 0 m (0: chosen)");
+    if (!(options.occupancy_resolution >= 0))
+        throw ArgumentError("bake", "occupancy_resolution", options.occupancy_resolution, "> 0 m (0: chosen)");
+    Map map;
+    map.name = scene.name.empty() ? scene_file.stem().string() : scene.name;
+    map.bounds = chosen_bounds("bake", options.bounds, scene.bounds());
+    map.resolution = options.resolution > 0 ? options.resolution : default_resolution(map.bounds, report);
+    map.occupancy_resolution = options.occupancy_resolution > 0
+                                   ? options.occupancy_resolution
+                                   : default_occupancy_resolution(map.bounds, map.resolution, report);
+    map.scene_file = scene_file.filename().string();
+    map.scene_hash = checksum(read_file(scene_file));
+    map.scene = std::move(scene);
+    return map;
+}
+
+}  // namespace
+
+BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder, const BakeOptions& options)
+{
+    BakeReport report;
+    Stopwatch watch;
+    const auto lap = [&](const char* stage) { report.seconds.emplace_back(stage, watch.lap()); };
+    Map map = plan_map(std::move(scene), scene_file, options, report);
+    const GridFrame frame = frame_around(map.bounds, map.resolution);
+    NewFolder target(folder);
+    map.index = build_column_index(map.scene);
+    lap("index");
+    const TerrainMap terrain = rasterize_terrain(map.scene, map.index, frame, options.threads, part_of(options.progress, 0, 0.6));
+    map.layers = page_image(terrain, "height.0").isNaN().all() ? 0 : terrain.layers();
+    lap("terrain");
+    const OccupancyTree tree = build_occupancy(map.scene, map.index, map.bounds, map.occupancy_resolution, options.threads,
+                                               part_of(options.progress, 0.6, 0.9));
+    report.occupancy_leaves = tree.leaves();
+    lap("occupancy");
+
+    write_terrain(target.path() / "terrain.tiff", terrain);
+    const auto z_range = write_heightmap_png(page_image(terrain, "height.0"), target.path() / "heightmap.png");
+    tree.write(target.path() / "occupancy.bt");
+    write_file_atomically(target.path() / "geometry.bin", geometry_bytes(map.scene, map.index));
+    write_preview(terrain, map.name, target.path() / "preview.png");
+    report.hash = write_map_yaml(target.path(), map, terrain, z_range);
+    if (options.progress) options.progress(1);
+    for (const auto& entry : fs::directory_iterator(target.path())) report.bytes += entry.file_size();
+    target.commit();
+    report.layers = map.layers;
+    lap("write");
+    return report;
+}
+
+}  // namespace spawnfield

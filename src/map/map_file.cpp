@@ -1,0 +1,80 @@
+#include "base/checksum.h"
+#include "base/input_file.h"
+#include "map/geometry_file.h"
+#include "map/map_yaml.h"
+#include "map/terrain_file.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/map.h>
+
+#include <algorithm>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_size(const fs::path& folder, const ListedFile& file)
+{
+    std::error_code error;
+    const auto bytes = fs::file_size(folder / file.name, error);
+    if (error) throw FileError((folder / file.name).string(), "is missing; bake the map again");
+    if (bytes != file.bytes)
+        throw FileError((folder / file.name).string(), "has " + std::to_string(bytes) + " bytes, map.yaml says " +
+                                                           std::to_string(file.bytes) + ": it was cut short or altered; bake the map again");
+}
+
+void check_sum(const fs::path& folder, const ListedFile& file)
+{
+    if (checksum(read_file(folder / file.name)) != file.checksum)
+        throw FileError((folder / file.name).string(), "differs from its checksum in map.yaml: it was altered; bake the map again");
+}
+
+const ListedFile& listed(const MapYaml& yaml, const std::string& name)
+{
+    const auto file = std::find_if(yaml.files.begin(), yaml.files.end(), [&](const ListedFile& f) { return f.name == name; });
+    if (file == yaml.files.end()) throw FileError((yaml.map.folder / "map.yaml").string(), "files lists no " + name);
+    return *file;
+}
+
+}  // namespace
+
+Map read_map(const fs::path& folder)
+{
+    MapYaml yaml = read_map_yaml(folder);
+    for (const ListedFile& file : yaml.files) check_size(folder, file);
+    check_sum(folder, listed(yaml, "geometry.bin"));
+    read_geometry(folder / "geometry.bin", yaml.map.scene, yaml.map.index);
+    return std::move(yaml.map);
+}
+
+TerrainMap read_terrain(const Map& map)
+{
+    const MapYaml yaml = read_map_yaml(map.folder);
+    const fs::path file = map.folder / "terrain.tiff";
+    check_size(map.folder, listed(yaml, "terrain.tiff"));
+    check_sum(map.folder, listed(yaml, "terrain.tiff"));
+    TerrainMap terrain = read_terrain_file(file, yaml.frame);
+    const bool same = std::equal(terrain.pages.begin(), terrain.pages.end(), yaml.pages.begin(), yaml.pages.end(),
+                                 [](const TerrainMap::Page& page, const std::string& name) { return page.name == name; });
+    if (!same) throw FileError(file.string(), "has other pages than map.yaml names; bake the map again");
+    return terrain;
+}
+
+OccupancyTree read_occupancy(const Map& map)
+{
+    const MapYaml yaml = read_map_yaml(map.folder);
+    check_size(map.folder, listed(yaml, "occupancy.bt"));
+    check_sum(map.folder, listed(yaml, "occupancy.bt"));
+    return read_occupancy(map.folder / "occupancy.bt");
+}
+
+void verify_map(const fs::path& folder)
+{
+    for (const ListedFile& file : read_map_yaml(folder).files) {
+        check_size(folder, file);
+        check_sum(folder, file);
+    }
+}
+
+}  // namespace spawnfield

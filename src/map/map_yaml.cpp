@@ -1,0 +1,191 @@
+#include "map/map_yaml.h"
+
+#include "base/checksum.h"
+#include "base/input_file.h"
+#include "base/number.h"
+#include "scene/elements.h"
+#include "scene/yaml_map.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/output_file.h>
+
+#include <assimp/version.h>
+#include <fcl/config.h>
+#include <octomap/octomap_types.h>
+#include <opencv2/core/version.hpp>
+
+#include <algorithm>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string format_prefix = "spawnfield-map/";
+const std::string hash_key = "hash: ";
+
+std::string quoted(const std::string& text)
+{
+    YAML::Emitter out;
+    out << YAML::DoubleQuoted << text;
+    return out.c_str();
+}
+
+std::string list_of(std::initializer_list<double> values)
+{
+    std::string out;
+    for (const double value : values) {
+        out += out.empty() ? "[" : ", ";
+        append_number(out, value);
+    }
+    return out + "]";
+}
+
+std::string libraries()
+{
+    const std::string assimp = std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) + "." +
+                               std::to_string(aiGetVersionPatch());
+    return "{assimp: \"" + assimp + "\", fcl: \"" FCL_VERSION "\", opencv: \"" CV_VERSION "\"}";
+}
+
+/// Triangles and primitives of each label.
+std::string label_counts(const Scene& scene)
+{
+    std::array<std::array<std::size_t, 2>, 3> counts{};
+    for (const Label label : scene.triangle_labels) ++counts[std::size_t(label)][0];
+    for (const Primitive& primitive : scene.primitives) ++counts[std::size_t(primitive.label)][1];
+    std::string out;
+    for (std::size_t label = 0; label < counts.size(); ++label)
+        out += std::string("  ") + to_string(Label(label)) + ": {triangles: " + std::to_string(counts[label][0]) +
+               ", primitives: " + std::to_string(counts[label][1]) + "}\n";
+    return out;
+}
+
+std::string part_lines(const Scene& scene)
+{
+    std::string out;
+    for (const Part& part : scene.parts)
+        out += "  - {name: " + quoted(part.name) + ", kind: " + part.kind + ", label: " + to_string(part.label) +
+               ", solid_pieces: " + std::to_string(part.solid_pieces) + ", sheet_pieces: " + std::to_string(part.sheet_pieces) +
+               ", open_edges: " + std::to_string(part.open_edges) + ", triangles: " + std::to_string(part.triangles) + "}\n";
+    return out;
+}
+
+std::string file_lines(const fs::path& folder)
+{
+    std::string out;
+    for (const char* name : {"geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"}) {
+        const std::string bytes = read_file(folder / name);
+        out += std::string("  ") + name + ": {bytes: " + std::to_string(bytes.size()) + ", xxh64: \"" + checksum(bytes) + "\"}\n";
+    }
+    return out;
+}
+
+Bounds read_bounds(const YamlMap& root)
+{
+    const YamlMap map = root.map("bounds");
+    Bounds bounds;
+    bounds.min = map.vector("min");
+    bounds.max = map.vector("max");
+    if (bounds.is_empty()) root.fail("bounds", "has min above max");
+    return bounds;
+}
+
+GridFrame read_frame(const YamlMap& root)
+{
+    const YamlMap map = root.map("frame");
+    GridFrame frame;
+    frame.x0 = map.finite("x0");
+    frame.y0 = map.finite("y0");
+    frame.cell = map.positive("cell");
+    frame.rows = int(map.positive("rows"));
+    frame.cols = int(map.positive("cols"));
+    return frame;
+}
+
+/// The last line, which holds the checksum of all before it.
+std::string hash_line(const std::string& hash) { return hash_key + "\"" + hash + "\"\n"; }
+
+std::string verified_hash(const fs::path& file, const std::string& text)
+{
+    const std::size_t size = hash_line(checksum("")).size();
+    const std::size_t line = text.size() < size ? 0 : text.size() - size;
+    if (text.compare(line, hash_key.size(), hash_key) != 0 || text.back() != '\n')
+        throw FileError(file.string(), "is cut short: its last line, hash, is missing; bake the map again");
+    const std::string hash = checksum(std::string_view(text).substr(0, line));
+    if (text.substr(line) != hash_line(hash))
+        throw FileError(file.string(), "differs from the hash in its last line: it was altered; bake the map again");
+    return hash;
+}
+
+/// Newer maps are refused before anything else of them is looked at.
+void check_version(const fs::path& file, const std::string& text)
+{
+    const std::size_t at = text.find(format_prefix);
+    if (!text.starts_with("format: ") || at == std::string::npos || at > 16)
+        throw FileError(file.string(), "is no map.yaml of spawnfield (its first line is not `format: " + format_prefix +
+                                           std::to_string(map_format_version) + "`)");
+    const std::string found = text.substr(at + format_prefix.size(), text.find('\n') - at - format_prefix.size());
+    if (found != std::to_string(map_format_version))
+        throw FileError(file.string(), "has format version " + found + ", this program reads " +
+                                           std::to_string(map_format_version) + "; bake the map again or use a newer spawnfield");
+}
+
+}  // namespace
+
+std::string write_map_yaml(const fs::path& folder, const Map& map, const TerrainMap& terrain, std::pair<double, double> heightmap_range)
+{
+    const GridFrame& frame = terrain.frame;
+    std::string text = "format: " + format_prefix + std::to_string(map_format_version) + "\n";
+    text += "name: " + quoted(map.name) + "\n";
+    text += "program: {spawnfield: \"" + version() + "\"}\n";
+    text += "libraries: " + libraries() + "\n";
+    text += "scene: {file: " + quoted(map.scene_file) + ", xxh64: \"" + map.scene_hash + "\"}\n";
+    text += "# metres, x forward, y left, z up\n";
+    text += "bounds: {min: " + list_of({map.bounds.min.x(), map.bounds.min.y(), map.bounds.min.z()}) + ", max: " +
+            list_of({map.bounds.max.x(), map.bounds.max.y(), map.bounds.max.z()}) + "}\n";
+    text += "resolution: " + number(map.resolution) + "\n";
+    text += "occupancy_resolution: " + number(map.occupancy_resolution) + "\n";
+    text += "# of every image: row 0 is the largest y, column 0 the smallest x; x0, y0 is the lower left corner\n";
+    text += "frame: {x0: " + number(frame.x0) + ", y0: " + number(frame.y0) + ", cell: " + number(frame.cell) +
+            ", rows: " + std::to_string(frame.rows) + ", cols: " + std::to_string(frame.cols) + "}\n";
+    text += "layers: " + std::to_string(map.layers) + "\n";
+    text += "terrain:  # pages of terrain.tiff, float32 metres, NaN: nothing\n";
+    for (const TerrainMap::Page& page : terrain.pages) text += "  - " + page.name + "\n";
+    text += "heightmap: {z: " + list_of({heightmap_range.first, heightmap_range.second}) + ", no_terrain: 0}  # of pixels 0 and 65535\n";
+    text += "labels:\n" + label_counts(map.scene) + "parts:\n" + part_lines(map.scene);
+    text += "files:\n" + file_lines(folder);
+    const std::string hash = checksum(text);
+    write_file_atomically(folder / "map.yaml", text + hash_line(hash));
+    return hash;
+}
+
+MapYaml read_map_yaml(const fs::path& folder)
+{
+    if (!fs::is_directory(folder)) throw FileError(folder.string(), fs::exists(folder) ? "is no map folder" : "does not exist; is the path right?");
+    const fs::path file = folder / "map.yaml";
+    if (!fs::is_regular_file(file)) throw FileError(folder.string(), "is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
+    const std::string text = read_file(file);
+    check_version(file, text);
+    MapYaml out;
+    out.map.hash = verified_hash(file, text);
+    out.map.folder = folder;
+    const YamlMap root = read_yaml(file, format_prefix + std::to_string(map_format_version));
+    out.map.name = root.text("name");
+    out.map.bounds = read_bounds(root);
+    out.map.resolution = root.positive("resolution");
+    out.map.occupancy_resolution = root.positive("occupancy_resolution");
+    out.map.layers = int(root.finite("layers"));
+    out.map.scene_file = root.map("scene").text("file");
+    out.map.scene_hash = root.map("scene").text("xxh64");
+    out.frame = read_frame(root);
+    for (const YAML::Node& page : root.list("terrain")) out.pages.push_back(page.Scalar());
+    const YamlMap files = root.map("files");
+    for (const std::string& name : files.keys()) {
+        const YamlMap entry = files.map(name);
+        out.files.push_back({name, entry.text("xxh64"), std::uintmax_t(entry.finite("bytes"))});
+    }
+    return out;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,210 @@
+#include "base/deflate.h"
+#include "base/number.h"
+#include "base/parallel.h"
+#include "map/cell_clip.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/terrain.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+constexpr std::size_t max_spans = 8;  // pages of solid_* and bound_*
+constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
+
+float rounded_down(double value)
+{
+    const float nearest = float(value);
+    return double(nearest) > value ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
+}
+
+float rounded_up(double value) { return -rounded_down(-value); }
+
+/// Pages of one tile, by name without number; made as they are needed.
+struct TilePages {
+    using Values = std::vector<float>;
+    std::vector<Values> height, solid_top, solid_bottom, bound_top, bound_bottom;
+    Values water;
+
+    static float& at(std::vector<Values>& pages, std::size_t page, std::size_t cell)
+    {
+        while (pages.size() <= page) pages.emplace_back(TerrainMap::tile * TerrainMap::tile, nothing);
+        return pages[page][cell];
+    }
+};
+
+/// Joins over the smallest gaps until at most max_spans are left; from the bottom up.
+void reduce(std::vector<Interval>& spans)
+{
+    while (spans.size() > max_spans) {
+        std::size_t closest = 0;
+        for (std::size_t i = 0; i + 1 < spans.size(); ++i)
+            if (spans[i + 1].bottom - spans[i].top < spans[closest + 1].bottom - spans[closest].top) closest = i;
+        spans[closest].top = spans[closest + 1].top;
+        spans.erase(spans.begin() + std::ptrdiff_t(closest) + 1);
+    }
+}
+
+class TileRaster {
+public:
+    TileRaster(const Scene& scene, const ColumnIndex& index, const GridFrame& frame, int tile_row, int tile_col)
+        : scene_(scene), index_(index), frame_(frame), row0_(tile_row * TerrainMap::tile), col0_(tile_col * TerrainMap::tile),
+          rows_(std::min(TerrainMap::tile, frame.rows - row0_)), cols_(std::min(TerrainMap::tile, frame.cols - col0_))
+    {
+    }
+
+    TilePages run()
+    {
+        const CellBlock block{frame_.x0 + col0_ * frame_.cell, frame_.y0 + (frame_.rows - row0_ - rows_) * frame_.cell,
+                              frame_.cell, cols_, rows_};
+        const std::vector<CellSpan> surfaces = clip_to_cells(scene_, index_, block);
+        auto next = surfaces.begin();
+        std::vector<Interval> bound;
+        for (int j = 0; j < rows_; ++j)  // upwards in y, as the block counts
+            for (int i = 0; i < cols_; ++i) {
+                bound.clear();
+                for (; next != surfaces.end() && next->cell == block.id(i, j); ++next) bound.push_back({next->bottom, next->top});
+                add_cell(rows_ - 1 - j, i, bound);
+            }
+        return std::move(pages_);
+    }
+
+private:
+    void add_cell(int row, int col, std::vector<Interval>& bound)
+    {
+        const std::size_t cell = std::size_t(row) * TerrainMap::tile + std::size_t(col);
+        const Column column = column_at(scene_, index_, frame_.x_of(col0_ + col), frame_.y_of(row0_ + row));
+        for (std::size_t layer = 0; layer < column.layers.size(); ++layer)
+            TilePages::at(pages_.height, layer, cell) = float(column.layers[layer]);
+        if (!column.water.empty()) {
+            if (pages_.water.empty()) pages_.water.assign(TerrainMap::tile * TerrainMap::tile, nothing);
+            pages_.water[cell] = float(column.water.front());
+        }
+        const std::vector<Interval> solid = solid_intervals(column);
+        for (std::size_t k = 0; k < std::min(solid.size(), max_spans); ++k) {
+            const Interval& span = solid[solid.size() - 1 - k];
+            TilePages::at(pages_.solid_top, k, cell) = float(span.top);
+            TilePages::at(pages_.solid_bottom, k, cell) = float(span.bottom);
+        }
+        // Where no surface passes at a height, the whole cell is inside or outside there, as its centre is.
+        bound.insert(bound.end(), solid.begin(), solid.end());
+        join_spans(bound);
+        reduce(bound);
+        for (std::size_t k = 0; k < bound.size(); ++k) {
+            const Interval& span = bound[bound.size() - 1 - k];
+            TilePages::at(pages_.bound_top, k, cell) = rounded_up(span.top);
+            TilePages::at(pages_.bound_bottom, k, cell) = rounded_down(span.bottom);
+        }
+    }
+
+    const Scene& scene_;
+    const ColumnIndex& index_;
+    const GridFrame& frame_;
+    const int row0_, col0_, rows_, cols_;
+    TilePages pages_;
+};
+
+std::string deflated(const std::vector<float>& values)
+{
+    return deflate_bytes({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
+}
+
+/// A tile's pages by full name.
+using NamedTiles = std::vector<std::pair<std::string, std::string>>;
+
+NamedTiles deflate_tile(const TilePages& pages)
+{
+    NamedTiles out;
+    const auto add = [&](const std::string& name, const std::vector<TilePages::Values>& list) {
+        for (std::size_t k = 0; k < list.size(); ++k) out.emplace_back(name + "." + std::to_string(k), deflated(list[k]));
+    };
+    add("height", pages.height);
+    if (!pages.water.empty()) out.emplace_back("water", deflated(pages.water));
+    add("solid_top", pages.solid_top);
+    add("solid_bottom", pages.solid_bottom);
+    add("bound_top", pages.bound_top);
+    add("bound_bottom", pages.bound_bottom);
+    return out;
+}
+
+std::vector<std::string> page_names(const std::vector<NamedTiles>& tiles)
+{
+    std::vector<std::string> out;
+    for (const char* quantity : {"height", "water", "solid_top", "solid_bottom", "bound_top", "bound_bottom"}) {
+        const std::string name = quantity;
+        std::size_t count = name == "height" ? 1 : 0;  // a page of heights even if there is no terrain
+        for (const NamedTiles& tile : tiles)
+            count = std::max(count, std::size_t(std::count_if(tile.begin(), tile.end(), [&](const auto& page) {
+                return page.first == name || page.first.starts_with(name + ".");
+            })));
+        for (std::size_t k = 0; k < count; ++k) out.push_back(name == "water" ? name : name + "." + std::to_string(k));
+    }
+    return out;
+}
+
+}  // namespace
+
+GridFrame frame_around(const Bounds& bounds, double cell)
+{
+    if (!(cell > 0) || !std::isfinite(cell)) throw ArgumentError("frame_around", "cell", cell, "> 0 m");
+    const auto count = [&](int axis) { return std::max(1.0, std::ceil((bounds.max[axis] - bounds.min[axis]) / cell - 1e-9)); };
+    const double cols = count(0), rows = count(1);
+    if (!(cols * rows <= max_columns))
+        throw ArgumentError("frame_around", "columns at a cell of " + number(cell) + " m", cols * rows,
+                            "at most " + number(max_columns) + "; take a coarser resolution");
+    return {bounds.min.x(), bounds.min.y(), cell, int(rows), int(cols)};
+}
+
+const TerrainMap::Page* TerrainMap::find(const std::string& name) const
+{
+    const auto page = std::find_if(pages.begin(), pages.end(), [&](const Page& p) { return p.name == name; });
+    return page == pages.end() ? nullptr : &*page;
+}
+
+int TerrainMap::layers() const
+{
+    return int(std::count_if(pages.begin(), pages.end(), [](const Page& p) { return p.name.starts_with("height."); }));
+}
+
+HeightImage page_image(const TerrainMap& terrain, const std::string& name)
+{
+    HeightImage image = HeightImage::Constant(terrain.frame.rows, terrain.frame.cols, nothing);
+    const TerrainMap::Page* page = terrain.find(name);
+    if (page == nullptr) return image;
+    using Tile = Eigen::Array<float, TerrainMap::tile, TerrainMap::tile, Eigen::RowMajor>;
+    for (std::size_t t = 0; t < page->tiles.size(); ++t) {
+        const std::string bytes = inflate_bytes(page->tiles[t], sizeof(Tile));
+        const int row = int(t) / terrain.tile_cols() * TerrainMap::tile, col = int(t) % terrain.tile_cols() * TerrainMap::tile;
+        const int rows = std::min(TerrainMap::tile, terrain.frame.rows - row), cols = std::min(TerrainMap::tile, terrain.frame.cols - col);
+        const Eigen::Map<const Tile, Eigen::Unaligned> tile(reinterpret_cast<const float*>(bytes.data()));
+        image.block(row, col, rows, cols) = tile.topLeftCorner(rows, cols);
+    }
+    return image;
+}
+
+TerrainMap rasterize_terrain(const Scene& scene, const ColumnIndex& index, const GridFrame& frame, int threads,
+                             const Progress& progress)
+{
+    TerrainMap out;
+    out.frame = frame;
+    std::vector<NamedTiles> tiles(std::size_t(out.tile_rows()) * std::size_t(out.tile_cols()));
+    parallel_for(tiles.size(), threads, progress, [&](std::size_t t) {
+        TileRaster raster(scene, index, frame, int(t) / out.tile_cols(), int(t) % out.tile_cols());
+        tiles[t] = deflate_tile(raster.run());
+    });
+    const std::string empty = deflated(std::vector<float>(TerrainMap::tile * TerrainMap::tile, nothing));
+    for (const std::string& name : page_names(tiles)) {
+        TerrainMap::Page page{name, {}};
+        for (NamedTiles& tile : tiles) {
+            const auto found = std::find_if(tile.begin(), tile.end(), [&](const auto& p) { return p.first == name; });
+            page.tiles.push_back(found == tile.end() ? empty : std::move(found->second));
+        }
+        out.pages.push_back(std::move(page));
+    }
+    return out;
+}
+
+}  // namespace spawnfield

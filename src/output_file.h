@@ -1,3 +1,0 @@
-#pragma once
-
-#include <spawnfield/output_file.h>

@@ -1,0 +1,233 @@
+#include "map/occupancy_impl.h"
+#include "robot/hull.h"
+#include "scene/elements.h"
+
+#include <spawnfield/collision.h>
+
+#include <fcl/geometry/octree/octree.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/detail/gjk_solver_libccd.h>
+
+#include <algorithm>
+#include <variant>
+
+namespace spawnfield {
+namespace {
+
+using Transform = fcl::Transform3<double>;
+using FclShape = std::variant<fcl::Box<double>, fcl::Sphere<double>, fcl::Cylinder<double>, fcl::Capsule<double>, fcl::Convex<double>>;
+
+FclShape fcl_shape(const Shape& shape)
+{
+    switch (shape.kind) {
+    case ShapeKind::Sphere: return fcl::Sphere<double>(shape.size[0]);
+    case ShapeKind::Cylinder: return fcl::Cylinder<double>(shape.size[0], shape.size[1]);
+    case ShapeKind::Capsule: return fcl::Capsule<double>(shape.size[0], shape.size[1]);
+    case ShapeKind::Box:
+    case ShapeKind::Hull: break;
+    }
+    return fcl::Box<double>(shape.size);
+}
+
+FclShape fcl_convex(const RobotPart& hull)
+{
+    auto faces = std::make_shared<std::vector<int>>();
+    for (const auto& face : hull.hull_faces) faces->insert(faces->end(), {3, face[0], face[1], face[2]});
+    return fcl::Convex<double>(std::make_shared<const std::vector<Vec3>>(hull.hull_vertices), int(hull.hull_faces.size()), faces);
+}
+
+const fcl::CollisionGeometry<double>* geometry_of(const FclShape& shape)
+{
+    return std::visit([](const auto& s) -> const fcl::CollisionGeometry<double>* { return &s; }, shape);
+}
+
+Transform transform_of(const Pose& pose)
+{
+    Transform transform = Transform::Identity();
+    transform.linear() = pose.rotation;
+    transform.translation() = pose.position;
+    return transform;
+}
+
+/// A robot's part, grown by the touch margin. A hull's corners are in the robot's frame already.
+struct CheckedPart {
+    FclShape shape;
+    Pose robot_from_shape;
+    Vec3 centre;
+    Shape bounds_shape;              ///< for bounds at a pose; unused by hulls
+    std::vector<Vec3> hull_vertices;
+
+    explicit CheckedPart(const RobotPart& part)
+        : shape(part.shape.kind == ShapeKind::Hull ? fcl_convex(part) : fcl_shape(part.shape)),
+          robot_from_shape(part.shape.kind == ShapeKind::Hull ? Pose{} : part.shape.pose), centre(part.centre()),
+          bounds_shape(part.shape), hull_vertices(part.hull_vertices)
+    {
+    }
+
+    Bounds bounds_at(const Pose& pose) const
+    {
+        if (bounds_shape.kind != ShapeKind::Hull) {
+            Shape placed = bounds_shape;
+            placed.pose = pose * bounds_shape.pose;
+            return bounds_of(placed);
+        }
+        Bounds box;
+        for (const Vec3& vertex : hull_vertices) box.extend(pose.rotation * vertex + pose.position);
+        return box;
+    }
+};
+
+bool overlap(const Bounds& a, const Bounds& b)
+{
+    return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
+}
+
+/// A robot's part at one pose. Everything is told FCL relative to the robot's position, so that coordinates stay small
+/// and keep their precision far from the scene's origin.
+struct PlacedPart {
+    const CheckedPart* part;
+    Transform robot_from_shape;  ///< turned like the scene, origin at the robot's position
+    Bounds bounds;               ///< in the scene's frame
+};
+
+bool meets_triangle(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
+{
+    static const fcl::detail::GJKSolver_libccd<double> solver;
+    return std::visit(
+        [&](const auto& shape) {
+            return solver.shapeTriangleIntersect(shape, placed.robot_from_shape, corners[0], corners[1], corners[2],
+                                                 static_cast<Vec3*>(nullptr), static_cast<double*>(nullptr),
+                                                 static_cast<Vec3*>(nullptr));
+        },
+        placed.part->shape);
+}
+
+bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& at_a, const fcl::CollisionGeometry<double>* b,
+                 const Transform& at_b)
+{
+    fcl::CollisionRequest<double> request;
+    request.gjk_solver_type = fcl::GST_LIBCCD;
+    fcl::CollisionResult<double> result;
+    return fcl::collide(a, at_a, b, at_b, request, result) > 0;
+}
+
+}  // namespace
+
+struct CollisionChecker::Impl {
+    const Scene* scene = nullptr;
+    const ColumnIndex* index = nullptr;
+    std::shared_ptr<const OccupancyTree> tree;
+    std::unique_ptr<fcl::OcTree<double>> octree;
+    std::vector<CheckedPart> parts;
+    bool has_filled_meshes = false;
+
+    std::vector<PlacedPart> place(const Pose& pose) const
+    {
+        std::vector<PlacedPart> placed;
+        placed.reserve(parts.size());
+        for (const CheckedPart& part : parts)
+            placed.push_back({&part, transform_of(Pose{Vec3::Zero(), pose.rotation} * part.robot_from_shape), part.bounds_at(pose)});
+        return placed;
+    }
+
+    bool element_meets(std::uint32_t element, const std::vector<PlacedPart>& placed, const Vec3& origin) const
+    {
+        const Bounds bounds = element_bounds(*scene, element);
+        for (const PlacedPart& part : placed) {
+            if (!overlap(bounds, part.bounds)) continue;
+            if (is_triangle(*scene, element)) {
+                std::array<Vec3, 3> corners = corners_of(*scene, element);
+                for (Vec3& corner : corners) corner -= origin;
+                if (meets_triangle(part, corners)) return true;
+            } else {
+                const Shape& shape = primitive_of(*scene, element).shape;
+                const FclShape other = fcl_shape(shape);
+                const Transform at = transform_of({shape.pose.position - origin, shape.pose.rotation});
+                if (fcl_collide(geometry_of(part.part->shape), part.robot_from_shape, geometry_of(other), at)) return true;
+            }
+        }
+        return false;
+    }
+
+    /// The first part, below `best`, in whose filled meshes a part of the robot lies. Its surface is not touched, so one
+    /// point of each convex part tells for all of it.
+    std::uint32_t first_around(const Pose& pose, std::uint32_t best) const
+    {
+        if (!has_filled_meshes) return best;
+        for (const CheckedPart& part : parts) {
+            const Vec3 centre = pose.rotation * part.centre + pose.position;
+            for (const Span& span : column_at(*scene, *index, centre.x(), centre.y()).spans)
+                if (span.bottom <= centre.z() && centre.z() <= span.top) best = std::min(best, span.part);
+        }
+        return best;
+    }
+
+    std::optional<CollisionHit> find(const Pose& pose, bool any_will_do) const
+    {
+        const std::vector<PlacedPart> placed = place(pose);
+        if (octree) return find_in_octree(placed, pose.position);
+        Bounds all;
+        for (const PlacedPart& part : placed) {
+            all.extend(part.bounds.min);
+            all.extend(part.bounds.max);
+        }
+        thread_local std::vector<std::uint32_t> elements;
+        find_elements(*index, all.min.x(), all.min.y(), all.max.x(), all.max.y(), elements);
+        std::uint32_t best = CollisionHit::occupancy;
+        for (const std::uint32_t element : elements) {
+            if (element_label(*scene, element) == Label::Water) continue;
+            const std::uint32_t part = element_part(*scene, element);
+            if (part >= best || !element_meets(element, placed, pose.position)) continue;
+            best = part;
+            if (any_will_do) return CollisionHit{best};
+        }
+        best = first_around(pose, best);
+        if (best == CollisionHit::occupancy) return std::nullopt;
+        return CollisionHit{best};
+    }
+
+    std::optional<CollisionHit> find_in_octree(const std::vector<PlacedPart>& placed, const Vec3& origin) const
+    {
+        Transform at = Transform::Identity();
+        at.translation() = -origin;
+        for (const PlacedPart& part : placed)
+            if (fcl_collide(octree.get(), at, geometry_of(part.part->shape), part.robot_from_shape)) return CollisionHit{};
+        return std::nullopt;
+    }
+};
+
+CollisionChecker::CollisionChecker(const Scene& scene, const ColumnIndex& index, const Robot& robot)
+{
+    auto impl = std::make_unique<Impl>();
+    impl->scene = &scene;
+    impl->index = &index;
+    for (const RobotPart& part : robot.parts) impl->parts.emplace_back(grown(part, touch_margin));
+    impl->has_filled_meshes = std::any_of(scene.pieces.begin(), scene.pieces.end(), [](const Piece& p) { return p.solid; });
+    impl_ = std::move(impl);
+}
+
+CollisionChecker::CollisionChecker(std::shared_ptr<const OccupancyTree> tree, const Robot& robot)
+{
+    auto impl = std::make_unique<Impl>();
+    impl->tree = std::move(tree);
+    impl->octree = std::make_unique<fcl::OcTree<double>>(impl->tree->impl().tree);
+    for (const RobotPart& part : robot.parts) impl->parts.emplace_back(grown(part, touch_margin));
+    impl_ = std::move(impl);
+}
+
+CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
+CollisionChecker::~CollisionChecker() = default;
+
+bool CollisionChecker::is_free(const Pose& scene_from_robot) const { return !impl_->find(scene_from_robot, true); }
+
+std::optional<CollisionHit> CollisionChecker::find_hit(const Pose& scene_from_robot) const
+{
+    return impl_->find(scene_from_robot, false);
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,251 @@
+#include "base/input_file.h"
+#include "base/number.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/poses.h>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+/// Fields of one CSV line (RFC 4180: quotes around a field, doubled within).
+std::vector<std::string> split_line(const std::string& line)
+{
+    std::vector<std::string> fields(1);
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '"') {
+            if (quoted && i + 1 < line.size() && line[i + 1] == '"') fields.back() += line[++i];
+            else quoted = !quoted;
+        } else if (line[i] == ',' && !quoted) {
+            fields.emplace_back();
+        } else {
+            fields.back() += line[i];
+        }
+    }
+    for (std::string& field : fields) {
+        const auto first = field.find_first_not_of(" \t"), last = field.find_last_not_of(" \t");
+        field = first == std::string::npos ? "" : field.substr(first, last - first + 1);
+    }
+    return fields;
+}
+
+std::string quoted_if_needed(const std::string& text)
+{
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+    return out + "\"";
+}
+
+/// Which field holds what; -1: not in the file.
+struct PoseColumns {
+    int x, y, z, roll, pitch, yaw, qx, qy, qz, qw;
+    std::size_t count;
+    bool has_quaternion() const { return qx >= 0; }
+};
+
+class PoseReader {
+public:
+    explicit PoseReader(const std::filesystem::path& file) : file_(file.string()) {}
+
+    PoseTable read(const std::string& text)
+    {
+        PoseTable table;
+        PoseColumns columns{};
+        bool has_header = false;
+        for (std::size_t start = 0; start < text.size();) {
+            const std::size_t end = std::min(text.find('\n', start), text.size());
+            std::string line = text.substr(start, end - start);
+            start = end + 1;
+            ++line_;
+            if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // byte order mark
+            if (!line.empty() && line.back() == '\r') line.pop_back();
+            if (line.find_first_not_of(" \t") == std::string::npos) continue;
+            if (!has_header) {
+                columns = read_header(line);
+                table.header = line;
+                has_header = true;
+                continue;
+            }
+            if (std::count(line.begin(), line.end(), '"') % 2 != 0) fail("has a quote that is not closed");
+            table.poses.push_back(read_pose(split_line(line), columns));
+            table.rows.push_back(std::move(line));
+        }
+        if (!has_header) throw FileError(file_, "is empty, needs a header x,y,z,roll,pitch,yaw");
+        return table;
+    }
+
+private:
+    PoseColumns read_header(const std::string& line) const
+    {
+        const auto names = split_line(line);
+        const auto find = [&](const std::string& name) {
+            const auto at = std::find(names.begin(), names.end(), name);
+            if (at != names.end() && std::find(at + 1, names.end(), name) != names.end()) fail("column " + name + " is given twice");
+            return at == names.end() ? -1 : int(at - names.begin());
+        };
+        PoseColumns c{find("x"),  find("y"),  find("z"),  find("roll"), find("pitch"),
+                      find("yaw"), find("qx"), find("qy"), find("qz"), find("qw"), names.size()};
+        for (const auto& [column, name] : {std::pair{c.x, "x"}, std::pair{c.y, "y"}, std::pair{c.z, "z"}})
+            if (column < 0) fail(std::string("column ") + name + " is missing, needs a header x,y,z,roll,pitch,yaw");
+        const int quaternions = (c.qx >= 0) + (c.qy >= 0) + (c.qz >= 0) + (c.qw >= 0);
+        if (quaternions != 0 && quaternions != 4) fail("has some of the columns qx,qy,qz,qw, needs all four or none");
+        if (quaternions == 4 && (c.roll >= 0 || c.pitch >= 0 || c.yaw >= 0))
+            fail("has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
+        return c;
+    }
+
+    Pose read_pose(const std::vector<std::string>& fields, const PoseColumns& c) const
+    {
+        if (fields.size() != c.count)
+            fail("has " + std::to_string(fields.size()) + " fields, the header has " + std::to_string(c.count));
+        Pose pose;
+        pose.position = {number_in(fields, c.x, "x"), number_in(fields, c.y, "y"), number_in(fields, c.z, "z")};
+        if (!c.has_quaternion()) {
+            pose.rotation = rotation_from_rpy(number_in(fields, c.roll, "roll"), number_in(fields, c.pitch, "pitch"),
+                                              number_in(fields, c.yaw, "yaw"));
+            return pose;
+        }
+        const Eigen::Quaterniond q(number_in(fields, c.qw, "qw"), number_in(fields, c.qx, "qx"), number_in(fields, c.qy, "qy"),
+                                   number_in(fields, c.qz, "qz"));
+        if (!(std::abs(q.norm() - 1) <= 1e-3)) fail("the quaternion's length is " + number(q.norm()) + ", needs 1 (to 0.001)");
+        pose.rotation = q.normalized().toRotationMatrix();
+        return pose;
+    }
+
+    double number_in(const std::vector<std::string>& fields, int column, const char* name) const
+    {
+        if (column < 0) return 0;
+        double value = 0;
+        const std::string& text = fields[std::size_t(column)];
+        if (!parse_number(text, value)) fail(std::string("column ") + name + " is \"" + text + "\", needs a number");
+        if (!std::isfinite(value)) fail(std::string("column ") + name + " is " + text + ", needs a finite number");
+        return value;
+    }
+
+    [[noreturn]] void fail(const std::string& what) const { throw FileError(file_, "line " + std::to_string(line_) + ": " + what); }
+
+    const std::string file_;
+    int line_ = 0;
+};
+
+void append_numbers(std::string& text, std::initializer_list<double> values)
+{
+    bool first = true;
+    for (const double value : values) {
+        if (!first) text += ',';
+        first = false;
+        append_number(text, value);
+    }
+}
+
+void append_row(std::string& text, double x, double y, double z, double yaw, std::int32_t layer, Verdict verdict)
+{
+    append_numbers(text, {x, y, z, yaw});
+    text += ',';
+    if (layer >= 0) text += std::to_string(layer);
+    text += ',';
+    text += to_string(verdict);
+    text += '\n';
+}
+
+}  // namespace
+
+PoseTable read_poses(const std::filesystem::path& file)
+{
+    const std::string text = read_file(file);
+    return PoseReader(file).read(text);
+}
+
+std::vector<Spawn> read_spawns(const std::filesystem::path& file)
+{
+    std::vector<Spawn> out;
+    for (const Pose& pose : read_poses(file).poses)
+        out.push_back({pose.position, std::atan2(pose.rotation(1, 0), pose.rotation(0, 0))});
+    return out;
+}
+
+std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Scene& scene)
+{
+    std::string text = table.header + ",verdict,ground,height_above,hit\n";
+    for (std::size_t i = 0; i < judgements.size(); ++i) {
+        const Judgement& judged = judgements[i];
+        text += table.rows[i] + ',' + to_string(judged.verdict) + ',';
+        if (judged.ground) append_numbers(text, {judged.ground->height, table.poses[i].position.z() - judged.ground->height});
+        else text += ',';
+        text += ',';
+        if (judged.hit) text += judged.hit->part == CollisionHit::occupancy ? "occupancy" : quoted_if_needed(scene.parts[judged.hit->part].name);
+        text += '\n';
+    }
+    return text;
+}
+
+void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink)
+{
+    constexpr std::size_t piece = 1 << 20;
+    std::string text = "x,y,z,yaw,layer,verdict\n";
+    const auto row = [&](double x, double y, double z, std::int32_t layer, Verdict verdict) {
+        append_row(text, x, y, z, raster.yaw, layer, verdict);
+        if (text.size() < piece) return;
+        sink(text);
+        text.clear();
+    };
+    if (!aerial || raster.dims != 3) {
+        for (const RasterPose& pose : raster.poses) row(pose.x, pose.y, pose.z, pose.layer, pose.verdict);
+        sink(text);
+        return;
+    }
+    const RasterGrid& grid = raster.grid;
+    auto next = raster.poses.begin();
+    for (int j = 0; j < grid.rows; ++j)
+        for (int i = 0; i < grid.cols; ++i)
+            for (int k = grid.heights - 1; k >= 0; --k) {
+                const double x = grid.x_of(i), y = grid.y_of(j), z = grid.z_of(k);
+                const bool kept = next != raster.poses.end() && next->x == x && next->y == y && next->z == z;
+                row(x, y, z, kept ? next->layer : -1, kept ? next->verdict : Verdict::Aerial);
+                next += kept;
+            }
+    sink(text);
+}
+
+std::string spawns_csv(const SpawnList& list)
+{
+    std::string text = "x,y,z,roll,pitch,yaw\n";
+    for (const Spawn& spawn : list.spawns) {
+        append_numbers(text, {spawn.position.x(), spawn.position.y(), spawn.position.z(), 0, 0, spawn.yaw});
+        text += '\n';
+    }
+    return text;
+}
+
+std::string spawns_json(const SpawnList& list, const Map& map, const Robot& robot, const SpawnOptions& options,
+                        const std::string& command)
+{
+    nlohmann::ordered_json out;
+    out["format"] = "spawnfield-spawns/1";
+    out["command"] = command;
+    out["map"] = {{"name", map.name}, {"hash", map.hash}};
+    out["robot"] = robot.name;
+    out["settings"] = {{"count", options.count}, {"min_distance", options.min_distance}, {"seed", options.seed},
+                       {"yaw", options.random_yaw ? nlohmann::ordered_json("random") : nlohmann::ordered_json(options.yaw)}};
+    out["frame"] = "metres, radians, x forward, y left, z up (REP-103)";
+    out["quaternion_order"] = "xyzw";
+    for (std::size_t verdict = 0; verdict < verdict_count; ++verdict)
+        out["counts"][to_string(Verdict(verdict))] = list.counts[verdict];
+    out["poses"] = nlohmann::ordered_json::array();
+    for (const Spawn& spawn : list.spawns) {
+        const Vec3& p = spawn.position;
+        out["poses"].push_back({{"position", {p.x(), p.y(), p.z()}},
+                                {"quaternion", {0.0, 0.0, std::sin(spawn.yaw / 2), std::cos(spawn.yaw / 2)}},
+                                {"rpy", {0.0, 0.0, spawn.yaw}}});
+    }
+    return out.dump(2) + "\n";
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,185 @@
+#include "base/chosen_bounds.h"
+#include "base/parallel.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/query.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+/// Poses from `from` up to and with `to`, to 1e-9 of a step.
+int count_steps(double from, double to, double step, const char* axis)
+{
+    const double count = std::floor((to - from) / step + 1e-9) + 1;
+    if (!(count <= 2147483647.0)) throw ArgumentError("raster", std::string("steps along ") + axis, count, "at most 2147483647");
+    return static_cast<int>(count);
+}
+
+RasterGrid grid_of(const Map& map, const RasterOptions& options)
+{
+    const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
+    RasterGrid grid;
+    grid.x0 = bounds.min.x();
+    grid.y0 = bounds.min.y();
+    grid.z0 = bounds.min.z();
+    grid.step = options.step;
+    grid.step_z = options.step_z > 0 ? options.step_z : options.step;
+    grid.cols = count_steps(grid.x0, bounds.max.x(), grid.step, "x");
+    grid.rows = count_steps(grid.y0, bounds.max.y(), grid.step, "y");
+    if (double(grid.cols) * grid.rows > 2147483647.0)
+        throw ArgumentError("raster", "columns", double(grid.cols) * grid.rows, "at most 2147483647; take a larger step");
+    if (options.dims == 3) grid.heights = count_steps(grid.z0, bounds.max.z(), grid.step_z, "z");
+    return grid;
+}
+
+void check(const RasterOptions& options)
+{
+    if (options.dims != 2 && options.dims != 3) throw ArgumentError("raster", "dims", options.dims, "2 or 3");
+    if (!(options.step > 0) || !std::isfinite(options.step)) throw ArgumentError("raster", "step", options.step, "> 0 m");
+    if (!(options.step_z >= 0) || !std::isfinite(options.step_z)) throw ArgumentError("raster", "step_z", options.step_z, "> 0 m");
+    if (!(options.max_height >= 0)) throw ArgumentError("raster", "max_height", options.max_height, ">= 0 m");
+    if (!(options.max_water_depth >= 0)) throw ArgumentError("raster", "max_water_depth", options.max_water_depth, ">= 0 m");
+    if (!std::isfinite(options.offset)) throw ArgumentError("raster", "offset", options.offset, "a finite number, m");
+    if (!std::isfinite(options.yaw)) throw ArgumentError("raster", "yaw", options.yaw, "a finite number, rad");
+    if (!options.height_check && options.dims != 3)
+        throw ArgumentError("raster: without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
+}
+
+/// Poses of one row of columns, with what is counted but not kept.
+struct Row {
+    std::vector<RasterPose> poses;
+    std::uint64_t aerial = 0, exact_checks = 0;
+};
+
+class RasterJudge {
+public:
+    RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid)
+        : map_(map), checker_(checker), options_(options), query_(options), grid_(grid), rotation_(rotation_from_rpy(0, 0, options.yaw))
+    {
+        // A pose of a 2D raster is offset above its layer by definition.
+        if (options.dims == 2) query_.max_height = std::numeric_limits<double>::infinity();
+    }
+
+    Row row(int j) const
+    {
+        Row out;
+        for (int i = 0; i < grid_.cols; ++i) {
+            const double x = grid_.x_of(i), y = grid_.y_of(j);
+            const bool outside = !map_.bounds.contains_xy(x, y, touch_tolerance);
+            if (!options_.height_check || (options_.dims == 3 && outside)) {
+                all_heights(x, y, out);
+                continue;
+            }
+            const Column column = column_at(map_.scene, map_.index, x, y);
+            if (options_.dims == 2) layers(column, x, y, out);
+            else heights(column, x, y, out);
+        }
+        return out;
+    }
+
+private:
+    void layers(const Column& column, double x, double y, Row& out) const
+    {
+        const int count = int(column.layers.size());
+        for (int layer = 0; layer < count; ++layer) {
+            if (!options_.layers.includes(layer, count)) continue;
+            const double z = column.layers[layer] + options_.offset;
+            const Judgement judged = judge(map_, checker_, column, {Vec3(x, y, z), rotation_}, query_);
+            out.exact_checks += judged.exact_check;
+            out.poses.push_back({x, y, z, layer, judged.verdict});
+        }
+    }
+
+    /// Heights at which the ground may be near enough, from the top down: the rest is aerial without a look.
+    std::vector<int> near_heights(const Column& column) const
+    {
+        std::vector<int> near;
+        for (const Span& span : column.spans) {
+            const double first = std::ceil((span.top - grid_.z0) / grid_.step_z) - 1;
+            const double last = std::floor((span.top + options_.max_height - grid_.z0) / grid_.step_z) + 1;
+            const int from = int(std::clamp(first, 0.0, double(grid_.heights)));
+            const int to = int(std::clamp(last, -1.0, double(grid_.heights - 1)));
+            for (int k = to; k >= from; --k) near.push_back(k);
+        }
+        std::sort(near.begin(), near.end(), std::greater<>());
+        near.erase(std::unique(near.begin(), near.end()), near.end());
+        return near;
+    }
+
+    void heights(const Column& column, double x, double y, Row& out) const
+    {
+        const bool every_layer = options_.layers.kind == LayerChoice::Kind::All;
+        const std::vector<int> near = near_heights(column);
+        if (every_layer) out.aerial += grid_.heights - near.size();
+        for (const int k : near) {
+            const double z = grid_.z_of(k);
+            const Pose pose{Vec3(x, y, z), rotation_};
+            const std::int32_t layer = layer_of(column, ground_below(column, z));
+            if (!every_layer && (layer < 0 || !options_.layers.includes(layer, int(column.layers.size())))) continue;
+            const Judgement judged = judge(map_, checker_, column, pose, query_);
+            out.exact_checks += judged.exact_check;
+            if (judged.verdict == Verdict::Aerial) out.aerial += every_layer;
+            else out.poses.push_back({x, y, z, layer, judged.verdict});
+        }
+    }
+
+    /// A column whose heights all count: outside the map, or for collisions alone.
+    void all_heights(double x, double y, Row& out) const
+    {
+        for (int k = grid_.heights - 1; k >= 0; --k) {
+            const double z = grid_.z_of(k);
+            Verdict verdict = Verdict::Outside;
+            if (!options_.height_check) {
+                verdict = checker_.is_free({Vec3(x, y, z), rotation_}) ? Verdict::Valid : Verdict::Collision;
+                ++out.exact_checks;
+            }
+            out.poses.push_back({x, y, z, -1, verdict});
+        }
+    }
+
+    static std::int32_t layer_of(const Column& column, const std::optional<Ground>& ground)
+    {
+        if (!ground || !ground->terrain) return -1;
+        for (std::size_t layer = 0; layer < column.layers.size(); ++layer)
+            if (std::abs(column.layers[layer] - ground->height) <= layer_tolerance) return std::int32_t(layer);
+        return -1;
+    }
+
+    const Map& map_;
+    const CollisionChecker& checker_;
+    const RasterOptions& options_;
+    QueryOptions query_;
+    const RasterGrid& grid_;
+    const Mat3 rotation_;
+};
+
+}  // namespace
+
+RasterResult raster(const Map& map, const CollisionChecker& checker, const RasterOptions& options)
+{
+    check(options);
+    RasterResult out;
+    out.dims = options.dims;
+    out.yaw = options.yaw;
+    out.grid = grid_of(map, options);
+    const RasterJudge judge_row(map, checker, options, out.grid);
+    std::vector<Row> rows(out.grid.rows);
+    parallel_for(rows.size(), options.threads, options.progress, [&](std::size_t j) { rows[j] = judge_row.row(int(j)); });
+
+    std::size_t total = 0;
+    for (const Row& row : rows) total += row.poses.size();
+    out.poses.reserve(total);
+    for (Row& row : rows) {
+        for (const RasterPose& pose : row.poses) ++out.counts[std::size_t(pose.verdict)];
+        out.counts[std::size_t(Verdict::Aerial)] += row.aerial;
+        out.exact_checks += row.exact_checks;
+        out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
+        row = {};
+    }
+    return out;
+}
+
+}  // namespace spawnfield

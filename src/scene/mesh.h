@@ -1,0 +1,54 @@
+#pragma once
+
+#include "scene/glob.h"
+
+#include <spawnfield/scene.h>
+
+#include <filesystem>
+
+namespace spawnfield {
+
+/// Label of the faces whose node or material name matches, by the names it looks at.
+struct FaceRule {
+    std::string pattern;
+    bool node = false, material = false;
+    Label label = Label::Obstacle;
+};
+
+struct MeshOptions {
+    enum class Solid { Auto, Yes, No };
+    Pose pose;                  ///< scene_from_part
+    Vec3 scale = Vec3::Ones();  ///< on the file's own axes, after the file's own unit
+    char up = 0;                ///< 'y', 'z'; 0: what the format says, else z
+    Solid solid = Solid::Auto;
+    bool sides_up = false;
+    std::vector<FaceRule> rules;
+};
+
+/// A mesh file as its nodes give it: one welded mesh per node, file axes and units of metres, before scale, up and pose.
+struct FileMesh {
+    struct Node {
+        std::string name;
+        std::vector<Vec3> vertices;           ///< transformed by the node and all its parents
+        std::vector<Triangle> triangles;      ///< counterclockwise from outside also where the node mirrors
+        std::vector<std::uint32_t> materials; ///< one for each triangle
+    };
+    std::vector<Node> nodes;
+    std::vector<std::string> materials;
+    char up = 'z';  ///< what the format says
+};
+
+/// Any format assimp reads. Throws FileError for a file that is missing, malformed, without triangles, or that has
+/// coordinates which are no finite numbers.
+FileMesh read_mesh(const std::filesystem::path& file);
+
+/// y up to z up: (x, y, z) becomes (x, -z, y).
+inline Vec3 turned_up(const Vec3& point, char up) { return up == 'y' ? Vec3(point.x(), -point.z(), point.y()) : point; }
+
+/// Appends the file's faces to the scene as pieces of `part`.
+void append_mesh(Scene& scene, std::uint32_t part, const std::filesystem::path& file, const MeshOptions& options);
+
+/// A horizontal rectangle of the given side lengths around the pose's origin.
+void append_plane(Scene& scene, std::uint32_t part, double size_x, double size_y, const Pose& pose, bool sides_up);
+
+}  // namespace spawnfield

@@ -1,0 +1,149 @@
+#include "base/number.h"
+#include "scene/mesh.h"
+
+#include <spawnfield/error.h>
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <unordered_map>
+
+namespace spawnfield {
+namespace {
+
+using Mat4 = Eigen::Matrix4d;
+
+struct PointHash {
+    std::size_t operator()(const std::array<float, 3>& p) const
+    {
+        std::size_t hash = 0;
+        for (const float x : p) hash = hash * 1000003 + std::hash<float>{}(x);
+        return hash;
+    }
+};
+
+std::string lower(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+Mat4 matrix_of(const aiMatrix4x4& m)
+{
+    Mat4 out;
+    out << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+    return out;
+}
+
+/// The text of COLLADA's <up_axis>; "Y_UP" where the file has none (COLLADA 1.4.1 specification, asset).
+std::string collada_up_axis(const std::filesystem::path& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    std::string head(1 << 16, '\0');
+    stream.read(head.data(), std::streamsize(head.size()));
+    head.resize(std::size_t(stream.gcount()));
+    const std::string tag = "<up_axis>";
+    const std::size_t start = head.find(tag), end = head.find("</up_axis>");
+    if (start == std::string::npos || end == std::string::npos) return "Y_UP";
+    std::string axis = head.substr(start + tag.size(), end - start - tag.size());
+    std::erase_if(axis, [](unsigned char c) { return std::isspace(c); });
+    return axis;
+}
+
+/// Faces of one node with its vertices welded: equal coordinates, as the file gives them, are one vertex.
+class NodeWelder {
+public:
+    NodeWelder(FileMesh::Node& node, const Mat4& transform, const std::string& file)
+        : node_(node), transform_(transform), mirrored_(transform.topLeftCorner<3, 3>().determinant() < 0), file_(file)
+    {
+    }
+
+    void add(const aiMesh& mesh)
+    {
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            if (face.mNumIndices != 3) continue;
+            Triangle triangle{};
+            for (int corner = 0; corner < 3; ++corner) triangle[corner] = vertex(mesh.mVertices[face.mIndices[corner]]);
+            if (mirrored_) std::swap(triangle[1], triangle[2]);
+            if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
+            node_.triangles.push_back(triangle);
+            node_.materials.push_back(mesh.mMaterialIndex);
+        }
+    }
+
+private:
+    std::uint32_t vertex(const aiVector3D& v)
+    {
+        const std::array<float, 3> key{v.x + 0.0f, v.y + 0.0f, v.z + 0.0f};  // -0 becomes 0
+        const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(node_.vertices.size()));
+        if (is_new) {
+            const Eigen::Vector4d point = transform_ * Eigen::Vector4d(v.x, v.y, v.z, 1);
+            if (!point.allFinite())
+                throw FileError(file_, "node \"" + node_.name + "\": a vertex is (" + number(v.x) + ", " + number(v.y) + ", " +
+                                           number(v.z) + "), needs finite coordinates");
+            node_.vertices.push_back(point.head<3>());
+        }
+        return entry->second;
+    }
+
+    FileMesh::Node& node_;
+    const Mat4 transform_;
+    const bool mirrored_;
+    const std::string file_;
+    std::unordered_map<std::array<float, 3>, std::uint32_t, PointHash> index_;
+};
+
+void collect(const aiScene& scene, const aiNode& node, const Mat4& parent, const std::string& file, FileMesh& out)
+{
+    const Mat4 transform = parent * matrix_of(node.mTransformation);
+    if (node.mNumMeshes > 0) {
+        FileMesh::Node collected;
+        collected.name = node.mName.C_Str();
+        NodeWelder welder(collected, transform, file);
+        for (unsigned m = 0; m < node.mNumMeshes; ++m) welder.add(*scene.mMeshes[node.mMeshes[m]]);
+        if (!collected.triangles.empty()) out.nodes.push_back(std::move(collected));
+    }
+    for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], transform, file, out);
+}
+
+}  // namespace
+
+FileMesh read_mesh(const std::filesystem::path& file)
+{
+    if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
+    const std::string extension = lower(file.extension().string());
+    Assimp::Importer importer;
+    // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+    if (scene == nullptr || scene->mRootNode == nullptr)
+        throw FileError(file.string(), std::string("cannot be read as a mesh: ") + importer.GetErrorString());
+
+    FileMesh mesh;
+    for (unsigned m = 0; m < scene->mNumMaterials; ++m) mesh.materials.push_back(scene->mMaterials[m]->GetName().C_Str());
+    Mat4 axes = Mat4::Identity();
+    if (extension == ".gltf" || extension == ".glb") mesh.up = 'y';
+    if (extension == ".dae") {
+        const std::string up = collada_up_axis(file);
+        mesh.up = up == "Z_UP" ? 'z' : 'y';
+        // X_UP (x up, -y right) becomes y up by a quarter turn about z.
+        if (up == "X_UP") axes.topLeftCorner<2, 2>() << 0, -1, 1, 0;
+    }
+    collect(*scene, *scene->mRootNode, axes, file.string(), mesh);
+    if (mesh.nodes.empty()) throw FileError(file.string(), "has no triangles, needs at least one");
+    return mesh;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,212 @@
+#include "scene/elements.h"
+#include "scene/heightmap.h"
+#include "scene/mesh.h"
+#include "scene/octomap_part.h"
+#include "scene/yaml_map.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/scene.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+namespace spawnfield {
+
+Bounds Scene::bounds() const
+{
+    Bounds all;
+    for (const Vec3& vertex : vertices) all.extend(vertex);
+    for (const Primitive& primitive : primitives) {
+        const Bounds box = bounds_of(primitive.shape);
+        all.extend(box.min);
+        all.extend(box.max);
+    }
+    return all;
+}
+
+bool Scene::has_terrain() const
+{
+    const auto is_terrain = [](const Primitive& primitive) { return primitive.label == Label::Terrain; };
+    return std::find(triangle_labels.begin(), triangle_labels.end(), Label::Terrain) != triangle_labels.end() ||
+           std::any_of(primitives.begin(), primitives.end(), is_terrain);
+}
+
+namespace {
+
+std::uint32_t add_part(Scene& scene, const std::string& name, const std::string& kind, Label label)
+{
+    Part part;
+    part.name = name;
+    part.kind = kind;
+    part.label = label;
+    scene.parts.push_back(std::move(part));
+    return static_cast<std::uint32_t>(scene.parts.size() - 1);
+}
+
+Label read_label(const YamlMap& map, const std::string& fallback)
+{
+    const std::string label = map.one_of("label", {"terrain", "obstacle", "water", "ignore"}, fallback);
+    for (const Label candidate : {Label::Terrain, Label::Obstacle, Label::Water})
+        if (label == to_string(candidate)) return candidate;
+    return Label::Ignore;
+}
+
+FaceRule read_rule(const YamlMap& rule)
+{
+    rule.only({"node", "material", "label"});
+    if (rule.has("node") == rule.has("material")) rule.fail("needs one of node, material");
+    if (!rule.has("label")) rule.fail("label", "is missing");
+    const bool by_node = rule.has("node");
+    return {rule.text(by_node ? "node" : "material"), by_node, !by_node, read_label(rule, "")};
+}
+
+std::vector<FaceRule> either_rules(const std::vector<LabelRule>& rules)
+{
+    std::vector<FaceRule> out;
+    for (const LabelRule& rule : rules) out.push_back({rule.pattern, true, true, rule.label});
+    return out;
+}
+
+/// Reads a file that the part names; what is wrong with it is told with part and key.
+template <class Read>
+void in_part(const YamlMap& map, const std::string& key, Read read)
+{
+    const std::string file = map.text(key);
+    try {
+        read(file);
+    } catch (const FileError& error) {
+        map.fail(key, std::string("cannot be used: ") + error.what());
+    }
+}
+
+MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
+{
+    MeshOptions mesh;
+    mesh.pose = part.pose();
+    mesh.scale = part.scale();
+    mesh.up = part.has("up") ? part.one_of("up", {"y", "z"}, "z")[0] : char{0};
+    const std::string solid = part.one_of("solid", {"auto", "true", "false"}, "auto");
+    mesh.solid = solid == "auto" ? MeshOptions::Solid::Auto : solid == "true" ? MeshOptions::Solid::Yes : MeshOptions::Solid::No;
+    mesh.sides_up = part.one_of("sides", {"both", "up"}, "both") == "up";
+    mesh.rules = either_rules(options.labels);
+    if (part.has("labels"))
+        for (const YAML::Node& rule : part.list("labels"))
+            mesh.rules.push_back(read_rule({rule, part.file(), part.place() + ": labels"}));
+    return mesh;
+}
+
+void read_part(const YamlMap& map, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene)
+{
+    const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
+                                      {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels"});
+    if (kind == "mesh") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "mesh", "up", "scale", "solid", "sides", "labels"});
+    else if (kind == "plane") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "plane", "sides"});
+    else if (kind == "heightmap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "heightmap", "sides"});
+    else map.only({"name", "label", "xyz", "rpy", "rpy_deg", kind.c_str()});
+
+    Label label = read_label(map, "obstacle");
+    const std::string name = map.text("name");
+    if (kind != "mesh")
+        for (const FaceRule& rule : either_rules(options.labels))
+            if (matches(rule.pattern, name)) {
+                label = rule.label;
+                break;
+            }
+    const std::uint32_t part = add_part(scene, name, kind, label);
+    if (kind == "mesh") {
+        const MeshOptions mesh = read_mesh_options(map, options);
+        in_part(map, "mesh", [&](const auto& file) { append_mesh(scene, part, folder / file, mesh); });
+    } else if (label == Label::Ignore) {
+        return;
+    } else if (kind == "plane") {
+        const auto size = map.positive_pair("plane");
+        append_plane(scene, part, size[0], size[1], map.pose(), map.one_of("sides", {"both", "up"}, "both") == "up");
+    } else if (kind == "heightmap") {
+        const HeightmapOptions heightmap = read_heightmap_options(map.map("heightmap"));
+        const bool up = map.one_of("sides", {"both", "up"}, "both") == "up";
+        in_part(map.map("heightmap"), "file", [&](const auto& file) {
+            append_heightmap(scene, part, read_heightmap(folder / file, heightmap), map.pose(), up);
+        });
+    } else if (kind == "octomap") {
+        in_part(map, "octomap", [&](const auto& file) { append_octomap(scene, part, folder / file, map.pose()); });
+    } else {
+        scene.primitives.push_back({read_shape(map, kind), part, label});
+        scene.parts[part].solid_pieces = 1;
+    }
+}
+
+Scene read_scene_yaml(const std::filesystem::path& file, const SceneOptions& options)
+{
+    const YamlMap root = read_yaml(file, "spawnfield-scene/1");
+    root.only({"format", "name", "parts"});
+    Scene scene;
+    scene.name = root.text("name", file.stem().string());
+    std::set<std::string> names;
+    std::size_t number = 0;
+    for (const YAML::Node& node : root.list("parts")) {
+        ++number;
+        const YamlMap unnamed(node, file.string(), "part " + std::to_string(number));
+        const std::string name = unnamed.text("name");
+        const YamlMap map(node, file.string(), "part \"" + name + "\"");
+        if (!names.insert(name).second) map.fail("name", "is given to an earlier part too, needs to be unique");
+        read_part(map, file.parent_path(), options, scene);
+    }
+    if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
+    return scene;
+}
+
+bool is_octomap(const std::string& extension) { return extension == ".bt" || extension == ".ot"; }
+
+Scene read_bare_file(const std::filesystem::path& file, const std::string& extension, const SceneOptions& options)
+{
+    Scene scene;
+    scene.name = file.stem().string();
+    Label fallback = Label::Obstacle;
+    if (options.labels.empty()) {
+        fallback = Label::Terrain;
+        scene.notices.push_back(file.string() + ": no label given, so everything is terrain (--label 'GLOB=LABEL' tells it apart)");
+    }
+    if (is_octomap(extension)) {
+        if (options.up != 0 || options.scale != 1.0)
+            throw ArgumentError("load_scene: up and scale are for a mesh; " + file.string() + " is an OctoMap, in metres and z up");
+        for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
+            if (matches(rule->pattern, scene.name)) fallback = rule->label;
+        const std::uint32_t part = add_part(scene, scene.name, "octomap", fallback);
+        if (fallback != Label::Ignore) append_octomap(scene, part, file, {});
+        return scene;
+    }
+    MeshOptions mesh;
+    mesh.scale = Vec3::Constant(options.scale);
+    mesh.up = options.up;
+    mesh.rules = either_rules(options.labels);
+    append_mesh(scene, add_part(scene, scene.name, "mesh", fallback), file, mesh);
+    return scene;
+}
+
+std::string lower_extension(const std::filesystem::path& file)
+{
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return extension;
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file, const SceneOptions& options)
+{
+    if (!(options.scale > 0) || !std::isfinite(options.scale))
+        throw ArgumentError("load_scene", "scale", options.scale, "> 0 m per unit");
+    if (!std::filesystem::is_regular_file(file))
+        throw FileError(file.string(), std::filesystem::exists(file) ? "is no file" : "does not exist; is the path right?");
+    const std::string extension = lower_extension(file);
+    const bool yaml = extension == ".yaml" || extension == ".yml";
+    if (yaml && (options.up != 0 || options.scale != 1.0))
+        throw ArgumentError("load_scene: up and scale are for a bare mesh; give them in " + file.string() + " (keys up, scale)");
+    Scene scene = yaml ? read_scene_yaml(file, options) : read_bare_file(file, extension, options);
+    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored");
+    return scene;
+}
+
+}  // namespace spawnfield
