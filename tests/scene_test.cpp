@@ -306,3 +306,17 @@ TEST_CASE("real scenes have as many triangles of each label as their sources tel
         CHECK(part.solid_pieces + part.sheet_pieces > 1);
     }
 }
+
+TEST_CASE("a label rule that matches nothing is told")
+{
+    const TempFolder temp;
+    temp.write("cube.obj", "o road_1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const auto file = temp.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n  - name: town\n    mesh: cube.obj\n    labels:\n"
+                                               "      - {node: \"road*\", label: terrain}\n      - {node: \"raod*\", label: terrain}\n");
+    SceneOptions options;
+    options.labels = {{"ROAD*", Label::Terrain}, {"lake*", Label::Water}};
+    const std::vector<std::string> notices = load_scene(file, options).notices;
+    REQUIRE(notices.size() == 2);
+    CHECK(notices[0] == file.string() + ": part \"town\": labels: node \"raod*\" matches nothing");
+    CHECK_THAT(notices[1], Contains("label \"lake*\" matches no node, material or part; there are road_1"));
+}

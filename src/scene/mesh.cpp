@@ -88,10 +88,11 @@ private:
 
 }  // namespace
 
-void append_mesh(Scene& scene, std::uint32_t part, const std::filesystem::path& file, const MeshOptions& options)
+MeshNames append_mesh(Scene& scene, std::uint32_t part, const std::filesystem::path& file, const MeshOptions& options)
 {
     const FileMesh mesh = read_mesh(file);
     const char up = options.up != 0 ? options.up : mesh.up;
+    MeshNames names{{}, mesh.materials};
     for (const FileMesh::Node& node : mesh.nodes) {
         std::vector<Label> labels;
         for (const std::uint32_t material : node.materials)
@@ -102,7 +103,9 @@ void append_mesh(Scene& scene, std::uint32_t part, const std::filesystem::path& 
         NodeAppender appender(scene, part, node, options, up);
         for (std::size_t piece = 0; piece < faces.size(); ++piece)
             appender.add_piece(faces[piece], labels, pieces.open_edges[piece]);
+        names.nodes.push_back(node.name);
     }
+    return names;
 }
 
 void append_plane(Scene& scene, std::uint32_t part, double size_x, double size_y, const Pose& pose, bool sides_up)

@@ -45,8 +45,13 @@ FileMesh read_mesh(const std::filesystem::path& file);
 /// y up to z up: (x, y, z) becomes (x, -z, y).
 inline Vec3 turned_up(const Vec3& point, char up) { return up == 'y' ? Vec3(point.x(), -point.z(), point.y()) : point; }
 
+/// What label rules can match in a mesh.
+struct MeshNames {
+    std::vector<std::string> nodes, materials;
+};
+
 /// Appends the file's faces to the scene as pieces of `part`.
-void append_mesh(Scene& scene, std::uint32_t part, const std::filesystem::path& file, const MeshOptions& options);
+MeshNames append_mesh(Scene& scene, std::uint32_t part, const std::filesystem::path& file, const MeshOptions& options);
 
 /// A horizontal rectangle of the given side lengths around the pose's origin.
 void append_plane(Scene& scene, std::uint32_t part, double size_x, double size_y, const Pose& pose, bool sides_up);

@@ -69,6 +69,41 @@ std::vector<FaceRule> either_rules(const std::vector<LabelRule>& rules)
     return out;
 }
 
+using Names = std::vector<std::string>;
+
+bool matches_one(const std::string& pattern, const Names& names)
+{
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return matches(pattern, name); });
+}
+
+/// A rule that matches nothing is most often a slip of the pen.
+void tell_idle_rules(const YamlMap& part, const std::vector<FaceRule>& rules, const MeshNames& names, Scene& scene)
+{
+    for (const FaceRule& rule : rules) {
+        if (rule.node && rule.material) continue;  // from the caller; told when all parts are read
+        if (matches_one(rule.pattern, rule.node ? names.nodes : names.materials)) continue;
+        scene.notices.push_back(part.file() + ": " + part.place() + ": labels: " + (rule.node ? "node" : "material") + " \"" +
+                                rule.pattern + "\" matches nothing");
+    }
+}
+
+void tell_idle_rules(const std::filesystem::path& file, const std::vector<LabelRule>& rules, const Names& names, Scene& scene)
+{
+    constexpr std::size_t most = 8;
+    std::string some;
+    for (std::size_t i = 0; i < std::min(most, names.size()); ++i) some += (i > 0 ? ", " : "") + names[i];
+    if (names.size() > most) some += ", …";
+    for (const LabelRule& rule : rules)
+        if (!matches_one(rule.pattern, names))
+            scene.notices.push_back(file.string() + ": label \"" + rule.pattern + "\" matches no node, material or part; there are " + some);
+}
+
+void add_names(const Names& more, Names& names)
+{
+    for (const std::string& name : more)
+        if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
 /// Reads a file that the part names; what is wrong with it is told with part and key.
 template <class Read>
 void in_part(const YamlMap& map, const std::string& key, Read read)
@@ -97,7 +132,7 @@ MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
     return mesh;
 }
 
-void read_part(const YamlMap& map, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene)
+void read_part(const YamlMap& map, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene, Names& names)
 {
     const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
                                       {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels"});
@@ -108,16 +143,23 @@ void read_part(const YamlMap& map, const std::filesystem::path& folder, const Sc
 
     Label label = read_label(map, "obstacle");
     const std::string name = map.text("name");
-    if (kind != "mesh")
+    if (kind != "mesh") {
+        add_names({name}, names);
         for (const FaceRule& rule : either_rules(options.labels))
             if (matches(rule.pattern, name)) {
                 label = rule.label;
                 break;
             }
+    }
     const std::uint32_t part = add_part(scene, name, kind, label);
     if (kind == "mesh") {
         const MeshOptions mesh = read_mesh_options(map, options);
-        in_part(map, "mesh", [&](const auto& file) { append_mesh(scene, part, folder / file, mesh); });
+        in_part(map, "mesh", [&](const auto& file) {
+            const MeshNames found = append_mesh(scene, part, folder / file, mesh);
+            tell_idle_rules(map, mesh.rules, found, scene);
+            add_names(found.nodes, names);
+            add_names(found.materials, names);
+        });
     } else if (label == Label::Ignore) {
         return;
     } else if (kind == "plane") {
@@ -143,17 +185,19 @@ Scene read_scene_yaml(const std::filesystem::path& file, const SceneOptions& opt
     root.only({"format", "name", "parts"});
     Scene scene;
     scene.name = root.text("name", file.stem().string());
-    std::set<std::string> names;
+    std::set<std::string> part_names;
+    Names names;
     std::size_t number = 0;
     for (const YAML::Node& node : root.list("parts")) {
         ++number;
         const YamlMap unnamed(node, file.string(), "part " + std::to_string(number));
         const std::string name = unnamed.text("name");
         const YamlMap map(node, file.string(), "part \"" + name + "\"");
-        if (!names.insert(name).second) map.fail("name", "is given to an earlier part too, needs to be unique");
-        read_part(map, file.parent_path(), options, scene);
+        if (!part_names.insert(name).second) map.fail("name", "is given to an earlier part too, needs to be unique");
+        read_part(map, file.parent_path(), options, scene, names);
     }
     if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
+    tell_idle_rules(file, options.labels, names, scene);
     return scene;
 }
 
@@ -175,13 +219,18 @@ Scene read_bare_file(const std::filesystem::path& file, const std::string& exten
             if (matches(rule->pattern, scene.name)) fallback = rule->label;
         const std::uint32_t part = add_part(scene, scene.name, "octomap", fallback);
         if (fallback != Label::Ignore) append_octomap(scene, part, file, {});
+        tell_idle_rules(file, options.labels, {scene.name}, scene);
         return scene;
     }
     MeshOptions mesh;
     mesh.scale = Vec3::Constant(options.scale);
     mesh.up = options.up;
     mesh.rules = either_rules(options.labels);
-    append_mesh(scene, add_part(scene, scene.name, "mesh", fallback), file, mesh);
+    const MeshNames found = append_mesh(scene, add_part(scene, scene.name, "mesh", fallback), file, mesh);
+    Names names;
+    add_names(found.nodes, names);
+    add_names(found.materials, names);
+    tell_idle_rules(file, options.labels, names, scene);
     return scene;
 }
 

@@ -41,7 +41,11 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
     summary.extra = {std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns",
                      std::to_string(list.draws) + " draws, " + std::to_string(list.too_close) + " too close"};
     summary.finish();
-    return list.spawns.size() < options.count ? fewer_found : done;
+    if (list.spawns.size() == options.count) return done;
+    notice(args, "only " + std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) +
+                     " spawns were found; a smaller --min-distance, another --offset or a wider " +
+                     (command == "sample" ? "--region" : "--bounds") + " may give more");
+    return fewer_found;
 }
 
 int run_search(const SpawnArgs& args)
