@@ -98,7 +98,11 @@ int main(int argc, char** argv)
     CLI::App app{"Times every stage of spawnfield on its benchmark scenes, and checks that it computes the same at any number of threads."};
     BenchArgs args;
     add_options(app, args);
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
     try {
         if (args.maps.empty()) measure(args);
         else write_maps(args);

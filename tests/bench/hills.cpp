@@ -105,7 +105,7 @@ void Land::add_hill(Random& random, double height, double spread)
     const auto distance = [this](int i, int j) { return std::min(wrapped(i - j), wrapped(j - i)) / double(cells_); };
     for (int row = 0; row < cells_; ++row)
         for (int col = 0; col < cells_; ++col)
-            at(row, col) += height * std::exp(-0.5 * Vec2(distance(row, top_row), distance(col, top_col)).squaredNorm() / (spread * spread));
+            at(row, col) += height * std::exp(-0.5 * (Vec2(distance(row, top_row), distance(col, top_col)) / spread).squaredNorm());
 }
 
 void Land::move_lowest_to(int row, int col)

@@ -7,6 +7,7 @@
 
 #include <numbers>
 #include <numeric>
+#include <tuple>
 
 using namespace spawnfield;
 
@@ -186,7 +187,8 @@ Measurement Workbench::read_map()
 {
     if (!std::filesystem::exists(folder_ / "map")) bake(0);
     const auto read = timed([&] { return spawnfield::read_map(folder_ / "map"); });
-    return {elements(read.result.scene), read.seconds, Digest().add(digest_of(read.result.scene)).add(digest_of(read.result.index)).value()};
+    const auto& [scene, index] = std::tie(read.result.scene, read.result.index);
+    return {elements(scene), read.seconds, Digest().add(digest_of(scene)).add(digest_of(index)).value()};
 }
 
 Measurement Workbench::raster(const RasterOptions& options)
