@@ -203,6 +203,7 @@ TEST_CASE("counts and distances out of their limits are refused")
     const Map map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     CHECK_THROWS_WITH(sample(map, checker, sample_options(0, 1)), "sample: count is 0, needs >= 1");
+    CHECK_THROWS_WITH(sample(map, checker, sample_options(99999999999, 1)), "sample: count is 99999999999, needs at most 100000000");
     CHECK_THROWS_WITH(sample(map, checker, sample_options(1, -1)), "sample: min_distance is -1, needs >= 0 m");
     SearchOptions options;
     options.max_failures = 0;

@@ -98,8 +98,11 @@ struct SpawnList {
     std::uint64_t exact_checks = 0;
 };
 
+/// More than anybody starts, and what still fits into memory.
+inline constexpr std::size_t max_spawns = 100000000;
+
 struct SpawnOptions : QueryOptions {
-    std::size_t count = 1;       ///< >= 1
+    std::size_t count = 1;       ///< 1 .. max_spawns
     double min_distance = 0;     ///< m between positions, >= 0
     Bounds bounds = {};          ///< empty: the map's; sample leaves z aside
     bool random_yaw = false;     ///< uniform in [-pi, pi), else yaw

@@ -10,6 +10,8 @@ namespace spawnfield {
 void check_spawn_options(const char* function, const SpawnOptions& options)
 {
     if (options.count < 1) throw ArgumentError(function, "count", double(options.count), ">= 1");
+    if (options.count > max_spawns)
+        throw ArgumentError(function, "count", double(options.count), "at most " + std::to_string(max_spawns));
     if (!(options.min_distance >= 0) || !std::isfinite(options.min_distance))
         throw ArgumentError(function, "min_distance", options.min_distance, ">= 0 m");
     if (!(options.max_height >= 0)) throw ArgumentError(function, "max_height", options.max_height, ">= 0 m");

@@ -18,6 +18,7 @@ void fill_spawn(SpawnOptions& options, const SpawnArgs& args, const std::string&
 {
     fill(options, args, label);
     if (args.count < 1) throw bad_value("-n", double(args.count), ">= 1");
+    if (args.count > static_cast<long long>(max_spawns)) throw bad_value("-n", double(args.count), "at most " + std::to_string(max_spawns));
     options.count = std::size_t(args.count);
     options.min_distance = args.min_distance;
     options.seed = args.seed;
