@@ -20,6 +20,7 @@ struct GridFrame {
 /// there are at most max_columns of them.
 GridFrame frame_around(const Bounds& bounds, double cell);
 inline constexpr double max_columns = 1e8;
+inline constexpr double max_side = 1e6;  ///< rows or columns, as libpng takes them
 
 using HeightImage = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

@@ -73,12 +73,10 @@ private:
 double default_resolution(const Bounds& bounds, BakeReport& report)
 {
     double resolution = 0.1;
-    const auto columns = [&] {
-        return std::ceil((bounds.max.x() - bounds.min.x()) / resolution) * std::ceil((bounds.max.y() - bounds.min.y()) / resolution);
-    };
-    while (columns() > max_columns) resolution *= 2;
+    const auto side = [&](int axis) { return std::ceil((bounds.max[axis] - bounds.min[axis]) / resolution); };
+    while (side(0) * side(1) > max_columns || std::max(side(0), side(1)) > max_side) resolution *= 2;
     if (resolution > 0.1)
-        report.notices.push_back("resolution is " + number(resolution) + " m, as 0.1 m would pass 100 million columns (--resolution sets it)");
+        report.notices.push_back("resolution is " + number(resolution) + " m, as 0.1 m would pass 100 million columns, or a million along one side (--resolution sets it)");
     return resolution;
 }
 

@@ -155,6 +155,9 @@ GridFrame frame_around(const Bounds& bounds, double cell)
     if (!(cols * rows <= max_columns))
         throw ArgumentError("frame_around", "columns at a cell of " + number(cell) + " m", cols * rows,
                             "at most " + number(max_columns) + "; take a coarser resolution");
+    if (!(std::max(cols, rows) <= max_side))
+        throw ArgumentError("frame_around", "columns along one side at a cell of " + number(cell) + " m", std::max(cols, rows),
+                            "at most " + number(max_side) + " (PNG's limit); take a coarser resolution");
     return {bounds.min.x(), bounds.min.y(), cell, int(rows), int(cols)};
 }
 

@@ -44,8 +44,9 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
     summary.finish();
     if (list.spawns.size() == options.count) return done;
     notice(args, "only " + std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) +
-                     " spawns were found; a smaller --min-distance, another --offset or a wider " +
-                     (command == "sample" ? "--region" : "--bounds") + " may give more");
+                     " spawns were found; a smaller --min-distance, " +
+                     (command == "sample" ? "another --offset or a wider --region" : "more --max-failures or wider --bounds") +
+                     " may give more");
     return fewer_found;
 }
 
