@@ -155,7 +155,8 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     map.index = build_column_index(map.scene);
     lap("index");
     const TerrainMap terrain = rasterize_terrain(map.scene, map.index, frame, options.threads, part_of(options.progress, 0, 0.6));
-    map.layers = page_image(terrain, "height.0").isNaN().all() ? 0 : terrain.layers();
+    const HeightImage top = page_image(terrain, "height.0");
+    map.layers = top.isNaN().all() ? 0 : terrain.layers();
     lap("terrain");
     const OccupancyTree tree = build_occupancy(map.scene, map.index, map.bounds, map.occupancy_resolution, options.threads,
                                                part_of(options.progress, 0.6, 0.9));
@@ -163,7 +164,7 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     lap("occupancy");
 
     write_terrain(target.path() / "terrain.tiff", terrain);
-    const auto z_range = write_heightmap_png(page_image(terrain, "height.0"), target.path() / "heightmap.png");
+    const auto z_range = write_heightmap_png(top, target.path() / "heightmap.png");
     tree.write(target.path() / "occupancy.bt");
     write_file_atomically(target.path() / "geometry.bin", geometry_bytes(map.scene, map.index));
     write_preview(terrain, map.name, target.path() / "preview.png");
