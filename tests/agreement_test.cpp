@@ -24,7 +24,7 @@ std::string described(const Pose& pose, Verdict fast, Verdict slow)
 }
 
 /// Judges poses the fast way and by the tests' own decision.
-void compare(const Map& map, const Robot& robot, const std::vector<Pose>& poses, Tally& tally)
+void compare(const TestMap& map, const Robot& robot, const std::vector<Pose>& poses, Tally& tally)
 {
     const CollisionChecker checker = checker_of(map, robot);
     const std::vector<Judgement> fast = check_poses(map, checker, poses);
@@ -48,7 +48,7 @@ void compare(const Map& map, const Robot& robot, const std::vector<Pose>& poses,
 
 TEST_CASE("check agrees with an independent decision on 20,000 random poses in the training arena")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     Tally tally;
     compare(map, husky(), random_poses(map.scene, 7, 20000), tally);
     INFO(tally.first);
@@ -64,7 +64,7 @@ TEST_CASE("check agrees with an independent decision on 20,000 random poses in 3
 {
     Tally all;
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-        const Map map = map_of(random_scene(seed));
+        const TestMap map = map_of(random_scene(seed));
         Tally tally;
         compare(map, random_robot(seed), random_poses(map.scene, seed, 667), tally);
         INFO("scene " << seed << " " << tally.first);
@@ -84,11 +84,11 @@ TEST_CASE("layers agree with an independent second implementation")
 {
     std::size_t several = 0, different = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-        const Map map = map_of(random_scene(seed));
+        const TestMap map = map_of(random_scene(seed));
         Random random(seed);
         for (int i = 0; i < 200; ++i) {
             const double x = random.between(-10, 10), y = random.between(-10, 10);
-            const std::vector<double> fast = column_at(map.scene, map.index, x, y).layers, slow = slow::layers(map.scene, x, y);
+            const std::vector<double> fast = column_at(map.geometry, x, y).layers, slow = slow::layers(map.scene, x, y);
             several += fast.size() > 1;
             bool same = fast.size() == slow.size();
             for (std::size_t k = 0; same && k < fast.size(); ++k) same = std::abs(fast[k] - slow[k]) < 1e-7;
@@ -104,7 +104,7 @@ TEST_CASE("layers agree with an independent second implementation")
 TEST_CASE("a larger robot never gains a valid pose")
 {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-        const Map map = map_of(random_scene(seed));
+        const TestMap map = map_of(random_scene(seed));
         const CollisionChecker small = checker_of(map, load_robot("box:0.4,0.3,0.2@0,0,0.2"));
         const CollisionChecker large = checker_of(map, load_robot("box:0.5,0.4,0.3@0,0,0.2"));
         std::size_t lost = 0;
@@ -119,7 +119,7 @@ TEST_CASE("a larger robot never gains a valid pose")
 
 TEST_CASE("a mirrored scene mirrors the verdicts")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     Scene mirrored = map.scene;  // y to -y: boxes and balls are their own mirror images
     for (Primitive& primitive : mirrored.primitives) {
         primitive.shape.pose.position.y() *= -1;
@@ -127,15 +127,15 @@ TEST_CASE("a mirrored scene mirrors the verdicts")
         primitive.shape.pose.rotation = flip * primitive.shape.pose.rotation * flip;
     }
     for (Vec3& vertex : mirrored.vertices) vertex.y() *= -1;
-    const Map other = map_of(mirrored);
+    const TestMap other = map_of(mirrored);
     const Robot robot = husky();
     const CollisionChecker checker = checker_of(map, robot), mirror_checker = checker_of(other, robot);
     for (Pose pose : random_poses(map.scene, 3, 3000)) {
         const Vec3 p = pose.position;
-        const Judgement here = judge(map, checker, column_at(map.scene, map.index, p.x(), p.y()), pose);
+        const Judgement here = judge(map, checker, column_at(map.geometry, p.x(), p.y()), pose);
         const Mat3 flip = Vec3(1, -1, 1).asDiagonal();
         pose = {Vec3(p.x(), -p.y(), p.z()), flip * pose.rotation * flip};
-        const Judgement there = judge(other, mirror_checker, column_at(other.scene, other.index, p.x(), -p.y()), pose);
+        const Judgement there = judge(other, mirror_checker, column_at(other.geometry, p.x(), -p.y()), pose);
         CHECK(here.verdict == there.verdict);
         CHECK(here.hit.has_value() == there.hit.has_value());
         if (here.hit && there.hit) CHECK(here.hit->part == there.hit->part);

@@ -159,10 +159,15 @@ TEST_CASE("a damaged map is refused by every command, with the file named")
                                    "heatmap map -o out" + husky};
     const std::string good = bytes_of(desk / "map/geometry.bin");
     std::string bad = good;
-    bad[bad.size() / 2] = char(bad[bad.size() / 2] ^ 4);
+    bad[40] = char(bad[40] ^ 4);
     desk.write("map/geometry.bin", bad);
     for (const std::string& query : queries)
-        desk.check({query, "spawnfield: map/geometry.bin: differs from its checksum in map.yaml: it was altered; bake the map again"}, 4);
+        desk.check({query, "spawnfield: map/geometry.bin: is damaged (the checksum of its head differs from map.yaml's); bake the map again"}, 4);
+    bad = good;
+    bad[bad.size() / 2] = char(bad[bad.size() / 2] ^ 4);
+    desk.write("map/geometry.bin", bad);
+    desk.check({"raster map -o out --dims 2 --step 1" + husky, "spawnfield: map/geometry.bin: is damaged (the checksum of a tile differs); bake the map again"}, 4);
+    desk.check({"info map --verify", "spawnfield: map/geometry.bin: differs from its checksum in map.yaml: it was altered; bake the map again"}, 4);
     desk.write("map/geometry.bin", good);
 
     const std::string tree = bytes_of(desk / "map/occupancy.bt");
@@ -177,7 +182,7 @@ TEST_CASE("a damaged map is refused by every command, with the file named")
     const std::string yaml = bytes_of(desk / "map/map.yaml");
     desk.write("map/map.yaml", "format: spawnfield-map/99" + yaml.substr(yaml.find('\n')));
     for (const std::string& query : queries)
-        desk.check({query, "spawnfield: map/map.yaml: has format version 99, this program reads 1; bake the map again or use a newer spawnfield"}, 4);
+        desk.check({query, "spawnfield: map/map.yaml: has format version 99, this program reads 2; bake the map again or use a newer spawnfield"}, 4);
 }
 
 TEST_CASE("what cannot be written ends with 1, and nothing is left of it")

@@ -105,7 +105,7 @@ TEST_CASE("bake writes a map, tells what it made, and its summary")
     const spawnfield::Map map = spawnfield::read_map(folder / "deep/map");
     CHECK(json["map_hash"] == map.hash);
     CHECK(map.resolution == 0.25);
-    for (const char* stage : {"index", "terrain", "occupancy"}) CHECK(json["seconds"].at(stage) >= 0.0);
+    for (const char* stage : {"geometry", "terrain", "occupancy"}) CHECK(json["seconds"].at(stage) >= 0.0);
 }
 
 TEST_CASE("bake passes its options on")
@@ -118,8 +118,13 @@ TEST_CASE("bake passes its options on")
     CHECK(map.bounds.min == spawnfield::Vec3(-1, -4, -1));
     CHECK(map.bounds.max == spawnfield::Vec3(3, 1, 5));
     CHECK(map.occupancy_resolution == 0.5);
-    CHECK(map.scene.bounds().max.isApprox(spawnfield::Vec3(2, 0, 2)));
-    CHECK(map.scene.triangle_labels == std::vector{spawnfield::Label::Terrain, spawnfield::Label::Obstacle});
+    const spawnfield::Column column = column_at(map.geometry, 0.2, -0.1);  // y is up and twice as large: upright triangles
+    CHECK(column.spans.empty());
+    CHECK(map.labels[std::size_t(spawnfield::Label::Terrain)].triangles == 1);
+    CHECK(map.labels[std::size_t(spawnfield::Label::Obstacle)].triangles == 1);
+    const spawnfield::CollisionChecker checker(map.geometry, spawnfield::load_robot("box:0.1,0.1,0.1@0,0,0"));
+    CHECK_FALSE(checker.is_free({spawnfield::Vec3(1.9, 0, 0.05), spawnfield::Mat3::Identity()}));
+    CHECK(checker.is_free({spawnfield::Vec3(2.1, 0, 0.05), spawnfield::Mat3::Identity()}));
     const ProgramRun plain = run_program(folder, "bake a.obj -o map --quiet");
     CHECK(plain.status == 0);
     CHECK(plain.err.empty());

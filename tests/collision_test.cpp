@@ -10,8 +10,8 @@ namespace {
 
 bool is_free(const Scene& scene, const std::string& robot, const Vec3& position, double yaw = 0)
 {
-    const ColumnIndex index = build_column_index(scene);
-    return CollisionChecker(scene, index, load_robot(robot)).is_free({position, rotation_from_rpy(0, 0, yaw)});
+    const Geometry geometry(scene);
+    return CollisionChecker(geometry, load_robot(robot)).is_free({position, rotation_from_rpy(0, 0, yaw)});
 }
 
 Robot round_robot(ShapeKind kind, const Vec3& size, const Vec3& centre)
@@ -46,9 +46,9 @@ TEST_CASE("a touching pair collides, and 1e-5 m of room is free, for all robots 
                 const Pose at{{far, -far, 0.25}, Mat3::Identity()};
                 if (sheet) hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(size, size), at));
                 else hand::add_mesh(scene, Label::Terrain, hand::moved(hand::box({size, size, 1}), {at.position - Vec3(0, 0, 0.5), at.rotation}));
-                const ColumnIndex index = build_column_index(scene);
+                const Geometry geometry(scene);
                 for (std::size_t r = 0; r < robots.size(); ++r) {
-                    const CollisionChecker checker(scene, index, robots[r]);
+                    const CollisionChecker checker(geometry, robots[r]);
                     for (const double yaw : {0.0, 0.3, 0.7853981633974483, 1.5707963267948966}) {
                         CAPTURE(size, sheet, far, r, yaw);
                         const auto free_at = [&](double gap) {
@@ -89,8 +89,8 @@ TEST_CASE("each convex part of a robot counts, and the space between them is fre
     hand::add_mesh(scene, Label::Obstacle, hand::box({0.2, 0.2, 0.2}));
     Robot table = load_robot("box:0.1,0.1,1@1,0,0");
     table.parts.push_back(load_robot("box:0.1,0.1,1@-1,0,0").parts[0]);
-    const ColumnIndex index = build_column_index(scene);
-    const CollisionChecker checker(scene, index, table);
+    const Geometry geometry(scene);
+    const CollisionChecker checker(geometry, table);
     CHECK(checker.is_free({{0, 0, 0}, Mat3::Identity()}));
     CHECK_FALSE(checker.is_free({{1, 0, 0}, Mat3::Identity()}));
     CHECK_FALSE(checker.is_free({{-1, 0, 0}, Mat3::Identity()}));
@@ -106,8 +106,8 @@ TEST_CASE("the hit is the first part in the scene's order, be it triangles or a 
     ball.size[0] = 1;
     hand::add_shape(scene, Label::Obstacle, ball);
     hand::add_mesh(scene, Label::Terrain, hand::box({8, 8, 0.2}));
-    const ColumnIndex index = build_column_index(scene);
-    const CollisionChecker checker(scene, index, load_robot("box:0.5,0.5,0.5@0,0,0"));
+    const Geometry geometry(scene);
+    const CollisionChecker checker(geometry, load_robot("box:0.5,0.5,0.5@0,0,0"));
     REQUIRE(checker.find_hit({{0, 0, 0}, Mat3::Identity()}));
     CHECK(checker.find_hit({{0, 0, 0}, Mat3::Identity()})->part == 1);
     CHECK(checker.find_hit({{3, 3, 0}, Mat3::Identity()})->part == 2);
@@ -116,8 +116,8 @@ TEST_CASE("the hit is the first part in the scene's order, be it triangles or a 
 
 TEST_CASE("against the occupancy tree a pose is free where no occupied voxel is")
 {
-    const Map map = training_map();
-    const auto tree = std::make_shared<const OccupancyTree>(build_occupancy(map.scene, map.index, map.bounds, 0.1));
+    const TestMap map = training_map();
+    const auto tree = std::make_shared<const OccupancyTree>(build_occupancy(map.geometry, map.bounds, 0.1));
     const CollisionChecker voxels(tree, husky());
     const CollisionChecker exact = checker_of(map, husky());
     std::size_t both_free = 0, only_exact = 0;

@@ -18,7 +18,7 @@ Shape box_at(const Vec3& size, const Vec3& centre)
     return shape;
 }
 
-Column column(const Scene& scene, double x, double y) { return column_at(scene, build_column_index(scene), x, y); }
+Column column(const Scene& scene, double x, double y) { return column_at(Geometry(scene), x, y); }
 
 std::optional<Ground> ground(const Scene& scene, const Vec3& p) { return ground_below(column(scene, p.x(), p.y()), p.z()); }
 
@@ -148,7 +148,7 @@ TEST_CASE("water is the crossings of a sheet and the top of a solid, and collide
     hand::add_shape(scene, Label::Water, box_at({1, 1, 3}, {0, 0, 1.5}));
     CHECK(column(scene, 0.2, 0.2).water == Heights{3, 0.4});
     CHECK(column(scene, 1.5, 1.4).water == Heights{0.4});
-    const Map map = map_of(scene);
+    const TestMap map = map_of(scene);
     const Robot robot = load_robot("box:0.3,0.3,0.3");
     const CollisionChecker checker = checker_of(map, robot);
     const Pose pose{{1.5, 1.4, 0.3}, Mat3::Identity()};

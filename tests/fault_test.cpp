@@ -1,5 +1,7 @@
 #include "catch.h"
+#include "geometry/tile.h"
 #include "map/geometry_file.h"
+#include "map/tiled_file.h"
 #include "mesh_text.h"
 #include "scene_text.h"
 #include "test_map.h"
@@ -8,6 +10,8 @@
 #include <spawnfield/poses.h>
 
 #include <opencv2/imgcodecs.hpp>
+
+#include <xxhash.h>
 
 #include <limits>
 
@@ -193,7 +197,7 @@ TEST_CASE("meshes that are empty, not finite, or none at all are refused by name
 TEST_CASE("options out of their limits are refused by function, argument, value and limit")
 {
     const TempFolder folder;
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     const auto raster_complaint = [&](auto change) {
         RasterOptions options;
@@ -277,7 +281,11 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
         folder.write(file, bad);
         const std::string altered = "@/" + file + ": differs from its checksum in map.yaml: it was altered; bake the map again";
         CHECK(complaint(folder, [&] { verify_map(map); }) == altered);
-        if (std::string(name) == "geometry.bin") CHECK(read() == altered);
+        if (std::string(name) == "geometry.bin") {
+            const Map harmed = read_map(map);  // what is not touched is not read
+            CHECK(complaint(folder, [&] { column_at(harmed.geometry, 0.1, 0.2); }) ==
+                  "@/map/geometry.bin: is damaged (the checksum of a tile differs); bake the map again");
+        }
         folder.write(file, good);
         const Map opened = read_map(map);
         folder.write(file, bad);
@@ -293,11 +301,11 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
     folder.write("map/map.yaml", bad);
     CHECK(read() == "@/map/map.yaml: differs from the hash in its last line: it was altered; bake the map again");
     bad = good;
-    bad.replace(0, bad.find('\n'), "format: spawnfield-map/2");
+    bad.replace(0, bad.find('\n'), "format: spawnfield-map/3");
     folder.write("map/map.yaml", bad);
-    CHECK(read() == "@/map/map.yaml: has format version 2, this program reads 1; bake the map again or use a newer spawnfield");
+    CHECK(read() == "@/map/map.yaml: has format version 3, this program reads 2; bake the map again or use a newer spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
-    CHECK(read() == "@/map/map.yaml: is no map.yaml of spawnfield (its first line is not `format: spawnfield-map/1`)");
+    CHECK(read() == "@/map/map.yaml: is no map.yaml of spawnfield (its first line is not `format: spawnfield-map/2`)");
     fs::remove(map / "map.yaml");
     CHECK(read() == "@/map: is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");
@@ -318,10 +326,10 @@ TEST_CASE("geometry.bin and map.yaml give a result or a FileError wherever they 
     bake_small(folder);
     const fs::path map = folder / "map";
     check_harmed(folder, "map/geometry.bin", bytes_of(map / "geometry.bin"), 7, [&](const fs::path& file) {
-        Scene scene;
-        ColumnIndex index;
-        read_geometry(file, scene, index);
-        column_at(scene, index, 0.1, 0.2);
+        const std::string bytes = bytes_of(file);
+        if (bytes.size() < 24) return;
+        const Geometry geometry = open_geometry(file, head_checksum(bytes));  // as if map.yaml said so
+        column_at(geometry, 0.1, 0.2);
     });
     check_harmed(folder, "map/map.yaml", bytes_of(map / "map.yaml"), 3, [&](const fs::path&) { read_map(map); });
 }
@@ -362,29 +370,40 @@ TEST_CASE("input files give a result or a FileError wherever they are cut or alt
 TEST_CASE("a geometry file whose indices lead nowhere is refused, checksums or not")
 {
     const TempFolder folder;
-    const Scene good = load_parts(folder, "  - {name: a, label: terrain, plane: [1, 1]}\n  - {name: b, sphere: 1}\n");
-    const ColumnIndex index = build_column_index(good);
-    const auto geometry_complaint = [&](auto change) {
-        Scene scene = good;
-        ColumnIndex changed = index;
-        change(scene, changed);
-        const fs::path file = folder.write("geometry.bin", geometry_bytes(scene, changed));
-        Scene back;
-        ColumnIndex back_index;
-        return complaint(folder, [&] { read_geometry(file, back, back_index); });
+    const Scene scene = load_parts(folder, "  - {name: a, label: terrain, plane: [1, 1]}\n  - {name: b, sphere: 1}\n");
+    const auto complaint_of = [&](auto change) {
+        const Geometry geometry(scene);
+        Geometry::Impl changed;
+        changed.elements = geometry.impl().elements;
+        changed.parts = geometry.impl().parts;
+        changed.levels = geometry.impl().levels;
+        std::string tiles(geometry.impl().bytes.view);
+        TileEntry* entry = nullptr;  // of the tile with the triangles and the sphere
+        for (TileEntry& tile : changed.levels[0].tiles)
+            if (tile.size > 0) entry = &tile;
+        char* const tile = tiles.data() + entry->offset;
+        change(changed, tile, Tile({tile, entry->size}));
+        entry->checksum = XXH64(tile, entry->size, 0);
+        changed.bytes = spawnfield::bytes_of(std::move(tiles));
+        changed.make_states();
+        const fs::path file = folder / "geometry.bin";
+        return complaint(folder, [&] {
+            write_geometry(file, Geometry(std::make_shared<const Geometry::Impl>(std::move(changed))));
+            column_at(open_geometry(file, head_checksum(::bytes_of(file))), 0.1, 0.2);
+        });
     };
+    const auto at = [](const auto& item) -> char* { return const_cast<char*>(reinterpret_cast<const char*>(&item)); };
     const std::string wanted = "@/geometry.bin: contradicts itself; bake the map again";
-    CHECK(geometry_complaint([](Scene&, ColumnIndex&) {}).empty());
-    CHECK(geometry_complaint([](Scene& s, ColumnIndex&) { s.triangles[1][2] = 4; }) == wanted);
-    CHECK(geometry_complaint([](Scene& s, ColumnIndex&) { s.triangle_labels.pop_back(); }) == wanted);
-    CHECK(geometry_complaint([](Scene& s, ColumnIndex&) { s.triangle_labels[0] = Label(7); }) == wanted);
-    CHECK(geometry_complaint([](Scene& s, ColumnIndex&) { s.triangle_pieces[0] = 1; }) == wanted);
-    CHECK(geometry_complaint([](Scene& s, ColumnIndex&) { s.pieces[0].part = 2; }) == wanted);
-    CHECK(geometry_complaint([](Scene& s, ColumnIndex&) { s.pieces[0].triangle_count = 3; }) == wanted);
-    CHECK(geometry_complaint([](Scene& s, ColumnIndex&) { s.primitives[0].part = 9; }) == wanted);
-    CHECK(geometry_complaint([](Scene& s, ColumnIndex&) { s.primitives[0].shape.kind = ShapeKind::Hull; }) == wanted);
-    CHECK(geometry_complaint([](Scene& s, ColumnIndex&) { s.parts[0].label = Label(9); }) == wanted);
-    CHECK(geometry_complaint([](Scene&, ColumnIndex& i) { i.levels[0].elements[0] = 99; }) == wanted);
-    CHECK(geometry_complaint([](Scene&, ColumnIndex& i) { i.levels[0].offsets.back() += 1; }) == wanted);
-    CHECK(geometry_complaint([](Scene&, ColumnIndex& i) { i.levels[0].cell = 0; }) == wanted);
+    CHECK(complaint_of([](auto&, char*, const Tile&) {}).empty());
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.triangles[1].corners[2]) = 4; }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.triangles[0].label) = 7; }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.triangles[0].piece) = 1; }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.pieces[0].part) = 2; }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.primitives[0].part) = 9; }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.primitives[0].kind) = char(ShapeKind::Hull); }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.refs[0]) = 99; }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.starts.back()) += 1; }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.head->triangles) += 1; }) == wanted);
+    CHECK(complaint_of([&](auto& g, char*, const Tile&) { g.levels[0].cell = 0; }) == wanted);
+    CHECK(complaint_of([&](auto& g, char*, const Tile&) { g.levels[0].tiles.back().offset = 1 << 20; }) == wanted);
 }

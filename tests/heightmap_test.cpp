@@ -38,14 +38,14 @@ Scene load(const TempFolder& folder, const std::string& keys, const std::string&
 
 double height(const Scene& scene, double x, double y)
 {
-    const Column column = column_at(scene, build_column_index(scene), x, y);
+    const Column column = column_at(Geometry(scene), x, y);
     REQUIRE(column.layers.size() == 1);
     return column.layers[0];
 }
 
 bool has_ground(const Scene& scene, double x, double y)
 {
-    return !column_at(scene, build_column_index(scene), x, y).layers.empty();
+    return !column_at(Geometry(scene), x, y).layers.empty();
 }
 
 }  // namespace
@@ -195,7 +195,7 @@ TEST_CASE("real heightmaps have the heights that their sources tell")
 
     // The river's image was made from an ESRI grid: 50 x 37 heights, the northern row first, after six header lines.
     const Scene river = load_scene(*shared / "dem/river/scene.yaml");
-    const ColumnIndex index = build_column_index(river);
+    const Geometry geometry(river);
     std::ifstream grid(*shared / "dem/river/DEM-kootenai_37x50_1x1.asc");
     std::string line;
     for (int header = 0; header < 6; ++header) std::getline(grid, line);
@@ -204,10 +204,10 @@ TEST_CASE("real heightmaps have the heights that their sources tell")
         for (int col = 0; col < 50; ++col) {
             double wanted = 0;
             REQUIRE(grid >> wanted);
-            const Column column = column_at(river, index, col - 24.5, 18 - row);
+            const Column column = column_at(geometry, col - 24.5, 18 - row);
             REQUIRE(column.layers.size() == 1);
             largest = std::max(largest, std::abs(column.layers[0] - wanted));
         }
     CHECK(largest < 1e-4);
-    CHECK(column_at(river, index, 0.3, 0.1).water == std::vector<double>{538.8});
+    CHECK(column_at(geometry, 0.3, 0.1).water == std::vector<double>{538.8});
 }

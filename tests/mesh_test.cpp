@@ -154,7 +154,7 @@ TEST_CASE("a mirrored sheet with sides: up still looks up")
     folder.write("a.dae", mesh_text::dae(nodes));
     const Scene scene = load_parts(folder, "  - {name: a, mesh: a.dae, label: terrain, sides: up}\n");
     CHECK(scene.pieces[0].sides_up);
-    CHECK(column_at(scene, build_column_index(scene), 0.3, 0.2).layers == std::vector<double>{0});
+    CHECK(column_at(Geometry(scene), 0.3, 0.2).layers == std::vector<double>{0});
 }
 
 TEST_CASE("label rules look at the node's or the material's name; the first match wins, case does not count")
@@ -223,9 +223,9 @@ TEST_CASE("a cube without a face is a sheet, and its open edges are told; its cl
     CHECK(scene.parts[0].sheet_pieces == 1);
     CHECK(scene.parts[0].open_edges == 4);
     CHECK(scene.parts[0].triangles == 22);
-    const ColumnIndex index = build_column_index(scene);
-    CHECK(column_at(scene, index, 0.1, 0.2).spans.size() == 2);  // floor and roof of a shell
-    CHECK(column_at(scene, index, 3.5, 0.5).spans.size() == 1);  // filled
+    const Geometry geometry(scene);
+    CHECK(column_at(geometry, 0.1, 0.2).spans.size() == 2);  // floor and roof of a shell
+    CHECK(column_at(geometry, 3.5, 0.5).spans.size() == 1);  // filled
 }
 
 TEST_CASE("solid: false empties what is closed, solid: true fills what is open")
@@ -239,7 +239,7 @@ TEST_CASE("solid: false empties what is closed, solid: true fills what is open")
     const Scene filled = load_mesh(folder, "a.obj", open, ", solid: true");
     CHECK(filled.parts[0].solid_pieces == 1);
     CHECK(filled.parts[0].open_edges == 4);
-    CHECK(column_at(filled, build_column_index(filled), 0.1, 0.2).spans.size() == 1);
+    CHECK(column_at(Geometry(filled), 0.1, 0.2).spans.size() == 1);
 }
 
 TEST_CASE("a closed piece of which some faces are water or ignored is no solid")

@@ -12,9 +12,9 @@ TEST_CASE("a voxel is occupied when a surface touches it or its centre is inside
 {
     Scene scene;
     hand::add_mesh(scene, Label::Obstacle, hand::moved(hand::box({2, 2, 2}), {{0.05, 0, 0}, Mat3::Identity()}));  // -0.95 .. 1.05
-    Map map = map_of(scene);
+    TestMap map = map_of(scene);
     map.bounds = {Vec3(-3, -3, -3), Vec3(3, 3, 3)};
-    const OccupancyTree tree = build_occupancy(map.scene, map.index, map.bounds, 0.25);
+    const OccupancyTree tree = build_occupancy(map.geometry, map.bounds, 0.25);
     CHECK(tree.resolution() == 0.25);
     CHECK(tree.at({0, 0, 0}) == State::Occupied);         // deep inside
     CHECK(tree.at({1.1, 0, 0}) == State::Occupied);       // the surface at 1.05 lies in 1.00 .. 1.25
@@ -32,8 +32,8 @@ TEST_CASE("water is free space")
     Scene scene;
     hand::add_mesh(scene, Label::Water, hand::rectangle(2, 2));
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(2, 2), {{0, 0, -1}, Mat3::Identity()}));
-    const Map map = map_of(scene);
-    const OccupancyTree tree = build_occupancy(map.scene, map.index, map.bounds, 0.25);
+    const TestMap map = map_of(scene);
+    const OccupancyTree tree = build_occupancy(map.geometry, map.bounds, 0.25);
     CHECK(tree.at({0.1, 0.1, -0.1}) == State::Free);
     CHECK(tree.at({0.1, 0.1, -0.9}) == State::Occupied);
 }
@@ -42,10 +42,10 @@ TEST_CASE("voxels of random scenes are what a box of their size meets")
 {
     std::size_t occupied = 0, free = 0;
     for (std::uint64_t seed = 1; seed <= 25; ++seed) {
-        const Map map = map_of(random_scene(seed));
+        const TestMap map = map_of(random_scene(seed));
         Random random(seed);
         const double side = random.between(0.1, 0.5);
-        const OccupancyTree tree = build_occupancy(map.scene, map.index, map.bounds, side);
+        const OccupancyTree tree = build_occupancy(map.geometry, map.bounds, side);
         RobotPart voxel;
         voxel.shape.size = Vec3::Constant(side);
         const Robot robot{"voxel", {voxel}, {}, {}};
@@ -67,14 +67,14 @@ TEST_CASE("voxels of random scenes are what a box of their size meets")
 
 TEST_CASE("an occupancy tree has the same leaves at any thread count and is pruned")
 {
-    const Map map = map_of(random_scene(3));
-    const OccupancyTree one = build_occupancy(map.scene, map.index, map.bounds, 0.1, 1);
-    const OccupancyTree two = build_occupancy(map.scene, map.index, map.bounds, 0.1, 2);
+    const TestMap map = map_of(random_scene(3));
+    const OccupancyTree one = build_occupancy(map.geometry, map.bounds, 0.1, 1);
+    const OccupancyTree two = build_occupancy(map.geometry, map.bounds, 0.1, 2);
     CHECK(one.leaves() == two.leaves());
     Scene empty;
     hand::add_mesh(empty, Label::Terrain, hand::moved(hand::rectangle(0.1, 0.1), {{0.3, 0.3, 0.3}, Mat3::Identity()}));
     const Map large = map_of(empty);
-    const OccupancyTree tree = build_occupancy(large.scene, large.index, {Vec3(0, 0, 0), Vec3(64, 64, 64)}, 1);
+    const OccupancyTree tree = build_occupancy(large.geometry, {Vec3(0, 0, 0), Vec3(64, 64, 64)}, 1);
     CHECK(tree.leaves() < 64);  // 262,144 voxels, all but one free
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("bounds beyond OctoMap's keys are refused with the resolution that wou
 {
     Scene scene;
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(2, 2), {{5000, 0, 0}, Mat3::Identity()}));
-    const Map map = map_of(scene);
-    CHECK_THROWS_WITH(build_occupancy(map.scene, map.index, map.bounds, 0.1), Contains("resolution is 0.1, needs at least 0.15"));
-    CHECK_THROWS_WITH(build_occupancy(map.scene, map.index, map.bounds, 0), "build_occupancy: resolution is 0, needs > 0 m");
+    const TestMap map = map_of(scene);
+    CHECK_THROWS_WITH(build_occupancy(map.geometry, map.bounds, 0.1), Contains("resolution is 0.1, needs at least 0.15"));
+    CHECK_THROWS_WITH(build_occupancy(map.geometry, map.bounds, 0), "build_occupancy: resolution is 0, needs > 0 m");
 }

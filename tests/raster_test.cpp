@@ -20,7 +20,7 @@ Verdict judged(const Map& map, const CollisionChecker& checker, const RasterPose
 {
     QueryOptions options;
     options.max_height = max_height;
-    return judge(map, checker, column_at(map.scene, map.index, pose.x, pose.y),
+    return judge(map, checker, column_at(map.geometry, pose.x, pose.y),
                  {Vec3(pose.x, pose.y, pose.z), rotation_from_rpy(0, 0, yaw)}, options).verdict;
 }
 
@@ -28,7 +28,7 @@ Verdict judged(const Map& map, const CollisionChecker& checker, const RasterPose
 
 TEST_CASE("the thesis's 2D raster of the training arena has 41 x 41 columns and a pose per layer")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     RasterOptions options;
     options.step = 0.5;
@@ -40,7 +40,7 @@ TEST_CASE("the thesis's 2D raster of the training arena has 41 x 41 columns and 
     std::size_t expected = 0;
     for (int j = 0; j < 41; ++j)
         for (int i = 0; i < 41; ++i)
-            expected += column_at(map.scene, map.index, -10 + 0.5 * i, -10 + 0.5 * j).layers.size();
+            expected += column_at(map.geometry, -10 + 0.5 * i, -10 + 0.5 * j).layers.size();
     CHECK(result.poses.size() == expected);
     CHECK(result.poses.size() > 1681);  // the floor goes on under platform, ramp and the flying box, and the underground box has its own top
     for (const RasterPose& pose : result.poses) CHECK(pose.verdict == judged(map, checker, pose, 0, 1e9));
@@ -48,7 +48,7 @@ TEST_CASE("the thesis's 2D raster of the training arena has 41 x 41 columns and 
 
 TEST_CASE("rows run y after y, x fastest, each column from the top down")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     for (const int dims : {2, 3}) {
         RasterOptions options;
@@ -66,7 +66,7 @@ TEST_CASE("rows run y after y, x fastest, each column from the top down")
 TEST_CASE("a 3D raster has the verdicts of every pose asked by itself")
 {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-        const Map map = map_of(seed == 1 ? training_map().scene : random_scene(seed));
+        const TestMap map = map_of(seed == 1 ? training_map().scene : random_scene(seed));
         const Robot robot = random_robot(seed);
         const CollisionChecker checker = checker_of(map, robot);
         RasterOptions options;
@@ -99,7 +99,7 @@ TEST_CASE("upper limits of bounds and max_height belong to the raster")
 {
     Scene scene;
     hand::add_mesh(scene, Label::Terrain, hand::rectangle(2, 2));
-    const Map map = map_of(scene);
+    const TestMap map = map_of(scene);
     const CollisionChecker checker = checker_of(map, load_robot("box:0.1,0.1,0.05"));
     RasterOptions options;
     options.dims = 3;
@@ -116,7 +116,7 @@ TEST_CASE("upper limits of bounds and max_height belong to the raster")
 
 TEST_CASE("aerial poses are written in their places when asked for")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     RasterOptions options;
     options.dims = 3;
@@ -131,7 +131,7 @@ TEST_CASE("aerial poses are written in their places when asked for")
 
 TEST_CASE("without height check every pose is asked for collisions alone")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     RasterOptions options;
     options.dims = 3;
@@ -148,7 +148,7 @@ TEST_CASE("without height check every pose is asked for collisions alone")
 
 TEST_CASE("layers narrow a raster to some of each column")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     const auto poses = [&](LayerChoice choice) {
         RasterOptions options;
@@ -168,7 +168,7 @@ TEST_CASE("layers narrow a raster to some of each column")
 
 TEST_CASE("columns outside the map are outside")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     RasterOptions options;
     options.dims = 3;
@@ -181,7 +181,7 @@ TEST_CASE("columns outside the map are outside")
 
 TEST_CASE("a raster is the same bytes at any thread count")
 {
-    const Map map = map_of(random_scene(4));
+    const TestMap map = map_of(random_scene(4));
     const CollisionChecker checker = checker_of(map, random_robot(4));
     std::string first;
     for (const int threads : {1, 2, 8})
@@ -199,7 +199,7 @@ TEST_CASE("a raster is the same bytes at any thread count")
 
 TEST_CASE("a raster refuses steps and heights out of their limits")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     const auto run = [&](auto change) {
         RasterOptions options;

@@ -106,7 +106,7 @@ TEST_CASE("check in real scenes agrees with the independent decision")
     if (!folder) return;
     std::size_t decided = 0, valid = 0, collision = 0;
     for (const RealScene& real : real_scenes()) {
-        const Map map = map_of(load_scene(*folder / real.file));
+        const TestMap map = map_of(load_scene(*folder / real.file));
         if (map.scene.triangles.size() > 50000) continue;  // the slow way looks at each triangle for each pose
         const Robot robot = load_robot((*folder / real_robots()[1].file).string());
         const CollisionChecker checker = checker_of(map, robot);
@@ -138,7 +138,7 @@ TEST_CASE("a map of a mesh with doubled faces has layers, but nothing inside")
     if (!folder) return;
     const Scene scene = load_scene(*folder / "mine/scene.yaml");
     CHECK(scene.parts[0].solid_pieces == 0);
-    const Map map = map_of(scene);
+    const TestMap map = map_of(scene);
     const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.3,0.3"));
     SampleOptions sampling;
     sampling.count = 100;
@@ -150,7 +150,7 @@ TEST_CASE("the garage has spawns on every deck and none in the slabs")
 {
     const auto folder = shared_scenes();
     if (!folder) return;
-    const Map map = map_of(load_scene(*folder / "parking_garage/scene.yaml"));
+    const TestMap map = map_of(load_scene(*folder / "parking_garage/scene.yaml"));
     const CollisionChecker checker = checker_of(map, husky());
     SampleOptions sampling;
     sampling.count = 3000;
@@ -160,7 +160,7 @@ TEST_CASE("the garage has spawns on every deck and none in the slabs")
     for (const Spawn& spawn : sample(map, checker, sampling).spawns) {
         const double ground = spawn.position.z() - 0.1;
         for (std::size_t deck = 0; deck < decks.size(); ++deck) on_deck[deck] += std::abs(ground - decks[deck]) < 0.02;
-        for (const double layer : column_at(map.scene, map.index, spawn.position.x(), spawn.position.y()).layers)
+        for (const double layer : column_at(map.geometry, spawn.position.x(), spawn.position.y()).layers)
             CHECK((layer <= ground + 0.1 || layer >= ground + 0.49));  // the robot is 0.39 m tall, slabs are 0.21 m thick
     }
     for (const int n : on_deck) CHECK(n > 30);

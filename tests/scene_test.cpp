@@ -131,7 +131,7 @@ TEST_CASE("a tilted plane goes with its pose")
 {
     const TempFolder folder;
     const Scene scene = load_parts(folder, "  - {name: ramp, label: terrain, plane: [4, 2], xyz: [0, 0, 1], rpy_deg: [0, -30, 0]}\n");
-    const Column column = column_at(scene, build_column_index(scene), 1.0, 0.5);
+    const Column column = column_at(Geometry(scene), 1.0, 0.5);
     REQUIRE(column.layers.size() == 1);
     CHECK(column.layers[0] == Approx(1 + std::tan(std::numbers::pi / 6)));
 }
@@ -195,7 +195,7 @@ TEST_CASE("each occupied leaf of an OctoMap part is a solid box of its size")
     CHECK(large->size == Vec3(1, 1, 1));
     check_near(small->pose.position, {10 - 0.25, 0.25, 1.25});  // (x, y) turns to (-y, x)
     check_near(large->pose.position, {10 - 0.5, 2.5, 1.5});
-    const Column column = column_at(scene, build_column_index(scene), 9.5, 2.5);
+    const Column column = column_at(Geometry(scene), 9.5, 2.5);
     REQUIRE(column.layers.size() == 1);
     CHECK(column.layers[0] == Approx(2));
 }
@@ -266,9 +266,9 @@ TEST_CASE("a bare mesh is scaled, then turned up")
 TEST_CASE("the training arena has the thesis's heights")
 {
     const Scene scene = load_scene(std::filesystem::path(SPAWNFIELD_SOURCE) / "maps/training/scene.yaml");
-    const ColumnIndex index = build_column_index(scene);
+    const Geometry geometry(scene);
     CHECK(scene.parts.size() == 16);
-    const auto layers = [&](double x, double y) { return column_at(scene, index, x, y).layers; };
+    const auto layers = [&](double x, double y) { return column_at(geometry, x, y).layers; };
     CHECK(layers(0, 0) == std::vector<double>{-0.1 + 0.05});
     REQUIRE(layers(-1.84, 7).size() == 1);  // the platform stands in the floor: one layer
     CHECK(layers(-1.84, 7)[0] == Approx(0.93));
@@ -280,7 +280,7 @@ TEST_CASE("the training arena has the thesis's heights")
     const double slope = std::tan(10 * std::numbers::pi / 180);
     CHECK(layers(1, 7)[0] == Approx(-0.254 + 0.5 / std::cos(10 * std::numbers::pi / 180) + 3 * slope));
     CHECK(layers(7.8, 7)[0] == Approx(-0.05));
-    CHECK(column_at(scene, index, 7.3, -7.4).water == std::vector<double>{1.45});
+    CHECK(column_at(geometry, 7.3, -7.4).water == std::vector<double>{1.45});
 }
 
 TEST_CASE("real scenes have as many triangles of each label as their sources tell")

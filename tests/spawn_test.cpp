@@ -18,7 +18,7 @@ Verdict judged(const Map& map, const CollisionChecker& checker, const Spawn& spa
     QueryOptions options;
     options.max_height = max_height;
     const Vec3& p = spawn.position;
-    return judge(map, checker, column_at(map.scene, map.index, p.x(), p.y()), {p, rotation_from_rpy(0, 0, spawn.yaw)}, options).verdict;
+    return judge(map, checker, column_at(map.geometry, p.x(), p.y()), {p, rotation_from_rpy(0, 0, spawn.yaw)}, options).verdict;
 }
 
 double smallest_distance(const std::vector<Spawn>& spawns)
@@ -79,7 +79,7 @@ TEST_CASE("every sample is valid by check and keeps its distance")
 
 TEST_CASE("search is its definition, draw by draw")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     for (const double distance : {0.0, 1.5}) {
         SearchOptions options;
@@ -98,7 +98,7 @@ TEST_CASE("search is its definition, draw by draw")
 
 TEST_CASE("search stops after the failures in a row that it is given")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, load_robot("box:30,30,30"));
     SearchOptions options;
     options.count = 3;
@@ -110,7 +110,7 @@ TEST_CASE("search stops after the failures in a row that it is given")
 
 TEST_CASE("the same seed gives the same bytes at any thread count, another seed others")
 {
-    const Map map = map_of(random_scene(6));
+    const TestMap map = map_of(random_scene(6));
     const CollisionChecker checker = checker_of(map, random_robot(6));
     const auto sampled = [&](int threads, std::uint64_t seed) {
         SampleOptions options = sample_options(200, 0.2);
@@ -140,7 +140,7 @@ TEST_CASE("20,000 samples are uniform by area over the feasible region")
     hand::add_mesh(scene, Label::Terrain, hand::rectangle(6, 6));
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(3, 3), {{0, 0, 2}, Mat3::Identity()}));
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(6, 6), {{8, 0, 4}, rotation_from_rpy(0, 1.0471975511965976, 0)}));
-    const Map map = map_of(scene);
+    const TestMap map = map_of(scene);
     const CollisionChecker checker = checker_of(map, load_robot("box:0.001,0.001,0.001@0,0,0"));
     SampleOptions options = sample_options(20000, 0);
     const SpawnList list = sample(map, checker, options);
@@ -164,7 +164,7 @@ TEST_CASE("20,000 samples are uniform by area over the feasible region")
 
 TEST_CASE("random yaw is uniform and a fixed yaw is kept")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, load_robot("box:0.1,0.1,0.1"));
     SampleOptions options = sample_options(4000, 0);
     std::vector<int> bins(8, 0);
@@ -177,7 +177,7 @@ TEST_CASE("random yaw is uniform and a fixed yaw is kept")
 
 TEST_CASE("a region narrows a sample and layers choose a storey")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     SampleOptions options = sample_options(100, 0);
     options.bounds = {Vec3(-3, 5, 0), Vec3(0, 9, 0)};
@@ -190,7 +190,7 @@ TEST_CASE("a region narrows a sample and layers choose a storey")
 
 TEST_CASE("a sample that does not fit gives what it found")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     const SpawnList list = sample(map, checker, sample_options(100, 6));
     CHECK(list.spawns.size() >= 4);
@@ -200,7 +200,7 @@ TEST_CASE("a sample that does not fit gives what it found")
 
 TEST_CASE("counts and distances out of their limits are refused")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     CHECK_THROWS_WITH(sample(map, checker, sample_options(0, 1)), "sample: count is 0, needs >= 1");
     CHECK_THROWS_WITH(sample(map, checker, sample_options(99999999999, 1)), "sample: count is 99999999999, needs at most 100000000");

@@ -11,7 +11,7 @@ namespace {
 
 TerrainMap rasterized(const Map& map, double cell, int threads = 0)
 {
-    return rasterize_terrain(map.scene, map.index, frame_around(map.bounds, cell), threads);
+    return rasterize_terrain(map.geometry, frame_around(map.bounds, cell), threads);
 }
 
 /// Whether z lies in one of a cell's intervals.
@@ -33,14 +33,14 @@ std::vector<HeightImage> images(const TerrainMap& terrain, const std::string& na
 
 TEST_CASE("pages hold the layers and the water of the column at each cell's centre, row 0 the largest y")
 {
-    const Map map = training_map();
+    const TestMap map = training_map();
     const TerrainMap terrain = rasterized(map, 0.25);
     const auto heights = images(terrain, "height");
     const HeightImage water = page_image(terrain, "water");
     REQUIRE(heights.size() == 2);
     for (int row = 0; row < terrain.frame.rows; ++row)
         for (int col = 0; col < terrain.frame.cols; ++col) {
-            const Column column = column_at(map.scene, map.index, terrain.frame.x_of(col), terrain.frame.y_of(row));
+            const Column column = column_at(map.geometry, terrain.frame.x_of(col), terrain.frame.y_of(row));
             for (std::size_t k = 0; k < heights.size(); ++k) {
                 if (k < column.layers.size()) CHECK(heights[k](row, col) == float(column.layers[k]));
                 else CHECK(std::isnan(heights[k](row, col)));
@@ -58,7 +58,7 @@ TEST_CASE("a ball is as high as its equation says")
     ball.kind = ShapeKind::Sphere;
     ball.size[0] = 3;
     hand::add_shape(scene, Label::Terrain, ball);
-    const Map map = map_of(scene);
+    const TestMap map = map_of(scene);
     const TerrainMap terrain = rasterized(map, 0.1);
     const HeightImage top = page_image(terrain, "height.0"), bound = page_image(terrain, "bound_top.0");
     for (int row = 0; row < terrain.frame.rows; ++row)
@@ -75,7 +75,7 @@ TEST_CASE("bounds hold all that is solid anywhere in a cell, and solid pages onl
 {
     std::size_t solid_points = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-        const Map map = map_of(random_scene(seed));
+        const TestMap map = map_of(random_scene(seed));
         Random random(seed + 100);
         const TerrainMap terrain = rasterized(map, random.between(0.05, 0.6));
         const auto tops = images(terrain, "bound_top"), bottoms = images(terrain, "bound_bottom");
@@ -92,7 +92,7 @@ TEST_CASE("bounds hold all that is solid anywhere in a cell, and solid pages onl
             }
             if (!solid_tops.empty() && !std::isnan(solid_tops[0](row, col))) {
                 double highest = -1e9;
-                for (const Span& span : column_at(map.scene, map.index, terrain.frame.x_of(col), terrain.frame.y_of(row)).spans)
+                for (const Span& span : column_at(map.geometry, terrain.frame.x_of(col), terrain.frame.y_of(row)).spans)
                     highest = std::max(highest, span.top);
                 CHECK(solid_tops[0](row, col) == float(highest));
             }
@@ -105,7 +105,7 @@ TEST_CASE("bounds say nothing of cells that hold nothing")
 {
     Scene scene;
     hand::add_mesh(scene, Label::Terrain, hand::rectangle(4, 4));
-    Map map = map_of(scene);
+    TestMap map = map_of(scene);
     map.bounds = {Vec3(-4, -4, 0), Vec3(4, 4, 1)};
     const TerrainMap terrain = rasterized(map, 0.5);
     const HeightImage bound = page_image(terrain, "bound_top.0");
@@ -118,7 +118,7 @@ TEST_CASE("bounds say nothing of cells that hold nothing")
 
 TEST_CASE("terrain pages are the same bytes at any thread count")
 {
-    const Map map = map_of(random_scene(9));
+    const TestMap map = map_of(random_scene(9));
     const TerrainMap one = rasterized(map, 0.02, 1);
     for (const int threads : {2, 8}) {
         const TerrainMap other = rasterized(map, 0.02, threads);

@@ -7,19 +7,26 @@
 
 #include <memory>
 
+/// A map together with the scene that it was made of.
+struct TestMap : spawnfield::Map {
+    spawnfield::Scene scene;
+};
+
 /// A scene with what queries need, without files.
-inline spawnfield::Map map_of(spawnfield::Scene scene)
+inline TestMap map_of(spawnfield::Scene scene)
 {
-    spawnfield::Map map;
+    TestMap map;
     map.name = scene.name;
     map.bounds = scene.bounds();
-    map.scene = std::move(scene);
-    map.index = spawnfield::build_column_index(map.scene);
+    map.geometry = spawnfield::Geometry(scene);
+    map.parts = scene.parts;
+    map.labels = scene.count_labels();
     map.layers = 1;
+    map.scene = std::move(scene);
     return map;
 }
 
-inline spawnfield::Map training_map()
+inline TestMap training_map()
 {
     return map_of(spawnfield::load_scene(SPAWNFIELD_SOURCE "/maps/training/scene.yaml"));
 }
@@ -28,5 +35,5 @@ inline spawnfield::Robot husky() { return spawnfield::load_robot(SPAWNFIELD_SOUR
 
 inline spawnfield::CollisionChecker checker_of(const spawnfield::Map& map, const spawnfield::Robot& robot)
 {
-    return {map.scene, map.index, robot};
+    return {map.geometry, robot};
 }

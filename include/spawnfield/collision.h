@@ -25,8 +25,8 @@ public:
     /// m; libccd's own tolerance for exact contact, measured.
     static constexpr double touch_margin = 1e-6;
 
-    /// Against the scene's own geometry; scene and index must outlive the checker.
-    CollisionChecker(const Scene& scene, const ColumnIndex& index, const Robot& robot);
+    /// Against the scene's own geometry.
+    CollisionChecker(const Geometry& geometry, const Robot& robot);
     /// Against the occupied voxels of a baked tree instead.
     CollisionChecker(std::shared_ptr<const OccupancyTree> tree, const Robot& robot);
     CollisionChecker(CollisionChecker&&) noexcept;

@@ -13,8 +13,9 @@ struct Map {
     Bounds bounds;                    ///< poses beyond them in x and y are `outside`
     double resolution = 0.1;          ///< of the terrain, m
     double occupancy_resolution = 0;  ///< m
-    Scene scene;
-    ColumnIndex index;
+    Geometry geometry;
+    std::vector<Part> parts;          ///< of the scene, in its order
+    LabelCounts labels{};
     int layers = 0;                   ///< most terrain layers above one cell centre
     std::string scene_file;           ///< name of the file it was baked from
     std::string scene_hash;           ///< xxh64 of that file, 16 hexadecimal digits
@@ -61,6 +62,6 @@ OccupancyTree read_occupancy(const Map& map);
 /// Sizes and checksums of all files of the folder. Throws FileError at the first that differs.
 void verify_map(const std::filesystem::path& folder);
 
-inline constexpr int map_format_version = 1;
+inline constexpr int map_format_version = 2;
 
 }  // namespace spawnfield

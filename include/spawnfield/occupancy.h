@@ -33,7 +33,7 @@ private:
 /// of their radius too wide.
 /// Throws ArgumentError unless resolution > 0 and the bounds lie within 32768 voxels of the scene's origin (OctoMap's
 /// 16-bit keys).
-OccupancyTree build_occupancy(const Scene& scene, const ColumnIndex& index, const Bounds& bounds, double resolution,
+OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution,
                               int threads = 0, const Progress& progress = {});
 
 /// Throws FileError.

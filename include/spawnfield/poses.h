@@ -23,7 +23,7 @@ PoseTable read_poses(const std::filesystem::path& file);
 std::vector<Spawn> read_spawns(const std::filesystem::path& file);
 
 /// Table's columns, then verdict,ground,height_above,hit. Numbers read back to the same double.
-std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Scene& scene);
+std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const std::vector<Part>& parts);
 
 /// x,y,z,yaw,layer,verdict, told to `sink` in pieces; layer is empty where the ground is no layer. With `aerial` also the
 /// aerial poses of a 3D raster that `raster` leaves out, in their places.

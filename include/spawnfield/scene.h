@@ -34,6 +34,12 @@ struct Primitive {
     Label label = Label::Obstacle;
 };
 
+/// Triangles and primitives of one label.
+struct LabelCount {
+    std::uint64_t triangles = 0, primitives = 0;
+};
+using LabelCounts = std::array<LabelCount, 3>;  ///< of Terrain, Obstacle, Water
+
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// The world: triangles and primitives, labelled, in metres, z up. Everything of one part stands together, in the
@@ -51,6 +57,7 @@ struct Scene {
 
     Bounds bounds() const;
     bool has_terrain() const;
+    LabelCounts count_labels() const;
 };
 
 /// `pattern=label`: faces whose node or material name (meshes), or parts whose name (others), match the glob.

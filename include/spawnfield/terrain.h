@@ -54,7 +54,7 @@ HeightImage page_image(const TerrainMap& terrain, const std::string& name);
 /// Vertical rays at the cells' centres, and the z range of every triangle and primitive clipped to each cell it meets.
 /// Solid intervals beyond the eighth are left out of solid_*, and joined over the smallest gaps in bound_*.
 /// O(elements + cells covered). Source of the clipping: Sutherland, Hodgman, Reentrant polygon clipping, 1974.
-TerrainMap rasterize_terrain(const Scene& scene, const ColumnIndex& index, const GridFrame& frame, int threads = 0,
+TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,
                              const Progress& progress = {});
 
 }  // namespace spawnfield

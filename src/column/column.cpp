@@ -1,7 +1,4 @@
-#include "column/bins.h"
-#include "scene/elements.h"
-
-#include <spawnfield/column.h>
+#include "column/columns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,96 +6,9 @@
 namespace spawnfield {
 namespace {
 
-using Vec2 = Eigen::Vector2d;
-
-/// Whether the edge a-b crosses the ray from p towards +x. One answer per edge, whichever triangle asks: the ends are
-/// put in a fixed order first, so two triangles never disagree on their common edge.
-bool edge_crosses(const Vec3& a, const Vec3& b, double x, double y)
-{
-    if ((a.y() > y) == (b.y() > y)) return false;
-    const bool ordered = a.y() < b.y();
-    const Vec3& low = ordered ? a : b;
-    const Vec3& high = ordered ? b : a;
-    const double side = (high.x() - low.x()) * (y - low.y()) - (x - low.x()) * (high.y() - low.y());
-    return side > 0;
-}
-
 struct Hit {
     Interval z;
     bool terrain;
-};
-
-/// A triangle as the vertical line through (x, y) sees it.
-class SeenTriangle {
-public:
-    SeenTriangle(const std::array<Vec3, 3>& corners, double x, double y)
-        : a_(corners[0]), b_(corners[1]), c_(corners[2]), x_(x), y_(y)
-    {
-        const Vec2 ab = (b_ - a_).head<2>(), ac = (c_ - a_).head<2>();
-        area_ = ab.x() * ac.y() - ab.y() * ac.x();
-        longest_ = std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (c_ - b_).head<2>().squaredNorm()}));
-    }
-
-    /// Seen edge-on: thinner than the tolerance, so that its height over a point means nothing.
-    bool is_vertical() const { return std::abs(area_) <= touch_tolerance * longest_; }
-    bool looks_up() const { return area_ > 0; }
-
-    bool is_crossed() const
-    {
-        return edge_crosses(a_, b_, x_, y_) ^ edge_crosses(b_, c_, x_, y_) ^ edge_crosses(c_, a_, x_, y_);
-    }
-
-    /// Whether the line passes through it, edges included to touch_tolerance.
-    bool is_touched() const
-    {
-        const double sign = area_ > 0 ? 1 : -1;
-        return is_left(a_, b_, sign) && is_left(b_, c_, sign) && is_left(c_, a_, sign);
-    }
-
-    double height() const
-    {
-        if (area_ == 0) return std::max({a_.z(), b_.z(), c_.z()});
-        const double wb = ((x_ - a_.x()) * (c_.y() - a_.y()) - (y_ - a_.y()) * (c_.x() - a_.x())) / area_;
-        const double wc = ((b_.x() - a_.x()) * (y_ - a_.y()) - (b_.y() - a_.y()) * (x_ - a_.x())) / area_;
-        const double z = a_.z() + wb * (b_.z() - a_.z()) + wc * (c_.z() - a_.z());
-        return std::clamp(z, std::min({a_.z(), b_.z(), c_.z()}), std::max({a_.z(), b_.z(), c_.z()}));
-    }
-
-    /// For a vertical triangle: the segment in which the line runs along it.
-    std::optional<Interval> segment() const
-    {
-        std::optional<Interval> joined;
-        for (const auto& [p, q] : {std::pair{&a_, &b_}, std::pair{&b_, &c_}, std::pair{&c_, &a_}}) extend(*p, *q, joined);
-        return joined;
-    }
-
-private:
-    bool is_left(const Vec3& p, const Vec3& q, double sign) const
-    {
-        const Vec2 edge = (q - p).head<2>();
-        const double cross = edge.x() * (y_ - p.y()) - edge.y() * (x_ - p.x());
-        return sign * cross >= -touch_tolerance * edge.norm();
-    }
-
-    /// Joins the heights at which the line meets the edge p-q, if it does.
-    void extend(const Vec3& p, const Vec3& q, std::optional<Interval>& joined) const
-    {
-        const Vec2 edge = (q - p).head<2>(), to(x_ - p.x(), y_ - p.y());
-        const double length = edge.norm();
-        const double along = length > touch_tolerance ? to.dot(edge) / length : 0;
-        if (along < -touch_tolerance || along > length + touch_tolerance) return;
-        const Vec2 off = length > touch_tolerance ? Vec2(to - along / length * edge) : to;
-        if (off.norm() > touch_tolerance) return;
-        Interval here{std::min(p.z(), q.z()), std::max(p.z(), q.z())};
-        if (length > touch_tolerance) {
-            const double z = p.z() + std::clamp(along / length, 0.0, 1.0) * (q.z() - p.z());
-            here = {z, z};
-        }
-        joined = joined ? Interval{std::min(joined->bottom, here.bottom), std::max(joined->top, here.top)} : here;
-    }
-
-    const Vec3 &a_, &b_, &c_;
-    double x_, y_, area_, longest_;
 };
 
 /// Inside intervals of a filled piece from its crossings, bottom up. An odd count can only come from a piece that is
@@ -134,115 +44,104 @@ void join(std::vector<Hit>& intervals, double tolerance)
     intervals.resize(kept);
 }
 
-/// Whether the line may meet the element at all: cheap, and most elements of a bin are out.
-bool may_meet(const Scene& scene, std::uint32_t element, double x, double y)
-{
-    if (!is_triangle(scene, element)) return true;
-    const Triangle& t = scene.triangles[element];
-    const Vec3 &a = scene.vertices[t[0]], &b = scene.vertices[t[1]], &c = scene.vertices[t[2]];
-    const double reach = touch_tolerance;
-    return !((a.x() > x + reach && b.x() > x + reach && c.x() > x + reach) ||
-             (a.x() < x - reach && b.x() < x - reach && c.x() < x - reach) ||
-             (a.y() > y + reach && b.y() > y + reach && c.y() > y + reach) ||
-             (a.y() < y - reach && b.y() < y - reach && c.y() < y - reach));
-}
-
+/// Puts columns together from the hits of their lines; keeps its scratch memory between them.
 class ColumnBuilder {
 public:
-    ColumnBuilder(const Scene& scene, double x, double y) : scene_(scene), x_(x), y_(y) {}
-
-    void add_piece(const Piece& piece, const std::uint32_t* first, const std::uint32_t* last)
+    /// Appends what the hits, in the order of their elements, amount to.
+    void build(std::span<const SurfaceHit> hits, Column& out)
     {
-        hits_.clear();
-        crossings_.clear();
-        const bool water = scene_.triangle_labels[*first] == Label::Water;  // a solid piece is water throughout
-        for (const std::uint32_t* t = first; t != last; ++t) add_triangle(piece, *t);
-        if (piece.solid) {
-            pair_crossings(crossings_, piece.bottom, hits_);
-            join(hits_, touch_tolerance);
+        const std::size_t first_span = out.spans.size(), first_water = out.water.size();
+        for (std::size_t i = 0; i < hits.size();) {
+            const SurfaceHit& hit = hits[i];
+            if (hit.is_primitive || !hit.filled) {
+                add(hit.z, hit.part, hit.terrain, hit.water, out);
+                ++i;
+                continue;
+            }
+            std::size_t end = i;
+            while (end < hits.size() && !hits[end].is_primitive && hits[end].piece == hit.piece) ++end;
+            add_piece(hits.subspan(i, end - i), out);
+            i = end;
         }
-        for (const Hit& hit : hits_) {
-            if (piece.solid && water) column_.water.push_back(hit.z.top);
-            else column_.spans.push_back({hit.z.bottom, hit.z.top, piece.part, hit.terrain});
-        }
-    }
-
-    void add_primitive(const Primitive& primitive)
-    {
-        const auto interval = vertical_interval(primitive.shape, x_, y_);
-        if (!interval) return;
-        if (primitive.label == Label::Water) column_.water.push_back(interval->top);
-        else column_.spans.push_back({interval->bottom, interval->top, primitive.part, primitive.label == Label::Terrain});
-    }
-
-    Column finish()
-    {
-        std::sort(column_.spans.begin(), column_.spans.end(), [](const Span& l, const Span& r) {
-            if (l.top != r.top) return l.top > r.top;
-            return l.terrain != r.terrain ? l.terrain : l.part < r.part;
-        });
-        std::sort(column_.water.begin(), column_.water.end(), std::greater<>());
-        hits_.clear();
-        for (const Span& span : column_.spans)
-            if (span.terrain) hits_.push_back({{span.bottom, span.top}, true});
-        join(hits_, layer_tolerance);
-        for (auto hit = hits_.rbegin(); hit != hits_.rend(); ++hit) column_.layers.push_back(hit->z.top);
-        return std::move(column_);
+        finish(first_span, first_water, out);
     }
 
 private:
-    void add_triangle(const Piece& piece, std::uint32_t triangle)
+    static void add(const Interval& z, std::uint32_t part, bool terrain, bool water, Column& out)
     {
-        const std::array<Vec3, 3> corners = corners_of(scene_, triangle);
-        const SeenTriangle seen(corners, x_, y_);
-        const Label label = scene_.triangle_labels[triangle];
-        const bool terrain = label == Label::Terrain && (!piece.sides_up || piece.solid || seen.looks_up());
-        if (piece.solid && seen.is_crossed()) {
-            const double z = seen.height();
-            crossings_.push_back({{z, z}, terrain});
-        } else if (seen.is_vertical()) {
-            if (!piece.solid) return;
-            if (const auto segment = seen.segment()) hits_.push_back({*segment, terrain});
-        } else if (seen.is_touched()) {
-            const double z = seen.height();
-            if (!piece.solid && label == Label::Water) column_.water.push_back(z);
-            else hits_.push_back({{z, z}, terrain});
-        }
+        if (water) out.water.push_back(z.top);
+        else out.spans.push_back({z.bottom, z.top, part, terrain});
     }
 
-    const Scene& scene_;
-    double x_, y_;
-    Column column_;
-    std::vector<Hit> hits_, crossings_;
+    /// Of a filled piece, which is water throughout or nowhere.
+    void add_piece(std::span<const SurfaceHit> hits, Column& out)
+    {
+        intervals_.clear();
+        crossings_.clear();
+        for (const SurfaceHit& hit : hits) {
+            if (hit.crosses) crossings_.push_back({{hit.crossing, hit.crossing}, hit.terrain});
+            if (hit.touches) intervals_.push_back({hit.z, hit.terrain});
+        }
+        pair_crossings(crossings_, hits.front().piece_bottom, intervals_);
+        join(intervals_, touch_tolerance);
+        for (const Hit& hit : intervals_) add(hit.z, hits.front().part, hit.terrain, hits.front().water, out);
+    }
+
+    void finish(std::size_t first_span, std::size_t first_water, Column& out)
+    {
+        const std::span<Span> spans(out.spans.begin() + std::ptrdiff_t(first_span), out.spans.end());
+        if (spans.size() > 1)
+            std::sort(spans.begin(), spans.end(), [](const Span& l, const Span& r) {
+                if (l.top != r.top) return l.top > r.top;
+                return l.terrain != r.terrain ? l.terrain : l.part < r.part;
+            });
+        std::sort(out.water.begin() + std::ptrdiff_t(first_water), out.water.end(), std::greater<>());
+        if (spans.size() == 1) {
+            if (spans[0].terrain) out.layers.push_back(spans[0].top);
+            return;
+        }
+        intervals_.clear();
+        for (const Span& span : spans)
+            if (span.terrain) intervals_.push_back({{span.bottom, span.top}, true});
+        join(intervals_, layer_tolerance);
+        for (auto hit = intervals_.rbegin(); hit != intervals_.rend(); ++hit) out.layers.push_back(hit->z.top);
+    }
+
+    std::vector<Hit> intervals_, crossings_;
 };
+
+ColumnBuilder& builder()
+{
+    thread_local ColumnBuilder one;
+    return one;
+}
+
+/// Hits of the line through (x, y) in the order of their elements.
+void find_hits(const Geometry& geometry, double x, double y, std::vector<SurfaceHit>& hits)
+{
+    hits.clear();
+    geometry.impl().visit_at(x, y, [&](const Tile& tile, std::span<const std::uint32_t> elements) {
+        for (const std::uint32_t element : elements) {
+            const ElementBox& box = tile.boxes[element];
+            if (box.min[0] > x || box.max[0] < x || box.min[1] > y || box.max[1] < y) continue;
+            if (const auto hit = hit_of(tile, element, x, y)) hits.push_back(*hit);
+        }
+    });
+    std::sort(hits.begin(), hits.end(), [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
+}
 
 }  // namespace
 
-Column column_at(const Scene& scene, const ColumnIndex& index, double x, double y)
+Column column_at(const Geometry& geometry, double x, double y)
 {
-    thread_local std::vector<std::uint32_t> elements;
-    elements.clear();
-    visit_bins_at(index, x, y, [&](const std::uint32_t* first, const std::uint32_t* last) {
-        for (; first != last; ++first)
-            if (may_meet(scene, *first, x, y)) elements.push_back(*first);
-    });
-    std::sort(elements.begin(), elements.end());
-    ColumnBuilder builder(scene, x, y);
-    const std::uint32_t* const end = elements.data() + elements.size();
-    for (const std::uint32_t* e = elements.data(); e != end;) {
-        if (!is_triangle(scene, *e)) {
-            builder.add_primitive(primitive_of(scene, *e++));
-            continue;
-        }
-        const std::uint32_t piece = scene.triangle_pieces[*e];
-        const std::uint32_t* const first = e;
-        while (e != end && is_triangle(scene, *e) && scene.triangle_pieces[*e] == piece) ++e;
-        builder.add_piece(scene.pieces[piece], first, e);
-    }
-    return builder.finish();
+    thread_local std::vector<SurfaceHit> hits;
+    find_hits(geometry, x, y, hits);
+    Column out;
+    builder().build(hits, out);
+    return out;
 }
 
-std::optional<Ground> ground_below(const Column& column, double z)
+std::optional<Ground> ground_below(const ColumnView& column, double z)
 {
     std::optional<Ground> best;
     for (const Span& span : column.spans) {  // highest top first
@@ -251,6 +150,100 @@ std::optional<Ground> ground_below(const Column& column, double z)
         if (!best || (span.terrain && !best->terrain)) best = Ground{span.top, span.terrain, span.part};
     }
     return best;
+}
+
+std::optional<Ground> ground_below(const Column& column, double z) { return ground_below(ColumnView(column), z); }
+
+Columns::Columns(const Geometry& geometry, const ColumnGrid& grid) : cols_(grid.cols)
+{
+    const std::size_t count = std::size_t(grid.cols) * std::size_t(grid.rows);
+    starts_.reserve(count + 1);
+    starts_.push_back({});
+    if (count == 0) return;
+    // Looking at an element costs about as much as a tenth of looking a column up.
+    const double elements = geometry.impl().elements_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
+                                                          grid.x_of(grid.first_col + grid.cols), grid.y_of(grid.first_row + grid.rows));
+    if (elements > 10.0 * double(count)) look_up(geometry, grid);
+    else scan(geometry, grid);
+}
+
+void Columns::end_column()
+{
+    starts_.push_back({std::uint32_t(column_.spans.size()), std::uint32_t(column_.layers.size()), std::uint32_t(column_.water.size())});
+}
+
+void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid)
+{
+    thread_local std::vector<SurfaceHit> hits;
+    for (int j = grid.first_row; j < grid.first_row + grid.rows; ++j)
+        for (int i = grid.first_col; i < grid.first_col + grid.cols; ++i) {
+            find_hits(geometry, grid.x_of(i), grid.y_of(j), hits);
+            builder().build(hits, column_);
+            end_column();
+        }
+}
+
+namespace {
+
+/// First and last index of a block, inclusive, whose coordinate lies in [low, high].
+std::pair<int, int> indices_in(double low, double high, double origin, double step, int first, int count)
+{
+    const auto nearest = [&](double value) { return int(std::clamp((value - origin) / step, double(first) - 1, double(first + count))); };
+    int from = std::max(first, nearest(low)), to = std::min(first + count - 1, nearest(high) + 1);
+    while (from <= to && origin + from * step < low) ++from;
+    while (to >= from && origin + to * step > high) --to;
+    return {from, to};
+}
+
+}  // namespace
+
+void Columns::scan(const Geometry& geometry, const ColumnGrid& grid)
+{
+    thread_local std::vector<SurfaceHit> hits, sorted;
+    thread_local std::vector<std::uint32_t> columns;
+    hits.clear();
+    columns.clear();
+    const auto visit = [&](const Tile& tile, std::uint32_t element) {
+        const ElementBox& box = tile.boxes[element];
+        const auto [i0, i1] = indices_in(box.min[0], box.max[0], grid.x0, grid.step, grid.first_col, grid.cols);
+        if (i0 > i1) return;
+        const auto [j0, j1] = indices_in(box.min[1], box.max[1], grid.y0, grid.step, grid.first_row, grid.rows);
+        if (j0 > j1) return;
+        const auto visit_columns = [&](const auto& hit_at) {
+            for (int j = j0; j <= j1; ++j)
+                for (int i = i0; i <= i1; ++i)
+                    if (const auto hit = hit_at(grid.x_of(i), grid.y_of(j))) {
+                        hits.push_back(*hit);
+                        columns.push_back(std::uint32_t(j - grid.first_row) * std::uint32_t(grid.cols) + std::uint32_t(i - grid.first_col));
+                    }
+        };
+        if (tile.is_triangle(element)) {
+            const SeenTriangle seen(tile, element);
+            visit_columns([&](double x, double y) { return seen.hit(x, y); });
+        } else {
+            visit_columns([&](double x, double y) { return hit_of(tile, element, x, y); });
+        }
+    };
+    geometry.impl().visit_in(grid.x_of(grid.first_col), grid.y_of(grid.first_row), grid.x_of(grid.first_col + grid.cols - 1),
+                             grid.y_of(grid.first_row + grid.rows - 1), visit);
+
+    // Counting sort by column, then each column's few hits by element.
+    const std::size_t count = std::size_t(grid.cols) * std::size_t(grid.rows);
+    thread_local std::vector<std::uint32_t> starts;
+    starts.assign(count + 1, 0);
+    for (const std::uint32_t column : columns) ++starts[column + 1];
+    for (std::size_t column = 1; column <= count; ++column) starts[column] += starts[column - 1];
+    sorted.resize(hits.size());
+    for (std::size_t h = 0; h < hits.size(); ++h) sorted[starts[columns[h]]++] = hits[h];
+    std::size_t first = 0;
+    for (std::size_t column = 0; column < count; ++column) {
+        const std::span<SurfaceHit> in_column(sorted.data() + first, starts[column] - first);
+        first = starts[column];
+        if (in_column.size() > 1)
+            std::sort(in_column.begin(), in_column.end(), [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
+        builder().build(in_column, column_);
+        end_column();
+    }
 }
 
 }  // namespace spawnfield

@@ -121,7 +121,7 @@ Progress part_of(const Progress& progress, double from, double to)
     return [=](double share) { progress(from + share * (to - from)); };
 }
 
-Map plan_map(Scene scene, const fs::path& scene_file, const BakeOptions& options, BakeReport& report)
+Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& options, BakeReport& report)
 {
     if (!options.allow_no_terrain && !scene.has_terrain())
         throw FileError(scene_file.string(), "has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') "
@@ -138,7 +138,8 @@ Map plan_map(Scene scene, const fs::path& scene_file, const BakeOptions& options
                                    : default_occupancy_resolution(map.bounds, map.resolution, report);
     map.scene_file = scene_file.filename().string();
     map.scene_hash = checksum(read_file(scene_file));
-    map.scene = std::move(scene);
+    map.parts = scene.parts;
+    map.labels = scene.count_labels();
     return map;
 }
 
@@ -149,16 +150,17 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     BakeReport report;
     Stopwatch watch;
     const auto lap = [&](const char* stage) { report.seconds.emplace_back(stage, watch.lap()); };
-    Map map = plan_map(std::move(scene), scene_file, options, report);
+    Map map = plan_map(scene, scene_file, options, report);
     const GridFrame frame = frame_around(map.bounds, map.resolution);
     NewFolder target(folder);
-    map.index = build_column_index(map.scene);
-    lap("index");
-    const TerrainMap terrain = rasterize_terrain(map.scene, map.index, frame, options.threads, part_of(options.progress, 0, 0.6));
+    map.geometry = Geometry(scene, options.threads);
+    scene = {};
+    lap("geometry");
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads, part_of(options.progress, 0, 0.6));
     const HeightImage top = page_image(terrain, "height.0");
     map.layers = top.isNaN().all() ? 0 : terrain.layers();
     lap("terrain");
-    const OccupancyTree tree = build_occupancy(map.scene, map.index, map.bounds, map.occupancy_resolution, options.threads,
+    const OccupancyTree tree = build_occupancy(map.geometry, map.bounds, map.occupancy_resolution, options.threads,
                                                part_of(options.progress, 0.6, 0.9));
     report.occupancy_leaves = tree.leaves();
     lap("occupancy");
@@ -166,7 +168,7 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     write_terrain(target.path() / "terrain.tiff", terrain);
     const auto z_range = write_heightmap_png(top, target.path() / "heightmap.png");
     tree.write(target.path() / "occupancy.bt");
-    write_file_atomically(target.path() / "geometry.bin", geometry_bytes(map.scene, map.index));
+    write_geometry(target.path() / "geometry.bin", map.geometry);
     write_preview(terrain, map.name, target.path() / "preview.png");
     report.hash = write_map_yaml(target.path(), map, terrain, z_range);
     if (options.progress) options.progress(1);

@@ -1,6 +1,6 @@
 #include "map/cell_clip.h"
 
-#include "scene/elements.h"
+#include "geometry/tile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -211,18 +211,15 @@ private:
 
 }  // namespace
 
-std::vector<CellSpan> clip_to_cells(const Scene& scene, const ColumnIndex& index, const CellBlock& block)
+std::vector<CellSpan> clip_to_cells(const Geometry& geometry, const CellBlock& block)
 {
-    std::vector<std::uint32_t> elements;
-    find_elements(index, block.x0 - touch_tolerance, block.y0 - touch_tolerance,
-                  block.x0 + block.cols * block.cell + touch_tolerance, block.y0 + block.rows * block.cell + touch_tolerance,
-                  elements);
     SpanCollector collector(block);
-    for (const std::uint32_t element : elements) {
-        if (element_label(scene, element) == Label::Water) continue;
-        if (is_triangle(scene, element)) collector.add_triangle(corners_of(scene, element));
-        else collector.add_primitive(primitive_of(scene, element).shape);
-    }
+    geometry.impl().visit_in(block.x0 - touch_tolerance, block.y0 - touch_tolerance, block.x0 + block.cols * block.cell + touch_tolerance,
+                             block.y0 + block.rows * block.cell + touch_tolerance, [&](const Tile& tile, std::uint32_t element) {
+                                 if (tile.label(element) == Label::Water) return;
+                                 if (tile.is_triangle(element)) collector.add_triangle(tile.corners(element));
+                                 else collector.add_primitive(tile.primitive(element).shape());
+                             });
     return collector.finish();
 }
 

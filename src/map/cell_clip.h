@@ -20,7 +20,7 @@ struct CellSpan {
 
 /// One span for each cell that a triangle or primitive meets, cells widened by touch_tolerance; water left out. Sorted by
 /// cell, then bottom. The inside of filled meshes is not in it: only their surfaces are.
-std::vector<CellSpan> clip_to_cells(const Scene& scene, const ColumnIndex& index, const CellBlock& block);
+std::vector<CellSpan> clip_to_cells(const Geometry& geometry, const CellBlock& block);
 
 /// Unions spans of one cell that overlap; input and output sorted by bottom.
 void join_spans(std::vector<Interval>& spans);

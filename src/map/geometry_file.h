@@ -1,16 +1,16 @@
 #pragma once
 
-#include <spawnfield/column.h>
+#include <spawnfield/geometry.h>
 
 #include <filesystem>
-#include <string>
 
 namespace spawnfield {
 
-/// geometry.bin: what exact checks need, in sections that can be read one by one (docs/map-format.md).
-std::string geometry_bytes(const Scene& scene, const ColumnIndex& index);
+/// geometry.bin: what exact checks need, in tiles that are read one by one (docs/map-format.md). Throws OutputError.
+void write_geometry(const std::filesystem::path& file, const Geometry& geometry);
 
-/// Throws FileError for a file that is cut short, altered or newer.
-void read_geometry(const std::filesystem::path& file, Scene& scene, ColumnIndex& index);
+/// Reads the head alone; tiles are read and checked when they are touched. Throws FileError for a file that is cut
+/// short, altered or newer.
+Geometry open_geometry(const std::filesystem::path& file, const std::string& head_checksum);
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #include "base/checksum.h"
 #include "base/input_file.h"
+#include "geometry/tile.h"
 #include "map/geometry_file.h"
 #include "map/map_yaml.h"
 #include "map/terrain_file.h"
@@ -43,8 +44,9 @@ Map read_map(const fs::path& folder)
 {
     MapYaml yaml = read_map_yaml(folder);
     for (const ListedFile& file : yaml.files) check_size(folder, file);
-    check_sum(folder, listed(yaml, "geometry.bin"));
-    read_geometry(folder / "geometry.bin", yaml.map.scene, yaml.map.index);
+    yaml.map.geometry = open_geometry(folder / "geometry.bin", listed(yaml, "geometry.bin").head_checksum);
+    if (yaml.map.geometry.impl().parts != yaml.map.parts.size())
+        throw FileError((folder / "geometry.bin").string(), "has another number of parts than map.yaml; bake the map again");
     return std::move(yaml.map);
 }
 

@@ -1,9 +1,9 @@
 #include "map/map_yaml.h"
+#include "map/tiled_file.h"
 
 #include "base/checksum.h"
 #include "base/input_file.h"
 #include "base/number.h"
-#include "scene/elements.h"
 #include "scene/yaml_map.h"
 
 #include <spawnfield/error.h>
@@ -49,22 +49,19 @@ std::string libraries()
 }
 
 /// Triangles and primitives of each label.
-std::string label_counts(const Scene& scene)
+std::string label_counts(const LabelCounts& counts)
 {
-    std::array<std::array<std::size_t, 2>, 3> counts{};
-    for (const Label label : scene.triangle_labels) ++counts[std::size_t(label)][0];
-    for (const Primitive& primitive : scene.primitives) ++counts[std::size_t(primitive.label)][1];
     std::string out;
     for (std::size_t label = 0; label < counts.size(); ++label)
-        out += std::string("  ") + to_string(Label(label)) + ": {triangles: " + std::to_string(counts[label][0]) +
-               ", primitives: " + std::to_string(counts[label][1]) + "}\n";
+        out += std::string("  ") + to_string(Label(label)) + ": {triangles: " + std::to_string(counts[label].triangles) +
+               ", primitives: " + std::to_string(counts[label].primitives) + "}\n";
     return out;
 }
 
-std::string part_lines(const Scene& scene)
+std::string part_lines(const std::vector<Part>& parts)
 {
     std::string out;
-    for (const Part& part : scene.parts)
+    for (const Part& part : parts)
         out += "  - {name: " + quoted(part.name) + ", kind: " + part.kind + ", label: " + to_string(part.label) +
                ", solid_pieces: " + std::to_string(part.solid_pieces) + ", sheet_pieces: " + std::to_string(part.sheet_pieces) +
                ", open_edges: " + std::to_string(part.open_edges) + ", triangles: " + std::to_string(part.triangles) + "}\n";
@@ -76,9 +73,33 @@ std::string file_lines(const fs::path& folder)
     std::string out;
     for (const char* name : {"geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"}) {
         const std::string bytes = read_file(folder / name);
-        out += std::string("  ") + name + ": {bytes: " + std::to_string(bytes.size()) + ", xxh64: \"" + checksum(bytes) + "\"}\n";
+        out += std::string("  ") + name + ": {bytes: " + std::to_string(bytes.size()) + ", xxh64: \"" + checksum(bytes) + "\"";
+        if (const std::string head = head_checksum(bytes); !head.empty()) out += ", head_xxh64: \"" + head + "\"";
+        out += "}\n";
     }
     return out;
+}
+
+Label label_of(const YamlMap& map, const std::string& name)
+{
+    for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water, Label::Ignore})
+        if (name == to_string(label)) return label;
+    map.fail("label", "is \"" + name + "\", needs terrain, obstacle, water or ignore");
+}
+
+void read_parts(const YamlMap& root, Map& map)
+{
+    const YamlMap labels = root.map("labels");
+    for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water}) {
+        const YamlMap counts = labels.map(to_string(label));
+        map.labels[std::size_t(label)] = {std::uint64_t(counts.finite("triangles")), std::uint64_t(counts.finite("primitives"))};
+    }
+    for (const YAML::Node& node : root.list("parts")) {
+        const YamlMap entry(node, root.file(), "parts");
+        const auto count = [&](const char* key) { return std::uint32_t(entry.finite(key)); };
+        map.parts.push_back({entry.text("name"), entry.text("kind"), label_of(entry, entry.text("label")), count("solid_pieces"),
+                             count("sheet_pieces"), count("open_edges"), count("triangles")});
+    }
 }
 
 Bounds read_bounds(const YamlMap& root)
@@ -153,7 +174,7 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
     text += "terrain:  # pages of terrain.tiff, float32 metres, NaN: nothing\n";
     for (const TerrainMap::Page& page : terrain.pages) text += "  - " + page.name + "\n";
     text += "heightmap: {z: " + list_of({heightmap_range.first, heightmap_range.second}) + ", no_terrain: 0}  # of pixels 0 and 65535\n";
-    text += "labels:\n" + label_counts(map.scene) + "parts:\n" + part_lines(map.scene);
+    text += "labels:\n" + label_counts(map.labels) + "parts:\n" + part_lines(map.parts);
     text += "files:\n" + file_lines(folder);
     const std::string hash = checksum(text);
     write_file_atomically(folder / "map.yaml", text + hash_line(hash));
@@ -178,12 +199,13 @@ MapYaml read_map_yaml(const fs::path& folder)
     out.map.layers = int(root.finite("layers"));
     out.map.scene_file = root.map("scene").text("file");
     out.map.scene_hash = root.map("scene").text("xxh64");
+    read_parts(root, out.map);
     out.frame = read_frame(root);
     for (const YAML::Node& page : root.list("terrain")) out.pages.push_back(page.Scalar());
     const YamlMap files = root.map("files");
     for (const std::string& name : files.keys()) {
         const YamlMap entry = files.map(name);
-        out.files.push_back({name, entry.text("xxh64"), std::uintmax_t(entry.finite("bytes"))});
+        out.files.push_back({name, entry.text("xxh64"), entry.text("head_xxh64", ""), std::uintmax_t(entry.finite("bytes"))});
     }
     return out;
 }

@@ -11,10 +11,11 @@ std::string write_map_yaml(const std::filesystem::path& folder, const Map& map, 
 /// A file of the map as map.yaml lists it.
 struct ListedFile {
     std::string name, checksum;
+    std::string head_checksum;  ///< of files that are read tile by tile
     std::uintmax_t bytes = 0;
 };
 
-/// map.yaml: fills all of Map but scene and index. Throws FileError.
+/// map.yaml: fills all of Map but its geometry. Throws FileError.
 struct MapYaml {
     Map map;
     GridFrame frame;

@@ -46,7 +46,7 @@ VoxelBox voxels_in(const Bounds& bounds, double resolution)
 /// Occupied runs of every voxel column of a box.
 class VoxelColumns {
 public:
-    VoxelColumns(const Scene& scene, const ColumnIndex& index, const VoxelBox& box, double resolution, int threads,
+    VoxelColumns(const Geometry& geometry, const VoxelBox& box, double resolution, int threads,
                  const Progress& progress)
         : box_(box), resolution_(resolution), cols_(box.high[0] - box.low[0] + 1), rows_(box.high[1] - box.low[1] + 1)
     {
@@ -55,7 +55,7 @@ public:
         const int blocks_x = (cols_ + side - 1) / side, blocks_y = (rows_ + side - 1) / side;
         parallel_for(std::size_t(blocks_x) * std::size_t(blocks_y), threads, progress, [&](std::size_t b) {
             const int i0 = int(b) % blocks_x * side, j0 = int(b) / blocks_x * side;
-            fill_block(scene, index, i0, j0, std::min(side, cols_ - i0), std::min(side, rows_ - j0));
+            fill_block(geometry, i0, j0, std::min(side, cols_ - i0), std::min(side, rows_ - j0));
         });
     }
 
@@ -66,10 +66,10 @@ public:
     }
 
 private:
-    void fill_block(const Scene& scene, const ColumnIndex& index, int i0, int j0, int cols, int rows)
+    void fill_block(const Geometry& geometry, int i0, int j0, int cols, int rows)
     {
         const CellBlock block{(box_.low[0] + i0) * resolution_, (box_.low[1] + j0) * resolution_, resolution_, cols, rows};
-        const std::vector<CellSpan> surfaces = clip_to_cells(scene, index, block);
+        const std::vector<CellSpan> surfaces = clip_to_cells(geometry, block);
         auto next = surfaces.begin();
         std::vector<Run> runs;
         for (int j = 0; j < rows; ++j)
@@ -77,7 +77,7 @@ private:
                 runs.clear();
                 for (; next != surfaces.end() && next->cell == block.id(i, j); ++next) add(touched(*next), runs);
                 const double x = block.x0 + (i + 0.5) * resolution_, y = block.y0 + (j + 0.5) * resolution_;
-                for (const Interval& solid : solid_intervals(column_at(scene, index, x, y))) add(centres_in(solid), runs);
+                for (const Interval& solid : solid_intervals(column_at(geometry, x, y))) add(centres_in(solid), runs);
                 columns_[std::size_t(j0 + j) * std::size_t(cols_) + std::size_t(i0 + i)] = joined(runs);
             }
     }
@@ -201,11 +201,11 @@ void OccupancyTree::write(const std::filesystem::path& file) const
     write_file_atomically(file, bytes.str());
 }
 
-OccupancyTree build_occupancy(const Scene& scene, const ColumnIndex& index, const Bounds& bounds, double resolution,
+OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution,
                               int threads, const Progress& progress)
 {
     if (!(resolution > 0) || !std::isfinite(resolution)) throw ArgumentError("build_occupancy", "resolution", resolution, "> 0 m");
-    const VoxelColumns columns(scene, index, voxels_in(bounds, resolution), resolution, threads, progress);
+    const VoxelColumns columns(geometry, voxels_in(bounds, resolution), resolution, threads, progress);
     auto impl = std::make_unique<OccupancyTree::Impl>();
     auto tree = std::make_shared<octomap::OcTree>(resolution);
     ColumnOcTree(columns, resolution).swapContent(*tree);

@@ -1,6 +1,7 @@
 #include "base/deflate.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "base/rounding.h"
 #include "map/cell_clip.h"
 
 #include <spawnfield/error.h>
@@ -14,14 +15,6 @@ namespace {
 
 constexpr std::size_t max_spans = 8;  // pages of solid_* and bound_*
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
-
-float rounded_down(double value)
-{
-    const float nearest = float(value);
-    return double(nearest) > value ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
-}
-
-float rounded_up(double value) { return -rounded_down(-value); }
 
 /// Pages of one tile, by name without number; made as they are needed.
 struct TilePages {
@@ -50,8 +43,8 @@ void reduce(std::vector<Interval>& spans)
 
 class TileRaster {
 public:
-    TileRaster(const Scene& scene, const ColumnIndex& index, const GridFrame& frame, int tile_row, int tile_col)
-        : scene_(scene), index_(index), frame_(frame), row0_(tile_row * TerrainMap::tile), col0_(tile_col * TerrainMap::tile),
+    TileRaster(const Geometry& geometry, const GridFrame& frame, int tile_row, int tile_col)
+        : geometry_(geometry), frame_(frame), row0_(tile_row * TerrainMap::tile), col0_(tile_col * TerrainMap::tile),
           rows_(std::min(TerrainMap::tile, frame.rows - row0_)), cols_(std::min(TerrainMap::tile, frame.cols - col0_))
     {
     }
@@ -60,7 +53,7 @@ public:
     {
         const CellBlock block{frame_.x0 + col0_ * frame_.cell, frame_.y0 + (frame_.rows - row0_ - rows_) * frame_.cell,
                               frame_.cell, cols_, rows_};
-        const std::vector<CellSpan> surfaces = clip_to_cells(scene_, index_, block);
+        const std::vector<CellSpan> surfaces = clip_to_cells(geometry_, block);
         auto next = surfaces.begin();
         std::vector<Interval> bound;
         for (int j = 0; j < rows_; ++j)  // upwards in y, as the block counts
@@ -76,7 +69,7 @@ private:
     void add_cell(int row, int col, std::vector<Interval>& bound)
     {
         const std::size_t cell = std::size_t(row) * TerrainMap::tile + std::size_t(col);
-        const Column column = column_at(scene_, index_, frame_.x_of(col0_ + col), frame_.y_of(row0_ + row));
+        const Column column = column_at(geometry_, frame_.x_of(col0_ + col), frame_.y_of(row0_ + row));
         for (std::size_t layer = 0; layer < column.layers.size(); ++layer)
             TilePages::at(pages_.height, layer, cell) = float(column.layers[layer]);
         if (!column.water.empty()) {
@@ -100,8 +93,7 @@ private:
         }
     }
 
-    const Scene& scene_;
-    const ColumnIndex& index_;
+    const Geometry& geometry_;
     const GridFrame& frame_;
     const int row0_, col0_, rows_, cols_;
     TilePages pages_;
@@ -188,14 +180,14 @@ HeightImage page_image(const TerrainMap& terrain, const std::string& name)
     return image;
 }
 
-TerrainMap rasterize_terrain(const Scene& scene, const ColumnIndex& index, const GridFrame& frame, int threads,
+TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads,
                              const Progress& progress)
 {
     TerrainMap out;
     out.frame = frame;
     std::vector<NamedTiles> tiles(std::size_t(out.tile_rows()) * std::size_t(out.tile_cols()));
     parallel_for(tiles.size(), threads, progress, [&](std::size_t t) {
-        TileRaster raster(scene, index, frame, int(t) / out.tile_cols(), int(t) % out.tile_cols());
+        TileRaster raster(geometry, frame, int(t) / out.tile_cols(), int(t) % out.tile_cols());
         tiles[t] = deflate_tile(raster.run());
     });
     const std::string empty = deflated(std::vector<float>(TerrainMap::tile * TerrainMap::tile, nothing));

@@ -1,6 +1,6 @@
 #include "map/occupancy_impl.h"
 #include "robot/hull.h"
-#include "scene/elements.h"
+#include "geometry/tile.h"
 
 #include <spawnfield/collision.h>
 
@@ -82,9 +82,10 @@ struct CheckedPart {
     }
 };
 
-bool overlap(const Bounds& a, const Bounds& b)
+bool overlap(const ElementBox& a, const Bounds& b)
 {
-    return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
+    return a.min[0] <= b.max[0] && a.max[0] >= b.min[0] && a.min[1] <= b.max[1] && a.max[1] >= b.min[1] && a.min[2] <= b.max[2] &&
+           a.max[2] >= b.min[2];
 }
 
 /// A robot's part at one pose. Everything is told FCL relative to the robot's position, so that coordinates stay small
@@ -119,12 +120,10 @@ bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& at_a,
 }  // namespace
 
 struct CollisionChecker::Impl {
-    const Scene* scene = nullptr;
-    const ColumnIndex* index = nullptr;
+    Geometry geometry;
     std::shared_ptr<const OccupancyTree> tree;
     std::unique_ptr<fcl::OcTree<double>> octree;
     std::vector<CheckedPart> parts;
-    bool has_filled_meshes = false;
 
     std::vector<PlacedPart> place(const Pose& pose) const
     {
@@ -135,17 +134,16 @@ struct CollisionChecker::Impl {
         return placed;
     }
 
-    bool element_meets(std::uint32_t element, const std::vector<PlacedPart>& placed, const Vec3& origin) const
+    static bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed, const Vec3& origin)
     {
-        const Bounds bounds = element_bounds(*scene, element);
         for (const PlacedPart& part : placed) {
-            if (!overlap(bounds, part.bounds)) continue;
-            if (is_triangle(*scene, element)) {
-                std::array<Vec3, 3> corners = corners_of(*scene, element);
+            if (!overlap(tile.boxes[element], part.bounds)) continue;
+            if (tile.is_triangle(element)) {
+                std::array<Vec3, 3> corners = tile.corners(element);
                 for (Vec3& corner : corners) corner -= origin;
                 if (meets_triangle(part, corners)) return true;
             } else {
-                const Shape& shape = primitive_of(*scene, element).shape;
+                const Shape shape = tile.primitive(element).shape();
                 const FclShape other = fcl_shape(shape);
                 const Transform at = transform_of({shape.pose.position - origin, shape.pose.rotation});
                 if (fcl_collide(geometry_of(part.part->shape), part.robot_from_shape, geometry_of(other), at)) return true;
@@ -158,10 +156,10 @@ struct CollisionChecker::Impl {
     /// point of each convex part tells for all of it.
     std::uint32_t first_around(const Pose& pose, std::uint32_t best) const
     {
-        if (!has_filled_meshes) return best;
+        if (!geometry.impl().has_filled_meshes) return best;
         for (const CheckedPart& part : parts) {
             const Vec3 centre = pose.rotation * part.centre + pose.position;
-            for (const Span& span : column_at(*scene, *index, centre.x(), centre.y()).spans)
+            for (const Span& span : column_at(geometry, centre.x(), centre.y()).spans)
                 if (span.bottom <= centre.z() && centre.z() <= span.top) best = std::min(best, span.part);
         }
         return best;
@@ -176,17 +174,15 @@ struct CollisionChecker::Impl {
             all.extend(part.bounds.min);
             all.extend(part.bounds.max);
         }
-        thread_local std::vector<std::uint32_t> elements;
-        find_elements(*index, all.min.x(), all.min.y(), all.max.x(), all.max.y(), elements);
         std::uint32_t best = CollisionHit::occupancy;
-        for (const std::uint32_t element : elements) {
-            if (element_label(*scene, element) == Label::Water) continue;
-            const std::uint32_t part = element_part(*scene, element);
-            if (part >= best || !element_meets(element, placed, pose.position)) continue;
-            best = part;
-            if (any_will_do) return CollisionHit{best};
-        }
-        best = first_around(pose, best);
+        geometry.impl().visit_in(all.min.x(), all.min.y(), all.max.x(), all.max.y(), [&](const Tile& tile, std::uint32_t element) {
+            const ElementBox& box = tile.boxes[element];
+            if (any_will_do && best != CollisionHit::occupancy) return;
+            if (box.min[2] > all.max.z() || box.max[2] < all.min.z() || tile.label(element) == Label::Water) return;
+            const std::uint32_t part = tile.part(element);
+            if (part < best && element_meets(tile, element, placed, pose.position)) best = part;
+        });
+        if (!any_will_do || best == CollisionHit::occupancy) best = first_around(pose, best);
         if (best == CollisionHit::occupancy) return std::nullopt;
         return CollisionHit{best};
     }
@@ -201,13 +197,11 @@ struct CollisionChecker::Impl {
     }
 };
 
-CollisionChecker::CollisionChecker(const Scene& scene, const ColumnIndex& index, const Robot& robot)
+CollisionChecker::CollisionChecker(const Geometry& geometry, const Robot& robot)
 {
     auto impl = std::make_unique<Impl>();
-    impl->scene = &scene;
-    impl->index = &index;
+    impl->geometry = geometry;
     for (const RobotPart& part : robot.parts) impl->parts.emplace_back(grown(part, touch_margin));
-    impl->has_filled_meshes = std::any_of(scene.pieces.begin(), scene.pieces.end(), [](const Piece& p) { return p.solid; });
     impl_ = std::move(impl);
 }
 

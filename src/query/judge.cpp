@@ -41,7 +41,7 @@ std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& check
     std::vector<Judgement> out(poses.size());
     parallel_for(poses.size(), options.threads, options.progress, [&](std::size_t i) {
         const Vec3& p = poses[i].position;
-        out[i] = judge(map, checker, column_at(map.scene, map.index, p.x(), p.y()), poses[i], options);
+        out[i] = judge(map, checker, column_at(map.geometry, p.x(), p.y()), poses[i], options);
     });
     return out;
 }

@@ -171,7 +171,7 @@ std::vector<Spawn> read_spawns(const std::filesystem::path& file)
     return out;
 }
 
-std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Scene& scene)
+std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const std::vector<Part>& parts)
 {
     std::string text = table.header + ",verdict,ground,height_above,hit\n";
     for (std::size_t i = 0; i < judgements.size(); ++i) {
@@ -180,7 +180,7 @@ std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& j
         if (judged.ground) append_numbers(text, {judged.ground->height, table.poses[i].position.z() - judged.ground->height});
         else text += ',';
         text += ',';
-        if (judged.hit) text += judged.hit->part == CollisionHit::occupancy ? "occupancy" : quoted_if_needed(scene.parts[judged.hit->part].name);
+        if (judged.hit) text += judged.hit->part == CollisionHit::occupancy ? "occupancy" : quoted_if_needed(parts[judged.hit->part].name);
         text += '\n';
     }
     return text;

@@ -73,7 +73,7 @@ public:
                 all_heights(x, y, out);
                 continue;
             }
-            const Column column = column_at(map_.scene, map_.index, x, y);
+            const Column column = column_at(map_.geometry, x, y);
             if (options_.dims == 2) layers(column, x, y, out);
             else heights(column, x, y, out);
         }

@@ -54,7 +54,7 @@ private:
         const double slot = draw.uniform(0, double(slots_));
         Candidate out;
         out.spawn.yaw = draw_yaw(options_, draw);
-        const Column column = column_at(map_.scene, map_.index, x, y);
+        const Column column = column_at(map_.geometry, x, y);
         const std::vector<double> layers = chosen_layers(column, options_.layers);
         if (layers.size() > slots_) overfull_ = true;
         if (slot >= double(layers.size())) return out;

@@ -36,7 +36,7 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
         if (!out.clear) return out;
         const Vec3& p = out.spawn.position;
         const Pose pose{p, rotation_from_rpy(0, 0, out.spawn.yaw)};
-        out.judgement = judge(map, checker, column_at(map.scene, map.index, p.x(), p.y()), pose, options);
+        out.judgement = judge(map, checker, column_at(map.geometry, p.x(), p.y()), pose, options);
         return out;
     };
     SpawnList out;

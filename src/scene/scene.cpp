@@ -33,6 +33,14 @@ bool Scene::has_terrain() const
            std::any_of(primitives.begin(), primitives.end(), is_terrain);
 }
 
+LabelCounts Scene::count_labels() const
+{
+    LabelCounts counts{};
+    for (const Label label : triangle_labels) ++counts[std::size_t(label)].triangles;
+    for (const Primitive& primitive : primitives) ++counts[std::size_t(primitive.label)].primitives;
+    return counts;
+}
+
 namespace {
 
 std::uint32_t add_part(Scene& scene, const std::string& name, const std::string& kind, Label label)

@@ -1,5 +1,7 @@
 #include "digest.h"
 
+#include "geometry/tile.h"
+
 using namespace spawnfield;
 
 namespace bench {
@@ -19,14 +21,7 @@ std::uint64_t digest_of(const Scene& scene)
     return digest.value();
 }
 
-std::uint64_t digest_of(const ColumnIndex& index)
-{
-    Digest digest;
-    digest.add(index.x0).add(index.y0);
-    for (const ColumnIndex::Level& level : index.levels)
-        digest.add(level.cell).add(level.cols).add(level.rows).add_all(level.offsets).add_all(level.elements);
-    return digest.value();
-}
+std::uint64_t digest_of(const Geometry& geometry) { return Digest().add(std::string(geometry.impl().bytes.view)).value(); }
 
 std::uint64_t digest_of(const TerrainMap& terrain)
 {

@@ -41,7 +41,7 @@ private:
 };
 
 std::uint64_t digest_of(const spawnfield::Scene& scene);
-std::uint64_t digest_of(const spawnfield::ColumnIndex& index);
+std::uint64_t digest_of(const spawnfield::Geometry& geometry);
 std::uint64_t digest_of(const spawnfield::TerrainMap& terrain);
 std::uint64_t digest_of(const std::vector<spawnfield::Judgement>& judgements);
 std::uint64_t digest_of(const spawnfield::RasterResult& raster);

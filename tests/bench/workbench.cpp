@@ -46,7 +46,7 @@ std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
     std::vector<Pose> poses;
     while (poses.size() < count) {
         const double x = random.between(map.bounds.min.x(), map.bounds.max.x()), y = random.between(map.bounds.min.y(), map.bounds.max.y());
-        const std::vector<double> layers = column_at(map.scene, map.index, x, y).layers;
+        const std::vector<double> layers = column_at(map.geometry, x, y).layers;
         if (layers.empty()) continue;
         const double z = layers[random.below(int(layers.size()))] + random.between(0, 1);
         poses.push_back({{x, y, z}, rotation_from_rpy(0, 0, random.between(-std::numbers::pi, std::numbers::pi))});
@@ -96,7 +96,7 @@ std::vector<Workbench::Stage> Workbench::stages()
 {
     std::vector<Stage> out = {
         {"make", false, [this](int) { return make(); }},
-        {"index", false, [this](int) { return index(); }},
+        {"geometry", true, [this](int threads) { return geometry(threads); }},
         {"terrain", true, [this](int threads) { return terrain(threads); }},
         {"occupancy", true, [this](int threads) { return occupancy(threads); }},
         {"bake", true, [this](int threads) { return bake(threads); }},
@@ -125,19 +125,19 @@ const Map& Workbench::map()
     if (!map_) {
         map_.emplace();
         map_->name = setting_.name;
-        map_->scene = setting_.make();
-        map_->bounds = map_->scene.bounds();
-        map_->index = build_column_index(map_->scene);
+        scene_ = setting_.make();
+        map_->bounds = scene_.bounds();
+        map_->geometry = Geometry(scene_);
         map_->resolution = setting_.cell;
         const double size = (map_->bounds.max - map_->bounds.min).head<2>().maxCoeff();
-        map_->layers = rasterize_terrain(map_->scene, map_->index, frame_around(map_->bounds, size / 256)).layers();
+        map_->layers = rasterize_terrain(map_->geometry, frame_around(map_->bounds, size / 256)).layers();
     }
     return *map_;
 }
 
 const CollisionChecker& Workbench::checker()
 {
-    if (!checker_) checker_.emplace(map().scene, map().index, husky_box());
+    if (!checker_) checker_.emplace(map().geometry, husky_box());
     return *checker_;
 }
 
@@ -153,17 +153,17 @@ Measurement Workbench::make() const
     return {elements(made.result), made.seconds, digest_of(made.result)};
 }
 
-Measurement Workbench::index()
+Measurement Workbench::geometry(int threads)
 {
-    const Scene& scene = map().scene;
-    const auto built = timed([&] { return build_column_index(scene); });
-    return {elements(scene), built.seconds, digest_of(built.result)};
+    map();
+    const auto built = timed([&] { return Geometry(scene_, threads); });
+    return {elements(scene_), built.seconds, digest_of(built.result)};
 }
 
 Measurement Workbench::terrain(int threads)
 {
     const GridFrame frame = frame_around(map().bounds, setting_.cell);
-    const auto terrain = timed([&] { return rasterize_terrain(map().scene, map().index, frame, threads); });
+    const auto terrain = timed([&] { return rasterize_terrain(map().geometry, frame, threads); });
     return {cells(frame), terrain.seconds, digest_of(terrain.result)};
 }
 
@@ -171,14 +171,15 @@ Measurement Workbench::occupancy(int threads)
 {
     const double voxel = 2.5 * setting_.cell;
     const Bounds& bounds = map().bounds;
-    const auto tree = timed([&] { return build_occupancy(map().scene, map().index, bounds, voxel, threads); });
+    const auto tree = timed([&] { return build_occupancy(map().geometry, bounds, voxel, threads); });
     tree.result.write(folder_ / "occupancy.bt");
     return {cells(frame_around(bounds, voxel)), tree.seconds, Digest().add(bytes_of(folder_ / "occupancy.bt")).value()};
 }
 
 Measurement Workbench::bake(int threads)
 {
-    Scene scene = map().scene;
+    map();
+    Scene scene = scene_;
     const auto report = timed([&] { return bake_into(folder_ / "map", std::move(scene), threads); });
     return {cells(frame_around(map().bounds, setting_.cell)), report.seconds, Digest().add(report.result.hash).value()};
 }
@@ -187,8 +188,7 @@ Measurement Workbench::read_map()
 {
     if (!std::filesystem::exists(folder_ / "map")) bake(0);
     const auto read = timed([&] { return spawnfield::read_map(folder_ / "map"); });
-    const auto& [scene, index] = std::tie(read.result.scene, read.result.index);
-    return {elements(scene), read.seconds, Digest().add(digest_of(scene)).add(digest_of(index)).value()};
+    return {read.result.geometry.element_count(), read.seconds, digest_of(read.result.geometry)};
 }
 
 Measurement Workbench::raster(const RasterOptions& options)

@@ -48,7 +48,7 @@ private:
     const std::vector<spawnfield::Pose>& poses();
 
     Measurement make() const;
-    Measurement index();
+    Measurement geometry(int threads);
     Measurement terrain(int threads);
     Measurement occupancy(int threads);
     Measurement bake(int threads);
@@ -61,6 +61,7 @@ private:
     Measurement search(int threads);
 
     const Setting setting_;
+    spawnfield::Scene scene_;
     TempFolder folder_;
     std::optional<spawnfield::Map> map_;
     std::optional<spawnfield::CollisionChecker> checker_;

@@ -167,7 +167,7 @@ std::unique_ptr<Session> open_session(const QueryArgs& args)
         auto tree = std::make_shared<const OccupancyTree>(read_occupancy(session->map));
         session->checker = std::make_unique<CollisionChecker>(std::move(tree), session->robot);
     } else {
-        session->checker = std::make_unique<CollisionChecker>(session->map.scene, session->map.index, session->robot);
+        session->checker = std::make_unique<CollisionChecker>(session->map.geometry, session->robot);
     }
     return session;
 }

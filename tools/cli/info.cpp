@@ -27,16 +27,13 @@ Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json json_of(const Bounds& bounds) { return {{"min", json_of(bounds.min)}, {"max", json_of(bounds.max)}}; }
 
-Json json_of(const Scene& scene)
+Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
 {
     Json out;
-    std::array<std::uint64_t, 4> triangles{}, primitives{};
-    for (const Label label : scene.triangle_labels) ++triangles[std::size_t(label)];
-    for (const Primitive& primitive : scene.primitives) ++primitives[std::size_t(primitive.label)];
     for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water})
-        out["labels"][to_string(label)] = {{"triangles", triangles[std::size_t(label)]}, {"primitives", primitives[std::size_t(label)]}};
+        out["labels"][to_string(label)] = {{"triangles", labels[std::size_t(label)].triangles}, {"primitives", labels[std::size_t(label)].primitives}};
     out["parts"] = Json::array();
-    for (const Part& part : scene.parts)
+    for (const Part& part : parts)
         out["parts"].push_back({{"name", part.name}, {"kind", part.kind}, {"label", to_string(part.label)},
                                 {"triangles", part.triangles}, {"solid_pieces", part.solid_pieces},
                                 {"sheet_pieces", part.sheet_pieces}, {"open_edges", part.open_edges}});
@@ -46,7 +43,7 @@ Json json_of(const Scene& scene)
 Json scene_json(const Scene& scene)
 {
     Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.bounds())}};
-    out.update(json_of(scene));
+    out.update(json_of(scene.count_labels(), scene.parts));
     out["notices"] = scene.notices;
     return out;
 }
@@ -58,7 +55,7 @@ Json map_json(const Map& map, bool verified)
                 {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
     if (verified) out["verified"] = true;
     for (const auto& entry : fs::directory_iterator(map.folder)) out["files"][entry.path().filename().string()] = entry.file_size();
-    out.update(json_of(map.scene));
+    out.update(json_of(map.labels, map.parts));
     return out;
 }
 

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace spawnfield {
+
+static_assert(std::endian::native == std::endian::little, "the map's binary files are little-endian; this machine needs a byte swap");
+
+/// Appends plain values one by one: never a struct with padding.
+class BinaryWriter {
+public:
+    template <class T>
+    void put(T value)
+    {
+        static_assert(std::is_arithmetic_v<T>);
+        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    /// A u64 count, then the values, which must have no padding.
+    template <class T>
+    void put_array(const std::vector<T>& values)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        put(std::uint64_t(values.size()));
+        bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    }
+    std::string take() { return std::move(bytes_); }
+
+private:
+    std::string bytes_;
+};
+
+/// Reads what BinaryWriter wrote; throws std::out_of_range past the end.
+class BinaryReader {
+public:
+    explicit BinaryReader(std::string_view bytes) : rest_(bytes) {}
+
+    template <class T>
+    T get()
+    {
+        T value;
+        std::memcpy(&value, take(sizeof value), sizeof value);
+        return value;
+    }
+    template <class T>
+    std::vector<T> get_array()
+    {
+        const auto count = get<std::uint64_t>();
+        if (count > rest_.size() / sizeof(T)) throw std::out_of_range("array");
+        std::vector<T> values(count);
+        if (count > 0) std::memcpy(static_cast<void*>(values.data()), take(count * sizeof(T)), count * sizeof(T));
+        return values;
+    }
+
+private:
+    const char* take(std::size_t size)
+    {
+        if (size > rest_.size()) throw std::out_of_range("value");
+        const char* const at = rest_.data();
+        rest_.remove_prefix(size);
+        return at;
+    }
+    std::string_view rest_;
+};
+
+}  // namespace spawnfield

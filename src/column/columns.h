@@ -1,0 +1,61 @@
+#pragma once
+
+#include "column/surface_hit.h"
+
+#include <span>
+
+namespace spawnfield {
+
+/// A Column whose arrays somebody else keeps.
+struct ColumnView {
+    std::span<const Span> spans;
+    std::span<const double> layers, water;
+
+    ColumnView() = default;
+    ColumnView(std::span<const Span> s, std::span<const double> l, std::span<const double> w) : spans(s), layers(l), water(w) {}
+    ColumnView(const Column& column) : spans(column.spans), layers(column.layers), water(column.water) {}
+};
+
+std::optional<Ground> ground_below(const ColumnView& column, double z);
+
+/// Columns x0 + col * step, y0 + row * step.
+struct ColumnGrid {
+    double x0 = 0, y0 = 0, step = 1;
+    int first_col = 0, first_row = 0, cols = 0, rows = 0;  ///< the part of the grid that is asked for
+
+    double x_of(int col) const { return x0 + col * step; }
+    double y_of(int row) const { return y0 + row * step; }
+};
+
+/// The columns of a block of a grid, the very same as column_at gives one by one.
+///
+/// Elements that are small beside the step are looked up column by column, others are scan-converted: O(elements +
+/// columns).
+class Columns {
+public:
+    Columns(const Geometry& geometry, const ColumnGrid& grid);
+
+    /// Column grid.first_col + i, row grid.first_row + j.
+    ColumnView at(int i, int j) const
+    {
+        const std::size_t column = std::size_t(j) * std::size_t(cols_) + std::size_t(i);
+        const Start &from = starts_[column], &to = starts_[column + 1];
+        return {std::span(column_.spans).subspan(from.span, to.span - from.span),
+                std::span(column_.layers).subspan(from.layer, to.layer - from.layer),
+                std::span(column_.water).subspan(from.water, to.water - from.water)};
+    }
+
+private:
+    struct Start {
+        std::uint32_t span = 0, layer = 0, water = 0;
+    };
+    void look_up(const Geometry& geometry, const ColumnGrid& grid);
+    void scan(const Geometry& geometry, const ColumnGrid& grid);
+    void end_column();
+
+    int cols_;
+    Column column_;  ///< of all columns, one after the other
+    std::vector<Start> starts_;
+};
+
+}  // namespace spawnfield

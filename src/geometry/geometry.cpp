@@ -1,0 +1,340 @@
+#include "base/parallel.h"
+#include "base/rounding.h"
+#include "geometry/tile.h"
+#include "scene/elements.h"
+
+#include <spawnfield/error.h>
+
+#include <xxhash.h>
+
+#include <cstring>
+
+namespace spawnfield {
+namespace {
+
+constexpr double pad = 1e-8;          // m; wider than touch_tolerance, so a line on an edge finds its triangle
+constexpr int refinement = 4;         // between the cell sizes of two levels
+constexpr double elements_a_tile = 256;
+constexpr double most_tiles_along = 1024;  // so that thin scenes have no more tiles than others
+constexpr double refs_an_element = 6;
+constexpr std::size_t alignment = 64;  // of tiles
+
+ElementBox box_of(const Scene& scene, std::uint32_t element)
+{
+    const Bounds bounds = element_bounds(scene, element);
+    ElementBox box{};
+    for (int axis = 0; axis < 3; ++axis) {
+        box.min[std::size_t(axis)] = rounded_down(bounds.min[axis] - pad);
+        box.max[std::size_t(axis)] = rounded_up(bounds.max[axis] + pad);
+    }
+    return box;
+}
+
+template <class T>
+std::span<const T> take(const char*& at, std::size_t count)
+{
+    const std::span<const T> out(reinterpret_cast<const T*>(at), count);
+    at += count * sizeof(T);
+    return out;
+}
+
+/// The elements of every tile of a level.
+struct Members {
+    std::vector<std::uint32_t> starts, elements;
+};
+
+Members sort_into_tiles(const Geometry::Impl& geometry, const TileLevel& level, const std::vector<std::uint32_t>& elements,
+                        const std::vector<ElementBox>& boxes)
+{
+    Members out;
+    out.starts.assign(std::size_t{level.cols} * level.rows + 1, 0);
+    const auto visit_tiles = [&](const ElementBox& box, const auto& visit) {
+        const auto col = [&](double x) { return cell_number(x - geometry.x0, level.cell, level.cols); };
+        const auto row = [&](double y) { return cell_number(y - geometry.y0, level.cell, level.rows); };
+        for (std::uint32_t r = row(box.min[1]); r <= row(box.max[1]); ++r)
+            for (std::uint32_t c = col(box.min[0]); c <= col(box.max[0]); ++c) visit(std::size_t{r} * level.cols + c);
+    };
+    for (const std::uint32_t element : elements) visit_tiles(boxes[element], [&](std::size_t tile) { ++out.starts[tile + 1]; });
+    for (std::size_t tile = 1; tile < out.starts.size(); ++tile) out.starts[tile] += out.starts[tile - 1];
+    out.elements.resize(out.starts.back());
+    std::vector<std::uint32_t> next(out.starts.begin(), out.starts.end() - 1);
+    for (const std::uint32_t element : elements)
+        visit_tiles(boxes[element], [&](std::size_t tile) { out.elements[next[tile]++] = element; });
+    return out;
+}
+
+/// Writes one tile.
+class TileBuilder {
+public:
+    TileBuilder(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements)
+        : scene_(scene), boxes_(boxes), elements_(elements)
+    {
+    }
+
+    std::string build(double x0, double y0, double side)
+    {
+        number_corners();
+        TileHead head{.x0 = x0, .y0 = y0, .bin = side, .vertices = std::uint32_t(vertices_.size()), .triangles = triangles_,
+                      .primitives = std::uint32_t(elements_.size()) - triangles_, .pieces = std::uint32_t(pieces_.size()),
+                      .refs = 0, .bin_cols = 1, .bin_rows = 1, .unused = 0};
+        sort_into_bins(head, side);
+        out_.reserve(tile_size(head));
+        put(head);
+        for (const std::uint32_t vertex : vertices_) put(scene_.vertices[vertex]);
+        for (std::size_t e = triangles_; e < elements_.size(); ++e) put(packed(primitive_of(scene_, elements_[e])));
+        for (const std::uint32_t piece : pieces_) put(packed(piece));
+        for (std::size_t e = 0; e < triangles_; ++e) put(packed_triangle(elements_[e]));
+        for (const std::uint32_t element : elements_) put(boxes_[element]);
+        for (const std::uint32_t element : elements_) put(element);
+        for (const std::uint32_t start : starts_) put(start);
+        for (const std::uint32_t ref : refs_) put(ref);
+        out_.resize((out_.size() + alignment - 1) / alignment * alignment, '\0');
+        return std::move(out_);
+    }
+
+private:
+    void number_corners()
+    {
+        triangles_ = std::uint32_t(std::partition_point(elements_.begin(), elements_.end(), [&](std::uint32_t e) { return is_triangle(scene_, e); }) -
+                                   elements_.begin());
+        for (std::size_t e = 0; e < triangles_; ++e) {
+            for (const std::uint32_t corner : scene_.triangles[elements_[e]]) vertices_.push_back(corner);
+            pieces_.push_back(scene_.triangle_pieces[elements_[e]]);
+        }
+        for (auto* list : {&vertices_, &pieces_}) {
+            std::sort(list->begin(), list->end());
+            list->erase(std::unique(list->begin(), list->end()), list->end());
+        }
+    }
+
+    static std::uint32_t number_in(const std::vector<std::uint32_t>& sorted, std::uint32_t value)
+    {
+        return std::uint32_t(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
+    }
+
+    /// Bins as fine as two for each element, coarser where elements would lie in too many.
+    void sort_into_bins(TileHead& head, double side)
+    {
+        std::uint32_t along = std::uint32_t(std::ceil(std::sqrt(2.0 * double(elements_.size()))));
+        for (;; along = (along + 1) / 2) {
+            head.bin_cols = head.bin_rows = along;
+            head.bin = side / along;
+            double refs = 0;
+            for (const std::uint32_t element : elements_) {
+                const auto [col0, col1, row0, row1] = bins_of(head, boxes_[element]);
+                refs += double(col1 - col0 + 1) * (row1 - row0 + 1);
+            }
+            if (along == 1 || refs <= refs_an_element * double(elements_.size())) break;
+        }
+        starts_.assign(std::size_t{along} * along + 1, 0);
+        visit_bins(head, [&](std::size_t bin, std::uint32_t) { ++starts_[bin + 1]; });
+        for (std::size_t bin = 1; bin < starts_.size(); ++bin) starts_[bin] += starts_[bin - 1];
+        refs_.resize(starts_.back());
+        head.refs = std::uint32_t(refs_.size());
+        std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
+        visit_bins(head, [&](std::size_t bin, std::uint32_t element) { refs_[next[bin]++] = element; });
+    }
+
+    static std::array<std::uint32_t, 4> bins_of(const TileHead& head, const ElementBox& box)
+    {
+        return {cell_number(box.min[0] - head.x0, head.bin, head.bin_cols), cell_number(box.max[0] - head.x0, head.bin, head.bin_cols),
+                cell_number(box.min[1] - head.y0, head.bin, head.bin_rows), cell_number(box.max[1] - head.y0, head.bin, head.bin_rows)};
+    }
+
+    template <class Visit>
+    void visit_bins(const TileHead& head, const Visit& visit) const
+    {
+        for (std::uint32_t e = 0; e < elements_.size(); ++e) {
+            const auto [col0, col1, row0, row1] = bins_of(head, boxes_[elements_[e]]);
+            for (std::uint32_t row = row0; row <= row1; ++row)
+                for (std::uint32_t col = col0; col <= col1; ++col) visit(std::size_t{row} * head.bin_cols + col, e);
+        }
+    }
+
+    TileTriangle packed_triangle(std::uint32_t element) const
+    {
+        TileTriangle out{};
+        for (std::size_t corner = 0; corner < 3; ++corner) out.corners[corner] = number_in(vertices_, scene_.triangles[element][corner]);
+        out.piece = number_in(pieces_, scene_.triangle_pieces[element]);
+        out.label = scene_.triangle_labels[element];
+        return out;
+    }
+
+    TilePiece packed(std::uint32_t piece) const
+    {
+        const Piece& from = scene_.pieces[piece];
+        TilePiece out{};
+        out.bottom = from.bottom;
+        out.piece = piece;
+        out.part = from.part;
+        out.solid = from.solid;
+        out.sides_up = from.sides_up;
+        return out;
+    }
+
+    static TilePrimitive packed(const Primitive& from)
+    {
+        TilePrimitive out{};
+        Vec3::Map(out.size.data()) = from.shape.size;
+        Vec3::Map(out.position.data()) = from.shape.pose.position;
+        Mat3::Map(out.rotation.data()) = from.shape.pose.rotation;
+        out.part = from.part;
+        out.kind = from.shape.kind;
+        out.label = from.label;
+        return out;
+    }
+
+    template <class T>
+    void put(const T& value)
+    {
+        out_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+
+    const Scene& scene_;
+    const std::vector<ElementBox>& boxes_;
+    const std::span<const std::uint32_t> elements_;
+    std::uint32_t triangles_ = 0;
+    std::vector<std::uint32_t> vertices_, pieces_, starts_, refs_;
+    std::string out_;
+};
+
+bool is_consistent(std::string_view view, std::uint32_t parts)
+{
+    if (view.size() < sizeof(TileHead)) return false;
+    TileHead head;
+    std::memcpy(&head, view.data(), sizeof head);
+    const std::uint64_t size = tile_size(head);
+    if (view.size() < size || view.size() >= size + alignment) return false;
+    if (!(head.bin > 0) || head.bin_cols == 0 || head.bin_rows == 0) return false;
+    const Tile tile(view);
+    const auto below = [](std::uint32_t value, std::size_t limit) { return value < limit; };
+    for (const TileTriangle& t : tile.triangles) {
+        for (const std::uint32_t corner : t.corners)
+            if (!below(corner, tile.vertices.size())) return false;
+        if (!below(t.piece, tile.pieces.size()) || t.label > Label::Water) return false;
+    }
+    for (const TilePiece& p : tile.pieces)
+        if (!below(p.part, parts)) return false;
+    for (const TilePrimitive& p : tile.primitives)
+        if (p.kind > ShapeKind::Capsule || p.label > Label::Water || !below(p.part, parts)) return false;
+    if (tile.starts.front() != 0 || tile.starts.back() != tile.refs.size()) return false;
+    return std::is_sorted(tile.starts.begin(), tile.starts.end()) &&
+           std::all_of(tile.refs.begin(), tile.refs.end(), [&](std::uint32_t ref) { return below(ref, tile.elements()); });
+}
+
+}  // namespace
+
+std::uint64_t tile_size(const TileHead& head)
+{
+    const std::uint64_t elements = std::uint64_t{head.triangles} + head.primitives;
+    return sizeof(TileHead) + head.vertices * sizeof(Vec3) + head.primitives * sizeof(TilePrimitive) + head.pieces * sizeof(TilePiece) +
+           head.triangles * sizeof(TileTriangle) + elements * (sizeof(ElementBox) + 4) +
+           (std::uint64_t{head.bin_cols} * head.bin_rows + 1) * 4 + head.refs * 4ull;
+}
+
+Tile::Tile(std::string_view bytes) : head(reinterpret_cast<const TileHead*>(bytes.data()))
+{
+    const char* at = bytes.data() + sizeof(TileHead);
+    vertices = take<Vec3>(at, head->vertices);
+    primitives = take<TilePrimitive>(at, head->primitives);
+    pieces = take<TilePiece>(at, head->pieces);
+    triangles = take<TileTriangle>(at, head->triangles);
+    boxes = take<ElementBox>(at, elements());
+    ids = take<std::uint32_t>(at, elements());
+    starts = take<std::uint32_t>(at, std::size_t{head->bin_cols} * head->bin_rows + 1);
+    refs = take<std::uint32_t>(at, head->refs);
+}
+
+void Geometry::Impl::make_states()
+{
+    states_.clear();
+    for (const TileLevel& level : levels) states_.push_back(std::make_unique<std::atomic<std::uint8_t>[]>(level.tiles.size()));
+}
+
+void Geometry::Impl::verify(std::string_view view, const TileEntry& entry) const
+{
+    if (file.empty()) return;
+    if (XXH64(view.data(), view.size(), 0) != entry.checksum)
+        throw FileError(file, "is damaged (the checksum of a tile differs); bake the map again");
+    if (!is_consistent(view, parts)) throw FileError(file, "contradicts itself; bake the map again");
+}
+
+double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, double high_y) const
+{
+    constexpr double bytes_an_element = 100;
+    double sum = 0;
+    for (const TileLevel& level : levels) {
+        const auto share = [&](double low, double high, double origin, std::uint32_t n) {  // of the cell that is met
+            const double start = origin + n * level.cell;
+            return std::clamp((std::min(high, start + level.cell) - std::max(low, start)) / level.cell, 0.0, 1.0);
+        };
+        const std::uint32_t col0 = cell_number(low_x - x0, level.cell, level.cols), col1 = cell_number(high_x - x0, level.cell, level.cols);
+        const std::uint32_t row0 = cell_number(low_y - y0, level.cell, level.rows), row1 = cell_number(high_y - y0, level.cell, level.rows);
+        for (std::uint32_t row = row0; row <= row1; ++row)
+            for (std::uint32_t col = col0; col <= col1; ++col)
+                sum += double(level.tiles[std::size_t{row} * level.cols + col].size) * share(low_x, high_x, x0, col) * share(low_y, high_y, y0, row);
+    }
+    return sum / bytes_an_element;
+}
+
+Geometry::Geometry() : impl_(std::make_shared<const Impl>()) {}
+
+Geometry::Geometry(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+
+std::uint64_t Geometry::element_count() const { return impl_->elements; }
+
+Geometry::Geometry(const Scene& scene, int threads)
+{
+    auto impl = std::make_shared<Impl>();
+    const auto elements = std::uint32_t(spawnfield::element_count(scene));
+    impl->elements = elements;
+    impl->parts = std::uint32_t(scene.parts.size());
+    impl->has_filled_meshes = std::any_of(scene.pieces.begin(), scene.pieces.end(), [](const Piece& p) { return p.solid; });
+    if (elements > 0) {
+        std::vector<ElementBox> boxes(elements);
+        parallel_for(elements, threads, {}, [&](std::size_t e) { boxes[e] = box_of(scene, std::uint32_t(e)); });
+        const Bounds bounds = scene.bounds();
+        impl->x0 = bounds.min.x() - pad;
+        impl->y0 = bounds.min.y() - pad;
+        const double width = bounds.max.x() - bounds.min.x() + 2 * pad, depth = bounds.max.y() - bounds.min.y() + 2 * pad;
+        double cell = std::max(std::sqrt(width * depth * elements_a_tile / elements), std::max(width, depth) / most_tiles_along);
+
+        std::vector<std::vector<std::uint32_t>> members(1);
+        for (std::uint32_t element = 0; element < elements; ++element) {
+            const ElementBox& box = boxes[element];
+            const double size = std::max(double(box.max[0]) - box.min[0], double(box.max[1]) - box.min[1]);
+            std::size_t level = 0;
+            for (double side = cell; side < size; side *= refinement) ++level;
+            if (level >= members.size()) members.resize(level + 1);
+            members[level].push_back(element);
+        }
+        std::string bytes;
+        for (const std::vector<std::uint32_t>& list : members) {
+            if (!list.empty()) {
+                TileLevel level{cell, std::uint32_t(std::ceil(width / cell)), std::uint32_t(std::ceil(depth / cell)), {}};
+                const Members sorted = sort_into_tiles(*impl, level, list, boxes);
+                level.tiles.resize(sorted.starts.size() - 1);
+                std::vector<std::string> tiles(level.tiles.size());
+                parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
+                    const std::span<const std::uint32_t> in_tile(sorted.elements.data() + sorted.starts[t], sorted.starts[t + 1] - sorted.starts[t]);
+                    if (in_tile.empty()) return;
+                    tiles[t] = TileBuilder(scene, boxes, in_tile).build(impl->x0 + double(t % level.cols) * cell, impl->y0 + double(t / level.cols) * cell, cell);
+                    level.tiles[t].checksum = XXH64(tiles[t].data(), tiles[t].size(), 0);
+                });
+                for (std::size_t t = 0; t < tiles.size(); ++t) {
+                    level.tiles[t].offset = bytes.size();
+                    level.tiles[t].size = tiles[t].size();
+                    bytes += tiles[t];
+                    tiles[t] = {};
+                }
+                impl->levels.push_back(std::move(level));
+            }
+            cell *= refinement;
+        }
+        impl->bytes = bytes_of(std::move(bytes));
+    }
+    impl->make_states();
+    impl_ = std::move(impl);
+}
+
+}  // namespace spawnfield

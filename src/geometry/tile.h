@@ -1,0 +1,214 @@
+#pragma once
+
+#include "base/bytes.h"
+
+#include <spawnfield/geometry.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <span>
+#include <string>
+
+namespace spawnfield {
+
+// What a tile consists of, as it lies in memory and in geometry.bin: no padding, multiples of 8 bytes or followed by some.
+
+/// Smallest box around an element, widened by touch_tolerance and rounded outwards.
+struct ElementBox {
+    std::array<float, 3> min, max;
+};
+
+struct TileTriangle {
+    Triangle corners;     ///< into the tile's vertices
+    std::uint32_t piece;  ///< into the tile's pieces
+    Label label;
+    std::array<std::uint8_t, 3> unused;
+};
+
+struct TilePiece {
+    double bottom;        ///< as Piece
+    std::uint32_t piece;  ///< of the scene
+    std::uint32_t part;
+    std::uint8_t solid, sides_up;
+    std::array<std::uint8_t, 6> unused;
+};
+
+struct TilePrimitive {
+    std::array<double, 3> size, position;
+    std::array<double, 9> rotation;  ///< column after column
+    std::uint32_t part;
+    ShapeKind kind;
+    Label label;
+    std::array<std::uint8_t, 2> unused;
+
+    Shape shape() const
+    {
+        return {kind, Vec3(size.data()), {Vec3(position.data()), Mat3(rotation.data())}};
+    }
+};
+
+struct TileHead {
+    double x0, y0, bin;  ///< corner of the tile, side of its bins, m
+    std::uint32_t vertices, triangles, primitives, pieces, refs, bin_cols, bin_rows, unused;
+};
+
+/// Column or row of cells at an offset from their corner; what lies beyond the rim is in the outermost.
+inline std::uint32_t cell_number(double offset, double cell, std::uint32_t count)
+{
+    return static_cast<std::uint32_t>(std::clamp(std::floor(offset / cell), 0.0, double(count - 1)));
+}
+
+/// A tile's bytes as what they are. Elements of the tile: its triangles, then its primitives.
+struct Tile {
+    const TileHead* head;
+    std::span<const Vec3> vertices;
+    std::span<const TilePrimitive> primitives;
+    std::span<const TilePiece> pieces;
+    std::span<const TileTriangle> triangles;
+    std::span<const ElementBox> boxes;
+    std::span<const std::uint32_t> ids;     ///< of the scene's elements, ascending
+    std::span<const std::uint32_t> starts;  ///< of each bin in refs, and the end
+    std::span<const std::uint32_t> refs;    ///< elements of the tile, ascending within a bin
+
+    /// The arrays behind a head, whose counts must fit the bytes (tile_size).
+    explicit Tile(std::string_view bytes);
+
+    std::uint32_t elements() const { return head->triangles + head->primitives; }
+    bool is_triangle(std::uint32_t element) const { return element < head->triangles; }
+    std::array<Vec3, 3> corners(std::uint32_t triangle) const
+    {
+        const Triangle& t = triangles[triangle].corners;
+        return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+    }
+    const TilePrimitive& primitive(std::uint32_t element) const { return primitives[element - head->triangles]; }
+    Label label(std::uint32_t element) const { return is_triangle(element) ? triangles[element].label : primitive(element).label; }
+    std::uint32_t part(std::uint32_t element) const
+    {
+        return is_triangle(element) ? pieces[triangles[element].piece].part : primitive(element).part;
+    }
+    std::uint32_t bin_col(double x) const { return cell_number(x - head->x0, head->bin, head->bin_cols); }
+    std::uint32_t bin_row(double y) const { return cell_number(y - head->y0, head->bin, head->bin_rows); }
+    std::span<const std::uint32_t> bin(std::uint32_t col, std::uint32_t row) const
+    {
+        const std::size_t at = std::size_t{row} * head->bin_cols + col;
+        return refs.subspan(starts[at], starts[at + 1] - starts[at]);
+    }
+};
+
+/// Bytes that a tile with this head takes.
+std::uint64_t tile_size(const TileHead& head);
+
+/// Where a tile lies among the bytes of all tiles; a size of 0: there is nothing in it.
+struct TileEntry {
+    std::uint64_t offset = 0, size = 0, checksum = 0;
+};
+
+struct TileLevel {
+    double cell = 0;  ///< side of a tile, m
+    std::uint32_t cols = 0, rows = 0;
+    std::vector<TileEntry> tiles;  ///< row after row; row 0 is the smallest y
+};
+
+struct Geometry::Impl {
+    double x0 = 0, y0 = 0;  ///< corner that all levels share
+    std::uint64_t elements = 0;
+    std::uint32_t parts = 0;  ///< of the scene
+    bool has_filled_meshes = false;
+    std::vector<TileLevel> levels;
+    Bytes bytes;             ///< of all tiles
+    std::string file;        ///< that they lie in, for messages; empty: in memory, and trusted
+
+    Impl() = default;
+    /// To be called when the levels are filled, before the first tile is opened.
+    void make_states();
+
+    /// Checks the tile's checksum and indices if nobody did before. Throws FileError.
+    Tile open(std::size_t level, std::size_t tile) const
+    {
+        const TileEntry& entry = levels[level].tiles[tile];
+        const std::string_view view = bytes.view.substr(entry.offset, entry.size);
+        std::atomic<std::uint8_t>& checked = states_[level][tile];
+        if (checked.load(std::memory_order_acquire) == 0) {
+            verify(view, entry);
+            checked.store(1, std::memory_order_release);
+        }
+        return Tile(view);
+    }
+
+    /// visit(tile, bin) for the bin of each level that holds (x, y).
+    template <class Visit>
+    void visit_at(double x, double y, const Visit& visit) const
+    {
+        const double dx = x - x0, dy = y - y0;
+        if (dx < 0 || dy < 0) return;
+        for (std::size_t l = 0; l < levels.size(); ++l) {
+            const TileLevel& level = levels[l];
+            if (dx > level.cell * level.cols || dy > level.cell * level.rows) continue;
+            const std::size_t t = std::size_t{cell_number(dy, level.cell, level.rows)} * level.cols + cell_number(dx, level.cell, level.cols);
+            if (level.tiles[t].size == 0) continue;
+            const Tile tile = open(l, t);
+            visit(tile, tile.bin(tile.bin_col(x), tile.bin_row(y)));
+        }
+    }
+
+    /// visit(tile, element) for each element whose box meets the closed rectangle, once each.
+    template <class Visit>
+    void visit_in(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
+    {
+        for (std::size_t l = 0; l < levels.size(); ++l) {
+            const TileLevel& level = levels[l];
+            // Not past the rim: the outermost tiles would answer.
+            if (high_x < x0 || high_y < y0 || low_x > x0 + level.cell * level.cols || low_y > y0 + level.cell * level.rows) continue;
+            const std::uint32_t col0 = cell_number(low_x - x0, level.cell, level.cols), col1 = cell_number(high_x - x0, level.cell, level.cols);
+            const std::uint32_t row0 = cell_number(low_y - y0, level.cell, level.rows), row1 = cell_number(high_y - y0, level.cell, level.rows);
+            const bool one = col0 == col1 && row0 == row1;
+            for (std::uint32_t row = row0; row <= row1; ++row)
+                for (std::uint32_t col = col0; col <= col1; ++col) {
+                    const std::size_t t = std::size_t{row} * level.cols + col;
+                    if (level.tiles[t].size == 0) continue;
+                    const Tile tile = open(l, t);
+                    visit_tile(tile, low_x, low_y, high_x, high_y, [&](std::uint32_t element) {
+                        // In several tiles: the one that holds the lower left corner of what box and rectangle share tells.
+                        const ElementBox& box = tile.boxes[element];
+                        if (one || (cell_number(std::max(double(box.min[0]), low_x) - x0, level.cell, level.cols) == col &&
+                                    cell_number(std::max(double(box.min[1]), low_y) - y0, level.cell, level.rows) == row))
+                            visit(tile, element);
+                    });
+                }
+        }
+    }
+
+    /// About how many elements there are in the tiles that a rectangle meets, by its share of their area.
+    double elements_near(double low_x, double low_y, double high_x, double high_y) const;
+
+private:
+    template <class Visit>
+    static void visit_tile(const Tile& tile, double low_x, double low_y, double high_x, double high_y, const Visit& visit)
+    {
+        const auto meets = [&](const ElementBox& box) {
+            return box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y;
+        };
+        const std::uint32_t col0 = tile.bin_col(low_x), col1 = tile.bin_col(high_x), row0 = tile.bin_row(low_y), row1 = tile.bin_row(high_y);
+        if (col0 == 0 && row0 == 0 && col1 + 1 == tile.head->bin_cols && row1 + 1 == tile.head->bin_rows) {
+            for (std::uint32_t element = 0; element < tile.elements(); ++element)
+                if (meets(tile.boxes[element])) visit(element);
+            return;
+        }
+        const bool one = col0 == col1 && row0 == row1;
+        for (std::uint32_t row = row0; row <= row1; ++row)
+            for (std::uint32_t col = col0; col <= col1; ++col)
+                for (const std::uint32_t element : tile.bin(col, row)) {
+                    const ElementBox& box = tile.boxes[element];
+                    if (!meets(box)) continue;
+                    if (one || (tile.bin_col(std::max(double(box.min[0]), low_x)) == col && tile.bin_row(std::max(double(box.min[1]), low_y)) == row))
+                        visit(element);
+                }
+    }
+
+    void verify(std::string_view view, const TileEntry& entry) const;
+
+    mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> states_;  ///< 1: checked
+};
+
+}  // namespace spawnfield
