@@ -4,10 +4,11 @@ find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(fcl REQUIRED)
 find_package(octomap REQUIRED)
 find_package(assimp REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc)
 find_package(CLI11 REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(TBB REQUIRED)
@@ -18,6 +19,6 @@ pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 
 set(SPAWNFIELD_PRIVATE_LIBRARIES
-  fcl PkgConfig::ccd octomap octomath assimp::assimp opencv_core opencv_imgproc opencv_imgcodecs yaml-cpp
-  nlohmann_json::nlohmann_json TIFF::TIFF ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash
+  fcl PkgConfig::ccd octomap octomath assimp::assimp opencv_core opencv_imgproc yaml-cpp
+  nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash
   Threads::Threads)

@@ -158,10 +158,12 @@ TEST_CASE("heightmaps that make no sense are refused by name")
     write_image(folder, "inf.tiff", {{0, 1}, {std::numeric_limits<double>::infinity(), 1}}, CV_32F);
     cv::imwrite((folder / "colour.png").string(), cv::Mat(4, 4, CV_8UC3, cv::Scalar(1, 2, 3)));
     folder.write("text.png", "no picture");
+    cv::imwrite((folder / "photo.jpg").string(), cv::Mat(4, 4, CV_8U, cv::Scalar(7)));
     const std::string start = (folder / "scene.yaml").string() + ": part \"ground\": heightmap.";
     const auto used = [&](const char* file) { return start + "file cannot be used: " + (folder / file).string() + ": "; };
     CHECK_THROWS_WITH(load(folder, "file: none.png, size: [1, 1], z: [0, 1]"), used("none.png") + "does not exist; is the path right? (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: text.png, size: [1, 1], z: [0, 1]"), used("text.png") + "cannot be read as an image, needs PNG or TIFF (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: text.png, size: [1, 1], z: [0, 1]"), used("text.png") + "is neither PNG nor TIFF; a heightmap needs to be one of them (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: photo.jpg, size: [1, 1], z: [0, 1]"), used("photo.jpg") + "is neither PNG nor TIFF; a heightmap needs to be one of them (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: colour.png, size: [1, 1], z: [0, 1]"), used("colour.png") + "has 3 channels, needs 1 (grey) (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: thin.png, size: [1, 1], z: [0, 1]"), used("thin.png") + "has 2 x 1 pixels, needs at least 2 x 2 (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1]"),

@@ -2,6 +2,7 @@
 #include "base/chosen_bounds.h"
 #include "base/input_file.h"
 #include "base/number.h"
+#include "base/png.h"
 #include "base/stopwatch.h"
 #include "map/geometry_file.h"
 #include "map/map_yaml.h"
@@ -11,7 +12,6 @@
 #include <spawnfield/heatmap.h>
 #include <spawnfield/output_file.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <unistd.h>
 
 #include <cmath>
@@ -104,13 +104,12 @@ std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::
         }
     if (!(low <= high)) low = high = 0;
     const double step = high > low ? (high - low) / 65534 : 1e-3;
-    cv::Mat image(int(top.rows()), int(top.cols()), CV_16U, cv::Scalar(0));
-    for (int row = 0; row < image.rows; ++row)
-        for (int col = 0; col < image.cols; ++col)
-            if (!std::isnan(top(row, col))) image.at<std::uint16_t>(row, col) = std::uint16_t(std::lround(1 + (top(row, col) - low) / step));
-    std::vector<unsigned char> bytes;
-    if (!cv::imencode(".png", image, bytes)) throw OutputError(file.string(), "cannot be encoded");
-    write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    std::vector<std::uint16_t> pixels;
+    pixels.reserve(std::size_t(top.size()));
+    for (Eigen::Index row = 0; row < top.rows(); ++row)
+        for (Eigen::Index col = 0; col < top.cols(); ++col)
+            pixels.push_back(std::isnan(top(row, col)) ? std::uint16_t(0) : std::uint16_t(std::lround(1 + (top(row, col) - low) / step)));
+    write_grey_png(file, int(top.rows()), int(top.cols()), pixels.data());
     return {low - step, low + 65534 * step};
 }
 

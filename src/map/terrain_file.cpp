@@ -1,29 +1,11 @@
 #include "map/terrain_file.h"
 
+#include "base/tiff.h"
+
 #include <spawnfield/error.h>
-
-#include <tiffio.h>
-
-#include <memory>
-#include <mutex>
 
 namespace spawnfield {
 namespace {
-
-struct TiffCloser {
-    void operator()(TIFF* tiff) const { TIFFClose(tiff); }
-};
-using Tiff = std::unique_ptr<TIFF, TiffCloser>;
-
-Tiff open_tiff(const std::filesystem::path& file, const char* mode)
-{
-    static std::once_flag once;  // our own messages name the file and what to do
-    std::call_once(once, [] {
-        TIFFSetErrorHandler(nullptr);
-        TIFFSetWarningHandler(nullptr);
-    });
-    return Tiff(TIFFOpen(file.c_str(), mode));
-}
 
 void set_tags(TIFF* tiff, const TerrainMap& terrain, const TerrainMap::Page& page, std::size_t number)
 {

@@ -1,12 +1,11 @@
 #include "picture/canvas.h"
 
-#include <spawnfield/error.h>
-#include <spawnfield/output_file.h>
+#include "base/png.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <string_view>
 
 namespace spawnfield {
@@ -148,10 +147,8 @@ void draw_dot(Image& image, cv::Point2d centre, double radius, Colour inside, Co
 
 void write_png(const Image& image, const std::filesystem::path& file)
 {
-    std::vector<std::uint8_t> bytes;
-    if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6}))
-        throw OutputError(file.string(), "cannot be encoded as PNG");
-    write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    assert(image.isContinuous());
+    write_bgr_png(file, image.rows, image.cols, image.ptr());
 }
 
 }  // namespace spawnfield

@@ -1,29 +1,27 @@
 #include "scene/heightmap.h"
 
+#include "base/png.h"
+#include "base/tiff.h"
 #include "scene/pieces.h"
 
 #include <spawnfield/error.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 namespace spawnfield {
 namespace {
 
-cv::Mat read_grey(const std::filesystem::path& file)
+GreyImage read_grey(const std::filesystem::path& file)
 {
     if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
-    cv::Mat image;
-    try {
-        image = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
-    } catch (const cv::Exception& error) {
-        throw FileError(file.string(), "cannot be read as an image: " + error.err);
-    }
-    if (image.empty()) throw FileError(file.string(), "cannot be read as an image, needs PNG or TIFF");
-    if (image.channels() != 1)
-        throw FileError(file.string(), "has " + std::to_string(image.channels()) + " channels, needs 1 (grey)");
+    std::ifstream stream(file, std::ios::binary);
+    std::string start(8, '\0');
+    stream.read(start.data(), std::streamsize(start.size()));
+    start.resize(std::size_t(stream.gcount()));
+    if (!is_png(start) && !is_tiff(start)) throw FileError(file.string(), "is neither PNG nor TIFF; a heightmap needs to be one of them");
+    GreyImage image = is_png(start) ? read_grey_png(file) : read_grey_tiff(file);
     if (image.rows < 2 || image.cols < 2)
         throw FileError(file.string(), "has " + std::to_string(image.cols) + " x " + std::to_string(image.rows) +
                                            " pixels, needs at least 2 x 2");
@@ -43,28 +41,19 @@ HeightmapOptions read_heightmap_options(const YamlMap& map)
 
 Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptions& options)
 {
-    const cv::Mat image = read_grey(file);
-    const int depth = image.depth();
-    const bool is_float = depth == CV_32F || depth == CV_64F;
-    if (!is_float && depth != CV_8U && depth != CV_16U)
-        throw FileError(file.string(), "has pixels that are neither 8- or 16-bit grey nor float");
+    GreyImage image = read_grey(file);
+    const bool is_float = image.largest == 0;
     if (is_float && options.z) throw FileError(file.string(), "is a float image, which is metres already; heightmap.z must go");
     if (!is_float && !options.z) throw FileError(file.string(), "is an integer image; heightmap.z is missing (heights of 0 and of the largest value)");
 
-    const double largest = depth == CV_8U ? 255 : 65535;
-    cv::Mat heights;
-    image.convertTo(heights, CV_64F);
-    Heightmap map{options.size, image.rows, image.cols, {}};
-    map.heights.reserve(heights.total());
-    for (int row = 0; row < heights.rows; ++row)
-        for (int col = 0; col < heights.cols; ++col) {
-            const double pixel = heights.at<double>(row, col);
-            const double z = is_float ? pixel : (*options.z)[0] + pixel / largest * ((*options.z)[1] - (*options.z)[0]);
-            if (std::isinf(z))
-                throw FileError(file.string(), "row " + std::to_string(row) + ", column " + std::to_string(col) +
-                                                   " is infinite, needs a finite height or NaN (no ground)");
-            map.heights.push_back(z);
-        }
+    Heightmap map{options.size, image.rows, image.cols, std::move(image.pixels)};
+    for (std::size_t i = 0; i < map.heights.size(); ++i) {
+        double& z = map.heights[i];
+        if (!is_float) z = (*options.z)[0] + z / image.largest * ((*options.z)[1] - (*options.z)[0]);
+        if (std::isinf(z))
+            throw FileError(file.string(), "row " + std::to_string(i / std::size_t(map.cols)) + ", column " +
+                                               std::to_string(i % std::size_t(map.cols)) + " is infinite, needs a finite height or NaN (no ground)");
+    }
     if (std::all_of(map.heights.begin(), map.heights.end(), [](double z) { return std::isnan(z); }))
         throw FileError(file.string(), "has no heights: every pixel is NaN");
     return map;

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace spawnfield {
+
+constexpr std::uint64_t max_pixels = std::uint64_t(1) << 30;  ///< that an image may have
+
+/// One channel, rows from the top.
+struct GreyImage {
+    int rows = 0, cols = 0;
+    double largest = 0;  ///< what white is in an integer image: 255 or 65535; 0: a float image
+    std::vector<double> pixels;
+};
+
+}  // namespace spawnfield

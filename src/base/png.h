@@ -1,0 +1,23 @@
+#pragma once
+
+#include "base/grey_image.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+namespace spawnfield {
+
+bool is_png(std::string_view start);  ///< its first 8 bytes or more
+
+/// 1 to 16 bits, interlaced or not; pixels of fewer than 8 bits are spread over 0 .. 255. Gamma and transparency are not
+/// applied. Throws FileError.
+GreyImage read_grey_png(const std::filesystem::path& file);
+
+/// Pixels of 8-bit blue, green, red. Same pixels, same bytes. Throws OutputError.
+void write_bgr_png(const std::filesystem::path& file, int rows, int cols, const std::uint8_t* pixels);
+
+/// 16-bit pixels. Same pixels, same bytes. Throws OutputError.
+void write_grey_png(const std::filesystem::path& file, int rows, int cols, const std::uint16_t* pixels);
+
+}  // namespace spawnfield
