@@ -1,0 +1,399 @@
+#include "catch.h"
+#include "compare.h"
+#include "shared_scenes.h"
+
+#include <spawnfield/poses.h>
+
+#include <algorithm>
+#include <iostream>
+#include <set>
+
+using namespace spawnfield;
+
+// Every query with the free-space mask gives the very verdicts of the exhaustive one, pose by pose.
+
+namespace {
+
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+constexpr std::uint64_t scene_count = 300;
+#else
+constexpr std::uint64_t scene_count = 40;  // unoptimised or watched, the same would take many minutes
+#endif
+
+/// Counts are asked for of all scenes together: each kind of answer must have been at stake.
+constexpr bool all_scenes = scene_count >= 300;
+
+/// That some were proven, and some not: or the comparison compared nothing.
+void check_shares(const compare::Tally& tally, double least_proven)
+{
+    if (!mask_exists || !all_scenes) return;
+    CAPTURE(tally.asked, tally.exact);
+    CHECK(tally.exact > 0);
+    CHECK(double(tally.exact) <= (1 - least_proven) * double(tally.asked));
+}
+
+void check_verdicts(const compare::Tally& tally, const std::vector<Verdict>& expected, std::size_t least)
+{
+    if (!all_scenes) return;
+    for (const Verdict verdict : expected) {
+        INFO(to_string(verdict));
+        CHECK(tally.verdicts[std::size_t(verdict)] >= least);
+    }
+}
+
+void print(const char* what, const compare::Tally& tally)
+{
+    std::cout << what << ": " << tally.poses << " poses,";
+    for (std::size_t i = 0; i < verdict_count; ++i) std::cout << " " << tally.verdicts[i] << " " << to_string(Verdict(i)) << ",";
+    std::cout << " " << tally.exact << " of " << tally.asked << " checked exactly\n";
+}
+
+/// In the order of another raster's poses.
+bool earlier(const RasterPose& a, const RasterPose& b)
+{
+    return std::tuple(a.y, a.x, -a.z) < std::tuple(b.y, b.x, -b.z);
+}
+
+struct Change {
+    std::size_t valid = 0, other = 0, lost = 0, gained = 0;  ///< lost, gained: valid poses
+};
+
+/// What becomes of each pose's verdict. The poses must be the same up to rounding.
+Change change(const std::vector<RasterPose>& before, const std::vector<RasterPose>& after)
+{
+    Change out;
+    REQUIRE(before.size() == after.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const bool was = before[i].verdict == Verdict::Valid, is = after[i].verdict == Verdict::Valid;
+        ++(was ? out.valid : out.other);
+        out.lost += was && !is;
+        out.gained += is && !was;
+    }
+    return out;
+}
+
+/// Steps of 2^-6 m multiples from such a place on: mirrored, all columns fall on each other to the last digit.
+RasterOptions dyadic_raster(const TestMap& map, const HardCase& hard)
+{
+    Random random{hard.seed + 3};
+    RasterOptions options;
+    options.offset = hard.offset;
+    options.yaw = hard.yaws[0];
+    options.threads = 1;
+    options.step = (1 + random.below(16)) / 64.0;
+    const Bounds crop = compare::crop_near(map, random, options.step, 20);
+    options.bounds = crop;
+    for (int axis = 0; axis < 2; ++axis) {
+        options.bounds.min[axis] = std::round(crop.min[axis] * 64) / 64;
+        options.bounds.max[axis] = options.bounds.min[axis] + 19 * options.step;
+    }
+    return options;
+}
+
+bool same_verdicts(const std::vector<RasterPose>& a, const std::vector<RasterPose>& b)
+{
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const RasterPose& l, const RasterPose& r) { return l.layer == r.layer && l.verdict == r.verdict; });
+}
+
+std::size_t valid_count(const std::vector<RasterPose>& poses)
+{
+    return std::size_t(std::count_if(poses.begin(), poses.end(), [](const RasterPose& pose) { return pose.verdict == Verdict::Valid; }));
+}
+
+/// A scene of the shared folder with Husky, and a mask of about a million columns.
+HardCase real_case(const std::filesystem::path& file)
+{
+    HardCase out;
+    out.scene = load_scene(file);
+    out.robot = husky();
+    out.yaws = {0.6};
+    const Vec3 size = out.scene.bounds().max - out.scene.bounds().min;
+    out.resolution = std::max(0.05, std::sqrt(size.x() * size.y() / 1e6));
+    return out;
+}
+
+std::vector<std::filesystem::path> scene_files(const std::filesystem::path& folder)
+{
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, std::filesystem::directory_options::follow_directory_symlink))
+        if (entry.path().string().ends_with("scene.yaml")) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+/// 2D across the map, 3D around some standing pose.
+compare::Tally real_rasters(const TestMap& map, const CollisionChecker& checker, const std::vector<Pose>& standing)
+{
+    compare::Tally tally;
+    RasterOptions options;
+    options.step = (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 70.3;
+    for (const double offset : {0.05, 0.3}) {
+        options.offset = offset;
+        tally.add(compare::of_raster(map, checker, options));
+    }
+    options.dims = 3;
+    options.step = 0.13;
+    options.step_z = 0.11;
+    for (std::size_t i = 0; i < standing.size(); i += 100) {
+        const Vec3& near = standing[i].position;
+        options.bounds = {near - Vec3(1, 1, 1), near + Vec3(1, 1, 2)};
+        options.height_check = i % 200 == 0;
+        tally.add(compare::of_raster(map, checker, options));
+    }
+    return tally;
+}
+
+std::string csv(const RasterResult& raster)
+{
+    std::string text;
+    write_raster_csv(raster, false, [&](std::string_view piece) { text += piece; });
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("every query gives the exhaustive verdicts, pose by pose, in random hard scenes")
+{
+    compare::CaseTally all;
+    for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
+        const HardCase hard = hard_case(seed);
+        const compare::CaseTally tally = compare::of_case(hard);
+        all.add(tally);
+        INFO("scene " << seed << ", resolution " << hard.resolution << ": " << tally.sum().first << "\nrepeat: spawnfield_fuzz --scenes 1 --seed " << seed);
+        CHECK(tally.sum().differences == 0);
+    }
+    using enum Verdict;
+    print("2D rasters", all.raster_2d);
+    print("3D rasters", all.raster_3d);
+    print("3D rasters without height check", all.collisions);
+    print("check", all.check);
+    print("sample", all.sample);
+    print("search", all.search);
+    check_verdicts(all.raster_2d, {Outside, OffTerrain, Submerged, Collision, Valid}, 1000);
+    check_verdicts(all.raster_3d, {Outside, OffTerrain, Submerged, Collision, Valid}, 1000);
+    check_verdicts(all.collisions, {Collision, Valid}, 10000);
+    check_verdicts(all.check, {Outside, Aerial, OffTerrain, Submerged, Collision, Valid}, 500);
+    check_verdicts(all.sample, {Valid}, 2000);
+    check_verdicts(all.search, {Valid}, 1000);
+    check_shares(all.raster_2d, 0.2);
+    check_shares(all.raster_3d, 0.2);
+    check_shares(all.collisions, 0.1);
+    check_shares(all.check, 0.1);
+    if (mask_exists && all_scenes) {
+        CHECK(all.check.proven_valid > 1000);
+        CHECK(all.check.proven_collision > 1000);
+    }
+}
+
+TEST_CASE("hard scenes hold all that scenes are made of, and robots all kinds of parts")
+{
+    std::set<std::string> features, kinds;
+    std::set<ShapeKind> shapes;
+    std::size_t far = 0, sides_up = 0, solid = 0, sheet = 0, filled_open = 0, cropped = 0;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        const HardCase hard = hard_case(seed);
+        for (const Part& part : hard.scene.parts) features.insert(part.name.substr(0, part.name.rfind('-')));
+        for (const Part& part : hard.scene.parts) kinds.insert(part.kind);
+        for (const RobotPart& part : hard.robot.parts) shapes.insert(part.shape.kind);
+        for (const Piece& piece : hard.scene.pieces) {
+            ++(piece.solid ? solid : sheet);
+            sides_up += piece.sides_up;
+            filled_open += piece.solid && hard.scene.parts[piece.part].open_edges > 0;
+        }
+        far += hard.scene.bounds().min.head<2>().norm() > 500;
+        cropped += !hard.map_bounds.is_empty();
+        CHECK((hard.resolution >= 0.0199 && hard.resolution <= 0.501));
+        CHECK((hard.robot.parts.size() >= 1 && hard.robot.parts.size() <= 4));
+        CHECK(hard.scene.bounds().min.allFinite());
+        CHECK(hard.scene.bounds().max.allFinite());
+    }
+    const std::vector<std::string> expected = hard_features();
+    CHECK(features == std::set<std::string>(expected.begin(), expected.end()));
+    for (const char* kind : {"box", "sphere", "cylinder", "capsule", "heightmap", "mesh", "plane", "octomap"}) CHECK(kinds.contains(kind));
+    CHECK(shapes.size() == 5);
+    for (const std::size_t count : {far, cropped}) CHECK(count > 20);
+    for (const std::size_t count : {sides_up, solid, sheet, filled_open}) CHECK(count > 40);
+}
+
+TEST_CASE("the exhaustive answers agree with an independent decision in random hard scenes")
+{
+    compare::Tally all;
+    for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
+        const compare::Tally tally = compare::independently(hard_case(seed, {.razor = false}));
+        all.add(tally);
+        INFO("scene " << seed << ": " << tally.first);
+        CHECK(tally.differences == 0);
+    }
+    using enum Verdict;
+    check_verdicts(all, {Outside, Aerial, OffTerrain, Submerged, Collision, Valid}, 100);
+}
+
+TEST_CASE("with the mask a larger robot never gains a valid pose")
+{
+    std::size_t kept = 0, lost = 0;
+    for (std::uint64_t seed = 1; seed <= scene_count / 3; ++seed) {
+        const HardCase hard = hard_case(seed);
+        const TestMap map = compare::map_of_case(hard);
+        Robot longer = hard.robot;
+        longer.parts.push_back(random_robot(seed + 9).parts[0]);
+        const RasterOptions options = dyadic_raster(map, hard);
+        const RasterResult small = raster(map, checker_of(map, hard.robot), options);
+        for (const Robot& robot : {enlarged(hard.robot, 1.05), enlarged(hard.robot, 1.4), longer}) {
+            const Change becomes = change(small.poses, raster(map, checker_of(map, robot), options).poses);
+            CAPTURE(seed, hard.resolution);
+            CHECK(becomes.gained == 0);
+            kept += becomes.valid - becomes.lost;
+            lost += becomes.lost;
+        }
+    }
+    if (all_scenes) CHECK((kept > 5000 && lost > 1000));
+}
+
+TEST_CASE("a finer mask changes no verdict, only how many poses it leaves to the exact check")
+{
+    std::size_t valid = 0;
+    std::uint64_t fine_checks = 0, coarse_checks = 0;
+    for (std::uint64_t seed = 1; seed <= scene_count / 3; ++seed) {
+        const HardCase hard = hard_case(seed);
+        const TestMap coarse = map_at(hard.scene, 3 * hard.resolution, hard.map_bounds);
+        RasterOptions options = dyadic_raster(coarse, hard);
+        for (const int dims : {2, 3}) {
+            options.dims = dims;
+            options.step_z = 0.17;
+            const RasterResult expected = raster(coarse, checker_of(coarse, hard.robot), options);
+            valid += valid_count(expected.poses);
+            coarse_checks += expected.exact_checks;
+            for (const double resolution : {1.37 * hard.resolution, std::max(0.02, hard.resolution / 1.5)}) {
+                const TestMap fine = map_at(hard.scene, resolution, hard.map_bounds);
+                const RasterResult result = raster(fine, checker_of(fine, hard.robot), options);
+                CAPTURE(seed, hard.resolution, resolution, dims);
+                CHECK(csv(result) == csv(expected));
+                if (resolution < hard.resolution) fine_checks += result.exact_checks;
+            }
+        }
+    }
+    if (all_scenes) CHECK(valid > 3000);
+    if (mask_exists && all_scenes) CHECK(fine_checks < coarse_checks);
+}
+
+TEST_CASE("with the mask a mirrored scene mirrors the verdicts")
+{
+    std::size_t valid = 0, other = 0;
+    for (std::uint64_t seed = 1; seed <= scene_count / 3; ++seed) {
+        const HardCase hard = hard_case(seed, {.razor = false});
+        const TestMap map = map_at(hard.scene, hard.resolution), mirror = map_at(mirrored(hard.scene), hard.resolution);
+        RasterOptions options = dyadic_raster(map, hard);
+        const RasterResult here = raster(map, checker_of(map, hard.robot), options);
+        options.yaw *= -1;
+        std::swap(options.bounds.min.y(), options.bounds.max.y());
+        options.bounds.min.y() *= -1;
+        options.bounds.max.y() *= -1;
+        std::vector<RasterPose> there = raster(mirror, checker_of(mirror, mirrored(hard.robot)), options).poses;
+        for (RasterPose& pose : there) pose.y *= -1;
+        std::sort(there.begin(), there.end(), earlier);
+        CAPTURE(seed, hard.resolution);
+        CHECK(same_verdicts(here.poses, there));
+        valid += valid_count(here.poses);
+        other += here.poses.size() - valid_count(here.poses);
+    }
+    if (all_scenes) CHECK((valid > 3000 && other > 3000));
+}
+
+TEST_CASE("with the mask a scene moved by whole metres keeps its verdicts")
+{
+    std::size_t valid = 0, other = 0;
+    for (std::uint64_t seed = 1; seed <= scene_count / 3; ++seed) {
+        const HardCase hard = hard_case(seed, {.razor = false});
+        const Scene scene = on_binary_lattice(hard.scene);
+        const Vec3 by = {double(seed % 7) * 157 - 300, 1000 - double(seed % 5) * 321, double(seed % 3) * 64};
+        const TestMap map = map_at(scene, hard.resolution), moved = map_at(shifted(scene, by), hard.resolution);
+        RasterOptions options = dyadic_raster(map, hard);
+        const RasterResult here = raster(map, checker_of(map, hard.robot), options);
+        options.bounds.min += by;
+        options.bounds.max += by;
+        const RasterResult there = raster(moved, checker_of(moved, hard.robot), options);
+        CAPTURE(seed, hard.resolution);
+        CHECK(same_verdicts(here.poses, there.poses));
+        valid += valid_count(here.poses);
+        other += here.poses.size() - valid_count(here.poses);
+    }
+    if (all_scenes) CHECK((valid > 3000 && other > 3000));
+}
+
+TEST_CASE("the mask never says free where a yaw of the set collides")
+{
+    compare::Tally all;
+    for (std::uint64_t seed = 1; seed <= scene_count / 2; ++seed) {
+        const HardCase hard = hard_case(seed);
+        const TestMap map = compare::map_of_case(hard);
+        const CollisionChecker checker = checker_of(map, hard.robot);
+        Random random{seed};
+        const Bounds crop = compare::crop_near(map, random, 2 * hard.resolution, 15);
+        std::vector<Pose> poses;
+        for (const Pose& pose : compare::standing_poses(map, checker, hard, crop, 40))
+            for (int i = 0; i < 24; ++i) {
+                const double yaw = i < 8 ? M_PI / 4 * i : random.between(-M_PI, M_PI);
+                poses.push_back({pose.position, rotation_from_rpy(0, 0, yaw)});
+            }
+        QueryOptions options;
+        options.threads = 1;
+        const compare::Tally tally = compare::of_check(map, checker, poses, options);
+        INFO("scene " << seed << ": " << tally.first);
+        CHECK(tally.differences == 0);
+        all.add(tally);
+    }
+    check_verdicts(all, {Verdict::Valid, Verdict::Collision}, 5000);
+    if (mask_exists && all_scenes) CHECK((all.proven_valid > 2000 && all.proven_collision > 2000));
+}
+
+TEST_CASE("with a mask that is made on first use, rasters are the same bytes at any thread count")
+{
+    for (std::uint64_t seed = 1; seed <= scene_count / 10; ++seed) {
+        const HardCase hard = hard_case(seed);
+        std::string expected;
+        for (const int threads : {1, 2, 8}) {
+            const TestMap map = compare::map_of_case(hard);
+            const CollisionChecker checker = checker_of(map, hard.robot);
+            RasterOptions options = dyadic_raster(map, hard);
+            options.bounds = {};
+            options.step = std::max(0.1, (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 60);
+            options.threads = threads;
+            const RasterResult result = raster(map, checker, options);
+            const std::string text = csv(result) + std::to_string(result.exact_checks);
+            if (threads == 1) expected = text;
+            CAPTURE(seed, threads);
+            CHECK(text == expected);
+        }
+    }
+}
+
+TEST_CASE("every query gives the exhaustive verdicts in real scenes")
+{
+    const auto folder = shared_scenes();
+    if (!folder) return;
+    compare::Tally all;
+    const std::vector<std::filesystem::path> files = scene_files(*folder);
+    CHECK(files.size() >= 12);
+    for (const std::filesystem::path& file : files) {
+        const HardCase real = real_case(file);
+        const TestMap map = compare::map_of_case(real);
+        const CollisionChecker checker = checker_of(map, real.robot);
+        const std::vector<Pose> standing = compare::standing_poses(map, checker, real, map.bounds, 300);
+        std::vector<Pose> poses = random_poses(real.scene, 5, 200);
+        poses.insert(poses.end(), standing.begin(), standing.end());
+        compare::Tally tally = compare::of_check(map, checker, poses, {});
+        tally.add(real_rasters(map, checker, standing));
+        SampleOptions sampling;
+        sampling.count = 100;
+        sampling.min_distance = 0.5;
+        sampling.random_yaw = true;
+        tally.add(compare::of_sample(map, checker, sampling));
+        INFO(file.string() << ": " << tally.first);
+        CHECK(tally.differences == 0);
+        all.add(tally);
+    }
+    print("real scenes", all);
+    check_verdicts(all, {Verdict::OffTerrain, Verdict::Collision, Verdict::Valid}, 1000);
+    check_shares(all, 0.2);
+}

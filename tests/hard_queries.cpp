@@ -1,0 +1,208 @@
+#include "compare.h"
+#include "slow.h"
+
+#include <cmath>
+
+using namespace spawnfield;
+
+// The queries of a hard case: small rasters on and off the raster's lattice, poses near the ground, spawns.
+
+namespace compare {
+namespace {
+
+RasterOptions raster_options(const HardCase& hard, Random& random)
+{
+    RasterOptions options;
+    options.offset = hard.offset;
+    options.max_height = hard.max_height;
+    options.yaw = hard.yaws[std::size_t(random.below(int(hard.yaws.size())))];
+    options.threads = 1;
+    constexpr std::array kinds = {LayerChoice::Kind::Top, LayerChoice::Kind::Bottom, LayerChoice::Kind::Index};
+    if (random.chance(0.2)) options.layers = {kinds[std::size_t(random.below(3))], 1};
+    return options;
+}
+
+/// As many steps to the map's width, incommensurable with any resolution.
+double wide_step(const TestMap& map, int cols)
+{
+    return std::max(1e-3, (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / (cols - 0.29));
+}
+
+void shift_columns(Bounds& bounds, double by)
+{
+    bounds.min.head<2>().array() += by;
+    bounds.max.head<2>().array() += by;
+}
+
+/// Across the map; at cells' corners; at their centres; some cells apart.
+Tally rasters_2d(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+{
+    Tally tally;
+    RasterOptions options = raster_options(hard, random);
+    options.step = wide_step(map, 26);
+    tally.add(of_raster(map, checker, options));
+    for (const double shift : {0.0, 0.5}) {
+        options = raster_options(hard, random);
+        options.step = hard.resolution * (random.chance(0.6) ? 1 : 1 + random.below(5));
+        options.bounds = crop_near(map, random, options.step, 22);
+        shift_columns(options.bounds, shift * hard.resolution);
+        tally.add(of_raster(map, checker, options));
+    }
+    return tally;
+}
+
+/// Heights of a crop that are few enough.
+void limit_heights(RasterOptions& options, const HardCase& hard, Random& random, int heights)
+{
+    options.dims = 3;
+    options.step_z = random.chance(0.5) ? hard.resolution : 0.0731 + hard.resolution / 7;
+    const double low = options.bounds.min.z(), high = options.bounds.max.z(), tall = options.step_z * heights;
+    const double slack = std::max(0.0, high - low - tall);
+    options.bounds.min.z() = low + std::round(random.between(0, slack) / options.step_z) * options.step_z;
+    options.bounds.max.z() = options.bounds.min.z() + tall;
+}
+
+Tally rasters_3d(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random, bool height_check)
+{
+    RasterOptions options = raster_options(hard, random);
+    options.step = random.chance(0.5) ? hard.resolution : wide_step(map, 31);
+    const int cols = height_check ? 16 : 9;
+    options.bounds = crop_near(map, random, options.step, cols);
+    options.height_check = height_check;
+    if (!height_check) options.layers = {};
+    limit_heights(options, hard, random, height_check ? 40 : 8);
+    return of_raster(map, checker, options);
+}
+
+Tally checks(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+{
+    QueryOptions options;
+    options.max_height = std::max(hard.max_height, hard.offset);
+    options.max_water_depth = random.chance(0.8) ? std::numeric_limits<double>::infinity() : random.between(0, 0.5);
+    options.threads = 1;
+    Tally tally = of_check(map, checker, random_poses(hard.scene, random.next(), 250), options);
+    const Bounds crop = crop_near(map, random, wide_step(map, 25), 9);
+    tally.add(of_check(map, checker, standing_poses(map, checker, hard, crop, 500), options));
+    return tally;
+}
+
+template <class Options>
+Options spawn_options(const HardCase& hard, Random& random)
+{
+    Options options;
+    options.count = 40;
+    options.min_distance = random.chance(0.5) ? 0 : random.between(0, 0.05) * hard.resolution;
+    options.random_yaw = random.chance(0.5);
+    options.yaw = hard.yaws[0];
+    options.seed = hard.seed;
+    options.max_height = hard.max_height;
+    options.threads = 1;
+    return options;
+}
+
+Tally samples(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+{
+    SampleOptions options = spawn_options<SampleOptions>(hard, random);
+    options.offset = hard.offset;
+    return of_sample(map, checker, options);
+}
+
+/// Through the metre above the lowest ground, or nearly all draws would be aerial.
+Tally searches(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+{
+    SearchOptions options = spawn_options<SearchOptions>(hard, random);
+    options.max_failures = 150;
+    options.bounds = map.bounds;
+    options.bounds.max.z() = std::min(map.bounds.max.z(), map.bounds.min.z() + 2) + 0.5;
+    return of_search(map, checker, options);
+}
+
+/// Whether some hundred draws are likely to give a spawn: a sampler that finds none tries long.
+bool has_room(const Tally& rasters)
+{
+    return 20 * rasters.verdicts[std::size_t(Verdict::Valid)] > rasters.poses;
+}
+
+}  // namespace
+
+std::vector<Pose> standing_poses(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, const Bounds& crop, std::size_t count)
+{
+    Random random{hard.seed + 77};
+    RasterOptions options = raster_options(hard, random);
+    options.layers = {};
+    options.bounds = crop;
+    options.step = std::max(1e-3, (crop.max.x() - crop.min.x()) / 9);
+    set_exhaustive(options);
+    const std::vector<RasterPose> stand = raster(map, checker, options).poses;
+    std::vector<Pose> poses;
+    for (std::size_t i = 0; i < count && !stand.empty(); ++i) {
+        const RasterPose& at = stand[std::size_t(random.below(int(stand.size())))];
+        const double x = at.x + (random.chance(0.5) ? random.between(-0.1, 0.1) : 0), y = at.y + (random.chance(0.3) ? random.between(-1e-5, 1e-5) : 0);
+        const double z = at.z + (random.chance(0.3) ? random.between(-1e-4, 1e-4) : 0);
+        const double lean = random.chance(0.3) ? random.between(0, 0.3) : 0, roll = random.between(-lean, lean), pitch = random.between(-lean, lean);
+        const double yaw = random.chance(0.3) ? hard.yaws[0] : random.between(-M_PI, M_PI);
+        poses.push_back({{x, y, z}, rotation_from_rpy(roll, pitch, yaw)});
+    }
+    return poses;
+}
+
+CaseTally of_case(const HardCase& hard)
+{
+    const TestMap map = map_of_case(hard);
+    const CollisionChecker checker = checker_of(map, hard.robot);
+    Random random{hard.seed + 13};
+    CaseTally tally;
+    tally.raster_2d = rasters_2d(map, checker, hard, random);
+    tally.raster_3d = rasters_3d(map, checker, hard, random, true);
+    tally.collisions = rasters_3d(map, checker, hard, random, false);
+    tally.check = checks(map, checker, hard, random);
+    if (has_room(tally.raster_2d)) tally.sample = samples(map, checker, hard, random);
+    tally.search = searches(map, checker, hard, random);
+    return tally;
+}
+
+namespace {
+
+bool is_filled_open(const Scene& scene)
+{
+    return std::any_of(scene.pieces.begin(), scene.pieces.end(),
+                       [&](const Piece& piece) { return piece.solid && scene.parts[piece.part].open_edges > 0; });
+}
+
+/// Off the lattice by chance: along borders of faces the tests' own decision may be either side's.
+std::vector<Pose> unaligned_poses(const TestMap& map, const CollisionChecker& checker, const HardCase& hard)
+{
+    Random random{hard.seed + 31};
+    std::vector<Pose> poses = random_poses(hard.scene, hard.seed, 60);
+    const Bounds crop = crop_near(map, random, 3 * map.resolution, 20);
+    for (Pose pose : standing_poses(map, checker, hard, crop, 100)) {
+        for (int axis = 0; axis < 2; ++axis) pose.position[axis] += random.between(-0.003, 0.003);
+        poses.push_back(pose);
+    }
+    return poses;
+}
+
+}  // namespace
+
+Tally independently(const HardCase& hard)
+{
+    Tally tally;
+    if (is_filled_open(hard.scene)) return tally;
+    const TestMap map = map_of_case(hard);
+    const CollisionChecker checker = checker_of(map, hard.robot);
+    const std::vector<Pose> poses = unaligned_poses(map, checker, hard);
+    QueryOptions options;
+    set_exhaustive(options);
+    const std::vector<Judgement> judged = check_poses(map, checker, poses, options);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const slow::Decision slow = slow::decide(hard.scene, map.bounds, hard.robot, poses[i], options.max_height, 1e9);
+        if (!slow.verdict) continue;
+        ++tally.poses;
+        ++tally.verdicts[std::size_t(*slow.verdict)];
+        if (*slow.verdict == judged[i].verdict || tally.differences++ > 0) continue;
+        tally.first = "check " + described(poses[i]) + "\n  by FCL " + to_string(judged[i].verdict) + "\n  slowly " + to_string(*slow.verdict);
+    }
+    return tally;
+}
+
+}  // namespace compare
