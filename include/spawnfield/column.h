@@ -9,6 +9,7 @@ struct Span {
     double bottom = 0, top = 0;
     std::uint32_t part = 0;
     bool terrain = false;  ///< a robot may stand on its top
+    bool sealed = true;    ///< false: of a mesh with holes that is solid by wish, so its inside is a guess
 };
 
 /// What stands on the vertical line through (x, y). DESIGN.md, Definitions.

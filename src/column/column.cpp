@@ -54,7 +54,7 @@ public:
         for (std::size_t i = 0; i < hits.size();) {
             const SurfaceHit& hit = hits[i];
             if (hit.is_primitive || !hit.filled) {
-                add(hit.z, hit.part, hit.terrain, hit.water, out);
+                add(hit.z, hit, hit.terrain, out);
                 ++i;
                 continue;
             }
@@ -67,10 +67,10 @@ public:
     }
 
 private:
-    static void add(const Interval& z, std::uint32_t part, bool terrain, bool water, Column& out)
+    static void add(const Interval& z, const SurfaceHit& hit, bool terrain, Column& out)
     {
-        if (water) out.water.push_back(z.top);
-        else out.spans.push_back({z.bottom, z.top, part, terrain});
+        if (hit.water) out.water.push_back(z.top);
+        else out.spans.push_back({z.bottom, z.top, hit.part, terrain, !hit.open});
     }
 
     /// Of a filled piece, which is water throughout or nowhere.
@@ -84,7 +84,7 @@ private:
         }
         pair_crossings(crossings_, hits.front().piece_bottom, intervals_);
         join(intervals_, touch_tolerance);
-        for (const Hit& hit : intervals_) add(hit.z, hits.front().part, hit.terrain, hits.front().water, out);
+        for (const Hit& hit : intervals_) add(hit.z, hits.front(), hit.terrain, out);
     }
 
     void finish(std::size_t first_span, std::size_t first_water, Column& out)
@@ -186,12 +186,12 @@ void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid)
 namespace {
 
 /// First and last index of a block, inclusive, whose coordinate lies in [low, high].
-std::pair<int, int> indices_in(double low, double high, double origin, double step, int first, int count)
+std::pair<int, int> indices_in(double low, double high, double origin, double step, double shift, int first, int count)
 {
-    const auto nearest = [&](double value) { return int(std::clamp((value - origin) / step, double(first) - 1, double(first + count))); };
+    const auto nearest = [&](double value) { return int(std::clamp((value - origin) / step - shift, double(first) - 1, double(first + count))); };
     int from = std::max(first, nearest(low)), to = std::min(first + count - 1, nearest(high) + 1);
-    while (from <= to && origin + from * step < low) ++from;
-    while (to >= from && origin + to * step > high) --to;
+    while (from <= to && origin + (from + shift) * step < low) ++from;
+    while (to >= from && origin + (to + shift) * step > high) --to;
     return {from, to};
 }
 
@@ -205,9 +205,9 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid)
     columns.clear();
     const auto visit = [&](const Tile& tile, std::uint32_t element) {
         const ElementBox& box = tile.boxes[element];
-        const auto [i0, i1] = indices_in(box.min[0], box.max[0], grid.x0, grid.step, grid.first_col, grid.cols);
+        const auto [i0, i1] = indices_in(box.min[0], box.max[0], grid.x0, grid.step, grid.shift, grid.first_col, grid.cols);
         if (i0 > i1) return;
-        const auto [j0, j1] = indices_in(box.min[1], box.max[1], grid.y0, grid.step, grid.first_row, grid.rows);
+        const auto [j0, j1] = indices_in(box.min[1], box.max[1], grid.y0, grid.step, grid.shift, grid.first_row, grid.rows);
         if (j0 > j1) return;
         const auto visit_columns = [&](const auto& hit_at) {
             for (int j = j0; j <= j1; ++j)

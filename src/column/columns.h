@@ -18,13 +18,14 @@ struct ColumnView {
 
 std::optional<Ground> ground_below(const ColumnView& column, double z);
 
-/// Columns x0 + col * step, y0 + row * step.
+/// Columns x0 + (col + shift) * step, y0 + (row + shift) * step.
 struct ColumnGrid {
     double x0 = 0, y0 = 0, step = 1;
     int first_col = 0, first_row = 0, cols = 0, rows = 0;  ///< the part of the grid that is asked for
+    double shift = 0;                                      ///< 0.5: at the centres of cells
 
-    double x_of(int col) const { return x0 + col * step; }
-    double y_of(int row) const { return y0 + row * step; }
+    double x_of(int col) const { return x0 + (col + shift) * step; }
+    double y_of(int row) const { return y0 + (row + shift) * step; }
 };
 
 /// The columns of a block of a grid, the very same as column_at gives one by one.

@@ -55,6 +55,7 @@ SeenTriangle::SeenTriangle(const Tile& tile, std::uint32_t triangle) : corners_(
     hit_.piece = piece.piece;
     hit_.part = piece.part;
     hit_.filled = piece.solid != 0;
+    hit_.open = piece.open != 0;
     hit_.terrain = from.label == Label::Terrain && (piece.sides_up == 0 || hit_.filled || area_ > 0);
     hit_.water = from.label == Label::Water;
     hit_.piece_bottom = piece.bottom;
@@ -126,7 +127,7 @@ std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double
     const TilePrimitive& primitive = tile.primitive(element);
     const auto interval = vertical_interval(primitive.shape(), x, y);
     if (!interval) return std::nullopt;
-    return SurfaceHit{.element = tile.ids[element], .piece = 0, .part = primitive.part, .is_primitive = true, .filled = true,
+    return SurfaceHit{.element = tile.ids[element], .piece = 0, .part = primitive.part, .is_primitive = true, .filled = true, .open = false,
                       .terrain = primitive.label == Label::Terrain, .water = primitive.label == Label::Water, .crosses = false,
                       .touches = true, .z = *interval, .crossing = 0, .piece_bottom = 0};
 }

@@ -11,7 +11,7 @@ namespace spawnfield {
 /// Where a vertical line meets one element of a scene.
 struct SurfaceHit {
     std::uint32_t element, piece, part;  ///< of the scene; primitives have no piece
-    bool is_primitive, filled, terrain, water;
+    bool is_primitive, filled, open, terrain, water;
     bool crosses;         ///< goes through a triangle of a filled piece, each edge counted once
     bool touches;         ///< meets it in z, edges included
     Interval z;

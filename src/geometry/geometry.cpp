@@ -168,6 +168,7 @@ private:
         out.piece = piece;
         out.part = from.part;
         out.solid = from.solid;
+        out.open = from.open;
         out.sides_up = from.sides_up;
         return out;
     }

@@ -30,8 +30,8 @@ struct TilePiece {
     double bottom;        ///< as Piece
     std::uint32_t piece;  ///< of the scene
     std::uint32_t part;
-    std::uint8_t solid, sides_up;
-    std::array<std::uint8_t, 6> unused;
+    std::uint8_t solid, open, sides_up;
+    std::array<std::uint8_t, 5> unused;
 };
 
 struct TilePrimitive {

@@ -69,22 +69,23 @@ private:
     void fill_block(const Geometry& geometry, int i0, int j0, int cols, int rows)
     {
         const CellBlock block{(box_.low[0] + i0) * resolution_, (box_.low[1] + j0) * resolution_, resolution_, cols, rows};
-        const std::vector<CellSpan> surfaces = clip_to_cells(geometry, block);
-        auto next = surfaces.begin();
+        const CellSpans surfaces(geometry, block);
+        const Columns centres(geometry, {block.x0, block.y0, resolution_, 0, 0, cols, rows, 0.5});
+        std::vector<Interval> touching;
         std::vector<Run> runs;
         for (int j = 0; j < rows; ++j)
             for (int i = 0; i < cols; ++i) {
                 runs.clear();
-                for (; next != surfaces.end() && next->cell == block.id(i, j); ++next) add(touched(*next), runs);
-                const double x = block.x0 + (i + 0.5) * resolution_, y = block.y0 + (j + 0.5) * resolution_;
-                for (const Interval& solid : solid_intervals(column_at(geometry, x, y))) add(centres_in(solid), runs);
+                surfaces.get(block.id(i, j), touching);
+                for (const Interval& span : touching) add(touched(span), runs);
+                for (const Span& span : centres.at(i, j).spans) add(centres_in({span.bottom, span.top}), runs);
                 columns_[std::size_t(j0 + j) * std::size_t(cols_) + std::size_t(i0 + i)] = joined(runs);
             }
     }
 
     int voxel(double value) const { return int(std::clamp(value, -1e6, 1e6)); }
     /// Voxels, as closed boxes, that a span of heights touches.
-    Run touched(const CellSpan& span) const
+    Run touched(const Interval& span) const
     {
         return {voxel(std::ceil((span.bottom - touch_tolerance) / resolution_) - 1),
                 voxel(std::floor((span.top + touch_tolerance) / resolution_))};

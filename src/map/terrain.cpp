@@ -53,23 +53,21 @@ public:
     {
         const CellBlock block{frame_.x0 + col0_ * frame_.cell, frame_.y0 + (frame_.rows - row0_ - rows_) * frame_.cell,
                               frame_.cell, cols_, rows_};
-        const std::vector<CellSpan> surfaces = clip_to_cells(geometry_, block);
-        auto next = surfaces.begin();
+        const CellSpans surfaces(geometry_, block);
+        const Columns centres(geometry_, {frame_.x0, frame_.y0, frame_.cell, col0_, frame_.rows - row0_ - rows_, cols_, rows_, 0.5});
         std::vector<Interval> bound;
         for (int j = 0; j < rows_; ++j)  // upwards in y, as the block counts
             for (int i = 0; i < cols_; ++i) {
-                bound.clear();
-                for (; next != surfaces.end() && next->cell == block.id(i, j); ++next) bound.push_back({next->bottom, next->top});
-                add_cell(rows_ - 1 - j, i, bound);
+                surfaces.get(block.id(i, j), bound);
+                add_cell(rows_ - 1 - j, i, centres.at(i, j), bound);
             }
         return std::move(pages_);
     }
 
 private:
-    void add_cell(int row, int col, std::vector<Interval>& bound)
+    void add_cell(int row, int col, const ColumnView& column, std::vector<Interval>& bound)
     {
         const std::size_t cell = std::size_t(row) * TerrainMap::tile + std::size_t(col);
-        const Column column = column_at(geometry_, frame_.x_of(col0_ + col), frame_.y_of(row0_ + row));
         for (std::size_t layer = 0; layer < column.layers.size(); ++layer)
             TilePages::at(pages_.height, layer, cell) = float(column.layers[layer]);
         if (!column.water.empty()) {
@@ -169,12 +167,12 @@ HeightImage page_image(const TerrainMap& terrain, const std::string& name)
     HeightImage image = HeightImage::Constant(terrain.frame.rows, terrain.frame.cols, nothing);
     const TerrainMap::Page* page = terrain.find(name);
     if (page == nullptr) return image;
-    using Tile = Eigen::Array<float, TerrainMap::tile, TerrainMap::tile, Eigen::RowMajor>;
+    using Pixels = Eigen::Array<float, TerrainMap::tile, TerrainMap::tile, Eigen::RowMajor>;
     for (std::size_t t = 0; t < page->tiles.size(); ++t) {
-        const std::string bytes = inflate_bytes(page->tiles[t], sizeof(Tile));
+        const std::string bytes = inflate_bytes(page->tiles[t], sizeof(Pixels));
         const int row = int(t) / terrain.tile_cols() * TerrainMap::tile, col = int(t) % terrain.tile_cols() * TerrainMap::tile;
         const int rows = std::min(TerrainMap::tile, terrain.frame.rows - row), cols = std::min(TerrainMap::tile, terrain.frame.cols - col);
-        const Eigen::Map<const Tile, Eigen::Unaligned> tile(reinterpret_cast<const float*>(bytes.data()));
+        const Eigen::Map<const Pixels, Eigen::Unaligned> tile(reinterpret_cast<const float*>(bytes.data()));
         image.block(row, col, rows, cols) = tile.topLeftCorner(rows, cols);
     }
     return image;

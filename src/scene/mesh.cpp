@@ -47,6 +47,7 @@ public:
             if (labels[face] != Label::Ignore) add_face(face, labels[face], piece);
         piece.triangle_count = static_cast<std::uint32_t>(scene_.triangles.size()) - piece.first_triangle;
         if (piece.triangle_count == 0) return;
+        piece.open = piece.solid && (open_edges > 0 || piece.triangle_count < faces.size());
         Part& part = scene_.parts[part_];
         ++(piece.solid ? part.solid_pieces : part.sheet_pieces);
         part.open_edges += open_edges;
