@@ -412,7 +412,7 @@ void add_nested(Site& site)
 /// What `solid: true` in a scene file does to a mesh with holes.
 void fill_last_piece(Scene& scene)
 {
-    scene.pieces.back().solid = true;
+    scene.pieces.back().solid = scene.pieces.back().open = true;
     --scene.parts.back().sheet_pieces;
     ++scene.parts.back().solid_pieces;
 }

@@ -12,13 +12,16 @@ struct TestMap : spawnfield::Map {
     spawnfield::Scene scene;
 };
 
-/// A scene with what queries need, without files.
-inline TestMap map_of(spawnfield::Scene scene)
+/// A scene with what queries need, without files, and a mask of this resolution (m). Poses beyond the bounds (empty: the
+/// scene's) are `outside`, solids there still count.
+inline TestMap map_of(spawnfield::Scene scene, double resolution = 0.1, const spawnfield::Bounds& bounds = {})
 {
     TestMap map;
     map.name = scene.name;
-    map.bounds = scene.bounds();
+    map.bounds = bounds.is_empty() ? scene.bounds() : bounds;
+    map.resolution = resolution;
     map.geometry = spawnfield::Geometry(scene);
+    map.solid_bounds = spawnfield::SolidBounds(map.geometry, map.bounds, resolution);
     map.parts = scene.parts;
     map.labels = scene.count_labels();
     map.layers = 1;

@@ -32,6 +32,9 @@ public:
     CollisionChecker(CollisionChecker&&) noexcept;
     ~CollisionChecker();
 
+    const Robot& robot() const;
+    bool uses_occupancy() const;  ///< rather than the scene's own geometry
+
     /// Neither touching nor overlapping any solid, nor inside one. Obstacles and terrain count, water does not.
     bool is_free(const Pose& scene_from_robot) const;
 

@@ -18,6 +18,7 @@ public:
     explicit Geometry(const Scene& scene, int threads = 0);
 
     std::uint64_t element_count() const;
+    const Bounds& bounds() const;  ///< of all elements
 
     struct Impl;  // the tiles' layout is seen in src/ only
     explicit Geometry(std::shared_ptr<const Impl> impl);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <spawnfield/occupancy.h>
+#include <spawnfield/solid_bounds.h>
 #include <spawnfield/terrain.h>
 
 #include <map>
@@ -14,6 +15,7 @@ struct Map {
     double resolution = 0.1;          ///< of the terrain, m
     double occupancy_resolution = 0;  ///< m
     Geometry geometry;
+    SolidBounds solid_bounds;         ///< of the terrain's raster
     std::vector<Part> parts;          ///< of the scene, in its order
     LabelCounts labels{};
     int layers = 0;                   ///< most terrain layers above one cell centre

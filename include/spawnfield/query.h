@@ -9,6 +9,7 @@ namespace spawnfield {
 struct QueryOptions {
     double max_height = 1.0;  ///< m of the origin above its ground, inclusive, >= 0
     double max_water_depth = std::numeric_limits<double>::infinity();  ///< m of water above the ground that count, >= 0
+    bool exhaustive = false;  ///< ask the CollisionChecker at every pose, never the FreeSpace: the same answers, slowly
     int threads = 0;          ///< 0: all cores; results are the same at any number
     Progress progress = {};
 };
@@ -18,10 +19,10 @@ struct Judgement {
     Verdict verdict = Verdict::Outside;
     std::optional<Ground> ground;     ///< also of poses outside the bounds
     std::optional<CollisionHit> hit;  ///< collision only
-    bool exact_check = false;         ///< whether the collision checker was asked
+    bool exact_check = false;         ///< whether the CollisionChecker was asked
 };
 
-/// The verdict table of DESIGN.md, in its order. `column` is the one at the pose's x and y.
+/// The verdict table of DESIGN.md, in its order, without the mask. `column` is the one at the pose's x and y.
 Judgement judge(const Map& map, const CollisionChecker& checker, const Column& column, const Pose& pose,
                 const QueryOptions& options = {});
 

@@ -23,7 +23,7 @@ struct Piece {
     std::uint32_t part = 0;
     std::uint32_t first_triangle = 0, triangle_count = 0;
     bool solid = false;
-    bool open = false;      ///< solid by wish, though it has holes
+    bool open = false;      ///< solid by wish, though it has holes: must be told, or the mask claims too much
     bool sides_up = false;  ///< a terrain sheet on which robots stand only where the winding looks up
     double bottom = 0;      ///< lowest z of its vertices, m
 };

@@ -34,6 +34,7 @@ struct ColumnGrid {
 /// columns).
 class Columns {
 public:
+    Columns() = default;
     Columns(const Geometry& geometry, const ColumnGrid& grid);
 
     /// Column grid.first_col + i, row grid.first_row + j.
@@ -54,7 +55,7 @@ private:
     void scan(const Geometry& geometry, const ColumnGrid& grid);
     void end_column();
 
-    int cols_;
+    int cols_ = 0;
     Column column_;  ///< of all columns, one after the other
     std::vector<Start> starts_;
 };

@@ -283,6 +283,7 @@ Geometry::Geometry() : impl_(std::make_shared<const Impl>()) {}
 Geometry::Geometry(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
 std::uint64_t Geometry::element_count() const { return impl_->elements; }
+const Bounds& Geometry::bounds() const { return impl_->bounds; }
 
 Geometry::Geometry(const Scene& scene, int threads)
 {
@@ -295,6 +296,7 @@ Geometry::Geometry(const Scene& scene, int threads)
         std::vector<ElementBox> boxes(elements);
         parallel_for(elements, threads, {}, [&](std::size_t e) { boxes[e] = box_of(scene, std::uint32_t(e)); });
         const Bounds bounds = scene.bounds();
+        impl->bounds = bounds;
         impl->x0 = bounds.min.x() - pad;
         impl->y0 = bounds.min.y() - pad;
         const double width = bounds.max.x() - bounds.min.x() + 2 * pad, depth = bounds.max.y() - bounds.min.y() + 2 * pad;

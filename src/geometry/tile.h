@@ -113,6 +113,7 @@ struct TileLevel {
 struct Geometry::Impl {
     double x0 = 0, y0 = 0;  ///< corner that all levels share
     std::uint64_t elements = 0;
+    Bounds bounds;          ///< of all elements
     std::uint32_t parts = 0;  ///< of the scene
     bool has_filled_meshes = false;
     std::vector<TileLevel> levels;

@@ -20,6 +20,8 @@ std::string written_head(const Geometry::Impl& geometry)
     out.put(geometry.y0);
     out.put(geometry.elements);
     out.put(geometry.parts);
+    for (const double limit : geometry.bounds.min) out.put(limit);
+    for (const double limit : geometry.bounds.max) out.put(limit);
     out.put(std::uint32_t(geometry.has_filled_meshes));
     out.put(std::uint32_t(geometry.levels.size()));
     for (const TileLevel& level : geometry.levels) {
@@ -62,6 +64,8 @@ Geometry open_geometry(const std::filesystem::path& file, const std::string& hea
         impl->y0 = in.get<double>();
         impl->elements = in.get<std::uint64_t>();
         impl->parts = in.get<std::uint32_t>();
+        for (double& limit : impl->bounds.min) limit = in.get<double>();
+        for (double& limit : impl->bounds.max) limit = in.get<double>();
         impl->has_filled_meshes = in.get<std::uint32_t>() != 0;
         const auto levels = in.get<std::uint32_t>();
         for (std::uint32_t l = 0; l < levels; ++l) {

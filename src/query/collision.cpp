@@ -120,6 +120,7 @@ bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& at_a,
 }  // namespace
 
 struct CollisionChecker::Impl {
+    Robot robot;
     Geometry geometry;
     std::shared_ptr<const OccupancyTree> tree;
     std::unique_ptr<fcl::OcTree<double>> octree;
@@ -200,6 +201,7 @@ struct CollisionChecker::Impl {
 CollisionChecker::CollisionChecker(const Geometry& geometry, const Robot& robot)
 {
     auto impl = std::make_unique<Impl>();
+    impl->robot = robot;
     impl->geometry = geometry;
     for (const RobotPart& part : robot.parts) impl->parts.emplace_back(grown(part, touch_margin));
     impl_ = std::move(impl);
@@ -208,6 +210,7 @@ CollisionChecker::CollisionChecker(const Geometry& geometry, const Robot& robot)
 CollisionChecker::CollisionChecker(std::shared_ptr<const OccupancyTree> tree, const Robot& robot)
 {
     auto impl = std::make_unique<Impl>();
+    impl->robot = robot;
     impl->tree = std::move(tree);
     impl->octree = std::make_unique<fcl::OcTree<double>>(impl->tree->impl().tree);
     for (const RobotPart& part : robot.parts) impl->parts.emplace_back(grown(part, touch_margin));
@@ -216,6 +219,9 @@ CollisionChecker::CollisionChecker(std::shared_ptr<const OccupancyTree> tree, co
 
 CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
 CollisionChecker::~CollisionChecker() = default;
+
+const Robot& CollisionChecker::robot() const { return impl_->robot; }
+bool CollisionChecker::uses_occupancy() const { return impl_->octree != nullptr; }
 
 bool CollisionChecker::is_free(const Pose& scene_from_robot) const { return !impl_->find(scene_from_robot, true); }
 

@@ -1,17 +1,39 @@
 #include "base/parallel.h"
-
-#include <spawnfield/query.h>
+#include "query/judging.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace spawnfield {
 namespace {
 
-bool is_submerged(const Column& column, double ground, double max_water_depth)
+bool is_submerged(const ColumnView& column, double ground, double max_water_depth)
 {
     return std::any_of(column.water.begin(), column.water.end(), [&](double water) {
         return water >= ground - touch_tolerance && water <= ground + max_water_depth + touch_tolerance;
     });
+}
+
+/// The verdict table up to collisions; true if those are to decide.
+bool judge_ground(const Map& map, const ColumnView& column, const Vec3& position, const QueryOptions& options, Judgement& out)
+{
+    out.ground = ground_below(column, position.z());
+    out.verdict = Verdict::Outside;
+    if (!map.bounds.contains_xy(position.x(), position.y(), touch_tolerance)) return false;
+    out.verdict = Verdict::Aerial;
+    if (!out.ground || position.z() - out.ground->height > options.max_height + touch_tolerance) return false;
+    out.verdict = Verdict::OffTerrain;
+    if (!out.ground->terrain) return false;
+    out.verdict = Verdict::Submerged;
+    return !is_submerged(column, out.ground->height, options.max_water_depth);
+}
+
+void check_exactly(const CollisionChecker& checker, const Pose& pose, bool with_hit, Judgement& out)
+{
+    out.exact_check = true;
+    if (with_hit) out.hit = checker.find_hit(pose);
+    const bool is_free = with_hit ? !out.hit : checker.is_free(pose);
+    out.verdict = is_free ? Verdict::Valid : Verdict::Collision;
 }
 
 }  // namespace
@@ -20,28 +42,78 @@ Judgement judge(const Map& map, const CollisionChecker& checker, const Column& c
                 const QueryOptions& options)
 {
     Judgement out;
-    const double z = pose.position.z();
-    out.ground = ground_below(column, z);
-    if (!map.bounds.contains_xy(pose.position.x(), pose.position.y(), touch_tolerance)) return out;
-    out.verdict = Verdict::Aerial;
-    if (!out.ground || z - out.ground->height > options.max_height + touch_tolerance) return out;
-    out.verdict = Verdict::OffTerrain;
-    if (!out.ground->terrain) return out;
-    out.verdict = Verdict::Submerged;
-    if (is_submerged(column, out.ground->height, options.max_water_depth)) return out;
-    out.exact_check = true;
-    out.hit = checker.find_hit(pose);
-    out.verdict = out.hit ? Verdict::Collision : Verdict::Valid;
+    if (judge_ground(map, column, pose.position, options, out)) check_exactly(checker, pose, true, out);
     return out;
+}
+
+Judging::Judging(const Map& map, const CollisionChecker& checker, const QueryOptions& options)
+    : map_(map), checker_(checker), options_(options)
+{
+    if (!options.exhaustive && !checker.uses_occupancy() && !map.solid_bounds.impl().levels.empty())
+        space_.emplace(map.solid_bounds, checker.robot());
+}
+
+PoseJudge::PoseJudge(const Judging& judging) : judging_(judging)
+{
+    if (judging.space_) mask_.emplace(judging.space_->impl());
+}
+
+void PoseJudge::face(double yaw)
+{
+    rotation_ = rotation_from_rpy(0, 0, yaw);
+    if (mask_) mask_->face(yaw);
+}
+
+void PoseJudge::face(const Mat3& rotation)
+{
+    rotation_ = rotation;
+    if (!mask_) return;
+    if (rotation(2, 2) == 1) mask_->face(std::atan2(rotation(1, 0), rotation(0, 0)));
+    else mask_->face(rotation);
+}
+
+void PoseJudge::set_y(double y)
+{
+    y_ = y;
+    if (mask_) mask_->set_y(y);
+}
+
+Judgement PoseJudge::at(const ColumnView& column, double x, double z, bool with_hit)
+{
+    Judgement out;
+    if (judge_ground(judging_.map_, column, {x, y_, z}, judging_.options_, out)) decide(x, z, with_hit, out);
+    return out;
+}
+
+Judgement PoseJudge::collision(double x, double z, bool with_hit)
+{
+    Judgement out;
+    decide(x, z, with_hit, out);
+    return out;
+}
+
+void PoseJudge::decide(double x, double z, bool with_hit, Judgement& out)
+{
+    const Proof proof = mask_ ? mask_->at(x, z) : Proof::Candidate;
+    if (proof == Proof::Free) out.verdict = Verdict::Valid;
+    else if (proof == Proof::Blocked && !with_hit) out.verdict = Verdict::Collision;
+    else check_exactly(judging_.checker_, {{x, y_, z}, rotation_}, with_hit, out);
 }
 
 std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& checker, const std::vector<Pose>& poses,
                                    const QueryOptions& options)
 {
+    const Judging judging(map, checker, options);
     std::vector<Judgement> out(poses.size());
-    parallel_for(poses.size(), options.threads, options.progress, [&](std::size_t i) {
-        const Vec3& p = poses[i].position;
-        out[i] = judge(map, checker, column_at(map.geometry, p.x(), p.y()), poses[i], options);
+    constexpr std::size_t batch = 256;
+    parallel_for((poses.size() + batch - 1) / batch, options.threads, options.progress, [&](std::size_t b) {
+        PoseJudge judge(judging);
+        for (std::size_t i = b * batch; i < std::min(poses.size(), (b + 1) * batch); ++i) {
+            const Vec3& p = poses[i].position;
+            judge.face(poses[i].rotation);
+            judge.set_y(p.y());
+            out[i] = judge.at(column_at(map.geometry, p.x(), p.y()), p.x(), p.z(), true);
+        }
     });
     return out;
 }

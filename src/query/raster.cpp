@@ -1,5 +1,6 @@
 #include "base/chosen_bounds.h"
 #include "base/parallel.h"
+#include "query/judging.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/query.h>
@@ -54,49 +55,70 @@ struct Row {
     std::uint64_t aerial = 0, exact_checks = 0;
 };
 
+/// Strips of rows, judged block by block so that neighbouring columns share their work.
 class RasterJudge {
 public:
+    static constexpr int strip = 16, block = 128;  ///< rows, columns
+
     RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid)
-        : map_(map), checker_(checker), options_(options), query_(options), grid_(grid), rotation_(rotation_from_rpy(0, 0, options.yaw))
+        : options_(options), grid_(grid), judging_(map, checker, query_options(options))
     {
-        // A pose of a 2D raster is offset above its layer by definition.
-        if (options.dims == 2) query_.max_height = std::numeric_limits<double>::infinity();
     }
 
-    Row row(int j) const
+    /// Rows first, first + 1, … of out.
+    void judge_rows(int first, std::span<Row> out) const
     {
-        Row out;
-        for (int i = 0; i < grid_.cols; ++i) {
-            const double x = grid_.x_of(i), y = grid_.y_of(j);
-            const bool outside = !map_.bounds.contains_xy(x, y, touch_tolerance);
-            if (!options_.height_check || (options_.dims == 3 && outside)) {
-                all_heights(x, y, out);
-                continue;
+        PoseJudge judge(judging_);
+        judge.face(options_.yaw);
+        for (int col = 0; col < grid_.cols; col += block) {
+            const int cols = std::min(block, grid_.cols - col);
+            Columns columns;
+            if (options_.height_check)
+                columns = Columns(judging_.map().geometry, {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
+            for (int j = 0; j < int(out.size()); ++j) {
+                judge.set_y(grid_.y_of(first + j));
+                for (int i = 0; i < cols; ++i) judge_column(judge, columns, i, j, grid_.x_of(col + i), grid_.y_of(first + j), out[std::size_t(j)]);
             }
-            const Column column = column_at(map_.geometry, x, y);
-            if (options_.dims == 2) layers(column, x, y, out);
-            else heights(column, x, y, out);
         }
-        return out;
     }
 
 private:
-    void layers(const Column& column, double x, double y, Row& out) const
+    static QueryOptions query_options(const RasterOptions& options)
+    {
+        QueryOptions out = options;
+        // A pose of a 2D raster is offset above its layer by definition.
+        if (options.dims == 2) out.max_height = std::numeric_limits<double>::infinity();
+        return out;
+    }
+
+    void judge_column(PoseJudge& judge, const Columns& columns, int i, int j, double x, double y, Row& out) const
+    {
+        if (!options_.height_check || (options_.dims == 3 && !judging_.map().bounds.contains_xy(x, y, touch_tolerance))) {
+            all_heights(judge, x, y, out);
+            return;
+        }
+        const ColumnView column = columns.at(i, j);
+        if (options_.dims == 2) layers(judge, column, x, y, out);
+        else heights(judge, column, x, y, out);
+    }
+
+    void layers(PoseJudge& judge, const ColumnView& column, double x, double y, Row& out) const
     {
         const int count = int(column.layers.size());
         for (int layer = 0; layer < count; ++layer) {
             if (!options_.layers.includes(layer, count)) continue;
-            const double z = column.layers[layer] + options_.offset;
-            const Judgement judged = judge(map_, checker_, column, {Vec3(x, y, z), rotation_}, query_);
+            const double z = column.layers[std::size_t(layer)] + options_.offset;
+            const Judgement judged = judge.at(column, x, z);
             out.exact_checks += judged.exact_check;
             out.poses.push_back({x, y, z, layer, judged.verdict});
         }
     }
 
     /// Heights at which the ground may be near enough, from the top down: the rest is aerial without a look.
-    std::vector<int> near_heights(const Column& column) const
+    const std::vector<int>& near_heights(const ColumnView& column) const
     {
-        std::vector<int> near;
+        thread_local std::vector<int> near;
+        near.clear();
         for (const Span& span : column.spans) {
             const double first = std::ceil((span.top - grid_.z0) / grid_.step_z) - 1;
             const double last = std::floor((span.top + options_.max_height - grid_.z0) / grid_.step_z) + 1;
@@ -104,43 +126,44 @@ private:
             const int to = int(std::clamp(last, -1.0, double(grid_.heights - 1)));
             for (int k = to; k >= from; --k) near.push_back(k);
         }
-        std::sort(near.begin(), near.end(), std::greater<>());
-        near.erase(std::unique(near.begin(), near.end()), near.end());
+        if (column.spans.size() > 1) {
+            std::sort(near.begin(), near.end(), std::greater<>());
+            near.erase(std::unique(near.begin(), near.end()), near.end());
+        }
         return near;
     }
 
-    void heights(const Column& column, double x, double y, Row& out) const
+    void heights(PoseJudge& judge, const ColumnView& column, double x, double y, Row& out) const
     {
         const bool every_layer = options_.layers.kind == LayerChoice::Kind::All;
-        const std::vector<int> near = near_heights(column);
-        if (every_layer) out.aerial += grid_.heights - near.size();
+        const std::vector<int>& near = near_heights(column);
+        if (every_layer) out.aerial += std::uint64_t(grid_.heights) - near.size();
         for (const int k : near) {
             const double z = grid_.z_of(k);
-            const Pose pose{Vec3(x, y, z), rotation_};
-            const std::int32_t layer = layer_of(column, ground_below(column, z));
-            if (!every_layer && (layer < 0 || !options_.layers.includes(layer, int(column.layers.size())))) continue;
-            const Judgement judged = judge(map_, checker_, column, pose, query_);
+            if (!every_layer) {
+                const std::int32_t layer = layer_of(column, ground_below(column, z));
+                if (layer < 0 || !options_.layers.includes(layer, int(column.layers.size()))) continue;
+            }
+            const Judgement judged = judge.at(column, x, z);
             out.exact_checks += judged.exact_check;
             if (judged.verdict == Verdict::Aerial) out.aerial += every_layer;
-            else out.poses.push_back({x, y, z, layer, judged.verdict});
+            else out.poses.push_back({x, y, z, layer_of(column, judged.ground), judged.verdict});
         }
     }
 
     /// A column whose heights all count: outside the map, or for collisions alone.
-    void all_heights(double x, double y, Row& out) const
+    void all_heights(PoseJudge& judge, double x, double y, Row& out) const
     {
         for (int k = grid_.heights - 1; k >= 0; --k) {
             const double z = grid_.z_of(k);
-            Verdict verdict = Verdict::Outside;
-            if (!options_.height_check) {
-                verdict = checker_.is_free({Vec3(x, y, z), rotation_}) ? Verdict::Valid : Verdict::Collision;
-                ++out.exact_checks;
-            }
-            out.poses.push_back({x, y, z, -1, verdict});
+            Judgement judged;  // outside
+            if (!options_.height_check) judged = judge.collision(x, z);
+            out.exact_checks += judged.exact_check;
+            out.poses.push_back({x, y, z, -1, judged.verdict});
         }
     }
 
-    static std::int32_t layer_of(const Column& column, const std::optional<Ground>& ground)
+    static std::int32_t layer_of(const ColumnView& column, const std::optional<Ground>& ground)
     {
         if (!ground || !ground->terrain) return -1;
         for (std::size_t layer = 0; layer < column.layers.size(); ++layer)
@@ -148,12 +171,9 @@ private:
         return -1;
     }
 
-    const Map& map_;
-    const CollisionChecker& checker_;
     const RasterOptions& options_;
-    QueryOptions query_;
     const RasterGrid& grid_;
-    const Mat3 rotation_;
+    const Judging judging_;
 };
 
 }  // namespace
@@ -165,9 +185,12 @@ RasterResult raster(const Map& map, const CollisionChecker& checker, const Raste
     out.dims = options.dims;
     out.yaw = options.yaw;
     out.grid = grid_of(map, options);
-    const RasterJudge judge_row(map, checker, options, out.grid);
-    std::vector<Row> rows(out.grid.rows);
-    parallel_for(rows.size(), options.threads, options.progress, [&](std::size_t j) { rows[j] = judge_row.row(int(j)); });
+    const RasterJudge judge(map, checker, options, out.grid);
+    std::vector<Row> rows(std::size_t(out.grid.rows));
+    constexpr std::size_t strip = RasterJudge::strip;
+    parallel_for((rows.size() + strip - 1) / strip, options.threads, options.progress, [&](std::size_t s) {
+        judge.judge_rows(int(s * strip), std::span(rows).subspan(s * strip, std::min(strip, rows.size() - s * strip)));
+    });
 
     std::size_t total = 0;
     for (const Row& row : rows) total += row.poses.size();

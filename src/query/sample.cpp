@@ -1,4 +1,5 @@
 #include "base/chosen_bounds.h"
+#include "query/judging.h"
 #include "query/spawning.h"
 
 #include <spawnfield/error.h>
@@ -26,10 +27,9 @@ std::vector<double> chosen_layers(const Column& column, const LayerChoice& choic
 class Sampler {
 public:
     Sampler(const Map& map, const CollisionChecker& checker, const SampleOptions& options, std::size_t slots)
-        : map_(map), checker_(checker), options_(options), query_(options), box_(chosen_bounds("sample", options.bounds, map.bounds, 2)), slots_(slots),
+        : map_(map), options_(options), judging_(map, checker, standing(options)), box_(chosen_bounds("sample", options.bounds, map.bounds, 2)), slots_(slots),
           taken_(options.min_distance)
     {
-        query_.max_height = std::numeric_limits<double>::infinity();  // poses stand on their layer by definition
     }
 
     /// False if a column had more layers than slots: then nothing that was drawn counts.
@@ -47,6 +47,13 @@ public:
     }
 
 private:
+    static QueryOptions standing(const SampleOptions& options)
+    {
+        QueryOptions out = options;
+        out.max_height = std::numeric_limits<double>::infinity();  // poses stand on their layer by definition
+        return out;
+    }
+
     Candidate look(std::uint64_t index)
     {
         Draw draw(options_.seed, index);
@@ -62,8 +69,10 @@ private:
         out.spawn.position = Vec3(x, y, layers[std::size_t(slot)] + options_.offset);
         out.clear = taken_.is_clear(out.spawn.position);
         if (!out.clear) return out;
-        const Pose pose{out.spawn.position, rotation_from_rpy(0, 0, out.spawn.yaw)};
-        out.judgement = judge(map_, checker_, column, pose, query_);
+        PoseJudge judge(judging_);
+        judge.face(out.spawn.yaw);
+        judge.set_y(y);
+        out.judgement = judge.at(column, x, out.spawn.position.z());
         return out;
     }
 
@@ -82,9 +91,8 @@ private:
     }
 
     const Map& map_;
-    const CollisionChecker& checker_;
     const SampleOptions& options_;
-    QueryOptions query_;
+    const Judging judging_;
     const Bounds box_;
     const std::size_t slots_;
     SpacedPoints taken_;

@@ -1,4 +1,5 @@
 #include "base/chosen_bounds.h"
+#include "query/judging.h"
 #include "query/spawning.h"
 
 #include <spawnfield/error.h>
@@ -24,6 +25,7 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
     check_spawn_options("search", options);
     if (options.max_failures < 1) throw ArgumentError("search", "max_failures", double(options.max_failures), ">= 1");
     const Bounds box = chosen_bounds("search", options.bounds, map.bounds);
+    const Judging judging(map, checker, options);
     SpacedPoints checked(options.min_distance);
 
     const auto look = [&](std::uint64_t index) {
@@ -35,8 +37,10 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
         out.clear = checked.is_clear(out.spawn.position);
         if (!out.clear) return out;
         const Vec3& p = out.spawn.position;
-        const Pose pose{p, rotation_from_rpy(0, 0, out.spawn.yaw)};
-        out.judgement = judge(map, checker, column_at(map.geometry, p.x(), p.y()), pose, options);
+        PoseJudge judge(judging);
+        judge.face(out.spawn.yaw);
+        judge.set_y(p.y());
+        out.judgement = judge.at(column_at(map.geometry, p.x(), p.y()), p.x(), p.z());
         return out;
     };
     SpawnList out;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <spawnfield/geometry.h>
+
+namespace spawnfield {
+
+/// What is solid in each cell of a raster, and in cells 2, 4, 8, … times as large: the images behind the free-space mask.
+/// Cheap to copy.
+///
+/// Each cell tells how high anything solid in it reaches, rounded up, and where there is a gap below that, the intervals
+/// that hold all of its solids, rounded outwards. 16-bit heights in tiles of 64 x 64 cells, each with a range of its own:
+/// 2.7 bytes a cell of the finest raster where nothing hangs over anything, up to about 20 where something does.
+class SolidBounds {
+public:
+    SolidBounds();  ///< of nothing: it proves nothing
+    /// Cells of this side (m) over the bounds, seen from above. O(elements + cells).
+    SolidBounds(const Geometry& geometry, const Bounds& bounds, double cell, int threads = 0, const Progress& progress = {});
+
+    struct Impl;  // the tiles' layout is seen in src/ only
+    explicit SolidBounds(std::shared_ptr<const Impl> impl);
+    const Impl& impl() const { return *impl_; }
+
+private:
+    std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace spawnfield

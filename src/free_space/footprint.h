@@ -1,0 +1,35 @@
+#pragma once
+
+#include <spawnfield/robot.h>
+
+#include <vector>
+
+namespace spawnfield {
+
+using Vec2 = Eigen::Vector2d;
+
+/// A convex polygon, counterclockwise.
+using Polygon2 = std::vector<Vec2>;
+
+/// An upright prism.
+struct Prism {
+    Polygon2 polygon;
+    double bottom = 0, top = 0;
+};
+
+/// A convex part of a robot as seen from above, relative to the robot's origin.
+struct Footprint {
+    Prism outer;  ///< holds all of the part grown by the touch margin, and FreeSpace::margin more
+    Prism inner;  ///< lies in the part, FreeSpace::margin from its surface; no corners: none is known
+};
+
+/// Convex hull (Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979).
+Polygon2 convex_hull(Polygon2 points);
+
+/// Footprints of all parts with the robot turned by `rotation`; inner prisms only if asked for.
+std::vector<Footprint> footprints(const Robot& robot, const Mat3& rotation, bool with_inner);
+
+/// Footprints that hold for every yaw of the upright robot: discs around its origin.
+std::vector<Footprint> yaw_free_footprints(const Robot& robot);
+
+}  // namespace spawnfield

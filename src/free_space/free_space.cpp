@@ -1,0 +1,263 @@
+#include "free_space/mask.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+/// Cells along a part's width in each pass: a look at what is near, one that follows the part's shape, one that is as fine
+/// as pays beside an exact check.
+constexpr std::array cells_along{1.4, 6.0, 24.0};
+
+}  // namespace
+
+void Mask::set_footprints(const std::vector<Footprint>& footprints, double cosine, double sine)
+{
+    const auto turn = [&](const Polygon2& from, Polygon2& to) {
+        to.resize(from.size());
+        for (std::size_t k = 0; k < from.size(); ++k)
+            to[k] = {cosine * from[k].x() - sine * from[k].y(), sine * from[k].x() + cosine * from[k].y()};
+    };
+    parts_.resize(footprints.size());
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+        Footprint& to = parts_[p].footprint;
+        turn(footprints[p].outer.polygon, to.outer.polygon);
+        turn(footprints[p].inner.polygon, to.inner.polygon);
+        to.outer.bottom = footprints[p].outer.bottom;
+        to.outer.top = footprints[p].outer.top;
+        to.inner.bottom = footprints[p].inner.bottom;
+        to.inner.top = footprints[p].inner.top;
+        choose_passes(parts_[p]);
+    }
+}
+
+void Mask::face(double yaw) { set_footprints(space_.ahead, std::cos(yaw), std::sin(yaw)); }
+void Mask::face_every_yaw() { set_footprints(space_.every_yaw, 1, 0); }
+void Mask::face(const Mat3& rotation) { set_footprints(footprints(space_.robot, rotation, false), 1, 0); }
+
+/// The coarsest cells of which some number lies along the part, for each pass; never the same twice.
+void Mask::choose_passes(Part& part) const
+{
+    Vec2 low(inf, inf), high(-inf, -inf);
+    for (const Vec2& p : part.footprint.outer.polygon) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const double width = (high - low).minCoeff();
+    std::size_t count = 0;
+    for (const double cells : cells_along) {
+        std::size_t level = 0;
+        while (level + 1 < raster_.levels.size() && raster_.levels[level + 1].cell * cells <= width) ++level;
+        if (raster_.levels.empty() || (count > 0 && part.passes[count - 1].level == level)) continue;
+        if (part.passes.size() <= count) part.passes.emplace_back();
+        part.passes[count].level = level;
+        part.passes[count].is_ready = false;
+        ++count;
+    }
+    part.passes.resize(count);
+}
+
+void Mask::set_y(double y)
+{
+    y_ = y;
+    for (Part& part : parts_)
+        for (Pass& pass : part.passes) pass.is_ready = false;
+}
+
+/// Rows of cells that the polygons overlap, or within which cells lie whole: both follow from where the rims cross the
+/// lines between rows, and from the corners.
+void Mask::cover(const Part& part, Pass& pass) const
+{
+    const double cell = raster_.levels[pass.level].cell, v = (y_ - raster_.y0) / cell;
+    const auto visit_rim = [&](const Polygon2& polygon, const auto& on_corner, const auto& on_line) {
+        for (std::size_t k = 0; k < polygon.size(); ++k) {
+            const Vec2 p = polygon[k] / cell, q = polygon[k + 1 < polygon.size() ? k + 1 : 0] / cell;
+            on_corner(p.x(), int(std::floor(v + p.y())));
+            const Vec2 &low = p.y() < q.y() ? p : q, &high = p.y() < q.y() ? q : p;
+            const double rise = high.y() - low.y();
+            if (!(rise > 0)) continue;
+            const int from = int(std::ceil(v + low.y())), to = int(std::floor(v + high.y()));
+            for (int line = from; line <= to; ++line)
+                on_line(low.x() + std::clamp((line - v - low.y()) / rise, 0.0, 1.0) * (high.x() - low.x()), line);
+        }
+    };
+    const Polygon2& outer = part.footprint.outer.polygon;
+    double low = inf, high = -inf;
+    for (const Vec2& p : outer) {
+        low = std::min(low, p.y());
+        high = std::max(high, p.y());
+    }
+    const int first = int(std::floor(v + low / cell)), last = int(std::floor(v + high / cell));
+    pass.rows.assign(std::size_t(last - first + 1), {0, inf, -inf, inf, -inf});
+    for (int row = first; row <= last; ++row) pass.rows[std::size_t(row - first)].row = row;
+    const auto extend = [&](double x, int row) {
+        if (row < first || row > last) return;
+        CoverRow& cells = pass.rows[std::size_t(row - first)];
+        cells.low = std::min(cells.low, x);
+        cells.high = std::max(cells.high, x);
+    };
+    visit_rim(outer, extend, [&](double x, int line) {
+        extend(x, line - 1);
+        extend(x, line);
+    });
+    if (!part.footprint.inner.polygon.empty()) {
+        // Lines first..last + 1 between rows: where they enter and leave the inner polygon.
+        thread_local std::vector<std::array<double, 2>> lines;
+        lines.assign(pass.rows.size() + 1, {inf, -inf});
+        visit_rim(part.footprint.inner.polygon, [](double, int) {}, [&](double x, int line) {
+            if (line < first || line > last + 1) return;
+            auto& [from, to] = lines[std::size_t(line - first)];
+            from = std::min(from, x);
+            to = std::max(to, x);
+        });
+        for (std::size_t k = 0; k < pass.rows.size(); ++k) {
+            pass.rows[k].inner_low = std::max(lines[k][0], lines[k + 1][0]);
+            pass.rows[k].inner_high = std::min(lines[k][1], lines[k + 1][1]);
+        }
+    }
+    pass.is_ready = true;
+}
+
+/// A part's heights at a pose, in those of a tile.
+struct Mask::Heights {
+    double bottom, top, inner_bottom, inner_top;  ///< m
+    std::uint32_t below = 0;              ///< cells that reach up to this value are under the part
+    std::uint32_t hit_low = 1, hit_high = 0;  ///< upper ends from the one to the other are inside it
+
+    void set_tile(const BoundsTile& tile)
+    {
+        const BoundsHead& head = *tile.head;
+        const auto value = [&](double z) { return std::clamp((z - head.base) / head.quantum, 0.0, 65536.0); };
+        below = std::uint32_t(std::max(0.0, std::ceil(value(bottom)) - 1));
+        hit_low = std::uint32_t(std::isfinite(head.slack) ? std::max(1.0, std::ceil(value(inner_bottom + head.slack))) : 65536.0);
+        hit_high = std::uint32_t(std::floor(value(inner_top)));
+    }
+    bool is_hit(std::uint32_t value) const { return value >= hit_low && value <= hit_high; }
+};
+
+Proof Mask::at(const Part& part, const Pass& pass, double x, double z) const
+{
+    const BoundsLevel& level = raster_.levels[pass.level];
+    const Footprint& footprint = part.footprint;
+    const bool has_inner = !footprint.inner.polygon.empty();
+    Heights heights{.bottom = z + footprint.outer.bottom, .top = z + footprint.outer.top, .inner_bottom = z + footprint.inner.bottom,
+                    .inner_top = z + footprint.inner.top};
+    const double u = (x - raster_.x0) / level.cell;
+    // Coarse cells at the upper rims reach beyond the finest ones.
+    const int known_cols = int(raster_.levels[0].cols >> pass.level), known_rows = int(raster_.levels[0].rows >> pass.level);
+    bool is_free = true;
+    constexpr int side = BoundsTile::side;
+    BoundsTile tile;
+    int tile_col = -1, tile_row = -1;
+    for (const CoverRow& cover : pass.rows) {
+        const double low = std::floor(u + cover.low), high = std::floor(u + cover.high);
+        if (!(low <= high)) continue;
+        if (low < 0 || high >= known_cols || cover.row < 0 || cover.row >= known_rows) {
+            is_free = is_free && raster_.is_whole;
+            if (!is_free && !has_inner) return Proof::Candidate;
+            if (high < 0 || low >= level.cols || cover.row < 0 || cover.row >= int(level.rows)) continue;
+        }
+        const int first = std::max(0, int(low)), last = std::min(int(level.cols) - 1, int(high));
+        int inner_first = 1, inner_last = 0;
+        if (has_inner && cover.inner_low < cover.inner_high) {
+            inner_first = int(std::ceil(u + cover.inner_low));
+            inner_last = int(std::floor(u + cover.inner_high)) - 1;
+        }
+        for (int col = first; col <= last;) {
+            const int end = std::min(last, col / side * side + side - 1);
+            if (col / side != tile_col || cover.row / side != tile_row) {
+                tile_col = col / side;
+                tile_row = cover.row / side;
+                tile = raster_.open(pass.level, std::uint32_t(tile_col), std::uint32_t(tile_row));
+                if (tile.head != nullptr) heights.set_tile(tile);
+            }
+            if (tile.head == nullptr) {
+                col = end + 1;
+                continue;
+            }
+            const std::uint32_t row_start = std::uint32_t(cover.row % side * side) - std::uint32_t(tile_col * side);  // + col: the cell
+            std::uint32_t highest = 0;
+            for (int c = col; c <= end; ++c) highest = std::max<std::uint32_t>(highest, tile.tops[row_start + std::uint32_t(c)]);
+            if (highest > heights.below) {
+                for (int c = col; c <= end; ++c) {
+                    const std::uint32_t cell = row_start + std::uint32_t(c);
+                    if (tile.tops[cell] <= heights.below) continue;
+                    const bool within = c >= inner_first && c <= inner_last;
+                    if (within && heights.is_hit(tile.tops[cell])) return Proof::Blocked;
+                    if (tile.span_starts == nullptr) {
+                        is_free = false;
+                    } else {
+                        for (const QuantizedSpan& span : tile.spans_of(cell)) {
+                            if (within && heights.is_hit(span.top)) return Proof::Blocked;
+                            if (tile.height(span.top) >= heights.bottom && tile.height(span.bottom) <= heights.top) is_free = false;
+                        }
+                    }
+                    if (within && tile.solid_starts != nullptr)
+                        for (const QuantizedSpan& solid : tile.solids_of(cell))
+                            if (tile.height(solid.top) >= heights.inner_bottom && tile.height(solid.bottom) <= heights.inner_top) return Proof::Blocked;
+                }
+                if (!is_free && !has_inner) return Proof::Candidate;
+            }
+            col = end + 1;
+        }
+    }
+    return is_free ? Proof::Free : Proof::Candidate;
+}
+
+Proof Mask::at(double x, double z)
+{
+    constexpr double farthest = 1e8;  // cells; beyond it their numbers would not fit
+    if (raster_.levels.empty() || !(std::abs(x - raster_.x0) < farthest * raster_.levels[0].cell) ||
+        !(std::abs(y_ - raster_.y0) < farthest * raster_.levels[0].cell))
+        return Proof::Candidate;
+    bool is_free = true;
+    for (Part& part : parts_) {
+        Proof proof = Proof::Candidate;
+        for (Pass& pass : part.passes) {
+            if (!pass.is_ready) cover(part, pass);
+            proof = at(part, pass, x, z);
+            if (proof != Proof::Candidate) break;
+        }
+        if (proof == Proof::Blocked) return Proof::Blocked;
+        is_free = is_free && proof == Proof::Free;
+    }
+    return is_free ? Proof::Free : Proof::Candidate;
+}
+
+FreeSpace::FreeSpace(const SolidBounds& bounds, const Robot& robot)
+    : impl_(std::make_unique<const Impl>(Impl{bounds, robot, footprints(robot, Mat3::Identity(), true), yaw_free_footprints(robot)}))
+{
+}
+FreeSpace::FreeSpace(FreeSpace&&) noexcept = default;
+FreeSpace::~FreeSpace() = default;
+
+Proof FreeSpace::at(const Pose& scene_from_robot) const
+{
+    Mask mask(*impl_);
+    const Mat3& turn = scene_from_robot.rotation;
+    if (turn(2, 2) == 1) mask.face(std::atan2(turn(1, 0), turn(0, 0)));
+    else mask.face(turn);
+    mask.set_y(scene_from_robot.position.y());
+    return mask.at(scene_from_robot.position.x(), scene_from_robot.position.z());
+}
+
+Proof FreeSpace::at(const Vec3& position, double yaw) const
+{
+    Mask mask(*impl_);
+    mask.face(yaw);
+    mask.set_y(position.y());
+    return mask.at(position.x(), position.z());
+}
+
+Proof FreeSpace::at_every_yaw(const Vec3& position) const
+{
+    Mask mask(*impl_);
+    mask.face_every_yaw();
+    mask.set_y(position.y());
+    return mask.at(position.x(), position.z());
+}
+
+}  // namespace spawnfield

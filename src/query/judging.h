@@ -1,0 +1,51 @@
+#pragma once
+
+#include "column/columns.h"
+#include "free_space/mask.h"
+
+#include <spawnfield/query.h>
+
+namespace spawnfield {
+
+/// Judges poses for one query: the mask first, the CollisionChecker where it cannot tell. Shared by all threads.
+class Judging {
+public:
+    Judging(const Map& map, const CollisionChecker& checker, const QueryOptions& options);
+
+    const Map& map() const { return map_; }
+    const QueryOptions& options() const { return options_; }
+    const FreeSpace* free_space() const { return space_ ? &*space_ : nullptr; }
+
+private:
+    friend class PoseJudge;
+    const Map& map_;
+    const CollisionChecker& checker_;
+    const QueryOptions options_;
+    std::optional<FreeSpace> space_;  ///< none: every pose is checked exactly
+};
+
+/// One thread's judge of poses that share a rotation.
+class PoseJudge {
+public:
+    explicit PoseJudge(const Judging& judging);
+
+    void face(double yaw);          ///< upright; to be called before the first pose
+    void face(const Mat3& rotation);
+    void set_y(double y);
+
+    /// The verdict at (x, y of set_y, z) with its ground, as judge gives it. With `with_hit` also what a pose collides with,
+    /// which takes an exact check.
+    Judgement at(const ColumnView& column, double x, double z, bool with_hit = false);
+    /// Valid or Collision: of collisions alone.
+    Judgement collision(double x, double z, bool with_hit = false);
+
+private:
+    void decide(double x, double z, bool with_hit, Judgement& out);
+
+    const Judging& judging_;
+    std::optional<Mask> mask_;
+    Mat3 rotation_ = Mat3::Identity();
+    double y_ = 0;
+};
+
+}  // namespace spawnfield
