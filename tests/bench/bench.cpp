@@ -24,7 +24,7 @@ void add_options(CLI::App& app, BenchArgs& args)
     app.add_option("--rounds", args.rounds, "Timed rounds after an untimed one (default 5)")->check(CLI::Range(1, 1000));
     app.add_option("--threads", args.threads, "Numbers of threads (default: 1 and all cores)")->delimiter(',')->check(CLI::Range(1, 1024));
     app.add_option("--only", args.only, "Stages whose \"scene stage\" has this in it, as \"hills raster2d\"");
-    app.add_option("--csv", args.csv, "Write scene,stage,threads,items,ms,per_second,hash to this file; ms is the minimum");
+    app.add_option("--csv", args.csv, "Write scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks to this file; ms is the minimum");
     app.add_option("--write-maps", args.maps, "Bake the scenes into this folder instead");
     auto* quick = app.add_flag("--quick", args.quick, "Small scenes, one round, 1 and 2 threads: does it all work and compute the same?");
     app.add_flag("--full", args.full, "hills with cells of 0.1 m and rasters of 0.5 m")->excludes(quick);
@@ -48,13 +48,27 @@ std::vector<int> thread_counts(const BenchArgs& args)
     return cores > 1 ? std::vector<int>{1, cores} : std::vector<int>{1};
 }
 
-Row run(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds)
+/// A stage and its rivals, in turns: round after round each of them once.
+std::vector<Row> run(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds)
 {
-    stage.run(threads);
+    std::vector<std::pair<std::string, Workbench::Run>> contestants = {{stage.name, stage.run}};
+    for (const auto& [name, rival] : stage.rivals) contestants.push_back({stage.name + " " + name, rival});
+    for (const auto& [name, go] : contestants) go(threads);
     reset_peak_memory();
-    std::vector<Measurement> measured;
-    for (int round = 0; round < rounds; ++round) measured.push_back(stage.run(threads));
-    return row_of(scene, stage.name, threads, measured);
+    std::vector<std::vector<Measurement>> measured(contestants.size());
+    for (int round = 0; round < rounds; ++round)
+        for (std::size_t i = 0; i < contestants.size(); ++i) measured[i].push_back(contestants[i].second(threads));
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < contestants.size(); ++i) rows.push_back(row_of(scene, contestants[i].first, threads, measured[i]));
+    return rows;
+}
+
+std::string ratios(const std::vector<Row>& rows)
+{
+    std::string text;
+    for (std::size_t i = 1; i < rows.size(); ++i)
+        text += formatted("          %s takes %.2f times as long for each item\n", rows[i].stage.c_str(), times_slower(rows[i], rows[0]));
+    return text;
 }
 
 std::vector<Row> run_all(const BenchArgs& args)
@@ -65,10 +79,13 @@ std::vector<Row> run_all(const BenchArgs& args)
         for (const Workbench::Stage& stage : workbench.stages()) {
             if ((setting.name + " " + stage.name).find(args.only) == std::string::npos) continue;
             for (const int threads : stage.parallel ? thread_counts(args) : std::vector<int>{1}) {
-                rows.push_back(run(setting.name, stage, threads, args.quick ? 1 : args.rounds));
-                std::cout << table_line(rows.back()) << std::flush;
+                const std::vector<Row> more = run(setting.name, stage, threads, args.quick ? 1 : args.rounds);
+                for (const Row& row : more) std::cout << table_line(row);
+                std::cout << ratios(more) << std::flush;
+                rows.insert(rows.end(), more.begin(), more.end());
             }
         }
+        for (const std::string& line : workbench.comparisons(args.only)) std::cout << line << "\n" << std::flush;
     }
     return rows;
 }
@@ -82,9 +99,17 @@ void write_maps(const BenchArgs& args)
     }
 }
 
+std::string left_out()
+{
+    std::string text;
+    if (!PlainFcl::is_available()) text += "built without Embree: alternative (b), plain FCL, is left out\n";
+    if (!NavMesh::is_available()) text += "built without Recast: alternative (c), a navigation mesh, is left out\n";
+    return text;
+}
+
 void measure(const BenchArgs& args)
 {
-    std::cout << machine() << "\n\n" << table_head() << std::flush;
+    std::cout << machine() << "\n" << left_out() << "\n" << table_head() << std::flush;
     const std::vector<Row> rows = run_all(args);
     check_same(rows);
     if (rows.empty()) throw std::runtime_error("no stage has \"" + args.only + "\" in its name");
