@@ -1,4 +1,4 @@
-#include "workbench.h"
+#include "targets.h"
 
 #include <spawnfield/output_file.h>
 
@@ -15,8 +15,8 @@ using namespace spawnfield;
 struct BenchArgs {
     int rounds = 5;
     std::vector<int> threads;
-    std::string csv, maps, only;
-    bool quick = false, full = false;
+    std::string csv, maps, scene, only;
+    bool quick = false, full = false, targets = false;
 };
 
 void add_options(CLI::App& app, BenchArgs& args)
@@ -25,10 +25,13 @@ void add_options(CLI::App& app, BenchArgs& args)
     app.add_option("--threads", args.threads, "Numbers of threads (default: 1 and all cores)")->delimiter(',')->check(CLI::Range(1, 1024));
     app.add_option("--only", args.only, "Stages whose \"scene stage\" has this in it, as \"hills raster2d\"");
     app.add_option("--csv", args.csv, "Write scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks to this file; ms is the minimum");
-    app.add_option("--write-maps", args.maps, "Bake the scenes into this folder instead");
+    app.add_option("--write-maps", args.maps, "Bake the scenes into this folder instead; writes map,seconds,bytes")
+        ->excludes(app.add_flag("--targets", args.targets, "The table of speed and memory to reach: whole programs, then stages and rivals"));
+    app.add_option("--scene", args.scene, "With --write-maps: this scene alone, as hills or hills-4x");
     auto* quick = app.add_flag("--quick", args.quick, "Small scenes, one round, 1 and 2 threads: does it all work and compute the same?");
-    app.add_flag("--full", args.full, "hills with cells of 0.1 m and rasters of 0.5 m")->excludes(quick);
+    app.add_flag("--full", args.full, "hills with cells of 0.1 m and rasters of 0.5 m; with --targets, also 16 times its area")->excludes(quick);
     app.footer("Example:\n"
+               "  spawnfield_bench --targets --csv targets.csv\n"
                "  spawnfield_bench --only \"hills sample\" --threads 1,2\n"
                "  spawnfield_bench --write-maps /tmp/maps && spawnfield heatmap /tmp/maps/hills -o /tmp/hills.png \\\n"
                "      --robot maps/robots/husky.yaml --offset 0.3");
@@ -90,21 +93,34 @@ std::vector<Row> run_all(const BenchArgs& args)
     return rows;
 }
 
-void write_maps(const BenchArgs& args)
-{
-    for (const Setting& setting : settings(extent_of(args))) {
-        const std::filesystem::path folder = std::filesystem::path(args.maps) / setting.name;
-        Workbench(setting).bake_into(folder, setting.make(), 0);
-        std::cout << folder.string() << "\n";
-    }
-}
-
 std::string left_out()
 {
     std::string text;
     if (!PlainFcl::is_available()) text += "built without Embree: alternative (b), plain FCL, is left out\n";
     if (!NavMesh::is_available()) text += "built without Recast: alternative (c), a navigation mesh, is left out\n";
     return text;
+}
+
+/// Maps of the scene that was asked for, or of all that are no multiples of another.
+void write_maps(const BenchArgs& args)
+{
+    std::vector<Setting> wanted = settings(extent_of(args));
+    if (!args.scene.empty()) {
+        const std::vector<Setting> tiled = tiled_settings(extent_of(args));
+        wanted.insert(wanted.end(), tiled.begin(), tiled.end());
+        std::erase_if(wanted, [&](const Setting& setting) { return setting.name != args.scene; });
+        if (wanted.empty()) throw std::runtime_error("there is no scene \"" + args.scene + "\"");
+    }
+    for (const Setting& setting : wanted) std::cout << to_line(bake_setting(setting, args.maps, 0)) << std::flush;
+}
+
+void reach_targets(const BenchArgs& args)
+{
+    std::cout << machine() << "\n" << left_out() << "\n" << target_head() << std::flush;
+    const TargetOptions options{args.quick, args.full, args.quick ? 1 : args.rounds, thread_counts(args)};
+    const std::vector<TargetRow> rows =
+        measure_targets(options, [](const TargetRow& row) { std::cout << target_line(row) << std::flush; });
+    if (!args.csv.empty()) write_file_atomically(args.csv, target_csv(rows));
 }
 
 void measure(const BenchArgs& args)
@@ -129,7 +145,8 @@ int main(int argc, char** argv)
         return app.exit(error) == 0 ? 0 : 2;
     }
     try {
-        if (args.maps.empty()) measure(args);
+        if (args.targets) reach_targets(args);
+        else if (args.maps.empty()) measure(args);
         else write_maps(args);
     } catch (const std::exception& error) {
         std::cerr << "spawnfield_bench: " << error.what() << "\n";

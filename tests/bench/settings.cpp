@@ -126,6 +126,19 @@ Setting empty(Extent extent)
 
 Robot husky_box() { return load_robot("box:0.99,0.67,0.39"); }
 
+std::vector<Setting> tiled_settings(Extent extent)
+{
+    std::vector<Setting> out;
+    for (const int side : {1, 2, 4}) {
+        Setting setting{.name = "hills-" + std::to_string(side * side) + "x", .robot = husky_box};
+        const bool quick = extent == Extent::Quick;
+        setting.make = [side, quick] { return quick ? small_hills_scene(1, side) : hills_scene(1, side); };
+        if (quick) setting.cell = 2;
+        out.push_back(setting);
+    }
+    return out;
+}
+
 std::vector<Setting> settings(Extent extent)
 {
     return {training(extent), hills(extent), town(extent), floors(extent), grid(false, extent), grid(true, extent), empty(extent)};

@@ -214,7 +214,7 @@ Scene Town::build()
 
 }  // namespace
 
-Scene town_scene(std::uint64_t seed) { return Town(seed, {1280, 640}).build(); }
+Scene town_scene(std::uint64_t seed) { return Town(seed, {1280, 400}).build(); }
 
 Scene small_town_scene(std::uint64_t seed) { return Town(seed, {240, 96}).build(); }
 

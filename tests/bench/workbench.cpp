@@ -128,6 +128,7 @@ Workbench::Workbench(const Setting& setting) : setting_(setting) {}
 std::vector<Workbench::Stage> Workbench::stages()
 {
     std::vector<Stage> out;
+    if (elements(scene()) > 0) out.push_back({"make", false, [this](int) { return make(); }});
     if (setting_.has_ground) add_bakes(out);
     add_rasters(out);
     if (setting_.has_ground) add_spawns(out);
@@ -137,7 +138,6 @@ std::vector<Workbench::Stage> Workbench::stages()
 
 void Workbench::add_bakes(std::vector<Stage>& out)
 {
-    out.push_back({"make", false, [this](int) { return make(); }});
     out.push_back({"index", false, [this](int) { return index(); }});
     out.push_back({"terrain", true, [this](int threads) { return terrain(threads); }});
     out.push_back({"occupancy", true, [this](int threads) { return occupancy(threads); }});

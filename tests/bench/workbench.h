@@ -42,6 +42,7 @@ struct Setting {
 
 enum class Extent { Quick, Usual, Full };
 std::vector<Setting> settings(Extent extent);
+std::vector<Setting> tiled_settings(Extent extent);  ///< hills-1x, hills-4x, hills-16x: as many tiles, for baking
 spawnfield::Robot husky_box();  ///< box:0.99,0.67,0.39
 
 /// One scene with all that its stages need, made when it is first asked for.
