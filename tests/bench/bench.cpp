@@ -51,21 +51,6 @@ std::vector<int> thread_counts(const BenchArgs& args)
     return cores > 1 ? std::vector<int>{1, cores} : std::vector<int>{1};
 }
 
-/// A stage and its rivals, in turns: round after round each of them once.
-std::vector<Row> run(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds)
-{
-    std::vector<std::pair<std::string, Workbench::Run>> contestants = {{stage.name, stage.run}};
-    for (const auto& [name, rival] : stage.rivals) contestants.push_back({stage.name + " " + name, rival});
-    for (const auto& [name, go] : contestants) go(threads);
-    reset_peak_memory();
-    std::vector<std::vector<Measurement>> measured(contestants.size());
-    for (int round = 0; round < rounds; ++round)
-        for (std::size_t i = 0; i < contestants.size(); ++i) measured[i].push_back(contestants[i].second(threads));
-    std::vector<Row> rows;
-    for (std::size_t i = 0; i < contestants.size(); ++i) rows.push_back(row_of(scene, contestants[i].first, threads, measured[i]));
-    return rows;
-}
-
 std::string ratios(const std::vector<Row>& rows)
 {
     std::string text;
@@ -82,7 +67,7 @@ std::vector<Row> run_all(const BenchArgs& args)
         for (const Workbench::Stage& stage : workbench.stages()) {
             if ((setting.name + " " + stage.name).find(args.only) == std::string::npos) continue;
             for (const int threads : stage.parallel ? thread_counts(args) : std::vector<int>{1}) {
-                const std::vector<Row> more = run(setting.name, stage, threads, args.quick ? 1 : args.rounds);
+                const std::vector<Row> more = run_in_turns(setting.name, stage, threads, args.quick ? 1 : args.rounds);
                 for (const Row& row : more) std::cout << table_line(row);
                 std::cout << ratios(more) << std::flush;
                 rows.insert(rows.end(), more.begin(), more.end());
@@ -117,9 +102,14 @@ void write_maps(const BenchArgs& args)
 void reach_targets(const BenchArgs& args)
 {
     std::cout << machine() << "\n" << left_out() << "\n" << target_head() << std::flush;
-    const TargetOptions options{args.quick, args.full, args.quick ? 1 : args.rounds, thread_counts(args)};
-    const std::vector<TargetRow> rows =
-        measure_targets(options, [](const TargetRow& row) { std::cout << target_line(row) << std::flush; });
+    TargetOptions options;
+    options.quick = args.quick;
+    options.most = args.full;
+    options.rounds = args.quick ? 1 : args.rounds;
+    options.threads = thread_counts(args);
+    options.tell = [](const TargetRow& row) { std::cout << target_line(row) << std::flush; };
+    options.remark = [](const std::string& line) { std::cout << "          " << line << "\n" << std::flush; };
+    const std::vector<TargetRow> rows = measure_targets(options);
     if (!args.csv.empty()) write_file_atomically(args.csv, target_csv(rows));
 }
 

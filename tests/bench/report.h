@@ -22,6 +22,7 @@ struct Row {
     std::uint64_t items = 0, hash = 0, exact_checks = 0;
     double least = 0, median = 0;       ///< s
     std::uint64_t peak_memory = 0;      ///< bytes of the whole process during these rounds
+    std::uint64_t own_memory = 0;       ///< bytes that the first run took on top of what was there; 0 where it is unknown
 
     double per_second() const { return double(items) / least; }
     double seconds_per_item() const { return median / double(items); }

@@ -43,6 +43,7 @@ Setting hills(Extent extent)
 {
     Setting out{.name = "hills", .make = [] { return hills_scene(); }, .robot = husky_box};
     const double step = extent == Extent::Full ? 0.5 : 1;
+    out.one_layer = true;
     out.step_3d = step;
     out.thinning = extent == Extent::Full ? 20 : 10;
     out.rasters = {{"raster2d@0.1", step, 0.1}, {"raster2d@0.3", step, 0.3}, {"raster2d@1.0", step, 1.0}, {"raster2d-1m@0.5", 1, 0.5}};

@@ -40,6 +40,8 @@ constexpr Target in_process[] = {
     {.scene = "hills", .stage = "check", .work = "check of 1,000,000 poses near the ground", .seconds = 2},
     {.scene = "hills", .stage = "sample", .work = "2,000 samples 2.5 m apart, in process"},
     {.scene = "hills", .stage = "search", .work = "search, 2,000 valid, 2.5 m apart", .seconds = 0.5},
+    {.scene = "hills", .stage = "fcl set-up", .work = "set-up of (b), plain FCL"},
+    {.scene = "hills", .stage = "recast set-up", .work = "set-up of (c), Recast"},
     {.scene = "town", .stage = "raster2d-top@0.1", .work = "2D raster, step 2 m, offset 0.1 m, top layer"},
     {.scene = "floors", .stage = "raster2d@0.1", .work = "2D raster, step 0.1 m, offset 0.1 m, all layers"},
     {.scene = "floors", .stage = "raster2d-top@0.1", .work = "2D raster, step 0.1 m, offset 0.1 m, top layer"},
@@ -59,29 +61,6 @@ std::string words_of(const Target& target)
 
 // ---- Stages within this process ----
 
-/// What ours takes on top of what is there before its first run, bytes.
-double memory_of(const Workbench::Run& run, int threads)
-{
-    reset_peak_memory();
-    const std::uint64_t before = peak_memory_bytes();
-    run(threads);
-    return double(peak_memory_bytes() - std::min(before, peak_memory_bytes()));
-}
-
-/// Medians of ours and its rivals, in turns.
-std::vector<Row> in_turns(const Target& target, const Workbench::Stage& stage, int threads, int rounds)
-{
-    std::vector<std::pair<std::string, Workbench::Run>> contestants = {{stage.name, stage.run}};
-    contestants.insert(contestants.end(), stage.rivals.begin(), stage.rivals.end());
-    for (std::size_t i = 1; i < contestants.size(); ++i) contestants[i].second(threads);
-    std::vector<std::vector<Measurement>> measured(contestants.size());
-    for (int round = 0; round < rounds; ++round)
-        for (std::size_t i = 0; i < contestants.size(); ++i) measured[i].push_back(contestants[i].second(threads));
-    std::vector<Row> rows;
-    for (std::size_t i = 0; i < contestants.size(); ++i) rows.push_back(row_of(target.scene, contestants[i].first, threads, measured[i]));
-    return rows;
-}
-
 bool is_reached(const Target& target, const Row& ours, const std::optional<double>& over_fcl)
 {
     return ours.median <= target.seconds && ours.seconds_per_item() * 1e6 <= target.ms_per_1000 &&
@@ -91,12 +70,12 @@ bool is_reached(const Target& target, const Row& ours, const std::optional<doubl
 TargetRow measure(const Target& target, const Workbench::Stage& stage, int threads, bool judged, int rounds)
 {
     TargetRow out{target.scene, target.work, threads};
-    out.memory = memory_of(stage.run, threads);
-    const std::vector<Row> rows = in_turns(target, stage, threads, rounds);
+    const std::vector<Row> rows = run_in_turns(target.scene, stage, threads, rounds);
     const Row& ours = rows.front();
+    out.memory = double(ours.own_memory);
     for (const Row& row : rows) {
-        if (row.stage == "exhaustive") out.over_exhaustive = times_slower(row, ours);
-        if (row.stage == "fcl") out.over_fcl = times_slower(row, ours);
+        if (row.stage.ends_with(" exhaustive")) out.over_exhaustive = times_slower(row, ours);
+        if (row.stage.ends_with(" fcl")) out.over_fcl = times_slower(row, ours);
     }
     const bool per_1000 = target.ms_per_1000 < any;
     out.measured = per_1000 ? ours.seconds_per_item() * 1e6 : ours.median;
@@ -120,10 +99,11 @@ void measure_stages(const TargetOptions& options, const Tell& tell)
         for (const Workbench::Stage& stage : workbench.stages())
             for (const Target& target : in_process) {
                 if (setting.name != target.scene || stage.name != target.stage) continue;
-                for (const int threads : options.threads) {
+                for (const int threads : stage.parallel ? options.threads : std::vector<int>{1}) {
                     const bool judged = threads == (target.threads == 0 ? options.threads.back() : target.threads);
                     tell(measure(target, stage, threads, judged, options.rounds));
                 }
+                for (const std::string& line : workbench.comparisons(setting.name + " " + stage.name)) options.remark(line);
             }
     }
 }
@@ -283,13 +263,13 @@ std::string to_line(const BakedMap& map)
     return map.folder.string() + formatted(",%.6f,%llu\n", map.seconds, static_cast<unsigned long long>(map.bytes));
 }
 
-std::vector<TargetRow> measure_targets(const TargetOptions& options, const std::function<void(const TargetRow&)>& tell)
+std::vector<TargetRow> measure_targets(const TargetOptions& options)
 {
     std::vector<TargetRow> rows;
     const Tell keep = [&](TargetRow row) {
-        if (options.quick) row.reached.reset();
+        if (options.quick) row.target.clear(), row.reached.reset();
         rows.push_back(std::move(row));
-        tell(rows.back());
+        options.tell(rows.back());
     };
     {
         const TempFolder folder;

@@ -23,11 +23,12 @@ struct TargetOptions {
     bool most = false;   ///< with the landscape of 10 million triangles
     int rounds = 5;
     std::vector<int> threads = {1, 2};  ///< the last is all cores
+    std::function<void(const TargetRow&)> tell;      ///< hears of each row as soon as it is known
+    std::function<void(const std::string&)> remark;  ///< and of how far the alternatives' verdicts agree
 };
 
-/// Measures every row; each is handed to `tell` as soon as it is known. Whole programs come first, as long as this
-/// process is small (process.h, ProcessRun::peak_memory).
-std::vector<TargetRow> measure_targets(const TargetOptions& options, const std::function<void(const TargetRow&)>& tell);
+/// Measures every row. Whole programs come first, as long as this process is small (process.h, ProcessRun::peak_memory).
+std::vector<TargetRow> measure_targets(const TargetOptions& options);
 
 /// What `--write-maps` prints of each map, and the measurement of whole programs reads.
 struct BakedMap {

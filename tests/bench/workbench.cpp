@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
 
 using namespace spawnfield;
 
@@ -149,13 +150,12 @@ void Workbench::add_rasters(std::vector<Stage>& out)
 {
     const auto stage = [this](const std::string& name, const RasterOptions& options) {
         Stage made{name, true, [this, options](int threads) { return raster(with_threads(options, threads)); }};
-        made.rivals.push_back({"exhaustive", [this, options](int threads) { return raster(exhaustive(with_threads(options, threads))); }});
+        made.rivals.push_back({"exhaustive", [this, options](int threads) { return raster(exhaustive(with_threads(options, threads))); }, true});
         return made;
     };
     for (const RasterWork& work : setting_.rasters) {
         out.push_back(stage(work.name, options_2d(work)));
-        const bool one_layer = work.layers.kind == LayerChoice::Kind::Top || setting_.name == "hills";
-        if (has_plain_fcl() && one_layer) out.back().rivals.push_back({"fcl", [this, work](int threads) { return fcl_raster_2d(work, threads); }});
+        if (has_plain_fcl() && is_top_raster(work)) out.back().rivals.push_back({"fcl", [this, work](int threads) { return fcl_raster_2d(work, threads); }});
     }
     out.push_back(stage("raster3d", options_3d()));
     if (has_plain_fcl()) out.back().rivals.push_back({"fcl", [this](int threads) { return fcl_raster_3d(threads); }});
@@ -164,13 +164,13 @@ void Workbench::add_rasters(std::vector<Stage>& out)
 void Workbench::add_spawns(std::vector<Stage>& out)
 {
     out.push_back({"check", true, [this](int threads) { return check(with_threads(QueryOptions{}, threads)); }});
-    out.back().rivals.push_back({"exhaustive", [this](int threads) { return check(exhaustive(with_threads(QueryOptions{}, threads))); }});
+    out.back().rivals.push_back({"exhaustive", [this](int threads) { return check(exhaustive(with_threads(QueryOptions{}, threads))); }, true});
     if (has_plain_fcl()) out.back().rivals.push_back({"fcl", [this](int threads) { return fcl_check(threads); }});
     out.push_back({"sample", true, [this](int threads) { return sample(with_threads(sample_options(), threads)); }});
     out.back().rivals.push_back({"exhaustive", [this](int threads) { return sample(exhaustive(with_threads(sample_options(), threads))); }});
     if (has_nav_mesh()) out.back().rivals.push_back({"recast", [this](int) { return nav_draw(); }});
     out.push_back({"search", true, [this](int threads) { return search(with_threads(search_options(), threads)); }});
-    out.back().rivals.push_back({"exhaustive", [this](int threads) { return search(exhaustive(with_threads(search_options(), threads))); }});
+    out.back().rivals.push_back({"exhaustive", [this](int threads) { return search(exhaustive(with_threads(search_options(), threads))); }, true});
 }
 
 /// What the alternatives take before their first answer.
@@ -186,6 +186,43 @@ void Workbench::add_set_ups(std::vector<Stage>& out)
                            const auto made = timed([&] { return std::make_unique<NavMesh>(scene(), walker_of(setting_.robot(), 0.1)); });
                            return Measurement{elements(scene()), made.seconds, Digest().add(made.result->polygons()).value()};
                        }});
+}
+
+namespace {
+
+/// Bytes that a run takes on top of what this process held before.
+std::uint64_t memory_of(const std::function<void()>& run)
+{
+    reset_peak_memory();
+    const std::uint64_t before = peak_memory_bytes();
+    run();
+    return peak_memory_bytes() - std::min(before, peak_memory_bytes());
+}
+
+}  // namespace
+
+std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds)
+{
+    constexpr double long_run = 10;  // s
+    std::vector<Workbench::Rival> contestants = {{stage.name, stage.run, true}};
+    for (const Workbench::Rival& rival : stage.rivals) contestants.push_back({stage.name + " " + rival.name, rival.run, rival.has_same_result});
+    std::vector<Measurement> untimed(contestants.size());
+    const std::uint64_t memory = memory_of([&] { untimed[0] = contestants[0].run(threads); });
+    for (std::size_t i = 1; i < contestants.size(); ++i) untimed[i] = contestants[i].run(threads);
+    reset_peak_memory();
+    std::vector<std::vector<Measurement>> measured(contestants.size());
+    for (int round = 0; round < rounds; ++round)
+        for (std::size_t i = 0; i < contestants.size(); ++i)
+            if (untimed[i].seconds < long_run) measured[i].push_back(contestants[i].run(threads));
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+        if (measured[i].empty()) measured[i] = {untimed[i]};
+        rows.push_back(row_of(scene, contestants[i].name, threads, measured[i]));
+        if (contestants[i].has_same_result && rows[i].hash != rows[0].hash)
+            throw std::runtime_error(scene + " " + rows[i].stage + " gave something else than " + rows[0].stage);
+    }
+    rows[0].own_memory = memory;
+    return rows;
 }
 
 // ---- What stages need ----
@@ -397,7 +434,7 @@ std::vector<std::string> Workbench::comparisons(const std::string& only)
     const auto wanted = [&](const std::string& stage) { return (setting_.name + " " + stage).find(only) != std::string::npos; };
     if (has_plain_fcl()) {
         for (const RasterWork& work : setting_.rasters)
-            if (wanted(work.name)) out.push_back(compare_2d(work));
+            if (is_top_raster(work) && wanted(work.name)) out.push_back(compare_2d(work));
         if (wanted("raster3d")) out.push_back(compare_3d());
         if (setting_.has_ground && wanted("check")) out.push_back(compare_checks());
     }
@@ -456,7 +493,9 @@ std::string Workbench::compare_nav_mesh()
 {
     Random random(23);
     std::vector<Pose> drawn, snapped;
-    for (const Vec3& point : nav_mesh().draw(setting_.nav_points, 0)) {
+    const NavMesh& mesh = nav_mesh();
+    const auto points = timed([&] { return mesh.draw(setting_.nav_points, 0); });
+    for (const Vec3& point : points.result) {
         const Mat3 rotation = rotation_from_rpy(0, 0, random.between(-std::numbers::pi, std::numbers::pi));
         drawn.push_back({point + Vec3(0, 0, 0.1), rotation});
         const std::vector<double> layers = layers_at(map(), point.x(), point.y());
@@ -471,9 +510,9 @@ std::string Workbench::compare_nav_mesh()
     };
     const auto a = shares(drawn), b = shares(snapped);
     const auto collision = std::size_t(Verdict::Collision), valid = std::size_t(Verdict::Valid);
-    return setting_.name + formatted(" recast: %d tiles, %d polygons, %zu points: %.1f %% collide, %.1f %% valid as drawn; "
+    return setting_.name + formatted(" recast: %d tiles, %d polygons, %zu points, %.3g/s: %.1f %% collide, %.1f %% valid as drawn; "
                                      "%.1f %% collide, %.1f %% valid at 0.1 m above the true ground",
-                                     nav_mesh().tiles(), nav_mesh().polygons(), drawn.size(), a[collision], a[valid], b[collision], b[valid]);
+                                     mesh.tiles(), mesh.polygons(), drawn.size(), double(drawn.size()) / points.seconds, a[collision], a[valid], b[collision], b[valid]);
 }
 
 }  // namespace bench

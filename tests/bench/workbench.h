@@ -25,6 +25,7 @@ struct Setting {
     std::function<spawnfield::Scene()> make = {};
     std::function<spawnfield::Robot()> robot = {};
     spawnfield::Bounds bounds = {};  ///< of the map; empty: the scene's
+    bool one_layer = false;          ///< of terrain: all of it is the top one, which is what plain FCL knows
     bool has_ground = true;          ///< false: a 3D raster is all there is to do
     bool height_check = true;        ///< of that raster
     bool has_rivals = true;          ///< whether alternatives (b) and (c) run on it
@@ -51,11 +52,16 @@ public:
     explicit Workbench(const Setting& setting);
 
     using Run = std::function<Measurement(int threads)>;
+    struct Rival {
+        std::string name;
+        Run run;
+        bool has_same_result = false;  ///< it has to compute the stage's very bytes
+    };
     struct Stage {
         std::string name;
         bool parallel;  ///< whether it has a number of threads
         Run run;
-        std::vector<std::pair<std::string, Run>> rivals = {};  ///< by name, run in turns with it
+        std::vector<Rival> rivals = {};
     };
     /// In the order in which they run; they refer to this workbench.
     std::vector<Stage> stages();
@@ -72,6 +78,10 @@ private:
     const PlainFcl& plain_fcl();
     const NavMesh& nav_mesh();
     const std::vector<spawnfield::Pose>& poses();
+    bool is_top_raster(const RasterWork& work) const
+    {
+        return setting_.one_layer || work.layers.kind == spawnfield::LayerChoice::Kind::Top;
+    }
     bool has_plain_fcl() const { return setting_.has_rivals && PlainFcl::is_available(); }
     bool has_nav_mesh() const { return setting_.has_rivals && setting_.has_ground && NavMesh::is_available(); }
 
@@ -114,5 +124,10 @@ private:
     std::unique_ptr<const NavMesh> nav_mesh_;
     std::vector<spawnfield::Pose> poses_;
 };
+
+/// A stage and its rivals ("stage rival"), each once untimed and then in turns: round after round each of them once. What
+/// takes longer than 10 s is not run again: then the first time counts.
+/// Throws std::runtime_error where results differ that have to be the same.
+std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds);
 
 }  // namespace bench
