@@ -305,13 +305,22 @@ std::vector<Vec3> NavMesh::draw(std::size_t count, std::uint64_t seed) const
     detour_random = Random(seed);
     const dtQueryFilter filter;
     std::vector<Vec3> out;
-    while (out.size() < count) {
+    for (std::size_t tries = 0; out.size() < count && tries < 10 * count; ++tries) {
         dtPolyRef polygon = 0;
-        float p[3] = {};
-        if (!dtStatusSucceed(impl_->query->findRandomPoint(&filter, detour_unit, &polygon, p))) break;
-        out.emplace_back(p[0], -p[2], p[1]);
+        float p[3] = {};  // now and then no height is found for a point on a polygon's edge
+        if (dtStatusSucceed(impl_->query->findRandomPoint(&filter, detour_unit, &polygon, p))) out.emplace_back(p[0], -p[2], p[1]);
     }
     return out;
+}
+
+bool NavMesh::covers(const Vec3& point) const
+{
+    const dtQueryFilter filter;
+    const float centre[3] = {float(point.x()), float(point.z()), float(-point.y())}, reach[3] = {0.01f, 1, 0.01f};
+    dtPolyRef polygon = 0;
+    float nearest[3] = {};
+    impl_->query->findNearestPoly(centre, reach, &filter, &polygon, nearest);
+    return polygon != 0 && std::hypot(nearest[0] - centre[0], nearest[2] - centre[2]) < 1e-3f;
 }
 
 int NavMesh::tiles() const { return impl_->tiles; }

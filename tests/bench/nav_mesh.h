@@ -32,6 +32,9 @@ public:
     /// same seed. Fewer than `count` only where there is nothing to walk on.
     std::vector<spawnfield::Vec3> draw(std::size_t count, std::uint64_t seed) const;
 
+    /// Whether there is mesh straight above or below, within 1 m.
+    bool covers(const spawnfield::Vec3& point) const;
+
     int tiles() const;
     int polygons() const;
 

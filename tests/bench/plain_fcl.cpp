@@ -184,15 +184,12 @@ bool stop_at_contact(Object* a, Object* b, void* data)
 }  // namespace
 
 struct PlainFcl::Impl {
-    struct RobotGeometry {
-        Geometry geometry;
-        Pose robot_from_shape;
-    };
     std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device{rtcNewDevice(nullptr), rtcReleaseDevice};
     Rays terrain{device.get()}, obstacles{device.get()}, water{device.get()}, closed{device.get()};
     std::vector<std::unique_ptr<Object>> objects;
     fcl::DynamicAABBTreeCollisionManager<double> manager;
-    std::vector<RobotGeometry> robot;
+    Robot robot;
+    std::vector<Pose> robot_from_shape;  ///< of its parts; the corners of hulls are in the robot's frame already
 
     Rays& rays_of(Label label) { return label == Label::Terrain ? terrain : label == Label::Water ? water : obstacles; }
 
@@ -226,18 +223,19 @@ struct PlainFcl::Impl {
         }
     }
 
-    /// The robot, to be put at one pose after the other by one thread.
+    /// The robot, to be put at one pose after the other by one thread. Shapes of its own, as FCL's objects write to theirs
+    /// when they are made (local bounds).
     std::vector<Object> own_robot() const
     {
         std::vector<Object> own;
-        for (const RobotGeometry& part : robot) own.emplace_back(part.geometry);
+        for (const RobotPart& part : robot.parts) own.emplace_back(part.shape.kind == ShapeKind::Hull ? hull_of(part) : geometry_of(part.shape));
         return own;
     }
 
     bool collides(std::vector<Object>& own, const Pose& pose) const
     {
         for (std::size_t i = 0; i < own.size(); ++i) {
-            own[i].setTransform(transform_of(pose * robot[i].robot_from_shape));
+            own[i].setTransform(transform_of(pose * robot_from_shape[i]));
             own[i].computeAABB();
             Search search;
             manager.collide(&own[i], &search, stop_at_contact);
@@ -314,10 +312,9 @@ PlainFcl::PlainFcl(const Scene& scene, const Robot& robot)
     for (const auto& object : impl->objects) objects.push_back(object.get());
     impl->manager.registerObjects(objects);
     impl->manager.setup();
-    for (const RobotPart& part : robot.parts) {
-        const bool is_hull = part.shape.kind == ShapeKind::Hull;
-        impl->robot.push_back({is_hull ? hull_of(part) : geometry_of(part.shape), is_hull ? Pose{} : part.shape.pose});
-    }
+    impl->robot = robot;
+    for (const RobotPart& part : robot.parts)
+        impl->robot_from_shape.push_back(part.shape.kind == ShapeKind::Hull ? Pose{} : part.shape.pose);
     impl_ = std::move(impl);
 }
 

@@ -16,6 +16,7 @@ bool NavMesh::is_available() { return false; }
 NavMesh::NavMesh(const spawnfield::Scene&, const Walker&) { fail(); }
 NavMesh::~NavMesh() = default;
 std::vector<spawnfield::Vec3> NavMesh::draw(std::size_t, std::uint64_t) const { fail(); }
+bool NavMesh::covers(const spawnfield::Vec3&) const { fail(); }
 int NavMesh::tiles() const { fail(); }
 int NavMesh::polygons() const { fail(); }
 

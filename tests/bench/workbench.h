@@ -114,6 +114,8 @@ private:
     std::string compare_3d();
     std::string compare_checks();
     std::string compare_nav_mesh();
+    std::string coverage();
+    std::string shares(const std::vector<spawnfield::Pose>& asked);
 
     const Setting setting_;
     TempFolder folder_;
