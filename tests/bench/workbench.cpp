@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -92,7 +93,7 @@ RasterOptions thinned(RasterOptions options, int thinning)
 
 /// How two lists of verdicts differ.
 struct Differences {
-    std::size_t poses = 0, wrong = 0, inside = 0, missed = 0;  ///< missed: no ray hit, on the rim of the ground
+    std::size_t poses = 0, wrong = 0, inside = 0, missed = 0;  ///< missed: a ray that passes by on an edge of the ground
 
     void add(const PlainFcl& fcl, const Vec3& centre, Verdict ours, Verdict theirs)
     {
@@ -100,12 +101,15 @@ struct Differences {
         if (ours == theirs) return;
         const bool hidden = ours == Verdict::Collision && theirs == Verdict::Valid && fcl.is_inside(centre);
         ++(hidden ? inside : wrong);
+        if (!hidden) ++pairs[std::string(to_string(ours)) + " but " + to_string(theirs)];
     }
     std::string text() const
     {
-        return formatted("%zu poses, %zu verdicts of plain FCL differ; %zu more where the robot is wholly inside closed meshes, %zu where "
-                         "Embree misses the ground's rim", poses, wrong, inside, missed);
+        std::string out = formatted("%zu poses, %zu verdicts of plain FCL differ", poses, wrong);
+        for (const auto& [pair, count] : pairs) out += formatted(", %zu %s", count, pair.c_str());
+        return out + formatted("; %zu more where the robot is wholly inside closed meshes, %zu where Embree's ray misses an edge of the ground", inside, missed);
     }
+    std::map<std::string, std::size_t> pairs;  ///< "<ours> but <theirs>", and how many
 };
 
 /// A circle around the robot seen from above; climb and slope as far as its level underside stays clear of the ground.
@@ -454,11 +458,11 @@ std::string Workbench::compare_2d(const RasterWork& work)
     for (const RasterPose& pose : ours.poses) {
         const int row = int(std::lround((pose.y - ours.grid.y0) / ours.grid.step)), col = int(std::lround((pose.x - ours.grid.x0) / ours.grid.step));
         const auto& other = theirs[std::size_t(row) * std::size_t(ours.grid.cols) + std::size_t(col)];
-        if (!other) {
+        if (other) --extra;
+        if (!other || std::abs(other->z - pose.z) > 1e-3) {
             ++differences.poses, ++differences.missed;
             continue;
         }
-        --extra;
         differences.add(plain_fcl(), Vec3(pose.x, pose.y, pose.z) + centre, pose.verdict, other->verdict);
     }
     differences.wrong += extra;
