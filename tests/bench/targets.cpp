@@ -227,9 +227,10 @@ void tell_growth(const AreaCost& one, const AreaCost& many, const Tell& tell)
 {
     const std::string scene = "hills-" + std::to_string(many.area) + "x";
     const auto growth = [&](double of_many, double of_one) { return of_many / many.area / of_one; };
-    tell(at_most(1.15, row(scene, "bake at 0.5 m, time for each tile", growth(many.bake.seconds, one.bake.seconds), "times", many.bake.peak_memory)));
-    tell(at_most(1.15, row(scene, "2D raster, step 1 m, query for each tile", growth(many.raster.query, one.raster.query), "times", many.raster.peak_memory)));
-    tell(at_most(1.15, row(scene, "2,000 samples, memory of the process", many.sample.peak_memory / one.sample.peak_memory, "times", many.sample.peak_memory)));
+    const auto tell_times = [&](const char* work, double times, double memory) { tell(at_most(1.15, row(scene, work, times, "times", memory))); };
+    tell_times("bake at 0.5 m, time for each tile", growth(many.bake.seconds, one.bake.seconds), many.bake.peak_memory);
+    tell_times("2D raster, step 1 m, query for each tile", growth(many.raster.query, one.raster.query), many.raster.peak_memory);
+    tell_times("2,000 samples, memory of the process", many.sample.peak_memory / one.sample.peak_memory, many.sample.peak_memory);
     tell(row(scene, "2,000 samples, whole process", many.sample.seconds * 1e3, "ms", many.sample.peak_memory));
 }
 

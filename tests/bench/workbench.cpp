@@ -107,7 +107,8 @@ struct Differences {
     {
         std::string out = formatted("%zu poses, %zu verdicts of plain FCL differ", poses, wrong);
         for (const auto& [pair, count] : pairs) out += formatted(", %zu %s", count, pair.c_str());
-        return out + formatted("; %zu more where the robot is wholly inside closed meshes, %zu where Embree's ray misses an edge of the ground", inside, missed);
+        return out + formatted("; %zu more where the robot is wholly inside closed meshes, %zu where Embree's ray misses an edge of the ground",
+                               inside, missed);
     }
     std::map<std::string, std::size_t> pairs;  ///< "<ours> but <theirs>", and how many
 };
@@ -209,7 +210,8 @@ std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& 
 {
     constexpr double long_run = 10;  // s
     std::vector<Workbench::Rival> contestants = {{stage.name, stage.run, true}};
-    for (const Workbench::Rival& rival : stage.rivals) contestants.push_back({stage.name + " " + rival.name, rival.run, rival.has_same_result});
+    for (const Workbench::Rival& rival : stage.rivals)
+        contestants.push_back({stage.name + " " + rival.name, rival.run, rival.has_same_result});
     std::vector<Measurement> untimed(contestants.size());
     const std::uint64_t memory = memory_of([&] { untimed[0] = contestants[0].run(threads); });
     for (std::size_t i = 1; i < contestants.size(); ++i) untimed[i] = contestants[i].run(threads);
