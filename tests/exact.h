@@ -4,10 +4,6 @@
 
 // What the tests of exactness need to know of the free-space mask, in one place.
 
-/// Whether queries have a mask to ask. Until they do, every pose is checked exactly, whatever is asked for.
-inline constexpr bool mask_exists = true;
-
-
 /// A scene with a mask of this resolution. Poses beyond the bounds are `outside`, solids there still count.
 inline TestMap map_at(spawnfield::Scene scene, double resolution, const spawnfield::Bounds& bounds = {})
 {

@@ -67,7 +67,7 @@ TEST_CASE("a map folder holds the files that it should, as other programs open t
 {
     const TempFolder temp;
     const BakeReport report = bake_training(temp / "map");
-    CHECK(names_in(temp / "map") == std::vector<std::string>{"geometry.bin", "heightmap.png", "map.yaml", "occupancy.bt", "preview.png", "terrain.tiff"});
+    CHECK(names_in(temp / "map") == std::vector<std::string>{"bounds.bin", "geometry.bin", "heightmap.png", "map.yaml", "occupancy.bt", "preview.png", "terrain.tiff"});
     CHECK(report.layers == 2);
     const Map map = read_map(temp / "map");
     const TerrainMap terrain = read_terrain(map);

@@ -29,7 +29,6 @@ using HeightImage = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// height.K       layer K at the cell's centre, K = 0 the highest
 /// water          highest water surface at the cell's centre
 /// solid_top.K, solid_bottom.K   what is solid at the cell's centre, terrain and obstacles joined, from the top down
-/// bound_top.K, bound_bottom.K   intervals that hold all that is solid anywhere in the closed cell, rounded outwards
 ///
 /// Pages are kept as deflated tiles of tile x tile cells, row after row, the last ones padded with NaN: a page of nothing
 /// takes about 300 bytes a tile.
@@ -51,9 +50,7 @@ struct TerrainMap {
 /// A whole page, frame.rows x frame.cols; all NaN if there is no such page. Throws std::runtime_error on damaged tiles.
 HeightImage page_image(const TerrainMap& terrain, const std::string& name);
 
-/// Vertical rays at the cells' centres, and the z range of every triangle and primitive clipped to each cell it meets.
-/// Solid intervals beyond the eighth are left out of solid_*, and joined over the smallest gaps in bound_*.
-/// O(elements + cells covered). Source of the clipping: Sutherland, Hodgman, Reentrant polygon clipping, 1974.
+/// Vertical rays at the cells' centres. Solid intervals beyond the eighth are left out. O(elements + cells covered).
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,
                              const Progress& progress = {});
 

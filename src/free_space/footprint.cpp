@@ -11,11 +11,12 @@
 namespace spawnfield {
 namespace {
 
-constexpr int disc_sides = 32;
+constexpr int disc_sides = 32, inner_disc_sides = 16;
 
 /// Corners of polyhedra that hold a part and that lie in it, in the robot's frame turned by `rotation`.
 struct PartCorners {
     std::vector<Vec3> around, within;
+    std::vector<std::pair<std::size_t, std::size_t>> edges;  ///< of `within`; empty: any two of them may be one
 };
 
 /// A circle of `radius` around `centre` in the plane of u and v, as corners of polygons around it and within it.
@@ -26,7 +27,7 @@ void add_circle(const Vec3& centre, const Vec3& u, const Vec3& v, double radius,
         const double angle = 2 * std::numbers::pi * k / disc_sides;
         const Vec3 spoke = std::cos(angle) * u + std::sin(angle) * v;
         out.around.push_back(centre + wide * spoke);
-        out.within.push_back(centre + radius * spoke);
+        if (k % (disc_sides / inner_disc_sides) == 0) out.within.push_back(centre + radius * spoke);
     }
 }
 
@@ -34,7 +35,7 @@ void add_circle(const Vec3& centre, const Vec3& u, const Vec3& v, double radius,
 void add_ball(const Vec3& centre, double radius, PartCorners& out)
 {
     const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
-    for (const double latitude : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+    for (const double latitude : {-1.0, -0.4, 0.0, 0.4, 1.0}) {
         const double angle = latitude * std::numbers::pi / 2.5;
         PartCorners circle;
         add_circle(centre + radius * std::sin(angle) * z, x, y, radius * std::cos(angle), circle);
@@ -53,6 +54,8 @@ PartCorners corners_of(const RobotPart& part, const Mat3& rotation)
     case ShapeKind::Hull:
         for (const Vec3& vertex : part.hull_vertices) out.around.push_back(rotation * vertex);
         out.within = out.around;
+        for (const auto& face : part.hull_faces)
+            for (std::size_t k = 0; k < 3; ++k) out.edges.emplace_back(face[k], face[(k + 1) % 3]);
         break;
     case ShapeKind::Box:
         for (int corner = 0; corner < 8; ++corner)
@@ -130,32 +133,36 @@ Polygon2 cut(const Polygon2& polygon, const Vec2& a, const Vec2& b)
     return out;
 }
 
-/// What the convex hull of the points has at height z, seen from above.
-Polygon2 slice(const std::vector<Vec3>& points, double z)
+/// What the convex hull of the corners has at height z, seen from above.
+Polygon2 slice(const PartCorners& corners, double z)
 {
     Polygon2 out;
-    for (const Vec3& low : points) {
-        if (low.z() > z) continue;
-        for (const Vec3& high : points)
-            if (high.z() >= z) {
-                const double rise = high.z() - low.z();
-                out.push_back((low + (rise > 0 ? (z - low.z()) / rise : 0.0) * (high - low)).head<2>());
-            }
-    }
+    const auto add = [&](const Vec3& p, const Vec3& q) {
+        const Vec3 &low = p.z() < q.z() ? p : q, &high = p.z() < q.z() ? q : p;
+        if (low.z() > z || high.z() < z) return;
+        const double rise = high.z() - low.z();
+        out.push_back((low + (rise > 0 ? (z - low.z()) / rise : 0.0) * (high - low)).head<2>());
+        if (!(rise > 0)) out.push_back(high.head<2>());
+    };
+    for (const auto& [a, b] : corners.edges) add(corners.within[a], corners.within[b]);
+    if (corners.edges.empty())
+        for (std::size_t a = 0; a < corners.within.size(); ++a)
+            for (std::size_t b = 0; b < a; ++b) add(corners.within[a], corners.within[b]);
     return convex_hull(std::move(out));
 }
 
-/// A large upright prism in the convex hull of the points: by convexity, what two slices share is also between them.
-Prism prism_within(const std::vector<Vec3>& points)
+/// A large upright prism in the convex hull of the corners: by convexity, what two slices share is also between them.
+Prism prism_within(const PartCorners& corners)
 {
+    const std::vector<Vec3>& points = corners.within;
     const auto [low, high] = std::minmax_element(points.begin(), points.end(), [](const Vec3& l, const Vec3& r) { return l.z() < r.z(); });
     const double height = high->z() - low->z();
     Prism best;
     double best_volume = 0;
     for (const double share : {0.0, 0.02, 0.08, 0.2, 0.35}) {
         const double bottom = low->z() + share * height, top = high->z() - share * height;
-        Polygon2 polygon = slice(points, bottom);
-        const Polygon2 other = slice(points, top);
+        Polygon2 polygon = slice(corners, bottom);
+        const Polygon2 other = slice(corners, top);
         if (polygon.size() < 3 || other.size() < 3) continue;
         for (std::size_t k = 0; k < other.size() && polygon.size() >= 3; ++k) polygon = cut(polygon, other[k], other[(k + 1) % other.size()]);
         polygon = convex_hull(std::move(polygon));
@@ -205,7 +212,7 @@ std::vector<Footprint> footprints(const Robot& robot, const Mat3& rotation, bool
         Polygon2 seen;
         for (const Vec3& corner : corners.around) seen.push_back(corner.head<2>());
         footprint.outer = {widened(convex_hull(std::move(seen)), reach), height.bottom - reach, height.top + reach};
-        if (with_inner) footprint.inner = prism_within(corners.within);
+        if (with_inner) footprint.inner = prism_within(corners);
         out.push_back(std::move(footprint));
     }
     return out;

@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "base/png.h"
 #include "base/stopwatch.h"
+#include "map/bounds_file.h"
 #include "map/geometry_file.h"
 #include "map/map_yaml.h"
 #include "map/terrain_file.h"
@@ -155,10 +156,14 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     map.geometry = Geometry(scene, options.threads);
     scene = {};
     lap("geometry");
-    const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads, part_of(options.progress, 0, 0.6));
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads, part_of(options.progress, 0, 0.3));
     const HeightImage top = page_image(terrain, "height.0");
     map.layers = top.isNaN().all() ? 0 : terrain.layers();
     lap("terrain");
+    map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads, part_of(options.progress, 0.3, 0.6));
+    write_bounds(target.path() / "bounds.bin", map.solid_bounds);
+    map.solid_bounds = {};
+    lap("bounds");
     const OccupancyTree tree = build_occupancy(map.geometry, map.bounds, map.occupancy_resolution, options.threads,
                                                part_of(options.progress, 0.6, 0.9));
     report.occupancy_leaves = tree.leaves();

@@ -71,7 +71,7 @@ std::string part_lines(const std::vector<Part>& parts)
 std::string file_lines(const fs::path& folder)
 {
     std::string out;
-    for (const char* name : {"geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"}) {
+    for (const char* name : {"bounds.bin", "geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"}) {
         const std::string bytes = read_file(folder / name);
         out += std::string("  ") + name + ": {bytes: " + std::to_string(bytes.size()) + ", xxh64: \"" + checksum(bytes) + "\"";
         if (const std::string head = head_checksum(bytes); !head.empty()) out += ", head_xxh64: \"" + head + "\"";

@@ -1,7 +1,6 @@
 #include "base/deflate.h"
 #include "base/number.h"
 #include "base/parallel.h"
-#include "base/rounding.h"
 #include "map/cell_clip.h"
 
 #include <spawnfield/error.h>
@@ -13,13 +12,13 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::size_t max_spans = 8;  // pages of solid_* and bound_*
+constexpr std::size_t max_spans = 8;  // pages of solid_*
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
 
 /// Pages of one tile, by name without number; made as they are needed.
 struct TilePages {
     using Values = std::vector<float>;
-    std::vector<Values> height, solid_top, solid_bottom, bound_top, bound_bottom;
+    std::vector<Values> height, solid_top, solid_bottom;
     Values water;
 
     static float& at(std::vector<Values>& pages, std::size_t page, std::size_t cell)
@@ -28,18 +27,6 @@ struct TilePages {
         return pages[page][cell];
     }
 };
-
-/// Joins over the smallest gaps until at most max_spans are left; from the bottom up.
-void reduce(std::vector<Interval>& spans)
-{
-    while (spans.size() > max_spans) {
-        std::size_t closest = 0;
-        for (std::size_t i = 0; i + 1 < spans.size(); ++i)
-            if (spans[i + 1].bottom - spans[i].top < spans[closest + 1].bottom - spans[closest].top) closest = i;
-        spans[closest].top = spans[closest + 1].top;
-        spans.erase(spans.begin() + std::ptrdiff_t(closest) + 1);
-    }
-}
 
 class TileRaster {
 public:
@@ -51,21 +38,14 @@ public:
 
     TilePages run()
     {
-        const CellBlock block{frame_.x0 + col0_ * frame_.cell, frame_.y0 + (frame_.rows - row0_ - rows_) * frame_.cell,
-                              frame_.cell, cols_, rows_};
-        const CellSpans surfaces(geometry_, block);
         const Columns centres(geometry_, {frame_.x0, frame_.y0, frame_.cell, col0_, frame_.rows - row0_ - rows_, cols_, rows_, 0.5});
-        std::vector<Interval> bound;
         for (int j = 0; j < rows_; ++j)  // upwards in y, as the block counts
-            for (int i = 0; i < cols_; ++i) {
-                surfaces.get(block.id(i, j), bound);
-                add_cell(rows_ - 1 - j, i, centres.at(i, j), bound);
-            }
+            for (int i = 0; i < cols_; ++i) add_cell(rows_ - 1 - j, i, centres.at(i, j));
         return std::move(pages_);
     }
 
 private:
-    void add_cell(int row, int col, const ColumnView& column, std::vector<Interval>& bound)
+    void add_cell(int row, int col, const ColumnView& column)
     {
         const std::size_t cell = std::size_t(row) * TerrainMap::tile + std::size_t(col);
         for (std::size_t layer = 0; layer < column.layers.size(); ++layer)
@@ -79,15 +59,6 @@ private:
             const Interval& span = solid[solid.size() - 1 - k];
             TilePages::at(pages_.solid_top, k, cell) = float(span.top);
             TilePages::at(pages_.solid_bottom, k, cell) = float(span.bottom);
-        }
-        // Where no surface passes at a height, the whole cell is inside or outside there, as its centre is.
-        bound.insert(bound.end(), solid.begin(), solid.end());
-        join_spans(bound);
-        reduce(bound);
-        for (std::size_t k = 0; k < bound.size(); ++k) {
-            const Interval& span = bound[bound.size() - 1 - k];
-            TilePages::at(pages_.bound_top, k, cell) = rounded_up(span.top);
-            TilePages::at(pages_.bound_bottom, k, cell) = rounded_down(span.bottom);
         }
     }
 
@@ -115,8 +86,6 @@ NamedTiles deflate_tile(const TilePages& pages)
     if (!pages.water.empty()) out.emplace_back("water", deflated(pages.water));
     add("solid_top", pages.solid_top);
     add("solid_bottom", pages.solid_bottom);
-    add("bound_top", pages.bound_top);
-    add("bound_bottom", pages.bound_bottom);
     return out;
 }
 

@@ -1,4 +1,4 @@
-#include "workbench.h"
+#include "targets.h"
 
 #include <spawnfield/output_file.h>
 
@@ -15,8 +15,8 @@ using namespace spawnfield;
 struct BenchArgs {
     int rounds = 5;
     std::vector<int> threads;
-    std::string csv, maps, only;
-    bool quick = false, full = false;
+    std::string csv, maps, scene, only;
+    bool quick = false, full = false, targets = false;
 };
 
 void add_options(CLI::App& app, BenchArgs& args)
@@ -24,11 +24,14 @@ void add_options(CLI::App& app, BenchArgs& args)
     app.add_option("--rounds", args.rounds, "Timed rounds after an untimed one (default 5)")->check(CLI::Range(1, 1000));
     app.add_option("--threads", args.threads, "Numbers of threads (default: 1 and all cores)")->delimiter(',')->check(CLI::Range(1, 1024));
     app.add_option("--only", args.only, "Stages whose \"scene stage\" has this in it, as \"hills raster2d\"");
-    app.add_option("--csv", args.csv, "Write scene,stage,threads,items,ms,per_second,hash to this file; ms is the minimum");
-    app.add_option("--write-maps", args.maps, "Bake the scenes into this folder instead");
+    app.add_option("--csv", args.csv, "Write scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks to this file; ms is the minimum");
+    app.add_option("--write-maps", args.maps, "Bake the scenes into this folder instead; writes map,seconds,bytes")
+        ->excludes(app.add_flag("--targets", args.targets, "The table of speed and memory to reach: whole programs, then stages and rivals"));
+    app.add_option("--scene", args.scene, "With --write-maps: this scene alone, as hills or hills-4x");
     auto* quick = app.add_flag("--quick", args.quick, "Small scenes, one round, 1 and 2 threads: does it all work and compute the same?");
-    app.add_flag("--full", args.full, "hills with cells of 0.1 m and rasters of 0.5 m")->excludes(quick);
+    app.add_flag("--full", args.full, "hills with cells of 0.1 m and rasters of 0.5 m; with --targets, also 16 times its area")->excludes(quick);
     app.footer("Example:\n"
+               "  spawnfield_bench --targets --csv targets.csv\n"
                "  spawnfield_bench --only \"hills sample\" --threads 1,2\n"
                "  spawnfield_bench --write-maps /tmp/maps && spawnfield heatmap /tmp/maps/hills -o /tmp/hills.png \\\n"
                "      --robot maps/robots/husky.yaml --offset 0.3");
@@ -48,13 +51,12 @@ std::vector<int> thread_counts(const BenchArgs& args)
     return cores > 1 ? std::vector<int>{1, cores} : std::vector<int>{1};
 }
 
-Row run(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds)
+std::string ratios(const std::vector<Row>& rows)
 {
-    stage.run(threads);
-    reset_peak_memory();
-    std::vector<Measurement> measured;
-    for (int round = 0; round < rounds; ++round) measured.push_back(stage.run(threads));
-    return row_of(scene, stage.name, threads, measured);
+    std::string text;
+    for (std::size_t i = 1; i < rows.size(); ++i)
+        text += formatted("          %s takes %.2f times as long for each item\n", rows[i].stage.c_str(), times_slower(rows[i], rows[0]));
+    return text;
 }
 
 std::vector<Row> run_all(const BenchArgs& args)
@@ -65,26 +67,55 @@ std::vector<Row> run_all(const BenchArgs& args)
         for (const Workbench::Stage& stage : workbench.stages()) {
             if ((setting.name + " " + stage.name).find(args.only) == std::string::npos) continue;
             for (const int threads : stage.parallel ? thread_counts(args) : std::vector<int>{1}) {
-                rows.push_back(run(setting.name, stage, threads, args.quick ? 1 : args.rounds));
-                std::cout << table_line(rows.back()) << std::flush;
+                const std::vector<Row> more = run_in_turns(setting.name, stage, threads, args.quick ? 1 : args.rounds);
+                for (const Row& row : more) std::cout << table_line(row);
+                std::cout << ratios(more) << std::flush;
+                rows.insert(rows.end(), more.begin(), more.end());
             }
         }
+        for (const std::string& line : workbench.comparisons(args.only)) std::cout << line << "\n" << std::flush;
     }
     return rows;
 }
 
+std::string left_out()
+{
+    std::string text;
+    if (!PlainFcl::is_available()) text += "built without Embree: alternative (b), plain FCL, is left out\n";
+    if (!NavMesh::is_available()) text += "built without Recast: alternative (c), a navigation mesh, is left out\n";
+    return text;
+}
+
+/// Maps of the scene that was asked for, or of all that are no multiples of another.
 void write_maps(const BenchArgs& args)
 {
-    for (const Setting& setting : settings(extent_of(args))) {
-        const std::filesystem::path folder = std::filesystem::path(args.maps) / setting.name;
-        Workbench(setting).bake_into(folder, setting.make(), 0);
-        std::cout << folder.string() << "\n";
+    std::vector<Setting> wanted = settings(extent_of(args));
+    if (!args.scene.empty()) {
+        const std::vector<Setting> tiled = tiled_settings(extent_of(args));
+        wanted.insert(wanted.end(), tiled.begin(), tiled.end());
+        std::erase_if(wanted, [&](const Setting& setting) { return setting.name != args.scene; });
+        if (wanted.empty()) throw std::runtime_error("there is no scene \"" + args.scene + "\"");
     }
+    for (const Setting& setting : wanted) std::cout << to_line(bake_setting(setting, args.maps, 0)) << std::flush;
+}
+
+void reach_targets(const BenchArgs& args)
+{
+    std::cout << machine() << "\n" << left_out() << "\n" << target_head() << std::flush;
+    TargetOptions options;
+    options.quick = args.quick;
+    options.most = args.full;
+    options.rounds = args.quick ? 1 : args.rounds;
+    options.threads = thread_counts(args);
+    options.tell = [](const TargetRow& row) { std::cout << target_line(row) << std::flush; };
+    options.remark = [](const std::string& line) { std::cout << "          " << line << "\n" << std::flush; };
+    const std::vector<TargetRow> rows = measure_targets(options);
+    if (!args.csv.empty()) write_file_atomically(args.csv, target_csv(rows));
 }
 
 void measure(const BenchArgs& args)
 {
-    std::cout << machine() << "\n\n" << table_head() << std::flush;
+    std::cout << machine() << "\n" << left_out() << "\n" << table_head() << std::flush;
     const std::vector<Row> rows = run_all(args);
     check_same(rows);
     if (rows.empty()) throw std::runtime_error("no stage has \"" + args.only + "\" in its name");
@@ -104,7 +135,8 @@ int main(int argc, char** argv)
         return app.exit(error) == 0 ? 0 : 2;
     }
     try {
-        if (args.maps.empty()) measure(args);
+        if (args.targets) reach_targets(args);
+        else if (args.maps.empty()) measure(args);
         else write_maps(args);
     } catch (const std::exception& error) {
         std::cerr << "spawnfield_bench: " << error.what() << "\n";

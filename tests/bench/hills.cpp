@@ -386,6 +386,6 @@ Scene landscape(std::uint64_t seed, int tiles, const Amounts& amounts)
 
 Scene hills_scene(std::uint64_t seed, int tiles) { return landscape(seed, tiles, whole); }
 
-Scene small_hills_scene(std::uint64_t seed) { return landscape(seed, 1, small); }
+Scene small_hills_scene(std::uint64_t seed, int tiles) { return landscape(seed, tiles, small); }
 
 }  // namespace bench

@@ -11,6 +11,6 @@ namespace bench {
 spawnfield::Scene hills_scene(std::uint64_t seed = 1, int tiles = 1);
 
 /// The same on 125 x 125 m with a sixteenth of all, for quick runs.
-spawnfield::Scene small_hills_scene(std::uint64_t seed = 1);
+spawnfield::Scene small_hills_scene(std::uint64_t seed = 1, int tiles = 1);
 
 }  // namespace bench

@@ -3,6 +3,7 @@
 #include <spawnfield/types.h>
 
 #include <algorithm>
+#include <cstdarg>
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
@@ -10,14 +11,6 @@
 
 namespace bench {
 namespace {
-
-template <class... Values>
-std::string formatted(const char* format, Values... values)
-{
-    char text[256];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 std::string hex(std::uint64_t hash) { return formatted("%016llx", static_cast<unsigned long long>(hash)); }
 
@@ -42,7 +35,7 @@ std::string proc_value(const char* file, const std::string& key)
 
 Row row_of(const std::string& scene, const std::string& stage, int threads, const std::vector<Measurement>& rounds)
 {
-    Row row{scene, stage, threads, rounds.front().items, rounds.front().hash};
+    Row row{scene, stage, threads, rounds.front().items, rounds.front().hash, rounds.front().exact_checks};
     std::vector<double> seconds;
     for (const Measurement& round : rounds) {
         if (round.items == 0) throw std::runtime_error(scene + " " + stage + " did nothing");
@@ -64,25 +57,36 @@ void check_same(const std::vector<Row>& rows)
                 fail_differing(row, other.hash, "at " + std::to_string(other.threads));
 }
 
+std::string formatted(const char* format, ...)
+{
+    char text[1024];
+    va_list values;
+    va_start(values, format);
+    std::vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    return text;
+}
+
 std::string table_head()
 {
-    return formatted("%-9s %-13s %7s %11s %10s %10s %10s %17s %8s\n", "scene", "stage", "threads", "items", "ms", "median ms",
-                     "items/s", "hash", "peak MB");
+    return formatted("%-9s %-26s %7s %11s %10s %10s %10s %17s %7s %8s\n", "scene", "stage", "threads", "items", "ms", "median ms",
+                     "items/s", "hash", "exact %", "peak MB");
 }
 
 std::string table_line(const Row& row)
 {
-    return formatted("%-9s %-13s %7d %11llu %10.2f %10.2f %10.4g %17s %8.0f\n", row.scene.c_str(), row.stage.c_str(), row.threads,
+    return formatted("%-9s %-26s %7d %11llu %10.2f %10.2f %10.4g %17s %7.2f %8.0f\n", row.scene.c_str(), row.stage.c_str(), row.threads,
                      static_cast<unsigned long long>(row.items), row.least * 1e3, row.median * 1e3, row.per_second(),
-                     hex(row.hash).c_str(), double(row.peak_memory) / 1e6);
+                     hex(row.hash).c_str(), 100 * double(row.exact_checks) / double(row.items), double(row.peak_memory) / 1e6);
 }
 
 std::string csv(const std::vector<Row>& rows)
 {
-    std::string out = "scene,stage,threads,items,ms,per_second,hash\n";
+    std::string out = "scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks\n";
     for (const Row& row : rows)
-        out += formatted("%s,%s,%d,%llu,%.4f,%.6g,%s\n", row.scene.c_str(), row.stage.c_str(), row.threads,
-                         static_cast<unsigned long long>(row.items), row.least * 1e3, row.per_second(), hex(row.hash).c_str());
+        out += formatted("%s,%s,%d,%llu,%.4f,%.6g,%s,%.4f,%llu\n", row.scene.c_str(), row.stage.c_str(), row.threads,
+                         static_cast<unsigned long long>(row.items), row.least * 1e3, row.per_second(), hex(row.hash).c_str(),
+                         row.median * 1e3, static_cast<unsigned long long>(row.exact_checks));
     return out;
 }
 

@@ -12,21 +12,30 @@ struct Measurement {
     std::uint64_t items = 0;  ///< cells, poses, draws, …
     double seconds = 0;
     std::uint64_t hash = 0;   ///< of the result's bytes
+    std::uint64_t exact_checks = 0;  ///< items that FCL decided
 };
 
 /// A stage of a scene at a number of threads, over all its rounds.
 struct Row {
     std::string scene, stage;
     int threads = 1;
-    std::uint64_t items = 0, hash = 0;
+    std::uint64_t items = 0, hash = 0, exact_checks = 0;
     double least = 0, median = 0;       ///< s
     std::uint64_t peak_memory = 0;      ///< bytes of the whole process during these rounds
+    std::uint64_t own_memory = 0;       ///< bytes that the first run took on top of what was there; 0 where it is unknown
 
     double per_second() const { return double(items) / least; }
+    double seconds_per_item() const { return median / double(items); }
 };
 
 /// Throws std::runtime_error if a round did nothing or computed something else than the others.
 Row row_of(const std::string& scene, const std::string& stage, int threads, const std::vector<Measurement>& rounds);
+
+/// How many times the time of `row` another takes for an item; medians.
+inline double times_slower(const Row& other, const Row& row) { return other.seconds_per_item() / row.seconds_per_item(); }
+
+/// printf into a string.
+std::string formatted(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 /// Throws std::runtime_error if a stage gave something else at one number of threads than at another.
 void check_same(const std::vector<Row>& rows);

@@ -9,9 +9,17 @@
 using namespace spawnfield;
 
 namespace bench {
-namespace {
 
 using Vec2 = Eigen::Vector2d;
+
+hand::Mesh profile_along_x(const std::vector<Vec2>& profile, double length)
+{
+    Mat3 rotation;
+    rotation << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    return hand::moved(hand::extruded(profile, -length / 2, length / 2), {Vec3::Zero(), rotation});
+}
+
+namespace {
 
 Mat3 turned(double angle, const Vec3& axis)
 {
@@ -82,14 +90,6 @@ hand::Mesh rough_ball(Random& random, bool fine, const Vec3& radii, const Vec3& 
     return mesh;
 }
 
-/// A profile in y and z, counterclockwise seen from +x, extruded along x.
-hand::Mesh along_x(const std::vector<Vec2>& profile, double length)
-{
-    Mat3 rotation;
-    rotation << 0, 0, 1, 1, 0, 0, 0, 1, 0;
-    return hand::moved(hand::extruded(profile, -length / 2, length / 2), {Vec3::Zero(), rotation});
-}
-
 struct Gable {
     double length, width, walls, ridge;  ///< m; walls and ridge above the ground
 };
@@ -102,8 +102,8 @@ void add_gabled_house(const Gable& size, double foundation, const Pose& pose, Pi
     const double eave = half + 0.5, inner = size.ridge - 0.05, outer = size.ridge + 0.2;
     const std::vector<Vec2> roof = {{0, inner}, {eave, inner - pitch * eave}, {eave, outer - pitch * eave},
                                     {0, outer}, {-eave, outer - pitch * eave}, {-eave, inner - pitch * eave}};
-    out.push_back(hand::moved(along_x(walls, size.length), pose));
-    out.push_back(hand::moved(along_x(roof, size.length + 0.8), pose));
+    out.push_back(hand::moved(profile_along_x(walls, size.length), pose));
+    out.push_back(hand::moved(profile_along_x(roof, size.length + 0.8), pose));
 }
 
 void add_conifer(Random& random, Pieces& out)
@@ -124,6 +124,51 @@ void add_leaf_tree(Random& random, Pieces& out)
 }
 
 }  // namespace
+
+hand::Mesh ball()
+{
+    static const hand::Mesh made = subdivided(icosahedron());
+    return made;
+}
+
+hand::Mesh blocks(const BlockGrid& grid)
+{
+    const int nx = int(grid.x.size()) - 1, ny = int(grid.y.size()) - 1, nz = int(grid.z.size()) - 1;
+    const auto filled = [&](int i, int j, int k) {
+        return i >= 0 && j >= 0 && k >= 0 && i < nx && j < ny && k < nz && grid.filled(i, j, k);
+    };
+    hand::Mesh mesh;
+    std::map<std::array<int, 3>, std::uint32_t> corners;
+    const auto corner = [&](const std::array<int, 3>& at) {
+        const auto [found, is_new] = corners.try_emplace(at, std::uint32_t(mesh.vertices.size()));
+        if (is_new) mesh.vertices.emplace_back(grid.x[std::size_t(at[0])], grid.y[std::size_t(at[1])], grid.z[std::size_t(at[2])]);
+        return found->second;
+    };
+    /// The side of a block towards +-axis.
+    const auto add_side = [&](const std::array<int, 3>& block, int axis, int side) {
+        std::array<std::array<int, 3>, 4> at;
+        at.fill(block);
+        const std::size_t a = std::size_t(axis), u = (a + 1) % 3, v = (a + 2) % 3;
+        for (std::array<int, 3>& c : at) c[a] += side;
+        for (const std::size_t i : {1, 2}) at[i][u] += 1;
+        for (const std::size_t i : {2, 3}) at[i][v] += 1;
+        if (side == 0) std::swap(at[1], at[3]);
+        const std::uint32_t first = corner(at[0]), third = corner(at[2]);
+        mesh.triangles.push_back({first, corner(at[1]), third});
+        mesh.triangles.push_back({first, third, corner(at[3])});
+    };
+    for (int k = 0; k < nz; ++k)
+        for (int j = 0; j < ny; ++j)
+            for (int i = 0; i < nx; ++i) {
+                if (!filled(i, j, k)) continue;
+                for (int axis = 0; axis < 3; ++axis)
+                    for (const int side : {0, 1}) {
+                        const int step = 2 * side - 1;
+                        if (!filled(i + (axis == 0) * step, j + (axis == 1) * step, k + (axis == 2) * step)) add_side({i, j, k}, axis, side);
+                    }
+            }
+    return mesh;
+}
 
 Pieces house(Random& random, double foundation)
 {

@@ -8,6 +8,18 @@ namespace bench {
 
 using Pieces = std::vector<hand::Mesh>;
 
+hand::Mesh ball();  ///< of radius 1, 80 triangles
+
+/// A profile in y and z, counterclockwise seen from +x, extruded along x.
+hand::Mesh profile_along_x(const std::vector<Eigen::Vector2d>& profile, double length);
+
+/// A building of blocks: what lies between neighbouring coordinates is filled or not. Closed, whatever is filled.
+struct BlockGrid {
+    std::vector<double> x, y, z;                  ///< m, ascending
+    std::function<bool(int, int, int)> filled;  ///< block (i, j, k) lies between x[i] and x[i + 1], …
+};
+hand::Mesh blocks(const BlockGrid& grid);
+
 /// Walls with gables, a roof that juts out, a chimney, at times a wing; `foundation` m deep. Along x.
 Pieces house(Random& random, double foundation);
 

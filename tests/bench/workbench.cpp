@@ -2,12 +2,15 @@
 
 #include "../random_scene.h"
 #include "digest.h"
-#include "hills.h"
+#include "world.h"
 #include "base/stopwatch.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
-#include <tuple>
+#include <stdexcept>
 
 using namespace spawnfield;
 
@@ -29,15 +32,26 @@ auto timed(const Work& work)
     return Timed<decltype(result)>{seconds, std::move(result)};
 }
 
-Robot husky_box() { return load_robot("box:0.99,0.67,0.39"); }
-
-Scene training_scene() { return load_scene(SPAWNFIELD_SOURCE "/maps/training/scene.yaml"); }
-
 std::uint64_t elements(const Scene& scene) { return scene.triangles.size() + scene.primitives.size(); }
 
 std::uint64_t cells(const GridFrame& frame) { return std::uint64_t(frame.rows) * std::uint64_t(frame.cols); }
 
 std::uint64_t total(const VerdictCounts& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
+
+/// Alternative (a): every pose decided by FCL, none by the mask.
+template <class Options>
+Options exhaustive(Options options)
+{
+    options.exhaustive = true;
+    return options;
+}
+
+template <class Options>
+Options with_threads(Options options, int threads)
+{
+    options.threads = threads;
+    return options;
+}
 
 /// Up to 1 m above a random layer of a random column.
 std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
@@ -54,91 +68,211 @@ std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
     return poses;
 }
 
-Setting training_setting(Extent extent)
+/// The raster that the library makes of bounds with these steps.
+RasterGrid grid_of(const Bounds& bounds, const RasterOptions& options)
 {
-    Setting out{.name = "training", .make = training_scene, .cell = 0.05, .step = 0.1, .step_3d = 0.2, .poses = 20000};
-    out.sample_distance = 0.1;
-    out.search_distance = 0.1;
-    if (extent == Extent::Quick) {
-        out.cell = 0.25;
-        out.step = 0.5;
-        out.step_3d = 1;
-        out.poses = 1000;
-        out.samples = out.finds = 50;
-    }
-    return out;
+    const auto count = [](double from, double to, double step) { return int(std::floor((to - from) / step + 1e-9)) + 1; };
+    RasterGrid grid;
+    grid.x0 = bounds.min.x();
+    grid.y0 = bounds.min.y();
+    grid.z0 = bounds.min.z();
+    grid.step = options.step;
+    grid.step_z = options.step_z > 0 ? options.step_z : options.step;
+    grid.cols = count(grid.x0, bounds.max.x(), grid.step);
+    grid.rows = count(grid.y0, bounds.max.y(), grid.step);
+    grid.heights = count(grid.z0, bounds.max.z(), grid.step_z);
+    return grid;
 }
 
-Setting hills_setting(Extent extent)
+/// The same with every so many-th row and column.
+RasterOptions thinned(RasterOptions options, int thinning)
 {
-    Setting out{.name = "hills", .make = [] { return hills_scene(); }};
-    if (extent == Extent::Full) {
-        out.cell = 0.1;
-        out.step = out.step_3d = 0.5;
+    options.step_z = options.step;
+    options.step *= thinning;
+    return options;
+}
+
+/// How two lists of verdicts differ.
+struct Differences {
+    std::size_t poses = 0, wrong = 0, inside = 0, missed = 0;  ///< missed: a ray that passes by on an edge of the ground
+
+    void add(const PlainFcl& fcl, const Vec3& centre, Verdict ours, Verdict theirs)
+    {
+        ++poses;
+        if (ours == theirs) return;
+        const bool hidden = ours == Verdict::Collision && theirs == Verdict::Valid && fcl.is_inside(centre);
+        ++(hidden ? inside : wrong);
+        if (!hidden) ++pairs[std::string(to_string(ours)) + " but " + to_string(theirs)];
     }
-    if (extent == Extent::Quick) {
-        out.make = [] { return small_hills_scene(); };
-        out.cell = 2;
-        out.step = out.step_3d = 4;
-        out.poses = 1000;
-        out.samples = out.finds = 20;
+    std::string text() const
+    {
+        std::string out = formatted("%zu poses, %zu verdicts of plain FCL differ", poses, wrong);
+        for (const auto& [pair, count] : pairs) out += formatted(", %zu %s", count, pair.c_str());
+        return out + formatted("; %zu more where the robot is wholly inside closed meshes, %zu where Embree's ray misses an edge of the ground",
+                               inside, missed);
     }
+    std::map<std::string, std::size_t> pairs;  ///< "<ours> but <theirs>", and how many
+};
+
+/// A circle around the robot seen from above; climb and slope as far as its level underside stays clear of the ground.
+Walker walker_of(const Robot& robot, double offset)
+{
+    const Bounds bounds = robot.bounds();
+    Walker out;
+    out.radius = bounds.min.head<2>().cwiseAbs().cwiseMax(bounds.max.head<2>().cwiseAbs()).norm();
+    out.height = bounds.max.z() + offset;
+    out.climb = offset;
+    out.slope = std::atan(offset / out.radius);
     return out;
 }
 
 }  // namespace
 
-std::vector<Setting> settings(Extent extent) { return {training_setting(extent), hills_setting(extent)}; }
-
 Workbench::Workbench(const Setting& setting) : setting_(setting) {}
+
+// ---- Stages ----
 
 std::vector<Workbench::Stage> Workbench::stages()
 {
-    std::vector<Stage> out = {
-        {"make", false, [this](int) { return make(); }},
-        {"geometry", true, [this](int threads) { return geometry(threads); }},
-        {"terrain", true, [this](int threads) { return terrain(threads); }},
-        {"occupancy", true, [this](int threads) { return occupancy(threads); }},
-        {"bake", true, [this](int threads) { return bake(threads); }},
-        {"read_map", false, [this](int) { return read_map(); }},
-    };
-    for (const auto& [name, offset] : {std::pair{"raster2d@0.1", 0.1}, std::pair{"raster2d@0.3", 0.3}, std::pair{"raster2d@1.0", 1.0}})
-        out.push_back({name, true, [this, above = offset](int threads) { return raster_2d(above, threads); }});
-    out.push_back({"raster3d", true, [this](int threads) { return raster_3d(threads); }});
-    out.push_back({"check", true, [this](int threads) { return check(threads); }});
-    out.push_back({"sample", true, [this](int threads) { return sample(threads); }});
-    out.push_back({"search", true, [this](int threads) { return search(threads); }});
+    std::vector<Stage> out;
+    if (elements(scene()) > 0) out.push_back({"make", false, [this](int) { return make(); }});
+    if (setting_.has_ground) add_bakes(out);
+    add_rasters(out);
+    if (setting_.has_ground) add_spawns(out);
+    add_set_ups(out);
     return out;
 }
 
-BakeReport Workbench::bake_into(const std::filesystem::path& folder, Scene scene, int threads) const
+void Workbench::add_bakes(std::vector<Stage>& out)
+{
+    out.push_back({"geometry", true, [this](int threads) { return geometry(threads); }});
+    out.push_back({"terrain", true, [this](int threads) { return terrain(threads); }});
+    out.push_back({"occupancy", true, [this](int threads) { return occupancy(threads); }});
+    out.push_back({"bake", true, [this](int threads) { return bake(threads); }});
+    out.push_back({"read_map", false, [this](int) { return read_map(); }});
+}
+
+void Workbench::add_rasters(std::vector<Stage>& out)
+{
+    const auto stage = [this](const std::string& name, const RasterOptions& options) {
+        Stage made{name, true, [this, options](int threads) { return raster(with_threads(options, threads)); }};
+        made.rivals.push_back({"exhaustive", [this, options](int threads) { return raster(exhaustive(with_threads(options, threads))); }, true});
+        return made;
+    };
+    for (const RasterWork& work : setting_.rasters) {
+        out.push_back(stage(work.name, options_2d(work)));
+        if (has_plain_fcl() && is_top_raster(work)) out.back().rivals.push_back({"fcl", [this, work](int threads) { return fcl_raster_2d(work, threads); }});
+    }
+    out.push_back(stage("raster3d", options_3d()));
+    if (has_plain_fcl()) out.back().rivals.push_back({"fcl", [this](int threads) { return fcl_raster_3d(threads); }});
+}
+
+void Workbench::add_spawns(std::vector<Stage>& out)
+{
+    out.push_back({"check", true, [this](int threads) { return check(with_threads(QueryOptions{}, threads)); }});
+    out.back().rivals.push_back({"exhaustive", [this](int threads) { return check(exhaustive(with_threads(QueryOptions{}, threads))); }, true});
+    if (has_plain_fcl()) out.back().rivals.push_back({"fcl", [this](int threads) { return fcl_check(threads); }});
+    out.push_back({"sample", true, [this](int threads) { return sample(with_threads(sample_options(), threads)); }});
+    out.back().rivals.push_back({"exhaustive", [this](int threads) { return sample(exhaustive(with_threads(sample_options(), threads))); }});
+    if (has_nav_mesh()) out.back().rivals.push_back({"recast", [this](int) { return nav_draw(); }});
+    out.push_back({"search", true, [this](int threads) { return search(with_threads(search_options(), threads)); }});
+    out.back().rivals.push_back({"exhaustive", [this](int threads) { return search(exhaustive(with_threads(search_options(), threads))); }, true});
+}
+
+/// What the alternatives take before their first answer.
+void Workbench::add_set_ups(std::vector<Stage>& out)
+{
+    if (has_plain_fcl() && elements(scene()) > 0)
+        out.push_back({"fcl set-up", false, [this](int) {
+                           const auto made = timed([&] { return std::make_unique<PlainFcl>(scene(), setting_.robot()); });
+                           return Measurement{elements(scene()), made.seconds, 0};
+                       }});
+    if (has_nav_mesh())
+        out.push_back({"recast set-up", false, [this](int) {
+                           const auto made = timed([&] { return std::make_unique<NavMesh>(scene(), walker_of(setting_.robot(), 0.1)); });
+                           return Measurement{elements(scene()), made.seconds, Digest().add(made.result->polygons()).value()};
+                       }});
+}
+
+namespace {
+
+/// Bytes that a run takes on top of what this process held before.
+std::uint64_t memory_of(const std::function<void()>& run)
+{
+    reset_peak_memory();
+    const std::uint64_t before = peak_memory_bytes();
+    run();
+    return peak_memory_bytes() - std::min(before, peak_memory_bytes());
+}
+
+}  // namespace
+
+std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds)
+{
+    constexpr double long_run = 10;  // s
+    std::vector<Workbench::Rival> contestants = {{stage.name, stage.run, true}};
+    for (const Workbench::Rival& rival : stage.rivals)
+        contestants.push_back({stage.name + " " + rival.name, rival.run, rival.has_same_result});
+    std::vector<Measurement> untimed(contestants.size());
+    const std::uint64_t memory = memory_of([&] { untimed[0] = contestants[0].run(threads); });
+    for (std::size_t i = 1; i < contestants.size(); ++i) untimed[i] = contestants[i].run(threads);
+    reset_peak_memory();
+    std::vector<std::vector<Measurement>> measured(contestants.size());
+    for (int round = 0; round < rounds; ++round)
+        for (std::size_t i = 0; i < contestants.size(); ++i)
+            if (untimed[i].seconds < long_run) measured[i].push_back(contestants[i].run(threads));
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+        if (measured[i].empty()) measured[i] = {untimed[i]};
+        rows.push_back(row_of(scene, contestants[i].name, threads, measured[i]));
+        if (contestants[i].has_same_result && rows[i].hash != rows[0].hash)
+            throw std::runtime_error(scene + " " + rows[i].stage + " gave something else than " + rows[0].stage);
+    }
+    rows[0].own_memory = memory;
+    return rows;
+}
+
+// ---- What stages need ----
+
+BakeReport Workbench::bake_into(const std::filesystem::path& folder, Scene made, int threads) const
 {
     const std::filesystem::path source = folder_.write("scene.txt", setting_.name + " of spawnfield_bench\n");
     BakeOptions options;
     options.resolution = setting_.cell;
+    options.bounds = setting_.bounds;
+    options.allow_no_terrain = !setting_.has_ground;
     options.threads = threads;
-    return spawnfield::bake(std::move(scene), source, folder, options);
+    return spawnfield::bake(std::move(made), source, folder, options);
+}
+
+const Scene& Workbench::scene()
+{
+    if (!scene_) scene_ = setting_.make();
+    return *scene_;
 }
 
 const Map& Workbench::map()
 {
-    if (!map_) {
-        map_.emplace();
-        map_->name = setting_.name;
-        scene_ = setting_.make();
-        map_->bounds = scene_.bounds();
-        map_->geometry = Geometry(scene_);
-        map_->resolution = setting_.cell;
-        const double size = (map_->bounds.max - map_->bounds.min).head<2>().maxCoeff();
-        map_->layers = rasterize_terrain(map_->geometry, frame_around(map_->bounds, size / 256)).layers();
-    }
+    if (!map_) map_ = map_of(scene(), setting_.bounds, setting_.cell);
     return *map_;
 }
 
 const CollisionChecker& Workbench::checker()
 {
-    if (!checker_) checker_.emplace(map().geometry, husky_box());
+    if (!checker_) checker_.emplace(map().geometry, setting_.robot());
     return *checker_;
+}
+
+const PlainFcl& Workbench::plain_fcl()
+{
+    if (!plain_fcl_) plain_fcl_ = std::make_unique<PlainFcl>(scene(), setting_.robot());
+    return *plain_fcl_;
+}
+
+const NavMesh& Workbench::nav_mesh()
+{
+    if (!nav_mesh_) nav_mesh_ = std::make_unique<NavMesh>(scene(), walker_of(setting_.robot(), 0.1));
+    return *nav_mesh_;
 }
 
 const std::vector<Pose>& Workbench::poses()
@@ -146,6 +280,8 @@ const std::vector<Pose>& Workbench::poses()
     if (poses_.empty()) poses_ = poses_near_ground(map(), setting_.poses);
     return poses_;
 }
+
+// ---- Ours ----
 
 Measurement Workbench::make() const
 {
@@ -155,9 +291,8 @@ Measurement Workbench::make() const
 
 Measurement Workbench::geometry(int threads)
 {
-    map();
-    const auto built = timed([&] { return Geometry(scene_, threads); });
-    return {elements(scene_), built.seconds, digest_of(built.result)};
+    const auto built = timed([&, &from = scene()] { return Geometry(from, threads); });
+    return {elements(scene()), built.seconds, digest_of(built.result)};
 }
 
 Measurement Workbench::terrain(int threads)
@@ -170,17 +305,15 @@ Measurement Workbench::terrain(int threads)
 Measurement Workbench::occupancy(int threads)
 {
     const double voxel = 2.5 * setting_.cell;
-    const Bounds& bounds = map().bounds;
-    const auto tree = timed([&] { return build_occupancy(map().geometry, bounds, voxel, threads); });
+    const auto tree = timed([&, &ready = map()] { return build_occupancy(ready.geometry, ready.bounds, voxel, threads); });
     tree.result.write(folder_ / "occupancy.bt");
-    return {cells(frame_around(bounds, voxel)), tree.seconds, Digest().add(bytes_of(folder_ / "occupancy.bt")).value()};
+    return {cells(frame_around(map().bounds, voxel)), tree.seconds, Digest().add(bytes_of(folder_ / "occupancy.bt")).value()};
 }
 
 Measurement Workbench::bake(int threads)
 {
-    map();
-    Scene scene = scene_;
-    const auto report = timed([&] { return bake_into(folder_ / "map", std::move(scene), threads); });
+    Scene copy = scene();
+    const auto report = timed([&] { return bake_into(folder_ / "map", std::move(copy), threads); });
     return {cells(frame_around(map().bounds, setting_.cell)), report.seconds, Digest().add(report.result.hash).value()};
 }
 
@@ -188,66 +321,222 @@ Measurement Workbench::read_map()
 {
     if (!std::filesystem::exists(folder_ / "map")) bake(0);
     const auto read = timed([&] { return spawnfield::read_map(folder_ / "map"); });
-    return {read.result.geometry.element_count(), read.seconds, digest_of(read.result.geometry)};
+    return {elements(scene()), read.seconds, digest_of(read.result.geometry)};
+}
+
+RasterOptions Workbench::options_2d(const RasterWork& work) const
+{
+    RasterOptions options;
+    options.step = work.step;
+    options.offset = work.offset;
+    options.layers = work.layers;
+    return options;
+}
+
+RasterOptions Workbench::options_3d() const
+{
+    RasterOptions options;
+    options.dims = 3;
+    options.step = setting_.step_3d;
+    options.height_check = setting_.height_check;
+    return options;
+}
+
+SampleOptions Workbench::sample_options() const
+{
+    SampleOptions options;
+    options.count = setting_.samples;
+    options.min_distance = setting_.sample_distance;
+    options.random_yaw = true;
+    return options;
+}
+
+SearchOptions Workbench::search_options() const
+{
+    SearchOptions options;
+    options.count = setting_.finds;
+    options.min_distance = setting_.search_distance;
+    options.random_yaw = true;
+    return options;
 }
 
 Measurement Workbench::raster(const RasterOptions& options)
 {
     const CollisionChecker& ready = checker();
     const auto result = timed([&] { return spawnfield::raster(map(), ready, options); });
-    return {total(result.result.counts), result.seconds, digest_of(result.result)};
+    return {total(result.result.counts), result.seconds, digest_of(result.result), result.result.exact_checks};
 }
 
-Measurement Workbench::raster_2d(double offset, int threads)
+Measurement Workbench::check(const QueryOptions& options)
 {
-    RasterOptions options;
-    options.step = setting_.step;
-    options.offset = offset;
-    options.threads = threads;
-    return raster(options);
-}
-
-Measurement Workbench::raster_3d(int threads)
-{
-    RasterOptions options;
-    options.dims = 3;
-    options.step = setting_.step_3d;
-    options.threads = threads;
-    return raster(options);
-}
-
-Measurement Workbench::check(int threads)
-{
-    QueryOptions options;
-    options.threads = threads;
     const CollisionChecker& ready = checker();
     const std::vector<Pose>& asked = poses();
     const auto judged = timed([&] { return check_poses(map(), ready, asked, options); });
-    return {asked.size(), judged.seconds, digest_of(judged.result)};
+    const auto exact = std::count_if(judged.result.begin(), judged.result.end(), [](const Judgement& j) { return j.exact_check; });
+    return {asked.size(), judged.seconds, digest_of(judged.result), std::uint64_t(exact)};
 }
 
-Measurement Workbench::sample(int threads)
+Measurement Workbench::sample(const SampleOptions& options)
 {
-    SampleOptions options;
-    options.count = setting_.samples;
-    options.min_distance = setting_.sample_distance;
-    options.random_yaw = true;
-    options.threads = threads;
     const CollisionChecker& ready = checker();
     const auto list = timed([&] { return spawnfield::sample(map(), ready, options); });
-    return {list.result.draws, list.seconds, digest_of(list.result)};
+    return {list.result.draws, list.seconds, digest_of(list.result), list.result.exact_checks};
 }
 
-Measurement Workbench::search(int threads)
+Measurement Workbench::search(const SearchOptions& options)
 {
-    SearchOptions options;
-    options.count = setting_.finds;
-    options.min_distance = setting_.search_distance;
-    options.random_yaw = true;
-    options.threads = threads;
     const CollisionChecker& ready = checker();
     const auto list = timed([&] { return spawnfield::search(map(), ready, options); });
-    return {list.result.draws, list.seconds, digest_of(list.result)};
+    return {list.result.draws, list.seconds, digest_of(list.result), list.result.exact_checks};
+}
+
+// ---- The alternatives ----
+
+Measurement Workbench::fcl_raster_2d(const RasterWork& work, int threads)
+{
+    const RasterGrid grid = grid_of(map().bounds, options_2d(work));
+    const PlainFcl& ready = plain_fcl();
+    const auto judged = timed([&] { return ready.raster_top(grid, work.offset, threads); });
+    Digest digest;
+    std::uint64_t count = 0;
+    for (const auto& pose : judged.result) {
+        if (!pose) continue;
+        ++count;
+        digest.add(pose->z).add(pose->verdict);
+    }
+    return {count, judged.seconds, digest.value(), count};
+}
+
+Measurement Workbench::fcl_raster_3d(int threads)
+{
+    const RasterGrid grid = grid_of(map().bounds, thinned(options_3d(), setting_.thinning));
+    const PlainFcl& ready = plain_fcl();
+    const auto counts = timed([&] { return ready.raster_3d(grid, 1.0, setting_.height_check, threads); });
+    Digest digest;
+    for (const std::uint64_t count : counts.result) digest.add(count);
+    return {total(counts.result), counts.seconds, digest.value()};
+}
+
+Measurement Workbench::fcl_check(int threads)
+{
+    const std::vector<Pose>& asked = poses();
+    const PlainFcl& ready = plain_fcl();
+    const auto verdicts = timed([&] { return ready.check(asked, 1.0, threads); });
+    return {asked.size(), verdicts.seconds, Digest().add_all(verdicts.result).value()};
+}
+
+Measurement Workbench::nav_draw()
+{
+    const NavMesh& ready = nav_mesh();
+    const auto points = timed([&] { return ready.draw(setting_.nav_points, 0); });
+    return {points.result.size(), points.seconds, Digest().add_all(points.result).value()};
+}
+
+// ---- Comparisons ----
+
+std::vector<std::string> Workbench::comparisons(const std::string& only)
+{
+    std::vector<std::string> out;
+    const auto wanted = [&](const std::string& stage) { return (setting_.name + " " + stage).find(only) != std::string::npos; };
+    if (has_plain_fcl()) {
+        for (const RasterWork& work : setting_.rasters)
+            if (is_top_raster(work) && wanted(work.name)) out.push_back(compare_2d(work));
+        if (wanted("raster3d")) out.push_back(compare_3d());
+        if (setting_.has_ground && wanted("check")) out.push_back(compare_checks());
+    }
+    if (has_nav_mesh() && wanted("sample")) out.push_back(compare_nav_mesh());
+    return out;
+}
+
+std::string Workbench::compare_2d(const RasterWork& work)
+{
+    RasterOptions options = options_2d(work);
+    options.layers = {.kind = LayerChoice::Kind::Top};
+    const RasterResult ours = spawnfield::raster(map(), checker(), options);
+    const auto theirs = plain_fcl().raster_top(ours.grid, work.offset, 0);
+    const Vec3 centre = setting_.robot().parts.front().centre();
+    Differences differences;
+    std::size_t extra = theirs.size() - std::size_t(std::count(theirs.begin(), theirs.end(), std::nullopt));
+    for (const RasterPose& pose : ours.poses) {
+        const int row = int(std::lround((pose.y - ours.grid.y0) / ours.grid.step)), col = int(std::lround((pose.x - ours.grid.x0) / ours.grid.step));
+        const auto& other = theirs[std::size_t(row) * std::size_t(ours.grid.cols) + std::size_t(col)];
+        if (other) --extra;
+        if (!other || std::abs(other->z - pose.z) > 1e-3) {
+            ++differences.poses, ++differences.missed;
+            continue;
+        }
+        differences.add(plain_fcl(), Vec3(pose.x, pose.y, pose.z) + centre, pose.verdict, other->verdict);
+    }
+    differences.wrong += extra;
+    return setting_.name + " " + work.name + ": " + differences.text();
+}
+
+std::string Workbench::compare_3d()
+{
+    const RasterResult ours = spawnfield::raster(map(), checker(), thinned(options_3d(), setting_.thinning));
+    const VerdictCounts theirs = plain_fcl().raster_3d(ours.grid, 1.0, setting_.height_check, 0);
+    std::string text = setting_.name + formatted(" raster3d: of %llu poses", static_cast<unsigned long long>(total(ours.counts)));
+    for (std::size_t v = 0; v < verdict_count; ++v)
+        if (ours.counts[v] + theirs[v] > 0)
+            text += formatted(", %s %llu (plain FCL %llu)", to_string(Verdict(v)), static_cast<unsigned long long>(ours.counts[v]),
+                              static_cast<unsigned long long>(theirs[v]));
+    return text;
+}
+
+std::string Workbench::compare_checks()
+{
+    const std::vector<Judgement> ours = check_poses(map(), checker(), poses());
+    const std::vector<Verdict> theirs = plain_fcl().check(poses(), 1.0, 0);
+    const Vec3 centre = setting_.robot().parts.front().centre();
+    Differences differences;
+    for (std::size_t i = 0; i < ours.size(); ++i)
+        differences.add(plain_fcl(), poses()[i].rotation * centre + poses()[i].position, ours[i].verdict, theirs[i]);
+    return setting_.name + " check: " + differences.text();
+}
+
+/// Collisions among Recast's points, as they are drawn, and with each set onto the nearest layer under or over it.
+std::string Workbench::compare_nav_mesh()
+{
+    Random random(23);
+    std::vector<Pose> drawn, snapped;
+    const NavMesh& mesh = nav_mesh();
+    const auto points = timed([&] { return mesh.draw(setting_.nav_points, 0); });
+    for (const Vec3& point : points.result) {
+        const Mat3 rotation = rotation_from_rpy(0, 0, random.between(-std::numbers::pi, std::numbers::pi));
+        drawn.push_back({point + Vec3(0, 0, 0.1), rotation});
+        const std::vector<double> layers = column_at(map().geometry, point.x(), point.y()).layers;
+        const auto nearer = [&](double a, double b) { return std::abs(a - point.z()) < std::abs(b - point.z()); };
+        const double ground = layers.empty() ? point.z() : *std::min_element(layers.begin(), layers.end(), nearer);
+        snapped.push_back({{point.x(), point.y(), ground + 0.1}, rotation});
+    }
+    return setting_.name + formatted(" recast: %d tiles, %d polygons, %zu points, %.3g/s: ", mesh.tiles(), mesh.polygons(), drawn.size(),
+                                     double(drawn.size()) / points.seconds) +
+           shares(drawn) + " as drawn; " + shares(snapped) + " at 0.1 m above the true ground; " + coverage();
+}
+
+/// How much of the ground that our samples lie on Recast leaves out.
+std::string Workbench::coverage()
+{
+    const SpawnList ours = spawnfield::sample(map(), checker(), sample_options());
+    const auto covered = std::count_if(ours.spawns.begin(), ours.spawns.end(), [&](const Spawn& s) { return nav_mesh().covers(s.position); });
+    return formatted("its mesh covers %.1f %% of our %zu samples", 100.0 * double(covered) / double(ours.spawns.size()), ours.spawns.size());
+}
+
+/// "4.7 % collide (4.0 % wholly inside closed meshes), 94.8 % valid".
+std::string Workbench::shares(const std::vector<Pose>& asked)
+{
+    const std::vector<Judgement> judged = check_poses(map(), checker(), asked);
+    const Vec3 centre = setting_.robot().parts.front().centre();
+    std::size_t collide = 0, inside = 0, valid = 0;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        valid += judged[i].verdict == Verdict::Valid;
+        if (judged[i].verdict != Verdict::Collision) continue;
+        ++collide;
+        if (has_plain_fcl()) inside += plain_fcl().is_inside(asked[i].rotation * centre + asked[i].position);
+    }
+    const double percent = 100.0 / double(asked.size());
+    const std::string hidden = has_plain_fcl() ? formatted(" (%.2f %% with their centre inside closed meshes)", percent * double(inside)) : "";
+    return formatted("%.2f %% collide", percent * double(collide)) + hidden + formatted(", %.2f %% valid", percent * double(valid));
 }
 
 }  // namespace bench

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "../temp_folder.h"
+#include "nav_mesh.h"
+#include "plain_fcl.h"
 #include "report.h"
 
 #include <spawnfield/query.h>
@@ -10,42 +12,83 @@
 
 namespace bench {
 
+/// A 2D raster among the stages.
+struct RasterWork {
+    std::string name;
+    double step, offset;              ///< m
+    spawnfield::LayerChoice layers = {};
+};
+
 /// A scene, and how much of it each stage does.
 struct Setting {
     std::string name;
-    std::function<spawnfield::Scene()> make;
-    double cell = 0.5;  ///< of the terrain raster, m; a voxel is 2.5 cells
-    double step = 1;    ///< of the 2D raster, m
+    std::function<spawnfield::Scene()> make = {};
+    std::function<spawnfield::Robot()> robot = {};
+    spawnfield::Bounds bounds = {};  ///< of the map; empty: the scene's
+    bool one_layer = false;          ///< of terrain: all of it is the top one, which is what plain FCL knows
+    bool has_ground = true;          ///< false: a 3D raster is all there is to do
+    bool height_check = true;        ///< of that raster
+    bool has_rivals = true;          ///< whether alternatives (b) and (c) run on it
+    double cell = 0.5;               ///< of the terrain raster, m; a voxel is 2.5 cells
+    std::vector<RasterWork> rasters = {};
     double step_3d = 1;
+    int thinning = 1;              ///< plain FCL does every so many-th row and column of the 3D raster
     std::size_t poses = 100000;    ///< to check
     std::size_t samples = 2000;
     double sample_distance = 2.5;  ///< m
     std::size_t finds = 500;       ///< valid ones of a search
     double search_distance = 2.5;  ///< m
+    std::size_t nav_points = 100000;
 };
 
 enum class Extent { Quick, Usual, Full };
 std::vector<Setting> settings(Extent extent);
+std::vector<Setting> tiled_settings(Extent extent);  ///< hills-1x, hills-4x, hills-16x: as many tiles, for baking
+spawnfield::Robot husky_box();  ///< box:0.99,0.67,0.39
 
 /// One scene with all that its stages need, made when it is first asked for.
 class Workbench {
 public:
     explicit Workbench(const Setting& setting);
 
+    using Run = std::function<Measurement(int threads)>;
+    struct Rival {
+        std::string name;
+        Run run;
+        bool has_same_result = false;  ///< it has to compute the stage's very bytes
+    };
     struct Stage {
         std::string name;
         bool parallel;  ///< whether it has a number of threads
-        std::function<Measurement(int threads)> run;
+        Run run;
+        std::vector<Rival> rivals = {};
     };
     /// In the order in which they run; they refer to this workbench.
     std::vector<Stage> stages();
 
+    /// What plain FCL and Recast say of the stages whose name has `only` in it, compared with ours: lines of text.
+    std::vector<std::string> comparisons(const std::string& only);
+
     spawnfield::BakeReport bake_into(const std::filesystem::path& folder, spawnfield::Scene scene, int threads) const;
 
 private:
+    const spawnfield::Scene& scene();
     const spawnfield::Map& map();
     const spawnfield::CollisionChecker& checker();
+    const PlainFcl& plain_fcl();
+    const NavMesh& nav_mesh();
     const std::vector<spawnfield::Pose>& poses();
+    bool is_top_raster(const RasterWork& work) const
+    {
+        return setting_.one_layer || work.layers.kind == spawnfield::LayerChoice::Kind::Top;
+    }
+    bool has_plain_fcl() const { return setting_.has_rivals && PlainFcl::is_available(); }
+    bool has_nav_mesh() const { return setting_.has_rivals && setting_.has_ground && NavMesh::is_available(); }
+
+    void add_bakes(std::vector<Stage>& out);
+    void add_rasters(std::vector<Stage>& out);
+    void add_spawns(std::vector<Stage>& out);
+    void add_set_ups(std::vector<Stage>& out);
 
     Measurement make() const;
     Measurement geometry(int threads);
@@ -53,19 +96,40 @@ private:
     Measurement occupancy(int threads);
     Measurement bake(int threads);
     Measurement read_map();
-    Measurement raster_2d(double offset, int threads);
-    Measurement raster_3d(int threads);
     Measurement raster(const spawnfield::RasterOptions& options);
-    Measurement check(int threads);
-    Measurement sample(int threads);
-    Measurement search(int threads);
+    Measurement check(const spawnfield::QueryOptions& options);
+    Measurement sample(const spawnfield::SampleOptions& options);
+    Measurement search(const spawnfield::SearchOptions& options);
+    Measurement fcl_raster_2d(const RasterWork& work, int threads);
+    Measurement fcl_raster_3d(int threads);
+    Measurement fcl_check(int threads);
+    Measurement nav_draw();
+
+    spawnfield::RasterOptions options_2d(const RasterWork& work) const;
+    spawnfield::RasterOptions options_3d() const;
+    spawnfield::SampleOptions sample_options() const;
+    spawnfield::SearchOptions search_options() const;
+
+    std::string compare_2d(const RasterWork& work);
+    std::string compare_3d();
+    std::string compare_checks();
+    std::string compare_nav_mesh();
+    std::string coverage();
+    std::string shares(const std::vector<spawnfield::Pose>& asked);
 
     const Setting setting_;
-    spawnfield::Scene scene_;
     TempFolder folder_;
+    std::optional<spawnfield::Scene> scene_;
     std::optional<spawnfield::Map> map_;
     std::optional<spawnfield::CollisionChecker> checker_;
+    std::unique_ptr<const PlainFcl> plain_fcl_;
+    std::unique_ptr<const NavMesh> nav_mesh_;
     std::vector<spawnfield::Pose> poses_;
 };
+
+/// A stage and its rivals ("stage rival"), each once untimed and then in turns: round after round each of them once. What
+/// takes longer than 10 s is not run again: then the first time counts.
+/// Throws std::runtime_error where results differ that have to be the same.
+std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds);
 
 }  // namespace bench

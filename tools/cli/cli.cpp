@@ -72,6 +72,7 @@ void add_query(CLI::App& command, QueryArgs& args)
     command.add_option("--max-water-depth", args.max_water_depth, "Water higher than this above the ground does not count, m (default: all does)");
     command.add_option("--collision", args.collision, "What the robot must not touch: geometry (exact), or octree (the baked voxels)")
         ->check(CLI::IsMember({"geometry", "octree"}));
+    command.add_flag("--exhaustive", args.exhaustive, "Check every pose exactly, without the free-space mask: the same answers, slowly");
     add_common(command, args);
 }
 
@@ -176,6 +177,7 @@ void fill(QueryOptions& options, const QueryArgs& args, const std::string& label
 {
     options.max_height = args.max_height;
     options.max_water_depth = args.max_water_depth;
+    options.exhaustive = args.exhaustive;
     options.threads = args.threads;
     options.progress = progress_bar(args, label);
     if (!(options.max_height >= 0)) throw bad_value("--max-height", options.max_height, ">= 0 m");

@@ -30,6 +30,7 @@ struct QueryArgs : CommonArgs {
     std::string map, robot, collision = "geometry";
     std::vector<std::string> package_paths;
     double max_height = 1.0;
+    bool exhaustive = false;
     double max_water_depth = std::numeric_limits<double>::infinity();
 };
 void add_query(CLI::App& command, QueryArgs& args);

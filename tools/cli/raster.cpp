@@ -10,7 +10,7 @@ struct RasterArgs : QueryArgs {
     int dims = 2;
     double step = 0, step_z = 0, offset = 0.1, yaw = 0;
     std::string bounds, layers = "all", out, heatmap;
-    bool no_height_check = false, write_aerial = false, exhaustive = false;
+    bool no_height_check = false, write_aerial = false;
 };
 
 RasterOptions options_of(const RasterArgs& args, bool step_z_given)
@@ -72,7 +72,6 @@ void add_raster(CLI::App& app, Run& run)
     command.add_option("--layers,--layer", args->layers, "all, top, bottom, or N from the top (0 first)");
     command.add_flag("--no-height-check", args->no_height_check, "3D: collisions alone, at every pose");
     command.add_flag("--write-aerial", args->write_aerial, "3D: write aerial poses too");
-    command.add_flag("--exhaustive", args->exhaustive, "Decide every pose by itself (today always so)");
     command.add_option("--out,-o", args->out, "CSV file to write (default: standard output, or none with --heatmap)");
     command.add_option("--heatmap", args->heatmap, "PNG file to draw");
     command.footer("Example:\n"

@@ -1,0 +1,65 @@
+#include "process.h"
+
+#include "base/stopwatch.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <stdexcept>
+
+namespace bench {
+namespace {
+
+[[noreturn]] void become(const std::filesystem::path& program, const std::vector<std::string>& args, int output)
+{
+    std::vector<char*> argv = {const_cast<char*>(program.c_str())};
+    for (const std::string& arg : args) argv.push_back(const_cast<char*>(arg.c_str()));
+    argv.push_back(nullptr);
+    dup2(output, STDOUT_FILENO);
+    dup2(open("/dev/null", O_WRONLY | O_CLOEXEC), STDERR_FILENO);
+    execv(program.c_str(), argv.data());
+    _exit(127);
+}
+
+std::string read_all(int file)
+{
+    std::string text;
+    char bytes[4096];
+    for (ssize_t count; (count = read(file, bytes, sizeof bytes)) > 0;) text.append(bytes, std::size_t(count));
+    return text;
+}
+
+}  // namespace
+
+ProcessRun run_process(const std::filesystem::path& program, const std::vector<std::string>& args)
+{
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe to " + program.string());
+    ProcessRun out;
+    spawnfield::Stopwatch watch;
+    const pid_t child = fork();
+    if (child < 0) throw std::runtime_error("no process for " + program.string());
+    if (child == 0) become(program, args, ends[1]);
+    close(ends[1]);
+    out.output = read_all(ends[0]);
+    close(ends[0]);
+    int status = 0;
+    rusage usage{};
+    wait4(child, &status, 0, &usage);
+    out.seconds = watch.lap();
+    out.peak_memory = std::uint64_t(usage.ru_maxrss) * 1024;
+    out.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return out;
+}
+
+std::filesystem::path this_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
+
+std::filesystem::path spawnfield_program()
+{
+    const std::filesystem::path beside = this_program().parent_path() / "spawnfield";
+    return std::filesystem::exists(beside) ? beside : std::filesystem::path();
+}
+
+}  // namespace bench

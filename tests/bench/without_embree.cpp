@@ -1,0 +1,23 @@
+#include "plain_fcl.h"
+
+#include <stdexcept>
+
+// Where Embree is not installed: the benchmark leaves alternative (b) out.
+namespace bench {
+namespace {
+
+[[noreturn]] void fail() { throw std::logic_error("plain FCL was left out of this build"); }
+
+}  // namespace
+
+struct PlainFcl::Impl {};
+
+bool PlainFcl::is_available() { return false; }
+PlainFcl::PlainFcl(const spawnfield::Scene&, const spawnfield::Robot&) { fail(); }
+PlainFcl::~PlainFcl() = default;
+std::vector<std::optional<PlainFcl::TopPose>> PlainFcl::raster_top(const spawnfield::RasterGrid&, double, int) const { fail(); }
+spawnfield::VerdictCounts PlainFcl::raster_3d(const spawnfield::RasterGrid&, double, bool, int) const { fail(); }
+std::vector<spawnfield::Verdict> PlainFcl::check(const std::vector<spawnfield::Pose>&, double, int) const { fail(); }
+bool PlainFcl::is_inside(const spawnfield::Vec3&) const { fail(); }
+
+}  // namespace bench

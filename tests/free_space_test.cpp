@@ -1,0 +1,190 @@
+#include "catch.h"
+#include "free_space/bounds_tile.h"
+#include "free_space/footprint.h"
+#include "hand_scene.h"
+#include "slow.h"
+#include "test_map.h"
+
+#include <spawnfield/free_space.h>
+
+using namespace spawnfield;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// The cell of a level that holds (x, y): its tile and its number there.
+struct CellAt {
+    BoundsTile tile;
+    std::uint32_t cell;
+};
+
+CellAt cell_at(const SolidBounds& bounds, std::size_t level, double x, double y)
+{
+    const auto number = [&](double offset) { return std::uint32_t(std::floor(offset / bounds.impl().levels[level].cell)); };
+    const std::uint32_t col = number(x - bounds.impl().x0), row = number(y - bounds.impl().y0);
+    return {bounds.impl().open(level, col / BoundsTile::side, row / BoundsTile::side),
+            row % BoundsTile::side * BoundsTile::side + col % BoundsTile::side};
+}
+
+/// Whether z may be solid by the bounds.
+bool may_be_solid(const CellAt& at, double z)
+{
+    if (at.tile.head == nullptr || z > at.tile.height(at.tile.tops[at.cell])) return false;
+    if (at.tile.span_starts == nullptr) return at.tile.tops[at.cell] > 0;
+    for (const QuantizedSpan& span : at.tile.spans_of(at.cell))
+        if (z >= at.tile.height(span.bottom) && z <= at.tile.height(span.top)) return true;
+    return false;
+}
+
+Scene floor_scene()
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Terrain, hand::rectangle(10, 10));
+    return scene;
+}
+
+Shape box_at(const Vec3& size, const Vec3& centre)
+{
+    Shape shape;
+    shape.size = size;
+    shape.pose.position = centre;
+    return shape;
+}
+
+}  // namespace
+
+TEST_CASE("bounds of every level hold all that is solid anywhere in their cells")
+{
+    std::size_t solid_points = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        Random random(seed + 100);
+        const TestMap map = map_of(random_scene(seed), random.between(0.05, 0.6));
+        for (int i = 0; i < 400; ++i) {
+            const double x = random.between(map.bounds.min.x(), map.bounds.max.x()), y = random.between(map.bounds.min.y(), map.bounds.max.y());
+            for (const slow::Span& span : slow::column(map.scene, x, y).spans)
+                for (std::size_t level = 0; level < map.solid_bounds.impl().levels.size(); ++level) {
+                    CAPTURE(seed, level, x, y, span.bottom, span.top);
+                    const CellAt at = cell_at(map.solid_bounds, level, x, y);
+                    CHECK(may_be_solid(at, span.top));
+                    CHECK(may_be_solid(at, (span.bottom + span.top) / 2));
+                    ++solid_points;
+                }
+        }
+    }
+    CHECK(solid_points > 50000);
+}
+
+TEST_CASE("a cell's top is as high as a ball over it, to the tile's step and not more")
+{
+    Scene scene;
+    Shape ball;
+    ball.kind = ShapeKind::Sphere;
+    ball.size[0] = 3;
+    hand::add_shape(scene, Label::Terrain, ball);
+    const TestMap map = map_of(scene, 0.1);
+    for (double x = -2.95; x < 3; x += 0.1)
+        for (double y = -2.95; y < 3; y += 0.1) {
+            const double nx = std::max(0.0, std::abs(x) - 0.05), ny = std::max(0.0, std::abs(y) - 0.05), rest = 9 - nx * nx - ny * ny;
+            if (rest < 1e-3) continue;
+            const CellAt at = cell_at(map.solid_bounds, 0, x, y);
+            const double top = at.tile.height(at.tile.tops[at.cell]);
+            CHECK(top >= std::sqrt(rest) - 1e-9);
+            CHECK(top <= std::sqrt(rest) + 1e-6 + at.tile.head->slack);
+        }
+}
+
+TEST_CASE("cells that hold nothing say so")
+{
+    const TestMap map = map_of(floor_scene(), 0.5, {Vec3(-10, -10, 0), Vec3(10, 10, 1)});
+    for (double x = -9.75; x < 10; x += 0.5)
+        for (double y = -9.75; y < 10; y += 0.5) {
+            const bool near = std::abs(x) < 5.3 && std::abs(y) < 5.3;  // a touching cell holds the edge
+            CHECK(may_be_solid(cell_at(map.solid_bounds, 0, x, y), 0) == near);
+        }
+}
+
+TEST_CASE("a robot over a floor is free, in it blocked, and at its height undecided")
+{
+    const TestMap map = map_of(floor_scene(), 0.05);
+    const FreeSpace space(map.solid_bounds, load_robot("box:0.6,0.4,0.3"));
+    for (const double yaw : {0.0, 0.3, 2.0}) {
+        CHECK(space.at({0.123, -0.4, 0.01}, yaw) == Proof::Free);
+        CHECK(space.at({0.123, -0.4, 5}, yaw) == Proof::Free);
+        CHECK(space.at({0.123, -0.4, -0.1}, yaw) == Proof::Blocked);
+        CHECK(space.at({0.123, -0.4, 0}, yaw) == Proof::Candidate);
+        CHECK(space.at({20, 0, 0}, yaw) == Proof::Free);  // nothing of the scene lies beyond the map
+    }
+    CHECK(space.at_every_yaw({0.1, 0.1, 0.01}) == Proof::Free);
+    CHECK(space.at_every_yaw({0.1, 0.1, -0.1}) == Proof::Blocked);
+    CHECK(space.at(Pose{{0, 0, 0.4}, rotation_from_rpy(0.3, 0.2, 1)}) == Proof::Free);
+    CHECK(space.at(Pose{{0, 0, 0.05}, rotation_from_rpy(0.3, 0.2, 1)}) == Proof::Candidate);
+}
+
+TEST_CASE("parts of a robot count by themselves, and what hangs above them too")
+{
+    Scene scene = floor_scene();
+    hand::add_shape(scene, Label::Obstacle, box_at({2, 2, 0.2}, {0, 0, 1}));  // a roof from 0.9 to 1.1
+    const TestMap map = map_of(scene, 0.05);
+    const FreeSpace low(map.solid_bounds, load_robot("box:0.6,0.4,0.3"));
+    CHECK(low.at({0, 0, 0.1}, 0) == Proof::Free);
+    CHECK(low.at({0, 0, 0.7}, 0) == Proof::Blocked);  // its upper face is in the roof
+    CHECK(low.at({0, 0, 0.85}, 0) == Proof::Blocked);
+    CHECK(low.at({0, 0, 1.2}, 0) == Proof::Free);
+    Robot masted = load_robot("box:0.6,0.4,0.3");
+    masted.parts.push_back(load_robot("box:0.17,0.17,1.2@-0.2,0,0.6").parts[0]);
+    const FreeSpace space(map.solid_bounds, masted);
+    CHECK(space.at({0, 0, 0.05}, 0) == Proof::Blocked);
+    CHECK(space.at({1.1, 0, 0.05}, 0) == Proof::Blocked);  // the mast reaches under the roof's edge at x = 1
+    CHECK(space.at({1.4, 0, 0.05}, 0) == Proof::Free);     // body and mast are clear
+    CHECK(space.at({-1.15, 0, 0.05}, 0) == Proof::Free);   // the body is under the roof, the mast beside it
+}
+
+TEST_CASE("a map that is smaller than its scene proves nothing beyond its rim")
+{
+    Scene scene = floor_scene();
+    hand::add_shape(scene, Label::Obstacle, box_at({1, 1, 1}, {3, 0, 0.5}));
+    const TestMap map = map_of(scene, 0.1, {Vec3(-2, -2, -1), Vec3(2.3, 2, 2)});
+    const FreeSpace space(map.solid_bounds, load_robot("box:0.6,0.4,0.3"));
+    CHECK(space.at({1.5, 0, 0.1}, 0) == Proof::Free);
+    CHECK(space.at({2.25, 0, 0.1}, 0) == Proof::Candidate);
+    CHECK(space.at({8, 0, 0.1}, 0) == Proof::Candidate);
+}
+
+TEST_CASE("footprints hold the part from outside and from inside")
+{
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const Robot robot = random_robot(seed);
+        Random random(seed);
+        const Mat3 turn = rotation_of_rpy(0, 0, random.between(-pi, pi));
+        const std::vector<Footprint> found = footprints(robot, turn, true);
+        REQUIRE(found.size() == robot.parts.size());
+        for (std::size_t p = 0; p < found.size(); ++p) {
+            Robot part;
+            part.parts = {robot.parts[p]};
+            const auto inside = [](const Polygon2& polygon, const Vec2& at) {
+                for (std::size_t k = 0; k < polygon.size(); ++k) {
+                    const Vec2 a = polygon[k], edge = polygon[(k + 1) % polygon.size()] - a;
+                    if (edge.x() * (at.y() - a.y()) - edge.y() * (at.x() - a.x()) < 0) return false;
+                }
+                return polygon.size() >= 3;
+            };
+            const Bounds box = robot.bounds();
+            const double reach = std::max(box.max.norm(), box.min.norm());
+            for (int i = 0; i < 200; ++i) {
+                // A grain of 0.1 mm: in the part or not, by the tests' own decision.
+                const Vec3 at(random.between(-reach, reach), random.between(-reach, reach), random.between(box.min.z() - 0.1, box.max.z() + 0.1));
+                Scene grain;
+                hand::add_shape(grain, Label::Obstacle, box_at({1e-4, 1e-4, 1e-4}, at));
+                const bool solid = slow::collides(grain, part, {Vec3::Zero(), turn}, 0);
+                const auto in_prism = [&](const Prism& prism) {
+                    return inside(prism.polygon, at.head<2>()) && at.z() > prism.bottom && at.z() < prism.top;
+                };
+                CAPTURE(seed, p, at.transpose());
+                if (in_prism(found[p].inner)) CHECK(solid);
+                const bool deep = slow::collides(grain, part, {Vec3::Zero(), turn}, -2e-4);
+                if (deep) CHECK(in_prism(found[p].outer));
+            }
+        }
+    }
+}
