@@ -120,8 +120,8 @@ TEST_CASE("bake passes its options on")
     CHECK(map.occupancy_resolution == 0.5);
     const spawnfield::Column column = column_at(map.geometry, 0.2, -0.1);  // y is up and twice as large: upright triangles
     CHECK(column.spans.empty());
-    CHECK(map.labels[std::size_t(spawnfield::Label::Terrain)].triangles == 1);
-    CHECK(map.labels[std::size_t(spawnfield::Label::Obstacle)].triangles == 1);
+    CHECK(map.geometry.labels()[std::size_t(spawnfield::Label::Terrain)].triangles == 1);
+    CHECK(map.geometry.labels()[std::size_t(spawnfield::Label::Obstacle)].triangles == 1);
     const spawnfield::CollisionChecker checker(map.geometry, spawnfield::load_robot("box:0.1,0.1,0.1@0,0,0"));
     CHECK_FALSE(checker.is_free({spawnfield::Vec3(1.9, 0, 0.05), spawnfield::Mat3::Identity()}));
     CHECK(checker.is_free({spawnfield::Vec3(2.1, 0, 0.05), spawnfield::Mat3::Identity()}));

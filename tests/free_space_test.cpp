@@ -31,8 +31,8 @@ CellAt cell_at(const SolidBounds& bounds, std::size_t level, double x, double y)
 bool may_be_solid(const CellAt& at, double z)
 {
     if (at.tile.head == nullptr || z > at.tile.height(at.tile.tops[at.cell])) return false;
-    if (at.tile.span_starts == nullptr) return at.tile.tops[at.cell] > 0;
-    for (const QuantizedSpan& span : at.tile.spans_of(at.cell))
+    if (!at.tile.bounds.has(at.cell)) return at.tile.tops[at.cell] > 0;
+    for (const QuantizedSpan& span : at.tile.bounds.of(at.cell))
         if (z >= at.tile.height(span.bottom) && z <= at.tile.height(span.top)) return true;
     return false;
 }

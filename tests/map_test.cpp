@@ -49,8 +49,8 @@ TEST_CASE("a map that is read back has the geometry and the answers of the one t
         CHECK(map.bounds.max == scene.bounds().max);
         const TestMap fresh = map_of(scene);
         CHECK(map.geometry.impl().bytes.view == fresh.geometry.impl().bytes.view);
-        CHECK(map.parts.size() == scene.parts.size());
-        for (std::size_t part = 0; part < map.parts.size(); ++part) CHECK(map.parts[part].name == scene.parts[part].name);
+        CHECK(map.geometry.parts().size() == scene.parts.size());
+        for (std::size_t part = 0; part < map.geometry.parts().size(); ++part) CHECK(map.geometry.parts()[part].name == scene.parts[part].name);
         const Robot robot = random_robot(seed);
         const CollisionChecker checker = checker_of(map, robot), fresh_checker = checker_of(fresh, robot);
         const auto poses = random_poses(scene, seed, 500);

@@ -22,8 +22,6 @@ inline TestMap map_of(spawnfield::Scene scene, double resolution = 0.1, const sp
     map.resolution = resolution;
     map.geometry = spawnfield::Geometry(scene);
     map.solid_bounds = spawnfield::SolidBounds(map.geometry, map.bounds, resolution);
-    map.parts = scene.parts;
-    map.labels = scene.count_labels();
     map.layers = 1;
     map.scene = std::move(scene);
     return map;

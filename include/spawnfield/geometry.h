@@ -18,7 +18,9 @@ public:
     explicit Geometry(const Scene& scene, int threads = 0);
 
     std::uint64_t element_count() const;
-    const Bounds& bounds() const;  ///< of all elements
+    const Bounds& bounds() const;            ///< of all elements
+    const std::vector<Part>& parts() const;  ///< of the scene, in its order
+    const LabelCounts& labels() const;
 
     struct Impl;  // the tiles' layout is seen in src/ only
     explicit Geometry(std::shared_ptr<const Impl> impl);

@@ -16,8 +16,6 @@ struct Map {
     double occupancy_resolution = 0;  ///< m
     Geometry geometry;
     SolidBounds solid_bounds;         ///< of the terrain's raster
-    std::vector<Part> parts;          ///< of the scene, in its order
-    LabelCounts labels{};
     int layers = 0;                   ///< most terrain layers above one cell centre
     std::string scene_file;           ///< name of the file it was baked from
     std::string scene_hash;           ///< xxh64 of that file, 16 hexadecimal digits

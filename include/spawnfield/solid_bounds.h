@@ -9,7 +9,7 @@ namespace spawnfield {
 ///
 /// Each cell tells how high anything solid in it reaches, rounded up, and where there is a gap below that, the intervals
 /// that hold all of its solids, rounded outwards. 16-bit heights in tiles of 64 x 64 cells, each with a range of its own:
-/// 2.7 bytes a cell of the finest raster where nothing hangs over anything, up to about 20 where something does.
+/// 2.7 bytes a cell of the finest raster, and about 16 more for a cell over which something hangs.
 class SolidBounds {
 public:
     SolidBounds();  ///< of nothing: it proves nothing

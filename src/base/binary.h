@@ -30,6 +30,12 @@ public:
         put(std::uint64_t(values.size()));
         bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
     }
+    /// A u32 length, then the text.
+    void put_text(const std::string& text)
+    {
+        put(std::uint32_t(text.size()));
+        bytes_ += text;
+    }
     std::string take() { return std::move(bytes_); }
 
 private:
@@ -56,6 +62,11 @@ public:
         std::vector<T> values(count);
         if (count > 0) std::memcpy(static_cast<void*>(values.data()), take(count * sizeof(T)), count * sizeof(T));
         return values;
+    }
+    std::string get_text()
+    {
+        const auto size = get<std::uint32_t>();
+        return std::string(take(size), size);
     }
 
 private:

@@ -185,10 +185,10 @@ void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid)
 
 namespace {
 
-/// First and last index of a block, inclusive, whose coordinate lies in [low, high].
-std::pair<int, int> indices_in(double low, double high, double origin, double step, double shift, int first, int count)
+/// First and last index of a block, inclusive, whose coordinate lies in [low, high]; a_step is 1 / step.
+std::pair<int, int> indices_in(double low, double high, double origin, double step, double shift, double a_step, int first, int count)
 {
-    const auto nearest = [&](double value) { return int(std::clamp((value - origin) / step - shift, double(first) - 1, double(first + count))); };
+    const auto nearest = [&](double value) { return int(std::clamp((value - origin) * a_step - shift, double(first) - 1, double(first + count))); };
     int from = std::max(first, nearest(low)), to = std::min(first + count - 1, nearest(high) + 1);
     while (from <= to && origin + (from + shift) * step < low) ++from;
     while (to >= from && origin + (to + shift) * step > high) --to;
@@ -203,11 +203,12 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid)
     thread_local std::vector<std::uint32_t> columns;
     hits.clear();
     columns.clear();
+    const double a_step = 1 / grid.step;
     const auto visit = [&](const Tile& tile, std::uint32_t element) {
         const ElementBox& box = tile.boxes[element];
-        const auto [i0, i1] = indices_in(box.min[0], box.max[0], grid.x0, grid.step, grid.shift, grid.first_col, grid.cols);
+        const auto [i0, i1] = indices_in(box.min[0], box.max[0], grid.x0, grid.step, grid.shift, a_step, grid.first_col, grid.cols);
         if (i0 > i1) return;
-        const auto [j0, j1] = indices_in(box.min[1], box.max[1], grid.y0, grid.step, grid.shift, grid.first_row, grid.rows);
+        const auto [j0, j1] = indices_in(box.min[1], box.max[1], grid.y0, grid.step, grid.shift, a_step, grid.first_row, grid.rows);
         if (j0 > j1) return;
         const auto visit_columns = [&](const auto& hit_at) {
             for (int j = j0; j <= j1; ++j)

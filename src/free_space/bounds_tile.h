@@ -5,17 +5,37 @@
 
 #include <spawnfield/solid_bounds.h>
 
+#include <bit>
+
 namespace spawnfield {
 
 /// Heights of a tile: base + value * quantum, m. Value 0: nothing.
 struct BoundsHead {
     double base, quantum;
     double slack;                 ///< some solid point of the cell is within this of each upper end, m; infinite: not known
-    std::uint32_t spans, solids;  ///< numbers of intervals; 0: not told
+    std::uint32_t bound_cells, bounds;  ///< cells that have intervals, and how many they have together
+    std::uint32_t solid_cells, solids;
 };
 
 struct QuantizedSpan {
     std::uint16_t bottom, top;
+};
+
+/// Intervals of those cells of a tile that have some.
+struct CellIntervals {
+    const std::uint64_t* marks = nullptr;    ///< a bit for each cell that has some; nullptr: none has
+    const std::uint16_t* ranks = nullptr;    ///< marked cells before each 64 cells
+    const std::uint32_t* starts = nullptr;   ///< in spans, by rank of the cell, and the end
+    const QuantizedSpan* spans = nullptr;    ///< from the bottom up
+
+    bool has(std::uint32_t cell) const { return marks != nullptr && (marks[cell / 64] >> (cell % 64) & 1) != 0; }
+    /// Of a cell that has some.
+    std::span<const QuantizedSpan> of(std::uint32_t cell) const
+    {
+        const std::uint64_t before = marks[cell / 64] & ((std::uint64_t{1} << (cell % 64)) - 1);
+        const std::size_t rank = std::size_t{ranks[cell / 64]} + std::size_t(std::popcount(before));
+        return {spans + starts[rank], spans + starts[rank + 1]};
+    }
 };
 
 /// A tile's bytes as what they are. Cell (col, row) of it is number row * side + col; row 0 is the smallest y.
@@ -24,19 +44,15 @@ struct BoundsTile {
     static constexpr std::uint32_t cells = side * side;
 
     const BoundsHead* head = nullptr;
-    const std::uint16_t* tops = nullptr;           ///< of all that is solid in the cell, rounded up
-    const std::uint32_t* span_starts = nullptr;    ///< intervals that hold it; nullptr: all below the top
-    const QuantizedSpan* spans = nullptr;          ///< from the bottom up
-    const std::uint32_t* solid_starts = nullptr;   ///< what is solid for certain at the cell's centre, rounded inwards
-    const QuantizedSpan* solids = nullptr;
+    const std::uint16_t* tops = nullptr;  ///< of all that is solid in the cell, rounded up
+    CellIntervals bounds;  ///< that hold all that is solid in the cell, where there is a gap; elsewhere all below the top may be
+    CellIntervals solids;  ///< what is solid for certain at the cell's centre, rounded inwards
 
     BoundsTile() = default;
     /// The arrays behind a head, whose counts must fit the bytes (bounds_tile_size).
     explicit BoundsTile(std::string_view bytes);
 
     double height(std::uint16_t value) const { return head->base + value * head->quantum; }
-    std::span<const QuantizedSpan> spans_of(std::uint32_t cell) const { return {spans + span_starts[cell], spans + span_starts[cell + 1]}; }
-    std::span<const QuantizedSpan> solids_of(std::uint32_t cell) const { return {solids + solid_starts[cell], solids + solid_starts[cell + 1]}; }
 };
 
 std::uint64_t bounds_tile_size(const BoundsHead& head);

@@ -8,6 +8,15 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
+/// std::floor and std::ceil of values that fit an int: calls of the library where the machine's oldest kind has no such
+/// instruction.
+int floor_of(double value)
+{
+    const int whole = int(value);
+    return whole - (double(whole) > value);
+}
+int ceil_of(double value) { return -floor_of(-value); }
+
 /// Cells along a part's width in each pass: a look at what is near, one that follows the part's shape, one that is as fine
 /// as pays beside an exact check.
 constexpr std::array cells_along{1.4, 6.0, 24.0};
@@ -53,6 +62,7 @@ void Mask::choose_passes(Part& part) const
         while (level + 1 < raster_.levels.size() && raster_.levels[level + 1].cell * cells <= width) ++level;
         if (raster_.levels.empty() || (count > 0 && part.passes[count - 1].level == level)) continue;
         if (part.passes.size() <= count) part.passes.emplace_back();
+        if (part.passes[count].level != level) part.passes[count].tile_col = -1;
         part.passes[count].level = level;
         part.passes[count].is_ready = false;
         ++count;
@@ -127,18 +137,17 @@ struct Mask::Heights {
     std::uint32_t below = 0;              ///< cells that reach up to this value are under the part
     std::uint32_t hit_low = 1, hit_high = 0;  ///< upper ends from the one to the other are inside it
 
-    void set_tile(const BoundsTile& tile)
+    void set_tile(const BoundsHead& head, double a_quantum)
     {
-        const BoundsHead& head = *tile.head;
-        const auto value = [&](double z) { return std::clamp((z - head.base) / head.quantum, 0.0, 65536.0); };
-        below = std::uint32_t(std::max(0.0, std::ceil(value(bottom)) - 1));
-        hit_low = std::uint32_t(std::isfinite(head.slack) ? std::max(1.0, std::ceil(value(inner_bottom + head.slack))) : 65536.0);
-        hit_high = std::uint32_t(std::floor(value(inner_top)));
+        const auto value = [&](double z) { return std::clamp((z - head.base) * a_quantum, 0.0, 65536.0); };
+        below = std::uint32_t(std::max(0, ceil_of(value(bottom)) - 1));
+        hit_low = std::uint32_t(std::max(1, ceil_of(value(inner_bottom + head.slack))));
+        hit_high = std::uint32_t(floor_of(value(inner_top)));
     }
     bool is_hit(std::uint32_t value) const { return value >= hit_low && value <= hit_high; }
 };
 
-Proof Mask::at(const Part& part, const Pass& pass, double x, double z) const
+Proof Mask::at(const Part& part, Pass& pass, double x, double z) const
 {
     const BoundsLevel& level = raster_.levels[pass.level];
     const Footprint& footprint = part.footprint;
@@ -150,35 +159,38 @@ Proof Mask::at(const Part& part, const Pass& pass, double x, double z) const
     const int known_cols = int(raster_.levels[0].cols >> pass.level), known_rows = int(raster_.levels[0].rows >> pass.level);
     bool is_free = true;
     constexpr int side = BoundsTile::side;
-    BoundsTile tile;
-    int tile_col = -1, tile_row = -1;
+    const BoundsTile& tile = pass.tile;
+    if (pass.tile_col >= 0 && tile.head != nullptr) heights.set_tile(*tile.head, pass.a_quantum);
     for (const CoverRow& cover : pass.rows) {
-        const double low = std::floor(u + cover.low), high = std::floor(u + cover.high);
-        if (!(low <= high)) continue;
+        if (!(cover.low <= cover.high)) continue;
+        const int low = floor_of(u + cover.low), high = floor_of(u + cover.high);
         if (low < 0 || high >= known_cols || cover.row < 0 || cover.row >= known_rows) {
             is_free = is_free && raster_.is_whole;
             if (!is_free && !has_inner) return Proof::Candidate;
-            if (high < 0 || low >= level.cols || cover.row < 0 || cover.row >= int(level.rows)) continue;
+            if (high < 0 || low >= int(level.cols) || cover.row < 0 || cover.row >= int(level.rows)) continue;
         }
-        const int first = std::max(0, int(low)), last = std::min(int(level.cols) - 1, int(high));
+        const int first = std::max(0, low), last = std::min(int(level.cols) - 1, high);
         int inner_first = 1, inner_last = 0;
         if (has_inner && cover.inner_low < cover.inner_high) {
-            inner_first = int(std::ceil(u + cover.inner_low));
-            inner_last = int(std::floor(u + cover.inner_high)) - 1;
+            inner_first = ceil_of(u + cover.inner_low);
+            inner_last = floor_of(u + cover.inner_high) - 1;
         }
         for (int col = first; col <= last;) {
             const int end = std::min(last, col / side * side + side - 1);
-            if (col / side != tile_col || cover.row / side != tile_row) {
-                tile_col = col / side;
-                tile_row = cover.row / side;
-                tile = raster_.open(pass.level, std::uint32_t(tile_col), std::uint32_t(tile_row));
-                if (tile.head != nullptr) heights.set_tile(tile);
+            if (col / side != pass.tile_col || cover.row / side != pass.tile_row) {
+                pass.tile_col = col / side;
+                pass.tile_row = cover.row / side;
+                pass.tile = raster_.open(pass.level, std::uint32_t(pass.tile_col), std::uint32_t(pass.tile_row));
+                if (tile.head != nullptr) {
+                    pass.a_quantum = 1 / tile.head->quantum;
+                    heights.set_tile(*tile.head, pass.a_quantum);
+                }
             }
             if (tile.head == nullptr) {
                 col = end + 1;
                 continue;
             }
-            const std::uint32_t row_start = std::uint32_t(cover.row % side * side) - std::uint32_t(tile_col * side);  // + col: the cell
+            const std::uint32_t row_start = std::uint32_t(cover.row % side * side) - std::uint32_t(pass.tile_col * side);  // + col: the cell
             std::uint32_t highest = 0;
             for (int c = col; c <= end; ++c) highest = std::max<std::uint32_t>(highest, tile.tops[row_start + std::uint32_t(c)]);
             if (highest > heights.below) {
@@ -187,16 +199,16 @@ Proof Mask::at(const Part& part, const Pass& pass, double x, double z) const
                     if (tile.tops[cell] <= heights.below) continue;
                     const bool within = c >= inner_first && c <= inner_last;
                     if (within && heights.is_hit(tile.tops[cell])) return Proof::Blocked;
-                    if (tile.span_starts == nullptr) {
+                    if (!tile.bounds.has(cell)) {
                         is_free = false;
                     } else {
-                        for (const QuantizedSpan& span : tile.spans_of(cell)) {
+                        for (const QuantizedSpan& span : tile.bounds.of(cell)) {
                             if (within && heights.is_hit(span.top)) return Proof::Blocked;
                             if (tile.height(span.top) >= heights.bottom && tile.height(span.bottom) <= heights.top) is_free = false;
                         }
                     }
-                    if (within && tile.solid_starts != nullptr)
-                        for (const QuantizedSpan& solid : tile.solids_of(cell))
+                    if (within && tile.solids.has(cell))
+                        for (const QuantizedSpan& solid : tile.solids.of(cell))
                             if (tile.height(solid.top) >= heights.inner_bottom && tile.height(solid.bottom) <= heights.inner_top) return Proof::Blocked;
                 }
                 if (!is_free && !has_inner) return Proof::Candidate;

@@ -36,18 +36,20 @@ private:
         std::size_t level;
         bool is_ready = false;
         std::vector<CoverRow> rows;
+        BoundsTile tile = {};               ///< the last one that was looked at
+        int tile_col = -1, tile_row = -1;
+        double a_quantum = 0;               ///< 1 / quantum of the tile
     };
     struct Part {
         Footprint footprint;
         std::vector<Pass> passes;  ///< coarse to fine
     };
     struct Heights;
-    class Ground;
 
     void set_footprints(const std::vector<Footprint>& footprints, double cosine, double sine);
     void choose_passes(Part& part) const;
     void cover(const Part& part, Pass& pass) const;
-    Proof at(const Part& part, const Pass& pass, double x, double z) const;
+    Proof at(const Part& part, Pass& pass, double x, double z) const;
 
     const FreeSpace::Impl& space_;
     const SolidBounds::Impl& raster_;

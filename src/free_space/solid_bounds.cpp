@@ -63,52 +63,97 @@ LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, 
     return out;
 }
 
-std::string packed(const LooseTile& tile)
-{
-    if (tile.is_empty()) return {};
-    double low = tile.bounds.spans[0].bottom, high = tile.bounds.spans[0].top;
-    bool has_gaps = false;
-    for (const Interval& span : tile.bounds.spans) {
-        low = std::min(low, span.bottom);
-        high = std::max(high, span.top);
+std::uint32_t count_of(const CellList& list, std::size_t cell) { return list.starts[cell + 1] - list.starts[cell]; }
+
+/// Writes a tile: its heights as 16-bit numbers, and the intervals of the cells that need them.
+class TilePacker {
+public:
+    explicit TilePacker(const LooseTile& tile) : tile_(tile)
+    {
+        double low = tile.bounds.spans[0].bottom, high = tile.bounds.spans[0].top;
+        for (const Interval& span : tile.bounds.spans) {
+            low = std::min(low, span.bottom);
+            high = std::max(high, span.top);
+        }
+        head_.quantum = std::max(least_quantum, (high - low) / steps);
+        head_.base = low - 2 * head_.quantum;
+        head_.slack = tile.slack + head_.quantum;
+        count(tile.bounds, 2, head_.bound_cells, head_.bounds);
+        count(tile.solids, 1, head_.solid_cells, head_.solids);
     }
-    for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) has_gaps = has_gaps || tile.bounds.starts[cell + 1] > tile.bounds.starts[cell] + 1;
-    BoundsHead head{};
-    head.quantum = std::max(least_quantum, (high - low) / steps);
-    head.base = low - 2 * head.quantum;
-    head.slack = tile.slack + head.quantum;
-    head.spans = has_gaps ? std::uint32_t(tile.bounds.spans.size()) : 0;
-    head.solids = std::uint32_t(tile.solids.spans.size());
-    const auto height = [&](double value) { return head.base + value * head.quantum; };
-    const auto down = [&](double z) {
-        double value = std::floor((z - head.base) / head.quantum);
+
+    std::string pack()
+    {
+        out_.reserve(bounds_tile_size(head_) + alignment);
+        put(head_);
+        put_list(tile_.bounds, 2, head_.bound_cells, [&](const Interval& span) { return QuantizedSpan{down(span.bottom), up(span.top)}; });
+        put_list(tile_.solids, 1, head_.solid_cells, [&](const Interval& span) { return QuantizedSpan{up(span.bottom), down(span.top)}; });
+        for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) {
+            const std::uint32_t end = tile_.bounds.starts[cell + 1];
+            put(end > tile_.bounds.starts[cell] ? up(tile_.bounds.spans[end - 1].top) : std::uint16_t{0});
+        }
+        out_.resize((out_.size() + alignment - 1) / alignment * alignment, '\0');
+        return std::move(out_);
+    }
+
+private:
+    double height(double value) const { return head_.base + value * head_.quantum; }
+    std::uint16_t down(double z) const
+    {
+        double value = std::floor((z - head_.base) / head_.quantum);
         while (height(value) > z) --value;
         return std::uint16_t(std::clamp(value, 1.0, 65535.0));
-    };
-    const auto up = [&](double z) {
-        double value = std::ceil((z - head.base) / head.quantum);
+    }
+    std::uint16_t up(double z) const
+    {
+        double value = std::ceil((z - head_.base) / head_.quantum);
         while (height(value) < z) ++value;
         return std::uint16_t(std::clamp(value, 1.0, 65535.0));
-    };
-    std::string out;
-    out.reserve(bounds_tile_size(head) + alignment);
-    const auto put = [&](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); };
-    put(head);
-    for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) {
-        const bool some = tile.bounds.starts[cell + 1] > tile.bounds.starts[cell];
-        put(some ? up(tile.bounds.spans[tile.bounds.starts[cell + 1] - 1].top) : std::uint16_t{0});
     }
-    if (head.spans > 0) {
-        put(tile.bounds.starts);
-        for (const Interval& span : tile.bounds.spans) put(QuantizedSpan{down(span.bottom), up(span.top)});
+
+    template <class T>
+    void put(const T& value)
+    {
+        out_.append(reinterpret_cast<const char*>(&value), sizeof value);
     }
-    if (head.solids > 0) {
-        put(tile.solids.starts);
-        for (const Interval& span : tile.solids.spans) put(QuantizedSpan{up(span.bottom), down(span.top)});
+
+    static void count(const CellList& list, std::uint32_t least, std::uint32_t& cells, std::uint32_t& spans)
+    {
+        for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell)
+            if (const std::uint32_t n = count_of(list, cell); n >= least) {
+                ++cells;
+                spans += n;
+            }
     }
-    out.resize((out.size() + alignment - 1) / alignment * alignment, '\0');
-    return out;
-}
+
+    template <class Quantize>
+    void put_list(const CellList& list, std::uint32_t least, std::uint32_t cells, const Quantize& quantize)
+    {
+        if (cells == 0) return;
+        std::array<std::uint64_t, BoundsTile::cells / 64> marks{};
+        std::array<std::uint16_t, BoundsTile::cells / 64> ranks{};
+        std::vector<std::uint32_t> starts{0};
+        std::vector<QuantizedSpan> spans;
+        for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) {
+            if (cell % 64 == 0) ranks[cell / 64] = std::uint16_t(starts.size() - 1);
+            if (count_of(list, cell) < least) continue;
+            marks[cell / 64] |= std::uint64_t{1} << (cell % 64);
+            for (std::uint32_t k = list.starts[cell]; k < list.starts[cell + 1]; ++k) spans.push_back(quantize(list.spans[k]));
+            starts.push_back(std::uint32_t(spans.size()));
+        }
+        put(marks);
+        for (const std::uint32_t start : starts) put(start);
+        for (const QuantizedSpan& span : spans) put(span);
+        if ((starts.size() + spans.size()) % 2 == 1) put(std::uint32_t{0});  // the next marks lie at a multiple of 8
+        put(ranks);
+    }
+
+    const LooseTile& tile_;
+    BoundsHead head_{};
+    std::string out_;
+};
+
+std::string packed(const LooseTile& tile) { return tile.is_empty() ? std::string() : TilePacker(tile).pack(); }
 
 bool is_consistent(std::string_view view)
 {
@@ -119,10 +164,16 @@ bool is_consistent(std::string_view view)
     if (view.size() < size || view.size() >= size + alignment) return false;
     if (!(head.quantum > 0) || !std::isfinite(head.base) || !(head.slack >= 0)) return false;
     const BoundsTile tile(view);
-    const auto counts_up = [](const std::uint32_t* starts, std::uint32_t count) {
-        return starts == nullptr || (starts[0] == 0 && starts[BoundsTile::cells] == count && std::is_sorted(starts, starts + BoundsTile::cells + 1));
+    const auto counts_up = [](const CellIntervals& list, std::uint32_t cells, std::uint32_t spans) {
+        if (cells == 0) return true;
+        std::uint32_t marked = 0;
+        for (std::size_t word = 0; word < BoundsTile::cells / 64; ++word) {
+            if (list.ranks[word] != marked) return false;
+            marked += std::uint32_t(std::popcount(list.marks[word]));
+        }
+        return marked == cells && list.starts[0] == 0 && list.starts[cells] == spans && std::is_sorted(list.starts, list.starts + cells + 1);
     };
-    return counts_up(tile.span_starts, head.spans) && counts_up(tile.solid_starts, head.solids);
+    return counts_up(tile.bounds, head.bound_cells, head.bounds) && counts_up(tile.solids, head.solid_cells, head.solids);
 }
 
 /// The next coarser cells: what is solid in any of the four finer ones. A gap stays only where all four have it.
@@ -147,10 +198,10 @@ LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>
             for (std::uint32_t k = 0; k < 4 && tile.head != nullptr; ++k) {
                 const std::uint32_t cell = (2 * row + k / 2) % side * side + (2 * col + k % 2) % side;
                 if (tile.tops[cell] == 0) continue;
-                if (tile.span_starts == nullptr) {
+                if (!tile.bounds.has(cell)) {
                     joined.push_back({tile.height(0), tile.height(tile.tops[cell])});
                 } else {
-                    for (const QuantizedSpan& span : tile.spans_of(cell)) joined.push_back({tile.height(span.bottom), tile.height(span.top)});
+                    for (const QuantizedSpan& span : tile.bounds.of(cell)) joined.push_back({tile.height(span.bottom), tile.height(span.top)});
                 }
             }
             join_spans(joined);
@@ -164,26 +215,28 @@ LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>
 
 std::uint64_t bounds_tile_size(const BoundsHead& head)
 {
-    const auto list = [](std::uint32_t count) {
-        return count == 0 ? 0 : (std::uint64_t{BoundsTile::cells} + 1) * sizeof(std::uint32_t) + std::uint64_t{count} * sizeof(QuantizedSpan);
+    const auto list = [](std::uint64_t cells, std::uint64_t spans) {
+        return cells == 0 ? 0 : BoundsTile::cells / 64 * 10 + (cells + 1 + spans + 1) / 2 * 8;
     };
-    return sizeof(BoundsHead) + std::uint64_t{BoundsTile::cells} * sizeof(std::uint16_t) + list(head.spans) + list(head.solids);
+    return sizeof(BoundsHead) + list(head.bound_cells, head.bounds) + list(head.solid_cells, head.solids) +
+           std::uint64_t{BoundsTile::cells} * sizeof(std::uint16_t);
 }
 
 BoundsTile::BoundsTile(std::string_view bytes) : head(reinterpret_cast<const BoundsHead*>(bytes.data()))
 {
     const char* at = bytes.data() + sizeof(BoundsHead);
-    tops = reinterpret_cast<const std::uint16_t*>(at);
-    at += cells * sizeof(std::uint16_t);
-    const auto list = [&](std::uint32_t count, const std::uint32_t*& starts, const QuantizedSpan*& intervals) {
-        if (count == 0) return;
-        starts = reinterpret_cast<const std::uint32_t*>(at);
-        at += (cells + 1) * sizeof(std::uint32_t);
-        intervals = reinterpret_cast<const QuantizedSpan*>(at);
-        at += count * sizeof(QuantizedSpan);
+    const auto list = [&](std::size_t marked, std::size_t count, CellIntervals& out) {
+        if (marked == 0) return;
+        out.marks = reinterpret_cast<const std::uint64_t*>(at);
+        out.starts = reinterpret_cast<const std::uint32_t*>(out.marks + cells / 64);
+        out.spans = reinterpret_cast<const QuantizedSpan*>(out.starts + marked + 1);
+        at += cells / 64 * 8 + (marked + 1 + count + 1) / 2 * 8;
+        out.ranks = reinterpret_cast<const std::uint16_t*>(at);
+        at += cells / 64 * 2;
     };
-    list(head->spans, span_starts, spans);
-    list(head->solids, solid_starts, solids);
+    list(head->bound_cells, head->bounds, bounds);
+    list(head->solid_cells, head->solids, solids);
+    tops = reinterpret_cast<const std::uint16_t*>(at);
 }
 
 void SolidBounds::Impl::make_states()

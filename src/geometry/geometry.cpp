@@ -66,22 +66,25 @@ Members sort_into_tiles(const Geometry::Impl& geometry, const TileLevel& level, 
 /// Writes one tile.
 class TileBuilder {
 public:
-    TileBuilder(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements)
-        : scene_(scene), boxes_(boxes), elements_(elements)
+    TileBuilder(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements,
+                const Geometry::Impl& geometry, const TileLevel& level, std::size_t tile)
+        : scene_(scene), boxes_(boxes), elements_(elements), geometry_(geometry), level_(level),
+          col_(std::uint32_t(tile % level.cols)), row_(std::uint32_t(tile / level.cols))
     {
     }
 
-    std::string build(double x0, double y0, double side)
+    std::string build()
     {
         number_corners();
-        TileHead head{.x0 = x0, .y0 = y0, .bin = side, .vertices = std::uint32_t(vertices_.size()), .triangles = triangles_,
+        const double side = level_.cell;
+        TileHead head{.x0 = geometry_.x0 + col_ * side, .y0 = geometry_.y0 + row_ * side, .bin = side, .vertices = std::uint32_t(vertices_.size()), .triangles = triangles_,
                       .primitives = std::uint32_t(elements_.size()) - triangles_, .pieces = std::uint32_t(pieces_.size()),
                       .refs = 0, .bin_cols = 1, .bin_rows = 1, .unused = 0};
         sort_into_bins(head, side);
         out_.reserve(tile_size(head));
         put(head);
         for (const std::uint32_t vertex : vertices_) put(scene_.vertices[vertex]);
-        for (std::size_t e = triangles_; e < elements_.size(); ++e) put(packed(primitive_of(scene_, elements_[e])));
+        for (std::size_t e = triangles_; e < elements_.size(); ++e) put(packed_primitive(elements_[e]));
         for (const std::uint32_t piece : pieces_) put(packed(piece));
         for (std::size_t e = 0; e < triangles_; ++e) put(packed_triangle(elements_[e]));
         for (const std::uint32_t element : elements_) put(boxes_[element]);
@@ -157,7 +160,15 @@ private:
         for (std::size_t corner = 0; corner < 3; ++corner) out.corners[corner] = number_in(vertices_, scene_.triangles[element][corner]);
         out.piece = number_in(pieces_, scene_.triangle_pieces[element]);
         out.label = scene_.triangle_labels[element];
+        out.home = home_of(element);
         return out;
+    }
+
+    Home home_of(std::uint32_t element) const
+    {
+        const ElementBox& box = boxes_[element];
+        return {cell_number(box.min[0] - geometry_.x0, level_.cell, level_.cols) == col_,
+                cell_number(box.min[1] - geometry_.y0, level_.cell, level_.rows) == row_};
     }
 
     TilePiece packed(std::uint32_t piece) const
@@ -173,8 +184,9 @@ private:
         return out;
     }
 
-    static TilePrimitive packed(const Primitive& from)
+    TilePrimitive packed_primitive(std::uint32_t element) const
     {
+        const Primitive& from = primitive_of(scene_, element);
         TilePrimitive out{};
         Vec3::Map(out.size.data()) = from.shape.size;
         Vec3::Map(out.position.data()) = from.shape.pose.position;
@@ -182,6 +194,7 @@ private:
         out.part = from.part;
         out.kind = from.shape.kind;
         out.label = from.label;
+        out.home = home_of(element);
         return out;
     }
 
@@ -194,12 +207,15 @@ private:
     const Scene& scene_;
     const std::vector<ElementBox>& boxes_;
     const std::span<const std::uint32_t> elements_;
+    const Geometry::Impl& geometry_;
+    const TileLevel& level_;
+    const std::uint32_t col_, row_;  ///< of the tile
     std::uint32_t triangles_ = 0;
     std::vector<std::uint32_t> vertices_, pieces_, starts_, refs_;
     std::string out_;
 };
 
-bool is_consistent(std::string_view view, std::uint32_t parts)
+bool is_consistent(std::string_view view, std::size_t parts)
 {
     if (view.size() < sizeof(TileHead)) return false;
     TileHead head;
@@ -257,7 +273,13 @@ void Geometry::Impl::verify(std::string_view view, const TileEntry& entry) const
     if (file.empty()) return;
     if (XXH64(view.data(), view.size(), 0) != entry.checksum)
         throw FileError(file, "is damaged (the checksum of a tile differs); bake the map again");
-    if (!is_consistent(view, parts)) throw FileError(file, "contradicts itself; bake the map again");
+    if (!is_consistent(view, parts.size())) throw FileError(file, "contradicts itself; bake the map again");
+}
+
+Geometry::Impl::Visits& Geometry::Impl::visits_of_thread()
+{
+    thread_local Visits visits;
+    return visits;
 }
 
 double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, double high_y) const
@@ -284,13 +306,16 @@ Geometry::Geometry(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
 std::uint64_t Geometry::element_count() const { return impl_->elements; }
 const Bounds& Geometry::bounds() const { return impl_->bounds; }
+const std::vector<Part>& Geometry::parts() const { return impl_->parts; }
+const LabelCounts& Geometry::labels() const { return impl_->labels; }
 
 Geometry::Geometry(const Scene& scene, int threads)
 {
     auto impl = std::make_shared<Impl>();
     const auto elements = std::uint32_t(spawnfield::element_count(scene));
     impl->elements = elements;
-    impl->parts = std::uint32_t(scene.parts.size());
+    impl->parts = scene.parts;
+    impl->labels = scene.count_labels();
     impl->has_filled_meshes = std::any_of(scene.pieces.begin(), scene.pieces.end(), [](const Piece& p) { return p.solid; });
     if (elements > 0) {
         std::vector<ElementBox> boxes(elements);
@@ -321,7 +346,7 @@ Geometry::Geometry(const Scene& scene, int threads)
                 parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
                     const std::span<const std::uint32_t> in_tile(sorted.elements.data() + sorted.starts[t], sorted.starts[t + 1] - sorted.starts[t]);
                     if (in_tile.empty()) return;
-                    tiles[t] = TileBuilder(scene, boxes, in_tile).build(impl->x0 + double(t % level.cols) * cell, impl->y0 + double(t / level.cols) * cell, cell);
+                    tiles[t] = TileBuilder(scene, boxes, in_tile, *impl, level, t).build();
                     level.tiles[t].checksum = XXH64(tiles[t].data(), tiles[t].size(), 0);
                 });
                 for (std::size_t t = 0; t < tiles.size(); ++t) {

@@ -19,11 +19,17 @@ struct ElementBox {
     std::array<float, 3> min, max;
 };
 
+/// Whether the lower left corner of an element's box lies in this tile's column of tiles, and in its row.
+struct Home {
+    std::uint8_t col, row;
+};
+
 struct TileTriangle {
     Triangle corners;     ///< into the tile's vertices
     std::uint32_t piece;  ///< into the tile's pieces
     Label label;
-    std::array<std::uint8_t, 3> unused;
+    Home home;
+    std::uint8_t unused;
 };
 
 struct TilePiece {
@@ -40,7 +46,7 @@ struct TilePrimitive {
     std::uint32_t part;
     ShapeKind kind;
     Label label;
-    std::array<std::uint8_t, 2> unused;
+    Home home;
 
     Shape shape() const
     {
@@ -82,6 +88,7 @@ struct Tile {
         return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
     }
     const TilePrimitive& primitive(std::uint32_t element) const { return primitives[element - head->triangles]; }
+    Home home(std::uint32_t element) const { return is_triangle(element) ? triangles[element].home : primitive(element).home; }
     Label label(std::uint32_t element) const { return is_triangle(element) ? triangles[element].label : primitive(element).label; }
     std::uint32_t part(std::uint32_t element) const
     {
@@ -114,7 +121,8 @@ struct Geometry::Impl {
     double x0 = 0, y0 = 0;  ///< corner that all levels share
     std::uint64_t elements = 0;
     Bounds bounds;          ///< of all elements
-    std::uint32_t parts = 0;  ///< of the scene
+    std::vector<Part> parts;  ///< of the scene, in its order
+    LabelCounts labels{};
     bool has_filled_meshes = false;
     std::vector<TileLevel> levels;
     Bytes bytes;             ///< of all tiles
@@ -163,7 +171,6 @@ struct Geometry::Impl {
             if (high_x < x0 || high_y < y0 || low_x > x0 + level.cell * level.cols || low_y > y0 + level.cell * level.rows) continue;
             const std::uint32_t col0 = cell_number(low_x - x0, level.cell, level.cols), col1 = cell_number(high_x - x0, level.cell, level.cols);
             const std::uint32_t row0 = cell_number(low_y - y0, level.cell, level.rows), row1 = cell_number(high_y - y0, level.cell, level.rows);
-            const bool one = col0 == col1 && row0 == row1;
             for (std::uint32_t row = row0; row <= row1; ++row)
                 for (std::uint32_t col = col0; col <= col1; ++col) {
                     const std::size_t t = std::size_t{row} * level.cols + col;
@@ -172,8 +179,8 @@ struct Geometry::Impl {
                     visit_tile(tile, low_x, low_y, high_x, high_y, [&](std::uint32_t element) {
                         // In several tiles: the one that holds the lower left corner of what box and rectangle share tells.
                         const ElementBox& box = tile.boxes[element];
-                        if (one || (cell_number(std::max(double(box.min[0]), low_x) - x0, level.cell, level.cols) == col &&
-                                    cell_number(std::max(double(box.min[1]), low_y) - y0, level.cell, level.rows) == row))
+                        const Home home = tile.home(element);
+                        if ((box.min[0] > low_x ? home.col != 0 : col == col0) && (box.min[1] > low_y ? home.row != 0 : row == row0))
                             visit(tile, element);
                     });
                 }
@@ -191,21 +198,43 @@ private:
             return box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y;
         };
         const std::uint32_t col0 = tile.bin_col(low_x), col1 = tile.bin_col(high_x), row0 = tile.bin_row(low_y), row1 = tile.bin_row(high_y);
-        if (col0 == 0 && row0 == 0 && col1 + 1 == tile.head->bin_cols && row1 + 1 == tile.head->bin_rows) {
+        // Most bins: all elements in their order, rather than bin by bin.
+        if (2.0 * (col1 - col0 + 1) * (row1 - row0 + 1) > double(tile.head->bin_cols) * tile.head->bin_rows) {
             for (std::uint32_t element = 0; element < tile.elements(); ++element)
                 if (meets(tile.boxes[element])) visit(element);
             return;
         }
-        const bool one = col0 == col1 && row0 == row1;
+        Visits& visits = visits_of_thread();
+        visits.start(tile.elements());
         for (std::uint32_t row = row0; row <= row1; ++row)
             for (std::uint32_t col = col0; col <= col1; ++col)
-                for (const std::uint32_t element : tile.bin(col, row)) {
-                    const ElementBox& box = tile.boxes[element];
-                    if (!meets(box)) continue;
-                    if (one || (tile.bin_col(std::max(double(box.min[0]), low_x)) == col && tile.bin_row(std::max(double(box.min[1]), low_y)) == row))
-                        visit(element);
-                }
+                for (const std::uint32_t element : tile.bin(col, row))
+                    if (meets(tile.boxes[element]) && visits.is_first(element)) visit(element);
     }
+
+    /// Which elements of a tile were visited: several bins hold the same one.
+    class Visits {
+    public:
+        void start(std::size_t elements)
+        {
+            if (stamps_.size() < elements) stamps_.resize(elements, 0);
+            if (++round_ != 0) return;
+            std::fill(stamps_.begin(), stamps_.end(), 0);
+            round_ = 1;
+        }
+        bool is_first(std::uint32_t element)
+        {
+            if (stamps_[element] == round_) return false;
+            stamps_[element] = round_;
+            return true;
+        }
+
+    private:
+        std::vector<std::uint32_t> stamps_;
+        std::uint32_t round_ = 0;
+    };
+    /// Of one visit at a time: what is visited must not visit the same thread's tiles again.
+    static Visits& visits_of_thread();
 
     void verify(std::string_view view, const TileEntry& entry) const;
 

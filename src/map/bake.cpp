@@ -138,8 +138,6 @@ Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& 
                                    : default_occupancy_resolution(map.bounds, map.resolution, report);
     map.scene_file = scene_file.filename().string();
     map.scene_hash = checksum(read_file(scene_file));
-    map.parts = scene.parts;
-    map.labels = scene.count_labels();
     return map;
 }
 

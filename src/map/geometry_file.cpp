@@ -19,7 +19,6 @@ std::string written_head(const Geometry::Impl& geometry)
     out.put(geometry.x0);
     out.put(geometry.y0);
     out.put(geometry.elements);
-    out.put(geometry.parts);
     for (const double limit : geometry.bounds.min) out.put(limit);
     for (const double limit : geometry.bounds.max) out.put(limit);
     out.put(std::uint32_t(geometry.has_filled_meshes));
@@ -30,7 +29,34 @@ std::string written_head(const Geometry::Impl& geometry)
         out.put(level.rows);
         out.put_array(level.tiles);
     }
+    for (const LabelCount& count : geometry.labels) {
+        out.put(count.triangles);
+        out.put(count.primitives);
+    }
+    out.put(std::uint32_t(geometry.parts.size()));
+    for (const Part& part : geometry.parts) {
+        out.put_text(part.name);
+        out.put_text(part.kind);
+        out.put(std::uint32_t(part.label));
+        for (const std::uint32_t n : {part.solid_pieces, part.sheet_pieces, part.open_edges, part.triangles}) out.put(n);
+    }
     return out.take();
+}
+
+void read_parts(BinaryReader& in, Geometry::Impl& geometry)
+{
+    for (LabelCount& count : geometry.labels) {
+        count.triangles = in.get<std::uint64_t>();
+        count.primitives = in.get<std::uint64_t>();
+    }
+    for (auto parts = in.get<std::uint32_t>(); parts > 0; --parts) {
+        Part part;
+        part.name = in.get_text();
+        part.kind = in.get_text();
+        part.label = Label(std::min(in.get<std::uint32_t>(), std::uint32_t(Label::Ignore)));
+        for (std::uint32_t* n : {&part.solid_pieces, &part.sheet_pieces, &part.open_edges, &part.triangles}) *n = in.get<std::uint32_t>();
+        geometry.parts.push_back(std::move(part));
+    }
 }
 
 /// Every tile within the bytes: a file that passes its checksums may still have been made by someone else's hands.
@@ -63,7 +89,6 @@ Geometry open_geometry(const std::filesystem::path& file, const std::string& hea
         impl->x0 = in.get<double>();
         impl->y0 = in.get<double>();
         impl->elements = in.get<std::uint64_t>();
-        impl->parts = in.get<std::uint32_t>();
         for (double& limit : impl->bounds.min) limit = in.get<double>();
         for (double& limit : impl->bounds.max) limit = in.get<double>();
         impl->has_filled_meshes = in.get<std::uint32_t>() != 0;
@@ -76,6 +101,7 @@ Geometry open_geometry(const std::filesystem::path& file, const std::string& hea
             level.tiles = in.get_array<TileEntry>();
             impl->levels.push_back(std::move(level));
         }
+        read_parts(in, *impl);
     } catch (const std::out_of_range&) {
         throw FileError(file.string(), "is cut short; bake the map again");
     }

@@ -1,6 +1,5 @@
 #include "base/checksum.h"
 #include "base/input_file.h"
-#include "geometry/tile.h"
 #include "map/bounds_file.h"
 #include "map/geometry_file.h"
 #include "map/map_yaml.h"
@@ -47,8 +46,6 @@ Map read_map(const fs::path& folder)
     for (const ListedFile& file : yaml.files) check_size(folder, file);
     yaml.map.solid_bounds = open_bounds(folder / "bounds.bin", listed(yaml, "bounds.bin").head_checksum);
     yaml.map.geometry = open_geometry(folder / "geometry.bin", listed(yaml, "geometry.bin").head_checksum);
-    if (yaml.map.geometry.impl().parts != yaml.map.parts.size())
-        throw FileError((folder / "geometry.bin").string(), "has another number of parts than map.yaml; bake the map again");
     return std::move(yaml.map);
 }
 

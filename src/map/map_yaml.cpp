@@ -58,16 +58,6 @@ std::string label_counts(const LabelCounts& counts)
     return out;
 }
 
-std::string part_lines(const std::vector<Part>& parts)
-{
-    std::string out;
-    for (const Part& part : parts)
-        out += "  - {name: " + quoted(part.name) + ", kind: " + part.kind + ", label: " + to_string(part.label) +
-               ", solid_pieces: " + std::to_string(part.solid_pieces) + ", sheet_pieces: " + std::to_string(part.sheet_pieces) +
-               ", open_edges: " + std::to_string(part.open_edges) + ", triangles: " + std::to_string(part.triangles) + "}\n";
-    return out;
-}
-
 std::string file_lines(const fs::path& folder)
 {
     std::string out;
@@ -78,28 +68,6 @@ std::string file_lines(const fs::path& folder)
         out += "}\n";
     }
     return out;
-}
-
-Label label_of(const YamlMap& map, const std::string& name)
-{
-    for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water, Label::Ignore})
-        if (name == to_string(label)) return label;
-    map.fail("label", "is \"" + name + "\", needs terrain, obstacle, water or ignore");
-}
-
-void read_parts(const YamlMap& root, Map& map)
-{
-    const YamlMap labels = root.map("labels");
-    for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water}) {
-        const YamlMap counts = labels.map(to_string(label));
-        map.labels[std::size_t(label)] = {std::uint64_t(counts.finite("triangles")), std::uint64_t(counts.finite("primitives"))};
-    }
-    for (const YAML::Node& node : root.list("parts")) {
-        const YamlMap entry(node, root.file(), "parts");
-        const auto count = [&](const char* key) { return std::uint32_t(entry.finite(key)); };
-        map.parts.push_back({entry.text("name"), entry.text("kind"), label_of(entry, entry.text("label")), count("solid_pieces"),
-                             count("sheet_pieces"), count("open_edges"), count("triangles")});
-    }
 }
 
 Bounds read_bounds(const YamlMap& root)
@@ -174,7 +142,7 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
     text += "terrain:  # pages of terrain.tiff, float32 metres, NaN: nothing\n";
     for (const TerrainMap::Page& page : terrain.pages) text += "  - " + page.name + "\n";
     text += "heightmap: {z: " + list_of({heightmap_range.first, heightmap_range.second}) + ", no_terrain: 0}  # of pixels 0 and 65535\n";
-    text += "labels:\n" + label_counts(map.labels) + "parts:\n" + part_lines(map.parts);
+    text += "labels:\n" + label_counts(map.geometry.labels());
     text += "files:\n" + file_lines(folder);
     const std::string hash = checksum(text);
     write_file_atomically(folder / "map.yaml", text + hash_line(hash));
@@ -199,7 +167,6 @@ MapYaml read_map_yaml(const fs::path& folder)
     out.map.layers = int(root.finite("layers"));
     out.map.scene_file = root.map("scene").text("file");
     out.map.scene_hash = root.map("scene").text("xxh64");
-    read_parts(root, out.map);
     out.frame = read_frame(root);
     for (const YAML::Node& page : root.list("terrain")) out.pages.push_back(page.Scalar());
     const YamlMap files = root.map("files");

@@ -11,8 +11,6 @@ Map map_of(const Scene& scene, const Bounds& bounds, double cell)
     map.bounds = bounds.is_empty() ? scene.bounds() : bounds;
     map.resolution = cell;
     map.geometry = Geometry(scene);
-    map.parts = scene.parts;
-    map.labels = scene.count_labels();
     map.solid_bounds = SolidBounds(map.geometry, map.bounds, cell);
     if (!scene.has_terrain()) return map;
     const double size = (map.bounds.max - map.bounds.min).head<2>().maxCoeff();

@@ -22,7 +22,7 @@ int run_check(const CheckArgs& args)
         ++counts[std::size_t(judged.verdict)];
         summary.exact_checks += judged.exact_check;
     }
-    write_output(args.out, [&](const auto& sink) { sink(verdicts_csv(table, judgements, session->map.parts)); });
+    write_output(args.out, [&](const auto& sink) { sink(verdicts_csv(table, judgements, session->map.geometry.parts())); });
     summary.lap("write");
     summary.set_counts(counts);
     summary.map_hash = session->map.hash;

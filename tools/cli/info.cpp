@@ -55,7 +55,7 @@ Json map_json(const Map& map, bool verified)
                 {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
     if (verified) out["verified"] = true;
     for (const auto& entry : fs::directory_iterator(map.folder)) out["files"][entry.path().filename().string()] = entry.file_size();
-    out.update(json_of(map.labels, map.parts));
+    out.update(json_of(map.geometry.labels(), map.geometry.parts()));
     return out;
 }
 
