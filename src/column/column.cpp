@@ -188,7 +188,7 @@ namespace {
 /// First and last index of a block, inclusive, whose coordinate lies in [low, high]; a_step is 1 / step.
 std::pair<int, int> indices_in(double low, double high, double origin, double step, double shift, double a_step, int first, int count)
 {
-    const auto nearest = [&](double value) { return int(std::clamp((value - origin) * a_step - shift, double(first) - 1, double(first + count))); };
+    const auto nearest = [&](double value) { return int(std::max(double(first) - 1, std::min(double(first + count), (value - origin) * a_step - shift))); };
     int from = std::max(first, nearest(low)), to = std::min(first + count - 1, nearest(high) + 1);
     while (from <= to && origin + (from + shift) * step < low) ++from;
     while (to >= from && origin + (to + shift) * step > high) --to;

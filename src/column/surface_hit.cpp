@@ -8,6 +8,8 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
+constexpr double squared_tolerance = touch_tolerance * touch_tolerance;
+
 /// Whether the edge a-b crosses the ray from p towards +x. One answer per edge, whichever triangle asks: the ends are
 /// put in a fixed order first, so two triangles never disagree on their common edge.
 bool edge_crosses(const Vec3& a, const Vec3& b, double x, double y)
@@ -44,8 +46,8 @@ SeenTriangle::SeenTriangle(const Tile& tile, std::uint32_t triangle) : corners_(
     const auto& [a, b, c] = corners_;
     const Vec2 ab = (b - a).head<2>(), ac = (c - a).head<2>(), bc = (c - b).head<2>();
     area_ = ab.x() * ac.y() - ab.y() * ac.x();
-    lengths_ = {ab.norm(), bc.norm(), ac.norm()};
-    is_vertical_ = std::abs(area_) <= touch_tolerance * std::max({lengths_[0], lengths_[1], lengths_[2]});
+    squared_lengths_ = {ab.squaredNorm(), bc.squaredNorm(), ac.squaredNorm()};
+    is_vertical_ = area_ * area_ <= squared_tolerance * std::max({squared_lengths_[0], squared_lengths_[1], squared_lengths_[2]});
     x_ = {std::min({a.x(), b.x(), c.x()}), std::max({a.x(), b.x(), c.x()})};
     y_ = {std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()})};
     z_ = {std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()})};
@@ -96,12 +98,12 @@ bool SeenTriangle::is_crossed(double x, double y) const
 bool SeenTriangle::is_touched(double x, double y) const
 {
     const double sign = area_ > 0 ? 1 : -1;
-    const auto is_left = [&](const Vec3& p, const Vec3& q, double length) {
+    const auto is_left = [&](const Vec3& p, const Vec3& q, double squared_length) {
         const double cross = (q.x() - p.x()) * (y - p.y()) - (q.y() - p.y()) * (x - p.x());
-        return sign * cross >= -touch_tolerance * length;
+        return sign * cross >= 0 || cross * cross <= squared_tolerance * squared_length;
     };
     const auto& [a, b, c] = corners_;
-    return is_left(a, b, lengths_[0]) && is_left(b, c, lengths_[1]) && is_left(c, a, lengths_[2]);
+    return is_left(a, b, squared_lengths_[0]) && is_left(b, c, squared_lengths_[1]) && is_left(c, a, squared_lengths_[2]);
 }
 
 double SeenTriangle::height(double x, double y) const

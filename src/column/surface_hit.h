@@ -35,7 +35,7 @@ private:
     std::optional<Interval> segment(double x, double y) const;
 
     std::array<Vec3, 3> corners_;
-    std::array<double, 3> lengths_{};  ///< of the edges from corner k to the next, seen from above
+    std::array<double, 3> squared_lengths_{};  ///< of the edges from corner k to the next, seen from above, m^2
     double area_ = 0;                  ///< twice, seen from above; above 0 where it looks up
     Interval x_{}, y_{}, z_{};         ///< its extent
     bool is_vertical_ = false;         ///< thinner than the tolerance, so that its height over a point means nothing
