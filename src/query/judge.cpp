@@ -36,6 +36,27 @@ void check_exactly(const CollisionChecker& checker, const Pose& pose, bool with_
     out.verdict = is_free ? Verdict::Valid : Verdict::Collision;
 }
 
+/// Numbers of poses, neighbours after each other, so that they find each other's tiles in the cache. Counting sort over a
+/// grid around them.
+std::vector<std::uint32_t> in_neighbourhoods(const std::vector<Pose>& poses)
+{
+    constexpr std::size_t side = 256;
+    Bounds bounds;
+    for (const Pose& pose : poses) bounds.extend(pose.position);
+    const auto bin_of = [&](const Vec3& p) {
+        const auto along = [&](int axis) {
+            const double share = (p[axis] - bounds.min[axis]) / (bounds.max[axis] - bounds.min[axis]);
+            return share > 0 ? std::size_t(std::min(share, 1.0) * (side - 1)) : 0;  // also where the share is no number
+        };
+        return along(1) * side + along(0);
+    };
+    std::vector<std::uint32_t> starts(side * side + 1), order(poses.size());
+    for (const Pose& pose : poses) ++starts[bin_of(pose.position) + 1];
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    for (std::size_t i = 0; i < poses.size(); ++i) order[starts[bin_of(poses[i].position)]++] = std::uint32_t(i);
+    return order;
+}
+
 }  // namespace
 
 Judgement judge(const Map& map, const CollisionChecker& checker, const Column& column, const Pose& pose,
@@ -105,10 +126,11 @@ std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& check
 {
     const Judging judging(map, checker, options);
     std::vector<Judgement> out(poses.size());
+    const std::vector<std::uint32_t> order = in_neighbourhoods(poses);
     constexpr std::size_t batch = 256;
     parallel_for((poses.size() + batch - 1) / batch, options.threads, options.progress, [&](std::size_t b) {
         PoseJudge judge(judging);
-        for (std::size_t i = b * batch; i < std::min(poses.size(), (b + 1) * batch); ++i) {
+        for (const std::uint32_t i : std::span(order).subspan(b * batch, std::min(batch, poses.size() - b * batch))) {
             const Vec3& p = poses[i].position;
             judge.face(poses[i].rotation);
             judge.set_y(p.y());
