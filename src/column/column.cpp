@@ -116,14 +116,19 @@ ColumnBuilder& builder()
     return one;
 }
 
+bool counts(const Tile& tile, std::uint32_t element, Surfaces surfaces)
+{
+    return surfaces == Surfaces::All || !tile.is_triangle(element) || tile.pieces[tile.triangles[element].piece].solid != 0;
+}
+
 /// Hits of the line through (x, y) in the order of their elements.
-void find_hits(const Geometry& geometry, double x, double y, std::vector<SurfaceHit>& hits)
+void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, std::vector<SurfaceHit>& hits)
 {
     hits.clear();
     geometry.impl().visit_at(x, y, [&](const Tile& tile, std::span<const std::uint32_t> elements) {
         for (const std::uint32_t element : elements) {
             const ElementBox& box = tile.boxes[element];
-            if (box.min[0] > x || box.max[0] < x || box.min[1] > y || box.max[1] < y) continue;
+            if (box.min[0] > x || box.max[0] < x || box.min[1] > y || box.max[1] < y || !counts(tile, element, surfaces)) continue;
             if (const auto hit = hit_of(tile, element, x, y)) hits.push_back(*hit);
         }
     });
@@ -135,7 +140,7 @@ void find_hits(const Geometry& geometry, double x, double y, std::vector<Surface
 Column column_at(const Geometry& geometry, double x, double y)
 {
     thread_local std::vector<SurfaceHit> hits;
-    find_hits(geometry, x, y, hits);
+    find_hits(geometry, x, y, Surfaces::All, hits);
     Column out;
     builder().build(hits, out);
     return out;
@@ -154,7 +159,7 @@ std::optional<Ground> ground_below(const ColumnView& column, double z)
 
 std::optional<Ground> ground_below(const Column& column, double z) { return ground_below(ColumnView(column), z); }
 
-Columns::Columns(const Geometry& geometry, const ColumnGrid& grid) : cols_(grid.cols)
+Columns::Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces) : cols_(grid.cols)
 {
     const std::size_t count = std::size_t(grid.cols) * std::size_t(grid.rows);
     starts_.reserve(count + 1);
@@ -163,8 +168,8 @@ Columns::Columns(const Geometry& geometry, const ColumnGrid& grid) : cols_(grid.
     // Looking at an element costs about as much as a tenth of looking a column up.
     const double elements = geometry.impl().elements_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
                                                           grid.x_of(grid.first_col + grid.cols), grid.y_of(grid.first_row + grid.rows));
-    if (elements > 10.0 * double(count)) look_up(geometry, grid);
-    else scan(geometry, grid);
+    if (elements > 10.0 * double(count)) look_up(geometry, grid, surfaces);
+    else scan(geometry, grid, surfaces);
 }
 
 void Columns::end_column()
@@ -172,12 +177,12 @@ void Columns::end_column()
     starts_.push_back({std::uint32_t(column_.spans.size()), std::uint32_t(column_.layers.size()), std::uint32_t(column_.water.size())});
 }
 
-void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid)
+void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
 {
     thread_local std::vector<SurfaceHit> hits;
     for (int j = grid.first_row; j < grid.first_row + grid.rows; ++j)
         for (int i = grid.first_col; i < grid.first_col + grid.cols; ++i) {
-            find_hits(geometry, grid.x_of(i), grid.y_of(j), hits);
+            find_hits(geometry, grid.x_of(i), grid.y_of(j), surfaces, hits);
             builder().build(hits, column_);
             end_column();
         }
@@ -197,7 +202,7 @@ std::pair<int, int> indices_in(double low, double high, double origin, double st
 
 }  // namespace
 
-void Columns::scan(const Geometry& geometry, const ColumnGrid& grid)
+void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
 {
     thread_local std::vector<SurfaceHit> hits, sorted;
     thread_local std::vector<std::uint32_t> columns;
@@ -205,6 +210,7 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid)
     columns.clear();
     const double a_step = 1 / grid.step;
     const auto visit = [&](const Tile& tile, std::uint32_t element) {
+        if (!counts(tile, element, surfaces)) return;
         const ElementBox& box = tile.boxes[element];
         const auto [i0, i1] = indices_in(box.min[0], box.max[0], grid.x0, grid.step, grid.shift, a_step, grid.first_col, grid.cols);
         if (i0 > i1) return;

@@ -28,6 +28,9 @@ struct ColumnGrid {
     double y_of(int row) const { return y0 + (row + shift) * step; }
 };
 
+/// What of a scene columns are made of: all, or only what has an inside.
+enum class Surfaces { All, Filled };
+
 /// The columns of a block of a grid, the very same as column_at gives one by one.
 ///
 /// Elements that are small beside the step are looked up column by column, others are scan-converted: O(elements +
@@ -35,7 +38,7 @@ struct ColumnGrid {
 class Columns {
 public:
     Columns() = default;
-    Columns(const Geometry& geometry, const ColumnGrid& grid);
+    Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces = Surfaces::All);
 
     /// Column grid.first_col + i, row grid.first_row + j.
     ColumnView at(int i, int j) const
@@ -51,8 +54,8 @@ private:
     struct Start {
         std::uint32_t span = 0, layer = 0, water = 0;
     };
-    void look_up(const Geometry& geometry, const ColumnGrid& grid);
-    void scan(const Geometry& geometry, const ColumnGrid& grid);
+    void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
+    void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void end_column();
 
     int cols_ = 0;

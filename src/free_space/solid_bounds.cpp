@@ -37,7 +37,7 @@ LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, 
     const int cols = std::min(int(side), int(level.cols) - col0), rows = std::min(int(side), int(level.rows) - row0);
     const CellBlock block{raster.x0 + col0 * level.cell, raster.y0 + row0 * level.cell, level.cell, cols, rows};
     const CellSpans surfaces(geometry, block);
-    const Columns centres(geometry, {raster.x0, raster.y0, level.cell, col0, row0, cols, rows, 0.5});
+    const Columns centres(geometry, {raster.x0, raster.y0, level.cell, col0, row0, cols, rows, 0.5}, Surfaces::Filled);
     LooseTile out;
     if (!surfaces.is_tight()) out.slack = std::numeric_limits<double>::infinity();
     std::vector<Interval> bounds, solids;
@@ -46,13 +46,16 @@ LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, 
             if (row < rows && col < cols) {
                 surfaces.get(block.id(col, row), bounds);
                 solids.clear();
+                const std::span<const Span> inside = centres.at(col, row).spans;
                 // Where no surface passes at a height, the whole cell is inside or outside there, as its centre is.
-                for (const Span& span : centres.at(col, row).spans) {
+                for (const Span& span : inside) {
                     if (span.top > span.bottom) bounds.push_back({span.bottom, span.top});
                     if (span.sealed && span.top - span.bottom >= least_solid) solids.push_back({span.bottom, span.top});
                 }
-                join_spans(bounds);
-                join_spans(solids);
+                if (!inside.empty()) {
+                    join_spans(bounds);
+                    join_spans(solids);
+                }
                 out.bounds.spans.insert(out.bounds.spans.end(), bounds.begin(), bounds.end());
                 out.solids.spans.insert(out.solids.spans.end(), solids.begin(), solids.end());
             }
