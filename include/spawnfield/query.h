@@ -3,7 +3,14 @@
 #include <spawnfield/collision.h>
 #include <spawnfield/map.h>
 
+#include <atomic>
+
 namespace spawnfield {
+
+/// Seconds that threads spend in exact checks, all together.
+struct ExactTime {
+    std::atomic<std::int64_t> nanoseconds{0};
+};
 
 /// What all queries share.
 struct QueryOptions {
@@ -11,6 +18,7 @@ struct QueryOptions {
     double max_water_depth = std::numeric_limits<double>::infinity();  ///< m of water above the ground that count, >= 0
     bool exhaustive = false;  ///< ask the CollisionChecker at every pose, never the FreeSpace: the same answers, slowly
     int threads = 0;          ///< 0: all cores; results are the same at any number
+    ExactTime* exact_time = nullptr;  ///< adds to it, if anybody wants to know
     Progress progress = {};
 };
 

@@ -118,7 +118,21 @@ void PoseJudge::decide(double x, double z, bool with_hit, Judgement& out)
     const Proof proof = mask_ ? mask_->at(x, z) : Proof::Candidate;
     if (proof == Proof::Free) out.verdict = Verdict::Valid;
     else if (proof == Proof::Blocked && !with_hit) out.verdict = Verdict::Collision;
-    else check_exactly(judging_.checker_, {{x, y_, z}, rotation_}, with_hit, out);
+    else decide_exactly({{x, y_, z}, rotation_}, with_hit, out);
+}
+
+void PoseJudge::decide_exactly(const Pose& pose, bool with_hit, Judgement& out)
+{
+    using Clock = std::chrono::steady_clock;
+    const bool timed = judging_.options_.exact_time != nullptr;
+    const Clock::time_point start = timed ? Clock::now() : Clock::time_point{};
+    check_exactly(judging_.checker_, pose, with_hit, out);
+    if (timed) exact_time_ += Clock::now() - start;
+}
+
+PoseJudge::~PoseJudge()
+{
+    if (judging_.options_.exact_time != nullptr) judging_.options_.exact_time->nanoseconds += exact_time_.count();
 }
 
 std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& checker, const std::vector<Pose>& poses,

@@ -5,6 +5,8 @@
 
 #include <spawnfield/query.h>
 
+#include <chrono>
+
 namespace spawnfield {
 
 /// Judges poses for one query: the mask first, the CollisionChecker where it cannot tell. Shared by all threads.
@@ -28,6 +30,9 @@ private:
 class PoseJudge {
 public:
     explicit PoseJudge(const Judging& judging);
+    PoseJudge(const PoseJudge&) = delete;
+    PoseJudge& operator=(const PoseJudge&) = delete;
+    ~PoseJudge();  ///< tells the time of its exact checks
 
     void face(double yaw);          ///< upright; to be called before the first pose
     void face(const Mat3& rotation);
@@ -41,11 +46,13 @@ public:
 
 private:
     void decide(double x, double z, bool with_hit, Judgement& out);
+    void decide_exactly(const Pose& pose, bool with_hit, Judgement& out);
 
     const Judging& judging_;
     std::optional<Mask> mask_;
     Mat3 rotation_ = Mat3::Identity();
     double y_ = 0;
+    std::chrono::nanoseconds exact_time_{0};
 };
 
 }  // namespace spawnfield

@@ -12,11 +12,12 @@ int run_check(const CheckArgs& args)
     Summary summary("check", args);
     QueryOptions options;
     fill(options, args, "check");
+    options.exact_time = &summary.exact_time;
     const PoseTable table = read_poses(args.poses);
     const auto session = open_session(args);
     summary.lap("load");
     const std::vector<Judgement> judgements = check_poses(session->map, *session->checker, table.poses, options);
-    summary.lap("exact");
+    summary.lap("query");
     VerdictCounts counts{};
     for (const Judgement& judged : judgements) {
         ++counts[std::size_t(judged.verdict)];

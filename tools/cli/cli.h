@@ -61,6 +61,7 @@ public:
 
     std::uint64_t poses = 0, exact_checks = 0, seed = 0;
     std::string map_hash;
+    ExactTime exact_time;                                     ///< for a query's options
     std::vector<std::string> extra;                           ///< further words for the line, in front
     std::vector<std::pair<std::string, double>> more_stages;  ///< a bake's own
 
@@ -70,6 +71,7 @@ private:
     std::string line(double total) const;
     std::string json(double total) const;
     double seconds_of(const std::string& stage) const;
+    unsigned threads() const;
 
     std::string command_;
     const CommonArgs& args_;

@@ -34,6 +34,7 @@ int run_heatmap(const HeatmapArgs& args, bool step_given)
     Summary summary("heatmap", args);
     RasterOptions options;
     fill(options, args, "heatmap");
+    options.exact_time = &summary.exact_time;
     options.offset = args.offset;
     options.yaw = args.yaw;
     options.layers = parse_layers(args.layers);
@@ -47,7 +48,7 @@ int run_heatmap(const HeatmapArgs& args, bool step_given)
     const TerrainMap terrain = read_terrain(session->map);
     summary.lap("load");
     const RasterResult result = raster(session->map, *session->checker, options);
-    summary.lap("exact");
+    summary.lap("query");
     picture.title = session->map.name + ", " + session->robot.name;
     write_heatmap(session->map, terrain, result, picture, args.out);
     summary.lap("write");

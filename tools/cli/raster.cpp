@@ -34,11 +34,12 @@ RasterOptions options_of(const RasterArgs& args, bool step_z_given)
 int run_raster(const RasterArgs& args, bool step_z_given)
 {
     Summary summary("raster", args);
-    const RasterOptions options = options_of(args, step_z_given);
+    RasterOptions options = options_of(args, step_z_given);
+    options.exact_time = &summary.exact_time;
     const auto session = open_session(args);
     summary.lap("load");
     const RasterResult result = raster(session->map, *session->checker, options);
-    summary.lap("exact");
+    summary.lap("query");
     if (!args.heatmap.empty()) {
         HeatmapOptions picture;
         picture.title = session->map.name + ", " + session->robot.name;
