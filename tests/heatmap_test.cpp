@@ -1,3 +1,4 @@
+#include "base/deflate.h"
 #include "picture/relief.h"
 
 #include <spawnfield/error.h>
@@ -6,7 +7,6 @@
 #include "catch.h"
 
 #include <opencv2/imgcodecs.hpp>
-#include <zlib.h>
 
 #include <cmath>
 #include <fstream>
@@ -31,12 +31,7 @@ std::string tile_of(const GridFrame& frame, const Surface& surface, int first_ro
     for (int row = 0; row < side && first_row + row < frame.rows; ++row)
         for (int col = 0; col < side && first_col + col < frame.cols; ++col)
             cells[std::size_t(row * side + col)] = surface(frame.x_of(first_col + col), frame.y_of(first_row + row));
-    const uLong bytes = uLong(cells.size() * sizeof(float));
-    uLongf size = compressBound(bytes);
-    std::string stream(size, '\0');
-    REQUIRE(compress(reinterpret_cast<Bytef*>(stream.data()), &size, reinterpret_cast<const Bytef*>(cells.data()), bytes) == Z_OK);
-    stream.resize(size);
-    return stream;
+    return deflate_floats(cells, side);
 }
 
 void add_page(TerrainMap& terrain, const std::string& name, const Surface& surface)
@@ -409,13 +404,9 @@ TEST_CASE("a preview shows terrain by height, obstacles grey, water blue and not
 {
     // From left to right: low ground, high ground, a block on the ground, a lake, nothing, a block in the air, a pier.
     const auto ground = [](double x, double) { return x < 4 ? 0.0f : x < 12 ? 2.0f : x < 16 ? -1.0f : nothing; };
-    const auto solid = [&](double x, double y) {
-        if (x > 8 && x < 12) return 5.0f;
-        if (x > 20 && x < 24) return 4.0f;
-        return x > 24 ? 3.0f : ground(x, y);
-    };
+    const auto obstacle = [](double x, double) { return x > 8 && x < 12 ? 5.0f : x > 20 && x < 24 ? 4.0f : x > 24 ? 3.0f : nothing; };
     TerrainMap terrain = terrain_of(28, 8, ground);
-    add_page(terrain, "solid_top.0", solid);
+    add_page(terrain, "obstacle", obstacle);
     add_page(terrain, "water", [](double x, double) { return (x > 12 && x < 16) || x > 24 ? 1.0f : nothing; });
     const Folder folder;
     write_preview(terrain, "preview", folder / "preview.png");

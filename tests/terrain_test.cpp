@@ -60,19 +60,37 @@ TEST_CASE("a ball is as high as its equation says")
         }
 }
 
-TEST_CASE("solid pages hold what is solid at the cell's centre")
+TEST_CASE("the page of obstacles holds the highest solid of a column that is no terrain")
 {
+    std::size_t obstacles = 0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const TestMap map = map_of(random_scene(seed));
         const TerrainMap terrain = rasterized(map, 0.3);
-        const HeightImage top = page_image(terrain, "solid_top.0");
+        const HeightImage obstacle = page_image(terrain, "obstacle");
         for (int row = 0; row < terrain.frame.rows; row += 3)
             for (int col = 0; col < terrain.frame.cols; col += 2) {
                 const Column column = column_at(map.geometry, terrain.frame.x_of(col), terrain.frame.y_of(row));
-                CHECK(std::isnan(top(row, col)) == column.spans.empty());
-                if (!column.spans.empty()) CHECK(top(row, col) == float(column.spans[0].top));
+                const bool wanted = !column.spans.empty() && (column.layers.empty() || column.spans[0].top > column.layers[0]);
+                CHECK(std::isnan(obstacle(row, col)) != wanted);
+                if (wanted) CHECK(obstacle(row, col) == float(column.spans[0].top));
+                obstacles += wanted;
             }
     }
+    CHECK(obstacles > 100);
+}
+
+TEST_CASE("there is no page of nothing but the first of heights")
+{
+    const auto pages_of = [](Label label) {
+        Scene scene;
+        hand::add_mesh(scene, label, hand::rectangle(4, 4));
+        std::vector<std::string> names;
+        for (const TerrainMap::Page& page : rasterized(map_of(scene), 0.5).pages) names.push_back(page.name);
+        return names;
+    };
+    CHECK(pages_of(Label::Terrain) == std::vector<std::string>{"height.0"});
+    CHECK(pages_of(Label::Water) == std::vector<std::string>{"height.0", "water"});
+    CHECK(pages_of(Label::Obstacle) == std::vector<std::string>{"height.0", "obstacle"});
 }
 
 TEST_CASE("terrain pages are the same bytes at any thread count")

@@ -28,15 +28,15 @@ using HeightImage = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 ///
 /// height.K       layer K at the cell's centre, K = 0 the highest
 /// water          highest water surface at the cell's centre
-/// solid_top.K, solid_bottom.K   what is solid at the cell's centre, terrain and obstacles joined, from the top down
+/// obstacle       highest obstacle at the cell's centre where it stands above height.0, or where there is no terrain
 ///
-/// Pages are kept as deflated tiles of tile x tile cells, row after row, the last ones padded with NaN: a page of nothing
-/// takes about 300 bytes a tile.
+/// Pages are kept as deflated tiles of tile x tile cells, row after row, the last ones padded with NaN: a tile of nothing
+/// takes about 300 bytes. There are no pages of nothing but height.0.
 struct TerrainMap {
     static constexpr int tile = 256;
     struct Page {
         std::string name;                ///< "height.0", …
-        std::vector<std::string> tiles;  ///< zlib streams, row after row of tiles
+        std::vector<std::string> tiles;  ///< zlib streams (TIFF predictor 3), row after row of tiles
     };
     GridFrame frame;
     std::vector<Page> pages;
@@ -50,7 +50,7 @@ struct TerrainMap {
 /// A whole page, frame.rows x frame.cols; all NaN if there is no such page. Throws std::runtime_error on damaged tiles.
 HeightImage page_image(const TerrainMap& terrain, const std::string& name);
 
-/// Vertical rays at the cells' centres. Solid intervals beyond the eighth are left out. O(elements + cells covered).
+/// Vertical rays at the cells' centres. O(elements + cells covered).
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,
                              const Progress& progress = {});
 

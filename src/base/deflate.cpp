@@ -1,30 +1,80 @@
 #include "base/deflate.h"
 
-#include <zlib.h>
+#include <libdeflate.h>
 
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <new>
 #include <stdexcept>
 
 namespace spawnfield {
+namespace {
+
+constexpr int level = 1;
+
+template <auto release>
+struct Releaser {
+    void operator()(auto* one) const { release(one); }
+};
+using Compressor = std::unique_ptr<libdeflate_compressor, Releaser<libdeflate_free_compressor>>;
+using Decompressor = std::unique_ptr<libdeflate_decompressor, Releaser<libdeflate_free_decompressor>>;
+
+void inflate_into(std::string_view stream, char* out, std::size_t size)
+{
+    thread_local const Decompressor decompressor(libdeflate_alloc_decompressor());
+    if (!decompressor) throw std::bad_alloc();
+    if (libdeflate_zlib_decompress(decompressor.get(), stream.data(), stream.size(), out, size, nullptr) != LIBDEFLATE_SUCCESS)
+        throw std::runtime_error("a compressed tile is damaged");
+}
+
+}  // namespace
 
 std::string deflate_bytes(std::string_view bytes)
 {
-    uLongf size = compressBound(uLong(bytes.size()));
-    std::string out(size, '\0');
-    const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                                 uLong(bytes.size()), Z_BEST_SPEED);
-    if (status != Z_OK) throw std::runtime_error("zlib cannot compress");
-    out.resize(size);
-    return out;
+    thread_local const Compressor compressor(libdeflate_alloc_compressor(level));
+    if (!compressor) throw std::bad_alloc();
+    const std::size_t most = libdeflate_zlib_compress_bound(compressor.get(), bytes.size());
+    const auto out = std::make_unique_for_overwrite<char[]>(most);
+    const std::size_t size = libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.get(), most);
+    if (size == 0) throw std::runtime_error("libdeflate cannot compress");
+    return {out.get(), size};
 }
 
 std::string inflate_bytes(std::string_view stream, std::size_t size)
 {
-    uLongf found = uLongf(size);
     std::string out(size, '\0');
-    const int status = uncompress(reinterpret_cast<Bytef*>(out.data()), &found, reinterpret_cast<const Bytef*>(stream.data()),
-                                  uLong(stream.size()));
-    if (status != Z_OK || found != size) throw std::runtime_error("a compressed tile is damaged");
+    inflate_into(stream, out.data(), size);
     return out;
+}
+
+std::string deflate_floats(std::span<const float> values, std::size_t cols)
+{
+    const auto bytes = std::make_unique_for_overwrite<char[]>(values.size_bytes());
+    for (std::size_t first = 0; first < values.size(); first += cols) {
+        auto* const row = reinterpret_cast<std::uint8_t*>(bytes.get()) + first * sizeof(float);
+        for (std::size_t col = 0; col < cols; ++col) {
+            const auto bits = std::bit_cast<std::uint32_t>(values[first + col]);
+            for (std::size_t plane = 0; plane < 4; ++plane) row[plane * cols + col] = std::uint8_t(bits >> (24 - 8 * plane));
+        }
+        for (std::size_t at = 4 * cols - 1; at > 0; --at) row[at] = std::uint8_t(row[at] - row[at - 1]);
+    }
+    return deflate_bytes({bytes.get(), values.size_bytes()});
+}
+
+void inflate_floats(std::string_view stream, std::size_t cols, std::span<float> values)
+{
+    const auto bytes = std::make_unique_for_overwrite<char[]>(values.size_bytes());
+    inflate_into(stream, bytes.get(), values.size_bytes());
+    for (std::size_t first = 0; first < values.size(); first += cols) {
+        auto* const row = reinterpret_cast<std::uint8_t*>(bytes.get()) + first * sizeof(float);
+        for (std::size_t at = 1; at < 4 * cols; ++at) row[at] = std::uint8_t(row[at] + row[at - 1]);
+        for (std::size_t col = 0; col < cols; ++col) {
+            std::uint32_t bits = 0;
+            for (std::size_t plane = 0; plane < 4; ++plane) bits = bits << 8 | row[plane * cols + col];
+            values[first + col] = std::bit_cast<float>(bits);
+        }
+    }
 }
 
 }  // namespace spawnfield

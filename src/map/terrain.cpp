@@ -1,7 +1,7 @@
 #include "base/deflate.h"
 #include "base/number.h"
 #include "base/parallel.h"
-#include "map/cell_clip.h"
+#include "column/columns.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/terrain.h>
@@ -12,20 +12,22 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::size_t max_spans = 8;  // pages of solid_*
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t tile_cells = std::size_t(TerrainMap::tile) * TerrainMap::tile;
 
-/// Pages of one tile, by name without number; made as they are needed.
+std::string deflated(const std::vector<float>& values) { return deflate_floats(values, TerrainMap::tile); }
+
+const std::string& empty_tile()
+{
+    static const std::string stream = deflated(std::vector<float>(tile_cells, nothing));
+    return stream;
+}
+
+/// Pages of one tile; made as they are needed.
+template <class Page>
 struct TilePages {
-    using Values = std::vector<float>;
-    std::vector<Values> height, solid_top, solid_bottom;
-    Values water;
-
-    static float& at(std::vector<Values>& pages, std::size_t page, std::size_t cell)
-    {
-        while (pages.size() <= page) pages.emplace_back(TerrainMap::tile * TerrainMap::tile, nothing);
-        return pages[page][cell];
-    }
+    std::vector<Page> height;
+    Page water, obstacle;  ///< empty: nothing in it
 };
 
 class TileRaster {
@@ -36,72 +38,59 @@ public:
     {
     }
 
-    TilePages run()
+    TilePages<std::string> run()
     {
-        const Columns centres(geometry_, {frame_.x0, frame_.y0, frame_.cell, col0_, frame_.rows - row0_ - rows_, cols_, rows_, 0.5});
-        for (int j = 0; j < rows_; ++j)  // upwards in y, as the block counts
-            for (int i = 0; i < cols_; ++i) add_cell(rows_ - 1 - j, i, centres.at(i, j));
-        return std::move(pages_);
+        constexpr int part = 64;  // whose columns stay in a core's cache
+        const int first_row = frame_.rows - row0_ - rows_;
+        for (int j0 = 0; j0 < rows_; j0 += part)  // upwards in y, as the block counts
+            for (int i0 = 0; i0 < cols_; i0 += part) {
+                const int rows = std::min(part, rows_ - j0), cols = std::min(part, cols_ - i0);
+                const Columns centres(geometry_, {frame_.x0, frame_.y0, frame_.cell, col0_ + i0, first_row + j0, cols, rows, 0.5});
+                for (int j = 0; j < rows; ++j)
+                    for (int i = 0; i < cols; ++i) add_cell(rows_ - 1 - j0 - j, i0 + i, centres.at(i, j));
+            }
+        TilePages<std::string> out;
+        for (const auto& layer : pages_.height) out.height.push_back(deflated(layer));
+        if (!pages_.water.empty()) out.water = deflated(pages_.water);
+        if (!pages_.obstacle.empty()) out.obstacle = deflated(pages_.obstacle);
+        return out;
     }
 
 private:
     void add_cell(int row, int col, const ColumnView& column)
     {
         const std::size_t cell = std::size_t(row) * TerrainMap::tile + std::size_t(col);
-        for (std::size_t layer = 0; layer < column.layers.size(); ++layer)
-            TilePages::at(pages_.height, layer, cell) = float(column.layers[layer]);
-        if (!column.water.empty()) {
-            if (pages_.water.empty()) pages_.water.assign(TerrainMap::tile * TerrainMap::tile, nothing);
-            pages_.water[cell] = float(column.water.front());
-        }
-        const std::vector<Interval> solid = solid_intervals(column);
-        for (std::size_t k = 0; k < std::min(solid.size(), max_spans); ++k) {
-            const Interval& span = solid[solid.size() - 1 - k];
-            TilePages::at(pages_.solid_top, k, cell) = float(span.top);
-            TilePages::at(pages_.solid_bottom, k, cell) = float(span.bottom);
-        }
+        while (pages_.height.size() < column.layers.size()) pages_.height.emplace_back();
+        for (std::size_t layer = 0; layer < column.layers.size(); ++layer) set(pages_.height[layer], cell, column.layers[layer]);
+        if (!column.water.empty()) set(pages_.water, cell, column.water.front());
+        if (!column.spans.empty() && (column.layers.empty() || column.spans.front().top > column.layers.front()))
+            set(pages_.obstacle, cell, column.spans.front().top);
+    }
+
+    static void set(std::vector<float>& page, std::size_t cell, double height)
+    {
+        if (page.empty()) page.assign(tile_cells, nothing);
+        page[cell] = float(height);
     }
 
     const Geometry& geometry_;
     const GridFrame& frame_;
     const int row0_, col0_, rows_, cols_;
-    TilePages pages_;
+    TilePages<std::vector<float>> pages_;
 };
 
-std::string deflated(const std::vector<float>& values)
+/// Moves one page's tiles out of theirs, unless nothing is in any of them.
+void add_page(const std::string& name, std::vector<TilePages<std::string>>& tiles, bool even_if_empty, TerrainMap& out, const auto& stream_of)
 {
-    return deflate_bytes({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
-}
-
-/// A tile's pages by full name.
-using NamedTiles = std::vector<std::pair<std::string, std::string>>;
-
-NamedTiles deflate_tile(const TilePages& pages)
-{
-    NamedTiles out;
-    const auto add = [&](const std::string& name, const std::vector<TilePages::Values>& list) {
-        for (std::size_t k = 0; k < list.size(); ++k) out.emplace_back(name + "." + std::to_string(k), deflated(list[k]));
-    };
-    add("height", pages.height);
-    if (!pages.water.empty()) out.emplace_back("water", deflated(pages.water));
-    add("solid_top", pages.solid_top);
-    add("solid_bottom", pages.solid_bottom);
-    return out;
-}
-
-std::vector<std::string> page_names(const std::vector<NamedTiles>& tiles)
-{
-    std::vector<std::string> out;
-    for (const char* quantity : {"height", "water", "solid_top", "solid_bottom", "bound_top", "bound_bottom"}) {
-        const std::string name = quantity;
-        std::size_t count = name == "height" ? 1 : 0;  // a page of heights even if there is no terrain
-        for (const NamedTiles& tile : tiles)
-            count = std::max(count, std::size_t(std::count_if(tile.begin(), tile.end(), [&](const auto& page) {
-                return page.first == name || page.first.starts_with(name + ".");
-            })));
-        for (std::size_t k = 0; k < count; ++k) out.push_back(name == "water" ? name : name + "." + std::to_string(k));
+    TerrainMap::Page page{name, {}};
+    bool any = even_if_empty;
+    for (auto& tile : tiles) {
+        std::string* const stream = stream_of(tile);
+        const bool some = stream != nullptr && !stream->empty();
+        any = any || some;
+        page.tiles.push_back(some ? std::move(*stream) : empty_tile());
     }
-    return out;
+    if (any) out.pages.push_back(std::move(page));
 }
 
 }  // namespace
@@ -136,12 +125,12 @@ HeightImage page_image(const TerrainMap& terrain, const std::string& name)
     HeightImage image = HeightImage::Constant(terrain.frame.rows, terrain.frame.cols, nothing);
     const TerrainMap::Page* page = terrain.find(name);
     if (page == nullptr) return image;
-    using Pixels = Eigen::Array<float, TerrainMap::tile, TerrainMap::tile, Eigen::RowMajor>;
+    HeightImage tile(TerrainMap::tile, TerrainMap::tile);
     for (std::size_t t = 0; t < page->tiles.size(); ++t) {
-        const std::string bytes = inflate_bytes(page->tiles[t], sizeof(Pixels));
+        if (page->tiles[t] == empty_tile()) continue;
+        inflate_floats(page->tiles[t], TerrainMap::tile, {tile.data(), tile_cells});
         const int row = int(t) / terrain.tile_cols() * TerrainMap::tile, col = int(t) % terrain.tile_cols() * TerrainMap::tile;
         const int rows = std::min(TerrainMap::tile, terrain.frame.rows - row), cols = std::min(TerrainMap::tile, terrain.frame.cols - col);
-        const Eigen::Map<const Pixels, Eigen::Unaligned> tile(reinterpret_cast<const float*>(bytes.data()));
         image.block(row, col, rows, cols) = tile.topLeftCorner(rows, cols);
     }
     return image;
@@ -152,20 +141,15 @@ TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, i
 {
     TerrainMap out;
     out.frame = frame;
-    std::vector<NamedTiles> tiles(std::size_t(out.tile_rows()) * std::size_t(out.tile_cols()));
-    parallel_for(tiles.size(), threads, progress, [&](std::size_t t) {
-        TileRaster raster(geometry, frame, int(t) / out.tile_cols(), int(t) % out.tile_cols());
-        tiles[t] = deflate_tile(raster.run());
-    });
-    const std::string empty = deflated(std::vector<float>(TerrainMap::tile * TerrainMap::tile, nothing));
-    for (const std::string& name : page_names(tiles)) {
-        TerrainMap::Page page{name, {}};
-        for (NamedTiles& tile : tiles) {
-            const auto found = std::find_if(tile.begin(), tile.end(), [&](const auto& p) { return p.first == name; });
-            page.tiles.push_back(found == tile.end() ? empty : std::move(found->second));
-        }
-        out.pages.push_back(std::move(page));
-    }
+    std::vector<TilePages<std::string>> tiles(std::size_t(out.tile_rows()) * std::size_t(out.tile_cols()));
+    parallel_for(tiles.size(), threads, progress,
+                 [&](std::size_t t) { tiles[t] = TileRaster(geometry, frame, int(t) / out.tile_cols(), int(t) % out.tile_cols()).run(); });
+    std::size_t layers = 1;  // a page of heights even if there is no terrain
+    for (const auto& tile : tiles) layers = std::max(layers, tile.height.size());
+    for (std::size_t k = 0; k < layers; ++k)
+        add_page("height." + std::to_string(k), tiles, true, out, [&](auto& tile) { return k < tile.height.size() ? &tile.height[k] : nullptr; });
+    add_page("water", tiles, false, out, [](auto& tile) { return &tile.water; });
+    add_page("obstacle", tiles, false, out, [](auto& tile) { return &tile.obstacle; });
     return out;
 }
 

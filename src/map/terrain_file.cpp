@@ -17,6 +17,7 @@ void set_tags(TIFF* tiff, const TerrainMap& terrain, const TerrainMap::Page& pag
     TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
     TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
     TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+    TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_FLOATINGPOINT);
     TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
     TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, page.name.c_str());
@@ -27,6 +28,7 @@ void set_tags(TIFF* tiff, const TerrainMap& terrain, const TerrainMap::Page& pag
 TerrainMap::Page read_page(TIFF* tiff, const std::filesystem::path& file, const TerrainMap& terrain)
 {
     std::uint32_t width = 0, height = 0, tile_width = 0, tile_height = 0;
+    std::uint16_t compression = 0, predictor = 0;
     const char* description = nullptr;
     TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &width);
     TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &height);
@@ -35,6 +37,10 @@ TerrainMap::Page read_page(TIFF* tiff, const std::filesystem::path& file, const 
     if (int(width) != terrain.frame.cols || int(height) != terrain.frame.rows || tile_width != TerrainMap::tile ||
         tile_height != TerrainMap::tile || TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &description) != 1)
         throw FileError(file.string(), "has a page whose size is not that of the map's frame; bake the map again");
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
+    if (compression != COMPRESSION_ADOBE_DEFLATE || TIFFGetFieldDefaulted(tiff, TIFFTAG_PREDICTOR, &predictor) != 1 ||
+        predictor != PREDICTOR_FLOATINGPOINT)
+        throw FileError(file.string(), "has a page that is not deflated with predictor 3; bake the map again");
     TerrainMap::Page page{description, {}};
     const std::uint32_t tiles = TIFFNumberOfTiles(tiff);
     for (std::uint32_t t = 0; t < tiles; ++t) {

@@ -45,6 +45,14 @@ HeightImage page_or_nothing(const TerrainMap& terrain, const std::string& name)
     return terrain.find(name) ? page_image(terrain, name) : HeightImage();
 }
 
+/// The obstacles, and the ground beside them.
+void add_obstacles(const TerrainMap& terrain, HeightImage& ground)
+{
+    if (!terrain.find("obstacle")) return;
+    const HeightImage obstacle = page_image(terrain, "obstacle");
+    ground = obstacle.isNaN().select(ground, obstacle);
+}
+
 /// The cells at the pixels' centres.
 cv::Mat_<float> samples(const GridFrame& frame, const HeightImage& page, const View& view, cv::Size pixels)
 {
@@ -130,9 +138,10 @@ void write_preview(const TerrainMap& terrain, const std::string& title, const st
     const cv::Size pixels(std::max(1, cvRound(scale * view.width)), std::max(1, cvRound(scale * view.height)));
 
     TopView top;
-    top.terrain = samples(grid, page_or_nothing(terrain, "height.0"), view, pixels);
     top.water = samples(grid, page_or_nothing(terrain, "water"), view, pixels);
-    const HeightImage solid = page_or_nothing(terrain, "solid_top.0");
+    HeightImage solid = page_image(terrain, "height.0");
+    top.terrain = samples(grid, solid, view, pixels);
+    add_obstacles(terrain, solid);
     top.solid = samples(grid, solid, view, pixels);
     const ColourScale heights = scale_over(top.terrain, "terrain height, m", hypsometric());
     const Drawing drawing = draw_top(top, relief(grid, solid, view, pixels), heights);
