@@ -1,6 +1,7 @@
 #include "catch.h"
 #include "hand_scene.h"
 #include "slow.h"
+#include "temp_folder.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>
@@ -76,6 +77,25 @@ TEST_CASE("an occupancy tree has the same leaves at any thread count and is prun
     const Map large = map_of(empty);
     const OccupancyTree tree = build_occupancy(large.geometry, {Vec3(0, 0, 0), Vec3(64, 64, 64)}, 1);
     CHECK(tree.leaves() < 64);  // 262,144 voxels, all but one free
+}
+
+TEST_CASE("the file that is written without a tree is the tree's, at any thread count")
+{
+    const TempFolder temp;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        const TestMap map = map_of(random_scene(seed));
+        Bounds bounds = map.bounds;
+        if (seed % 3 == 0) bounds = {bounds.min - Vec3(1, 20, 3), bounds.max + Vec3(15, 1, 7)};  // over the edges of blocks
+        const double voxel = 0.05 + 0.03 * double(seed % 4);
+        const OccupancyTree tree = build_occupancy(map.geometry, bounds, voxel);
+        tree.write(temp / "tree.bt");
+        for (const int threads : {1, 8}) {
+            CHECK(write_occupancy(temp / "direct.bt", map.geometry, bounds, voxel, threads) == tree.leaves());
+            CHECK((bytes_of(temp / "direct.bt") == bytes_of(temp / "tree.bt")));
+        }
+        const OccupancyTree read = read_occupancy(temp / "direct.bt");
+        CHECK(read.leaves() == tree.leaves());
+    }
 }
 
 TEST_CASE("bounds beyond OctoMap's keys are refused with the resolution that would do")

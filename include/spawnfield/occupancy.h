@@ -36,6 +36,11 @@ private:
 OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution,
                               int threads = 0, const Progress& progress = {});
 
+/// Writes the same tree to a binary .bt, without making its nodes: a hundredth of the memory. Returns the number of its
+/// leaves. Throws OutputError too.
+std::size_t write_occupancy(const std::filesystem::path& file, const Geometry& geometry, const Bounds& bounds, double resolution,
+                            int threads = 0, const Progress& progress = {});
+
 /// Throws FileError.
 OccupancyTree read_occupancy(const std::filesystem::path& file);
 

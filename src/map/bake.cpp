@@ -2,6 +2,7 @@
 #include "base/chosen_bounds.h"
 #include "base/input_file.h"
 #include "base/number.h"
+#include "base/parallel.h"
 #include "base/png.h"
 #include "base/stopwatch.h"
 #include "map/bounds_file.h"
@@ -105,13 +106,29 @@ std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::
         }
     if (!(low <= high)) low = high = 0;
     const double step = high > low ? (high - low) / 65534 : 1e-3;
-    std::vector<std::uint16_t> pixels;
-    pixels.reserve(std::size_t(top.size()));
-    for (Eigen::Index row = 0; row < top.rows(); ++row)
-        for (Eigen::Index col = 0; col < top.cols(); ++col)
-            pixels.push_back(std::isnan(top(row, col)) ? std::uint16_t(0) : std::uint16_t(std::lround(1 + (top(row, col) - low) / step)));
+    std::vector<std::uint16_t> pixels(std::size_t(top.size()));
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const float z = top.data()[i];
+        pixels[i] = std::isnan(z) ? std::uint16_t(0) : std::uint16_t((z - low) / step + 1.5);
+    }
     write_grey_png(file, int(top.rows()), int(top.cols()), pixels.data());
     return {low - step, low + 65534 * step};
+}
+
+/// terrain.tiff, heightmap.png and preview.png side by side. Sets map.layers; returns heightmap.png's range.
+std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path& folder, Map& map, int threads)
+{
+    std::pair<double, double> z_range;
+    parallel_for(3, threads, {}, [&](std::size_t file) {
+        if (file == 0) {
+            const HeightImage top = page_image(terrain, "height.0");
+            map.layers = top.isNaN().all() ? 0 : terrain.layers();
+            z_range = write_heightmap_png(top, folder / "heightmap.png");
+        }
+        if (file == 1) write_preview(terrain, map.name, folder / "preview.png");
+        if (file == 2) write_terrain(folder / "terrain.tiff", terrain);
+    });
+    return z_range;
 }
 
 /// The stages' share of the progress bar.
@@ -155,23 +172,18 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     scene = {};
     lap("geometry");
     const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads, part_of(options.progress, 0, 0.3));
-    const HeightImage top = page_image(terrain, "height.0");
-    map.layers = top.isNaN().all() ? 0 : terrain.layers();
     lap("terrain");
+    const std::pair<double, double> z_range = write_images(terrain, target.path(), map, options.threads);
+    lap("images");
     map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads, part_of(options.progress, 0.3, 0.6));
     write_bounds(target.path() / "bounds.bin", map.solid_bounds);
     map.solid_bounds = {};
     lap("bounds");
-    const OccupancyTree tree = build_occupancy(map.geometry, map.bounds, map.occupancy_resolution, options.threads,
-                                               part_of(options.progress, 0.6, 0.9));
-    report.occupancy_leaves = tree.leaves();
+    report.occupancy_leaves = write_occupancy(target.path() / "occupancy.bt", map.geometry, map.bounds, map.occupancy_resolution,
+                                              options.threads, part_of(options.progress, 0.6, 0.9));
     lap("occupancy");
 
-    write_terrain(target.path() / "terrain.tiff", terrain);
-    const auto z_range = write_heightmap_png(top, target.path() / "heightmap.png");
-    tree.write(target.path() / "occupancy.bt");
     write_geometry(target.path() / "geometry.bin", map.geometry);
-    write_preview(terrain, map.name, target.path() / "preview.png");
     report.hash = write_map_yaml(target.path(), map, terrain, z_range);
     if (options.progress) options.progress(1);
     for (const auto& entry : fs::directory_iterator(target.path())) report.bytes += entry.file_size();

@@ -1,5 +1,6 @@
 #include "base/number.h"
 #include "base/parallel.h"
+#include "geometry/tile.h"
 #include "map/cell_clip.h"
 #include "map/occupancy_impl.h"
 #include "scene/octomap_file.h"
@@ -10,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <span>
 #include <sstream>
 
 namespace spawnfield {
@@ -17,11 +20,6 @@ namespace {
 
 constexpr int key_offset = 32768;  // OctoMap's key of the voxel from 0 to one resolution
 constexpr int depth = 16;          // levels of an OcTree
-
-/// Voxel indices low .. high of one column, inclusive.
-struct Run {
-    int low, high;
-};
 
 struct VoxelBox {
     std::array<int, 3> low, high;  ///< inclusive
@@ -43,137 +41,241 @@ VoxelBox voxels_in(const Bounds& bounds, double resolution)
     return box;
 }
 
-/// Occupied runs of every voxel column of a box.
-class VoxelColumns {
+/// As two bits of a .bt file tell it of a child.
+enum class Content : std::uint8_t { Unknown = 0, Free = 1, Occupied = 2, Mixed = 3 };
+
+/// Of a column of cubes, the part up to cube `end` from where the stretch before it ends.
+struct Stretch {
+    int end;
+    Content content;
+};
+
+using Profile = std::vector<Stretch>;
+
+void append(Profile& profile, int end, Content content)
+{
+    const int from = profile.empty() ? 0 : profile.back().end;
+    if (end <= from) return;
+    if (!profile.empty() && profile.back().content == content) profile.back().end = end;
+    else profile.push_back({end, content});
+}
+
+/// Columns of cubes with a side of 2^level voxels, over a rectangle; beyond it is the unknown. Counted in cubes from
+/// OctoMap's lowest key.
+class Profiles {
 public:
-    VoxelColumns(const Geometry& geometry, const VoxelBox& box, double resolution, int threads,
-                 const Progress& progress)
-        : box_(box), resolution_(resolution), cols_(box.high[0] - box.low[0] + 1), rows_(box.high[1] - box.low[1] + 1)
+    Profiles(int level, int x0, int y0, int cols, int rows) : level_(level), x0_(x0), y0_(y0), cols_(cols), rows_(rows)
     {
-        constexpr int side = 128;
-        columns_.resize(std::size_t(cols_) * std::size_t(rows_));
-        const int blocks_x = (cols_ + side - 1) / side, blocks_y = (rows_ + side - 1) / side;
-        parallel_for(std::size_t(blocks_x) * std::size_t(blocks_y), threads, progress, [&](std::size_t b) {
-            const int i0 = int(b) % blocks_x * side, j0 = int(b) / blocks_x * side;
-            fill_block(geometry, i0, j0, std::min(side, cols_ - i0), std::min(side, rows_ - j0));
-        });
+        starts_.reserve(std::size_t(cols) * std::size_t(rows) + 1);
+        starts_.push_back(0);
     }
 
-    const VoxelBox& box() const { return box_; }
-    const std::vector<Run>& runs(int x, int y) const
+    int level() const { return level_; }
+    std::span<const Stretch> at(int x, int y) const
     {
-        return columns_[std::size_t(y - box_.low[1]) * std::size_t(cols_) + std::size_t(x - box_.low[0])];
+        if (x < x0_ || y < y0_ || x >= x0_ + cols_ || y >= y0_ + rows_) return {&beyond_, 1};
+        const std::size_t column = std::size_t(y - y0_) * std::size_t(cols_) + std::size_t(x - x0_);
+        return std::span(stretches_).subspan(starts_[column], starts_[column + 1] - starts_[column]);
+    }
+    Content at(int x, int y, int z) const
+    {
+        const auto column = at(x, y);
+        return std::upper_bound(column.begin(), column.end(), z, [](int at, const Stretch& s) { return at < s.end; })->content;
     }
 
-private:
-    void fill_block(const Geometry& geometry, int i0, int j0, int cols, int rows)
+    void add(std::span<const Stretch> column)  ///< row after row
     {
-        const CellBlock block{(box_.low[0] + i0) * resolution_, (box_.low[1] + j0) * resolution_, resolution_, cols, rows};
-        const CellSpans surfaces(geometry, block);
-        const Columns centres(geometry, {block.x0, block.y0, resolution_, 0, 0, cols, rows, 0.5});
-        std::vector<Interval> touching;
-        std::vector<Run> runs;
-        for (int j = 0; j < rows; ++j)
-            for (int i = 0; i < cols; ++i) {
-                runs.clear();
-                surfaces.get(block.id(i, j), touching);
-                for (const Interval& span : touching) add(touched(span), runs);
-                for (const Span& span : centres.at(i, j).spans) add(centres_in({span.bottom, span.top}), runs);
-                columns_[std::size_t(j0 + j) * std::size_t(cols_) + std::size_t(i0 + i)] = joined(runs);
+        stretches_.insert(stretches_.end(), column.begin(), column.end());
+        starts_.push_back(std::uint32_t(stretches_.size()));
+    }
+
+    /// The same in cubes twice as large. O(stretches).
+    Profiles halved() const
+    {
+        const int x0 = x0_ >> 1, y0 = y0_ >> 1, x1 = (x0_ + cols_ - 1) >> 1, y1 = (y0_ + rows_ - 1) >> 1;
+        Profiles out(level_ + 1, x0, y0, x1 - x0 + 1, y1 - y0 + 1);
+        Profile common, coarse;
+        for (int y = y0; y <= y1; ++y)
+            for (int x = x0; x <= x1; ++x) {
+                merge({at(2 * x, 2 * y), at(2 * x + 1, 2 * y), at(2 * x, 2 * y + 1), at(2 * x + 1, 2 * y + 1)}, common);
+                halve(common, coarse);
+                out.add(coarse);
             }
-    }
-
-    int voxel(double value) const { return int(std::clamp(value, -1e6, 1e6)); }
-    /// Voxels, as closed boxes, that a span of heights touches.
-    Run touched(const Interval& span) const
-    {
-        return {voxel(std::ceil((span.bottom - touch_tolerance) / resolution_) - 1),
-                voxel(std::floor((span.top + touch_tolerance) / resolution_))};
-    }
-    Run centres_in(const Interval& solid) const
-    {
-        return {voxel(std::ceil(solid.bottom / resolution_ - 0.5)), voxel(std::floor(solid.top / resolution_ - 0.5))};
-    }
-
-    void add(Run run, std::vector<Run>& runs) const
-    {
-        run.low = std::max(run.low, box_.low[2]);
-        run.high = std::min(run.high, box_.high[2]);
-        if (run.low <= run.high) runs.push_back(run);
-    }
-
-    static std::vector<Run> joined(std::vector<Run>& runs)
-    {
-        std::sort(runs.begin(), runs.end(), [](const Run& l, const Run& r) { return l.low < r.low; });
-        std::vector<Run> out;
-        for (const Run& run : runs) {
-            if (!out.empty() && run.low <= out.back().high + 1) out.back().high = std::max(out.back().high, run.high);
-            else out.push_back(run);
-        }
         return out;
     }
 
-    const VoxelBox box_;
-    const double resolution_;
-    const int cols_, rows_;
-    std::vector<std::vector<Run>> columns_;
-};
-
-enum class Content { Unknown, Free, Occupied, Mixed };
-
-Content merge(Content a, Content b) { return a == b ? a : Content::Mixed; }
-
-/// An OcTree built from voxel columns from the top down, so that nothing is inserted that would be pruned again.
-class ColumnOcTree : public octomap::OcTree {
-public:
-    ColumnOcTree(const VoxelColumns& columns, double voxel) : OcTree(voxel), columns_(columns)
-    {
-        root = new octomap::OcTreeNode();
-        ++tree_size;
-        fill(root, {-key_offset, -key_offset, -key_offset}, 1 << depth);
-    }
-
 private:
-    void fill(octomap::OcTreeNode* node, const std::array<int, 3>& low, int side)
+    /// What four columns have in common.
+    static void merge(std::array<std::span<const Stretch>, 4> columns, Profile& out)
     {
-        const int half = side / 2;
-        for (unsigned child = 0; child < 8; ++child) {
-            const std::array<int, 3> corner{low[0] + (child & 1 ? half : 0), low[1] + (child & 2 ? half : 0),
-                                            low[2] + (child & 4 ? half : 0)};
-            const Content content = content_of(corner, half);
-            if (content == Content::Unknown) continue;
-            octomap::OcTreeNode* const made = createNodeChild(node, child);
-            if (content == Content::Mixed) fill(made, corner, half);
-            else made->setLogOdds(content == Content::Occupied ? getClampingThresMaxLog() : getClampingThresMinLog());
+        out.clear();
+        while (!columns[0].empty()) {
+            Content content = columns[0].front().content;
+            int end = columns[0].front().end;
+            for (const auto& column : columns) {
+                end = std::min(end, column.front().end);
+                if (column.front().content != content) content = Content::Mixed;
+            }
+            append(out, end, content);
+            for (auto& column : columns)
+                if (column.front().end == end) column = column.subspan(1);
         }
-        node->updateOccupancyChildren();
     }
 
-    Content content_of(const std::array<int, 3>& low, int side) const
+    static void halve(const Profile& fine, Profile& out)
     {
-        const VoxelBox& box = columns_.box();
-        bool whole = true;  // whether the cube lies in the box
-        for (int axis = 0; axis < 3; ++axis) {
-            if (low[axis] > box.high[axis] || low[axis] + side - 1 < box.low[axis]) return Content::Unknown;
-            whole = whole && low[axis] >= box.low[axis] && low[axis] + side - 1 <= box.high[axis];
+        out.clear();
+        for (const Stretch& stretch : fine) {
+            append(out, stretch.end / 2, stretch.content);
+            append(out, (stretch.end + 1) / 2, Content::Mixed);  // nothing to append where the end is even
         }
-        if (!whole) return Content::Mixed;
-        Content all = run_content(columns_.runs(low[0], low[1]), low[2], side);
-        for (int y = low[1]; y < low[1] + side && all != Content::Mixed; ++y)
-            for (int x = low[0]; x < low[0] + side && all != Content::Mixed; ++x)
-                all = merge(all, run_content(columns_.runs(x, y), low[2], side));
-        return all;
     }
 
-    static Content run_content(const std::vector<Run>& runs, int low, int side)
-    {
-        const auto run = std::find_if(runs.begin(), runs.end(), [&](const Run& r) { return r.high >= low; });
-        if (run == runs.end() || run->low > low + side - 1) return Content::Free;
-        return run->low <= low && run->high >= low + side - 1 ? Content::Occupied : Content::Mixed;
-    }
-
-    const VoxelColumns& columns_;
+    int level_, x0_, y0_, cols_, rows_;
+    Stretch beyond_{(2 * key_offset) >> level_, Content::Unknown};
+    std::vector<std::uint32_t> starts_;
+    std::vector<Stretch> stretches_;
 };
+
+/// Profiles of the voxel columns of a part of the box, from its i0-th and j0-th on.
+Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double resolution, int i0, int j0, int cols, int rows)
+{
+    const CellBlock block{(box.low[0] + i0) * resolution, (box.low[1] + j0) * resolution, resolution, cols, rows};
+    const CellSpans surfaces(geometry, block);
+    Columns centres;
+    const bool may_be_filled = geometry.impl().has_filled_meshes;
+    if (may_be_filled) centres = Columns(geometry, {block.x0, block.y0, resolution, 0, 0, cols, rows, 0.5});
+    const auto voxel = [](double value) { return int(std::clamp(value, -1e6, 1e6)); };
+    struct Run {
+        int low, high;  // inclusive
+    };
+    std::vector<Run> runs;
+    const auto add = [&](int low, int high) {
+        low = std::max(low, box.low[2]);
+        high = std::min(high, box.high[2]);
+        if (low <= high) runs.push_back({low, high});
+    };
+    Profiles out(0, box.low[0] + i0 + key_offset, box.low[1] + j0 + key_offset, cols, rows);
+    std::vector<Interval> touching;
+    Profile profile;
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < cols; ++i) {
+            runs.clear();
+            surfaces.get(block.id(i, j), touching);
+            for (const Interval& span : touching)  // voxels, as closed boxes, that it touches
+                add(voxel(std::ceil((span.bottom - touch_tolerance) / resolution) - 1), voxel(std::floor((span.top + touch_tolerance) / resolution)));
+            if (may_be_filled)
+                for (const Span& span : centres.at(i, j).spans)  // voxels whose centres are in it
+                    add(voxel(std::ceil(span.bottom / resolution - 0.5)), voxel(std::floor(span.top / resolution - 0.5)));
+            if (runs.size() > 1) std::sort(runs.begin(), runs.end(), [](const Run& l, const Run& r) { return l.low < r.low; });
+            profile.clear();
+            append(profile, box.low[2] + key_offset, Content::Unknown);
+            for (const Run& run : runs) {
+                append(profile, run.low + key_offset, Content::Free);
+                append(profile, run.high + 1 + key_offset, Content::Occupied);
+            }
+            append(profile, box.high[2] + 1 + key_offset, Content::Free);
+            append(profile, 2 * key_offset, Content::Unknown);
+            out.add(profile);
+        }
+    return out;
+}
+
+/// A tree as a .bt file has it: of each inner node two bits for each of its children, then those children that are inner
+/// nodes themselves.
+struct TreeBytes {
+    std::string nodes;
+    std::size_t inner = 1, leaves = 0;  ///< the root is inner
+};
+
+/// Writes what is under a cube that is Mixed. `levels` ends with the profiles of its level; what is under Mixed cubes of
+/// levels[0] comes from `under`.
+template <class Under>
+void write_cube(std::span<const Profiles> levels, int x, int y, int z, const Under& under, TreeBytes& out)
+{
+    if (levels.size() == 1) return under(x, y, z, out);
+    const Profiles& below = levels[levels.size() - 2];
+    std::array<Content, 8> contents;
+    unsigned bits = 0;
+    for (int child = 0; child < 8; ++child) {
+        const Content content = below.at(2 * x + (child & 1), 2 * y + (child >> 1 & 1), 2 * z + (child >> 2));
+        contents[std::size_t(child)] = content;
+        bits |= unsigned(content) << (2 * child);
+        if (content == Content::Mixed) ++out.inner;
+        else if (content != Content::Unknown) ++out.leaves;
+    }
+    out.nodes += char(bits & 0xff);
+    out.nodes += char(bits >> 8);
+    for (int child = 0; child < 8; ++child)
+        if (contents[std::size_t(child)] == Content::Mixed)
+            write_cube(levels.first(levels.size() - 1), 2 * x + (child & 1), 2 * y + (child >> 1 & 1), 2 * z + (child >> 2), under, out);
+}
+
+/// Cubes with a side of 2^block_level voxels, one over the other.
+constexpr int block_level = 7;
+struct Tower {
+    Profile profile;
+    std::map<int, TreeBytes> cubes;  ///< what is under those that are Mixed
+};
+
+Tower build_tower(const Geometry& geometry, const VoxelBox& box, double resolution, int x, int y)
+{
+    constexpr int side = 1 << block_level;
+    const auto part = [&](int axis, int cube) {  // of the box's voxels: the first, and how many
+        const int low = std::max(0, cube * side - key_offset - box.low[std::size_t(axis)]);
+        const int end = std::min(box.high[std::size_t(axis)] + 1, (cube + 1) * side - key_offset) - box.low[std::size_t(axis)];
+        return std::pair{low, end - low};
+    };
+    const auto [i0, cols] = part(0, x);
+    const auto [j0, rows] = part(1, y);
+    std::vector<Profiles> levels{voxel_profiles(geometry, box, resolution, i0, j0, cols, rows)};
+    while (levels.back().level() < block_level) levels.push_back(levels.back().halved());
+    Tower tower;
+    int z = 0;
+    for (const Stretch& stretch : levels.back().at(x, y)) {
+        tower.profile.push_back(stretch);
+        for (; z < stretch.end; ++z)
+            if (stretch.content == Content::Mixed) {
+                TreeBytes& cube = tower.cubes[z];
+                cube.inner = 0;
+                write_cube(std::span<const Profiles>(levels), x, y, z, [](int, int, int, TreeBytes&) {}, cube);
+            }
+    }
+    return tower;
+}
+
+TreeBytes build_tree(const Geometry& geometry, const Bounds& bounds, double resolution, int threads, const Progress& progress)
+{
+    if (!(resolution > 0) || !std::isfinite(resolution)) throw ArgumentError("build_occupancy", "resolution", resolution, "> 0 m");
+    const VoxelBox box = voxels_in(bounds, resolution);
+    const auto cube_of = [&](int voxel) { return (voxel + key_offset) >> block_level; };
+    const int x0 = cube_of(box.low[0]), y0 = cube_of(box.low[1]);
+    const int cols = cube_of(box.high[0]) - x0 + 1, rows = cube_of(box.high[1]) - y0 + 1;
+    std::vector<Tower> towers(std::size_t(cols) * std::size_t(rows));
+    parallel_for(towers.size(), threads, progress, [&](std::size_t t) {
+        towers[t] = build_tower(geometry, box, resolution, x0 + int(t) % cols, y0 + int(t) / cols);
+    });
+    std::vector<Profiles> levels{Profiles(block_level, x0, y0, cols, rows)};
+    for (const Tower& tower : towers) levels.back().add(tower.profile);
+    while (levels.back().level() < depth) levels.push_back(levels.back().halved());
+    TreeBytes out;
+    write_cube(std::span<const Profiles>(levels), 0, 0, 0,
+               [&](int x, int y, int z, TreeBytes& tree) {
+                   const TreeBytes& cube = towers[std::size_t(y - y0) * std::size_t(cols) + std::size_t(x - x0)].cubes.at(z);
+                   tree.nodes += cube.nodes;
+                   tree.inner += cube.inner;
+                   tree.leaves += cube.leaves;
+               },
+               out);
+    return out;
+}
+
+/// A whole .bt file. octomap's own writeBinary tells standard error about it, so its header is written here.
+std::string bt_file(double resolution, std::size_t size, const std::string& nodes)
+{
+    return "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid OcTree\nsize " +
+           std::to_string(size) + "\nres " + number(resolution) + "\ndata\n" + nodes;
+}
 
 }  // namespace
 
@@ -193,25 +295,29 @@ OccupancyTree::State OccupancyTree::at(const Vec3& point) const
 
 void OccupancyTree::write(const std::filesystem::path& file) const
 {
-    // octomap's own writeBinary tells standard error about it, so its header is written here.
-    std::ostringstream bytes(std::ios::binary);
-    bytes << "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
-          << "id " << impl_->tree->getTreeType() << "\nsize " << impl_->tree->size() << "\nres " << number(resolution())
-          << "\ndata\n";
-    if (impl_->tree->size() > 0) impl_->tree->writeBinaryNode(bytes, impl_->tree->getRoot());
-    write_file_atomically(file, bytes.str());
+    std::ostringstream nodes(std::ios::binary);
+    if (impl_->tree->size() > 0) impl_->tree->writeBinaryNode(nodes, impl_->tree->getRoot());
+    write_file_atomically(file, bt_file(resolution(), impl_->tree->size(), nodes.str()));
 }
 
 OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution,
                               int threads, const Progress& progress)
 {
-    if (!(resolution > 0) || !std::isfinite(resolution)) throw ArgumentError("build_occupancy", "resolution", resolution, "> 0 m");
-    const VoxelColumns columns(geometry, voxels_in(bounds, resolution), resolution, threads, progress);
-    auto impl = std::make_unique<OccupancyTree::Impl>();
+    const TreeBytes bytes = build_tree(geometry, bounds, resolution, threads, progress);
+    std::istringstream nodes(bytes.nodes, std::ios::binary);
     auto tree = std::make_shared<octomap::OcTree>(resolution);
-    ColumnOcTree(columns, resolution).swapContent(*tree);
+    tree->readBinaryData(nodes);
+    auto impl = std::make_unique<OccupancyTree::Impl>();
     impl->tree = std::move(tree);
     return OccupancyTree(std::move(impl));
+}
+
+std::size_t write_occupancy(const std::filesystem::path& file, const Geometry& geometry, const Bounds& bounds, double resolution, int threads,
+                            const Progress& progress)
+{
+    const TreeBytes tree = build_tree(geometry, bounds, resolution, threads, progress);
+    write_file_atomically(file, bt_file(resolution, tree.inner + tree.leaves, tree.nodes));
+    return tree.leaves;
 }
 
 OccupancyTree read_occupancy(const std::filesystem::path& file)
