@@ -1,5 +1,4 @@
 #include "base/chosen_bounds.h"
-#include "query/judging.h"
 #include "query/spawning.h"
 
 #include <spawnfield/error.h>
@@ -36,7 +35,8 @@ public:
     bool run(SpawnList& out)
     {
         std::uint64_t failures = 0;
-        draw_in_order(options_.threads, share_found(options_, out), [this](std::uint64_t index) { return look(index); }, [&](const Candidate& candidate) {
+        const auto batch_size = [&](std::uint64_t draws) { return batch_for(options_.count, out.spawns.size(), draws); };
+        draw_in_order(0, judging_, share_found(options_, out), batch_size, [this](std::uint64_t index, SpawnJudge& judge) { return look(index, judge); }, [&](const Candidate& candidate) {
             ++out.draws;
             ++failures;
             if (overfull_) return false;
@@ -54,7 +54,7 @@ private:
         return out;
     }
 
-    Candidate look(std::uint64_t index)
+    Candidate look(std::uint64_t index, SpawnJudge& judge)
     {
         Draw draw(options_.seed, index);
         const double x = draw.uniform(box_.min.x(), box_.max.x()), y = draw.uniform(box_.min.y(), box_.max.y());
@@ -69,10 +69,7 @@ private:
         out.spawn.position = Vec3(x, y, layers[std::size_t(slot)] + options_.offset);
         out.clear = taken_.is_clear(out.spawn.position);
         if (!out.clear) return out;
-        PoseJudge judge(judging_);
-        judge.face(out.spawn.yaw);
-        judge.set_y(y);
-        out.judgement = judge.at(column, x, out.spawn.position.z());
+        out.set(judge.at(y, out.spawn.yaw).at(column, x, out.spawn.position.z()));
         return out;
     }
 
@@ -82,9 +79,9 @@ private:
             ++out.too_close;
             return false;
         }
-        ++out.counts[std::size_t(candidate.judgement.verdict)];
-        out.exact_checks += candidate.judgement.exact_check;
-        if (candidate.judgement.verdict != Verdict::Valid) return false;
+        ++out.counts[std::size_t(candidate.verdict)];
+        out.exact_checks += candidate.exact_check;
+        if (candidate.verdict != Verdict::Valid) return false;
         taken_.add(candidate.spawn.position);
         out.spawns.push_back(candidate.spawn);
         return true;

@@ -1,5 +1,5 @@
 #include "base/chosen_bounds.h"
-#include "query/judging.h"
+#include "free_space/bounds_tile.h"
 #include "query/spawning.h"
 
 #include <spawnfield/error.h>
@@ -20,41 +20,87 @@ void check_spawn_options(const char* function, const SpawnOptions& options)
     if (!std::isfinite(options.yaw)) throw ArgumentError(function, "yaw", options.yaw, "a finite number, rad");
 }
 
+namespace {
+
+/// Poses that are so high above all that is solid that they are aerial whatever their column holds, by a coarse image of
+/// the highest solids.
+class FarAbove {
+public:
+    /// Of no map: nothing is.
+    explicit FarAbove(const Map* map, double max_height) : max_height_(max_height)
+    {
+        if (map == nullptr) return;
+        raster_ = &map->solid_bounds.impl();
+        bounds_ = map->bounds;
+        while (level_ + 1 < raster_->levels.size() && raster_->levels[level_].cell < finest) ++level_;
+        if (raster_->levels.empty()) raster_ = nullptr;
+    }
+
+    bool holds(const Vec3& p) const
+    {
+        if (raster_ == nullptr || !bounds_.contains_xy(p.x(), p.y(), 0)) return false;
+        const BoundsLevel& level = raster_->levels[level_];
+        const double u = (p.x() - raster_->x0) / level.cell, v = (p.y() - raster_->y0) / level.cell;
+        const double col = std::floor(u), row = std::floor(v);
+        // Lines along a border between cells see what touches it from either side.
+        const auto is_near_border = [](double in_cell) { return in_cell < 1e-6 || in_cell > 1 - 1e-6; };
+        if (is_near_border(u - col) || is_near_border(v - row)) return false;
+        // Coarse cells at the upper rims reach beyond the finest ones.
+        const BoundsLevel& finest_level = raster_->levels[0];
+        if (!(col >= 0 && row >= 0 && col < double(finest_level.cols >> level_) && row < double(finest_level.rows >> level_))) return false;
+        const auto c = std::uint32_t(col), r = std::uint32_t(row);
+        const BoundsTile tile = raster_->open(level_, c / BoundsTile::side, r / BoundsTile::side);
+        if (tile.head == nullptr) return true;
+        const std::uint16_t top = tile.tops[r % BoundsTile::side * BoundsTile::side + c % BoundsTile::side];
+        return top == 0 || p.z() - max_height_ > tile.height(top) + margin;
+    }
+
+private:
+    static constexpr double finest = 1.5;   // m; finer images miss the cache
+    static constexpr double margin = 1e-5;  // m
+
+    const SolidBounds::Impl* raster_ = nullptr;
+    Bounds bounds_;
+    std::size_t level_ = 0;
+    const double max_height_;
+};
+
+}  // namespace
+
 SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOptions& options)
 {
     check_spawn_options("search", options);
     if (options.max_failures < 1) throw ArgumentError("search", "max_failures", double(options.max_failures), ">= 1");
     const Bounds box = chosen_bounds("search", options.bounds, map.bounds);
     const Judging judging(map, checker, options);
+    const FarAbove far_above(options.exhaustive ? nullptr : &map, options.max_height);
     SpacedPoints checked(options.min_distance);
 
-    const auto look = [&](std::uint64_t index) {
+    const auto look = [&](std::uint64_t index, SpawnJudge& judge) {
         Draw draw(options.seed, index);
         Candidate out;
-        out.on_ground = true;
-        for (int axis = 0; axis < 3; ++axis) out.spawn.position[axis] = draw.uniform(box.min[axis], box.max[axis]);
+        Vec3& p = out.spawn.position;
+        for (int axis = 0; axis < 3; ++axis) p[axis] = draw.uniform(box.min[axis], box.max[axis]);
         out.spawn.yaw = draw_yaw(options, draw);
-        out.clear = checked.is_clear(out.spawn.position);
+        out.clear = checked.is_clear(p);
         if (!out.clear) return out;
-        const Vec3& p = out.spawn.position;
-        PoseJudge judge(judging);
-        judge.face(out.spawn.yaw);
-        judge.set_y(p.y());
-        out.judgement = judge.at(column_at(map.geometry, p.x(), p.y()), p.x(), p.z());
+        if (far_above.holds(p)) out.verdict = Verdict::Aerial;
+        else out.set(judge.at(p.y(), out.spawn.yaw).at(column_at(map.geometry, p.x(), p.y()), p.x(), p.z()));
         return out;
     };
     SpawnList out;
     std::uint64_t failures = 0;
-    draw_in_order(options.threads, share_found(options, out), look, [&](const Candidate& candidate) {
+    const auto batch_size = [&](std::uint64_t draws) { return batch_for(options.count, out.spawns.size(), draws); };
+    draw_in_order(0, judging, share_found(options, out), batch_size, look, [&](const Candidate& candidate) {
         ++out.draws;
         ++failures;
         if (!candidate.clear || !checked.is_clear(candidate.spawn.position)) {
             ++out.too_close;
         } else {
             checked.add(candidate.spawn.position);
-            ++out.counts[std::size_t(candidate.judgement.verdict)];
-            out.exact_checks += candidate.judgement.exact_check;
-            if (candidate.judgement.verdict == Verdict::Valid) {
+            ++out.counts[std::size_t(candidate.verdict)];
+            out.exact_checks += candidate.exact_check;
+            if (candidate.verdict == Verdict::Valid) {
                 out.spawns.push_back(candidate.spawn);
                 failures = 0;
             }

@@ -2,59 +2,92 @@
 
 #include <spawnfield/types.h>
 
+#include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <vector>
 
 namespace spawnfield {
 
-/// Points in a hash grid with cells of the distance that is asked for, so that a look-up meets 27 cells.
+/// Points in a hash grid with cells of the distance that is asked for, so that a look-up meets 27 cells: nine rows of three
+/// neighbouring table entries. Cells that share an entry share its list too: distances decide, so that does no harm.
 /// Source: Bridson, Fast Poisson Disk Sampling in Arbitrary Dimensions, 2007 (the background grid).
 class SpacedPoints {
 public:
     explicit SpacedPoints(double distance) : distance_(distance) {}
 
+    double distance() const { return distance_; }
+
     /// Whether every point so far is at least the distance away. Always true for a distance of 0.
     bool is_clear(const Vec3& point) const
     {
-        if (!(distance_ > 0)) return true;
+        return !any_near(point, [&](const Vec3& other) { return (other - point).norm() < distance_; });
+    }
+
+    /// Whether `test` holds for any of some points, among them all that are nearer than the distance.
+    template <class Test>
+    bool any_near(const Vec3& point, const Test& test) const
+    {
+        if (points_.empty()) return false;
         const Cell centre = cell_of(point);
-        for (std::int64_t dx = -1; dx <= 1; ++dx)
-            for (std::int64_t dy = -1; dy <= 1; ++dy)
-                for (std::int64_t dz = -1; dz <= 1; ++dz) {
-                    const auto found = cells_.find({centre[0] + dx, centre[1] + dy, centre[2] + dz});
-                    if (found == cells_.end()) continue;
-                    for (const Vec3& other : found->second)
-                        if ((other - point).norm() < distance_) return false;
-                }
-        return true;
+        for (std::uint64_t dz = 0; dz < 3; ++dz)
+            for (std::uint64_t dy = 0; dy < 3; ++dy) {
+                const std::uint64_t row = row_start(centre[1] + dy - 1, centre[2] + dz - 1) + centre[0];
+                for (std::uint64_t dx = 0; dx < 3; ++dx)
+                    for (std::uint32_t i = heads_[(row + dx - 1) & mask_]; i != none; i = points_[i].next)
+                        if (test(points_[i].position)) return true;
+            }
+        return false;
     }
 
     void add(const Vec3& point)
     {
-        if (distance_ > 0) cells_[cell_of(point)].push_back(point);
+        if (!(distance_ > 0)) return;
+        points_.push_back({point, none});
+        if (2 * points_.size() > heads_.size()) {
+            heads_.assign(std::max(smallest, 2 * heads_.size()), none);
+            mask_ = heads_.size() - 1;
+            for (std::uint32_t i = 0; i < points_.size(); ++i) link(i);
+        } else {
+            link(std::uint32_t(points_.size() - 1));
+        }
     }
 
 private:
-    using Cell = std::array<std::int64_t, 3>;
-    struct CellHash {
-        std::size_t operator()(const Cell& cell) const
-        {
-            std::uint64_t hash = 0;
-            for (const std::int64_t c : cell) hash = (hash ^ std::uint64_t(c)) * 0x9E3779B97F4A7C15 + (hash >> 29);
-            return hash;
-        }
+    using Cell = std::array<std::uint64_t, 3>;
+    struct Point {
+        Vec3 position;
+        std::uint32_t next;  ///< of the same table entry
     };
+    static constexpr std::uint32_t none = 0xffffffff;
+    static constexpr std::size_t smallest = 4096;
+
+    static std::uint64_t row_start(std::uint64_t y, std::uint64_t z)
+    {
+        const std::uint64_t hash = (y * 0x9E3779B97F4A7C15) ^ (z * 0xC2B2AE3D27D4EB4F);
+        return (hash ^ (hash >> 32)) * 0xD6E8FEB86659FD93 >> 16;
+    }
 
     Cell cell_of(const Vec3& point) const
     {
+        constexpr double farthest = 9e18;  // cells; what lies beyond shares the outermost
         Cell cell{};
-        for (int axis = 0; axis < 3; ++axis) cell[axis] = std::int64_t(std::floor(point[axis] / distance_));
+        for (int axis = 0; axis < 3; ++axis)
+            cell[axis] = std::uint64_t(std::int64_t(std::clamp(std::floor(point[axis] / distance_), -farthest, farthest)));
         return cell;
     }
 
+    void link(std::uint32_t i)
+    {
+        const Cell cell = cell_of(points_[i].position);
+        std::uint32_t& head = heads_[(row_start(cell[1], cell[2]) + cell[0]) & mask_];
+        points_[i].next = head;
+        head = i;
+    }
+
     const double distance_;
-    std::unordered_map<Cell, std::vector<Vec3>, CellHash> cells_;
+    std::vector<Point> points_;
+    std::vector<std::uint32_t> heads_;  ///< last point of each table entry; a power of 2 of them
+    std::uint64_t mask_ = 0;
 };
 
 }  // namespace spawnfield

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "query/draw.h"
+#include "query/judging.h"
 #include "query/spaced_points.h"
 
 #include <spawnfield/query.h>
@@ -23,8 +24,34 @@ inline double draw_yaw(const SpawnOptions& options, Draw& draw)
 struct Candidate {
     bool on_ground = false;  ///< whether the draw gave a pose at all
     bool clear = false;
+    bool exact_check = false;
+    Verdict verdict = Verdict::Outside;
+    std::uint32_t place = 0;  ///< that it was drawn from, where there are several
     Spawn spawn;
-    Judgement judgement;
+
+    void set(const Judgement& judgement)
+    {
+        verdict = judgement.verdict;
+        exact_check = judgement.exact_check;
+    }
+};
+
+/// A PoseJudge that turns only when the yaw changes.
+class SpawnJudge {
+public:
+    explicit SpawnJudge(const Judging& judging) : judge_(judging) {}
+
+    PoseJudge& at(double y, double yaw)
+    {
+        if (!(yaw == yaw_)) judge_.face(yaw);
+        yaw_ = yaw;
+        judge_.set_y(y);
+        return judge_;
+    }
+
+private:
+    PoseJudge judge_;
+    double yaw_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The share of the wanted spawns that were found, told to whoever waits: also while none are.
@@ -34,21 +61,34 @@ inline Progress share_found(const SpawnOptions& options, const SpawnList& found)
     return [&](double) { options.progress(double(found.spawns.size()) / double(options.count)); };
 }
 
-/// Draws 0, 1, 2, … in batches that all cores judge ahead; `take` gets them one by one in their order, and stops the
-/// work by returning false. How far ahead they are judged never shows in the result. `progress` hears of it meanwhile.
-template <class Look, class Take>
-void draw_in_order(int threads, const Progress& progress, const Look& look, const Take& take)
+/// Draws first, first + 1, … in batches that all cores judge ahead: look(index, judge) gives a Candidate. `take` gets them one
+/// by one in their order, and stops the work by returning false. `batch_size(draws)` tells how many to judge after so many;
+/// how far ahead they are judged never shows in the result. `progress` hears of it meanwhile. Returns the next draw's number.
+template <class BatchSize, class Look, class Take>
+std::uint64_t draw_in_order(std::uint64_t first, const Judging& judging, const Progress& progress, const BatchSize& batch_size,
+                            const Look& look, const Take& take)
 {
-    constexpr std::size_t first_batch = 256, largest_batch = 16384;
+    constexpr std::size_t chunk = 64;
     std::vector<Candidate> batch;
-    std::uint64_t next = 0;
-    for (std::size_t size = first_batch;; size = std::min(2 * size, largest_batch)) {
-        batch.assign(size, {});
-        parallel_for(size, threads, progress, [&](std::size_t i) { batch[i] = look(next + i); });
-        for (const Candidate& candidate : batch)
-            if (!take(candidate)) return;
-        next += size;
+    for (std::uint64_t next = first;;) {
+        batch.resize(batch_size(next - first));
+        parallel_for((batch.size() + chunk - 1) / chunk, judging.options().threads, progress, [&](std::size_t c) {
+            SpawnJudge judge(judging);
+            for (std::size_t i = c * chunk; i < std::min(batch.size(), (c + 1) * chunk); ++i) batch[i] = look(next + i, judge);
+        });
+        for (const Candidate& candidate : batch) {
+            ++next;
+            if (!take(candidate)) return next;
+        }
     }
+}
+
+/// About as many draws as the spawns that are still wanted will take, by the share that gave one so far.
+inline std::size_t batch_for(std::size_t wanted, std::size_t found, std::uint64_t draws)
+{
+    constexpr double smallest = 256, largest = 16384;
+    const double share = (double(found) + 1) / (double(draws) + 1);
+    return std::size_t(std::clamp(std::min(double(wanted - found) / share, 2 * double(draws)), smallest, largest));
 }
 
 }  // namespace spawnfield
