@@ -1,7 +1,9 @@
 #include "catch.h"
+#include "compare.h"
 #include "hand_scene.h"
 #include "test_map.h"
 
+#include "query/cell_proofs.h"
 #include "query/draw.h"
 
 #include <spawnfield/error.h>
@@ -58,6 +60,53 @@ std::vector<Vec3> slow_search(const Map& map, const CollisionChecker& checker, c
         failures = 0;
     }
     return found;
+}
+
+/// A valid pose in one of the chosen layers at (x, y), NaN if there is none.
+Spawn valid_at(const Map& map, const CollisionChecker& checker, const SampleOptions& options, double x, double y, Random& random)
+{
+    const Column column = column_at(map.geometry, x, y);
+    const int count = int(column.layers.size());
+    for (int layer = 0; layer < count; ++layer) {
+        if (!options.layers.includes(layer, count)) continue;
+        const Spawn spawn{{x, y, column.layers[std::size_t(layer)] + options.offset}, options.random_yaw ? random.between(-M_PI, M_PI) : options.yaw};
+        QueryOptions query = options;
+        query.max_height = 1e9;
+        if (judge(map, checker, column, {spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}, query).verdict == Verdict::Valid) return spawn;
+    }
+    return {Vec3::Constant(std::nan("")), 0};
+}
+
+/// How many points of a grid could still be added.
+std::size_t room_left(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const SpawnList& list, int cells)
+{
+    Random random{1};
+    std::size_t count = 0;
+    for (int i = 0; i <= cells; ++i)
+        for (int j = 0; j <= cells; ++j) {
+            const Vec3 p = map.bounds.min + (map.bounds.max - map.bounds.min).cwiseProduct(Vec3(double(i) / cells, double(j) / cells, 0));
+            for (const double layer : column_at(map.geometry, p.x(), p.y()).layers) {
+                const Vec3 at(p.x(), p.y(), layer + options.offset);
+                const bool clear = std::all_of(list.spawns.begin(), list.spawns.end(), [&](const Spawn& s) { return (s.position - at).norm() >= options.min_distance; });
+                if (clear && judged(map, checker, {at, random.between(-M_PI, M_PI)}, 1e9) == Verdict::Valid) ++count;
+            }
+        }
+    return count;
+}
+
+/// 10 x 10 m of floor: a sheet, a box, a closed mesh; a ramp with things on it and in it.
+Scene floor_scene(int kind)
+{
+    Scene scene;
+    if (kind == 0) hand::add_mesh(scene, Label::Terrain, hand::rectangle(10, 10));
+    if (kind == 1) hand::add_shape(scene, Label::Terrain, {ShapeKind::Box, {10, 10, 0.5}, {{0, 0, -0.25}, Mat3::Identity()}});
+    if (kind == 2) hand::add_mesh(scene, Label::Terrain, hand::moved(hand::box({10, 10, 0.5}), {{0, 0, -0.25}, Mat3::Identity()}));
+    if (kind == 3) {
+        hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(10, 10), {{0, 0, 0}, rotation_from_rpy(0, 0.2, 0)}));
+        hand::add_shape(scene, Label::Obstacle, {ShapeKind::Box, {2, 3, 4}, {{2, 2, 0}, rotation_from_rpy(0, 0, 0.5)}});
+        hand::add_shape(scene, Label::Obstacle, {ShapeKind::Cylinder, {0.5, 6, 0}, {{-2, -2, 0}, Mat3::Identity()}});
+    }
+    return scene;
 }
 
 }  // namespace
@@ -196,6 +245,156 @@ TEST_CASE("a sample that does not fit gives what it found")
     CHECK(list.spawns.size() >= 4);
     CHECK(list.spawns.size() < 20);
     CHECK(smallest_distance(list.spawns) >= 6);
+}
+
+TEST_CASE("a full region is proven: nothing can be added, by dense probing")
+{
+    const int kind = GENERATE(0, 1, 2, 3);
+    CAPTURE(kind);
+    const TestMap map = map_of(floor_scene(kind));
+    const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.2,0.2"));
+    const SampleOptions options = sample_options(10000, 1);
+    const SpawnList list = sample(map, checker, options);
+    CHECK(list.is_full);
+    CHECK(list.undecided_area == 0);
+    CHECK(list.spawns.size() > 60);
+    CHECK(list.spawns.size() < 130);
+    CHECK(smallest_distance(list.spawns) >= 1);
+    CHECK(room_left(map, checker, options, list, 250) == 0);
+}
+
+TEST_CASE("as many as fit are found by asking for so many; one more is too many")
+{
+    const TestMap map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    SampleOptions options = sample_options(100000, 1.2);
+    options.random_yaw = false;
+    const SpawnList all = sample(map, checker, options);
+    CHECK(all.undecided_area < 0.01);
+    CHECK(all.spawns.size() > 50);
+    options.count = all.spawns.size();
+    const SpawnList exact = sample(map, checker, options);
+    CHECK(spawns_csv(exact) == spawns_csv(all));
+    CHECK_FALSE(exact.is_full);
+    ++options.count;
+    CHECK(spawns_csv(sample(map, checker, options)) == spawns_csv(all));
+}
+
+TEST_CASE("filling gives the same bytes at any thread count, and exhaustively")
+{
+    const TestMap map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    SampleOptions options = sample_options(100000, 1.1);
+    options.threads = 1;
+    const SpawnList one = sample(map, checker, options);
+    for (const int threads : {2, 8}) {
+        options.threads = threads;
+        const SpawnList many = sample(map, checker, options);
+        CHECK(spawns_csv(many) == spawns_csv(one));
+        CHECK((many.draws == one.draws && many.undecided_area == one.undecided_area && many.counts == one.counts));
+    }
+    options.exhaustive = true;
+    const SpawnList slow = sample(map, checker, options);
+    CHECK(spawns_csv(slow) == spawns_csv(one));
+    CHECK((slow.draws == one.draws && slow.undecided_area == one.undecided_area && slow.counts == one.counts));
+}
+
+TEST_CASE("a small island in a large map is found")
+{
+    Scene scene;
+    const int around = GENERATE(0, 1, 2);
+    CAPTURE(around);
+    const Vec3 place(123.4, -77.7, 1);
+    const auto add = [&](Label label, const Vec3& size, const Vec3& centre) { hand::add_shape(scene, label, {ShapeKind::Box, size, {centre, Mat3::Identity()}}); };
+    add(Label::Terrain, {2, 2, 2}, place - Vec3(0, 0, 1));  // its top is at 1 m
+    if (around > 0) add(Label::Terrain, {500, 500, 1}, {0, 0, -0.5});
+    if (around == 1) hand::add_mesh(scene, Label::Water, hand::moved(hand::rectangle(500, 500), {{0, 0, 0.5}, Mat3::Identity()}));
+    if (around == 2) {  // a slab over all but the island
+        add(Label::Obstacle, {250 + place.x() - 1, 500, 3}, {(place.x() - 1 - 250) / 2, 0, 1.5});
+        add(Label::Obstacle, {250 - place.x() - 1, 500, 3}, {(place.x() + 1 + 250) / 2, 0, 1.5});
+        add(Label::Obstacle, {2, 250 + place.y() - 1, 3}, {place.x(), (place.y() - 1 - 250) / 2, 1.5});
+        add(Label::Obstacle, {2, 250 - place.y() - 1, 3}, {place.x(), (place.y() + 1 + 250) / 2, 1.5});
+    }
+    const TestMap map = map_of(scene, 1.0, {Vec3(-250, -250, -1), Vec3(250, 250, 4)});
+    const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.3,0.3"));
+    for (const double distance : {0.0, 0.3}) {
+        const SampleOptions options = sample_options(12, distance);
+        const SpawnList list = sample(map, checker, options);
+        CHECK(list.spawns.size() == 12);
+        CAPTURE(distance, list.draws);
+        CHECK(list.draws < 400000);
+        for (const Spawn& spawn : list.spawns) CHECK((spawn.position - place).cwiseAbs().maxCoeff() <= 1.0);
+    }
+    const SpawnList full = sample(map, checker, sample_options(1000, 0.5));
+    CAPTURE(full.spawns.size(), full.draws, full.undecided_area);
+    CHECK(full.is_full);
+    CHECK(full.spawns.size() >= 5);
+}
+
+TEST_CASE("where nothing is feasible, that is proven")
+{
+    Scene scene;
+    hand::add_shape(scene, Label::Terrain, {ShapeKind::Box, {20, 20, 1}, {{0, 0, -0.5}, Mat3::Identity()}});
+    hand::add_shape(scene, Label::Obstacle, {ShapeKind::Box, {21, 21, 1}, {{0, 0, 0.5}, Mat3::Identity()}});
+    const TestMap map = map_of(scene);
+    const SpawnList list = sample(map, checker_of(map, husky()), sample_options(5, 0));
+    CHECK(list.spawns.empty());
+    CHECK(list.is_full);
+    CHECK(list.draws < 10000);
+}
+
+TEST_CASE("two floors above each other are filled equally")
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Terrain, hand::rectangle(12, 12));
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(12, 12), {{0, 0, 2.5}, Mat3::Identity()}));
+    const TestMap map = map_of(scene);
+    const CollisionChecker checker = checker_of(map, load_robot("box:0.2,0.2,0.2"));
+    const SampleOptions options = sample_options(10000, 0.6);
+    const SpawnList list = sample(map, checker, options);
+    CHECK(list.is_full);
+    const auto upper = double(std::count_if(list.spawns.begin(), list.spawns.end(), [](const Spawn& s) { return s.position.z() > 2; }));
+    CHECK(upper == Approx(double(list.spawns.size()) / 2).epsilon(0.06));
+    CHECK(room_left(map, checker, options, list, 200) == 0);
+}
+
+TEST_CASE("cells that are proven closed hold no valid pose, in hard scenes")
+{
+    std::size_t closed = 0, open = 0, valid = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const HardCase hard = hard_case(seed);
+        const TestMap map = map_at(hard.scene, hard.resolution, hard.map_bounds);
+        const CollisionChecker checker = checker_of(map, hard.robot);
+        Random random{seed};
+        SampleOptions options = sample_options(1, random.between(0.1, 1));
+        options.random_yaw = random.chance(0.5);
+        options.yaw = hard.yaws[0];
+        options.offset = hard.offset;
+        if (random.chance(0.2)) options.max_water_depth = random.between(0, 0.5);
+        if (random.chance(0.2)) options.layers.kind = LayerChoice::Kind::Top;
+        SpacedPoints taken(options.min_distance);
+        CellProofs proofs(map, checker, options, taken);
+        for (int n = 0; n < 60; ++n) {
+            const double side = 2 * std::pow(0.5, random.below(8));
+            const Bounds crop = compare::crop_near(map, random, side, 2);
+            const Rect cell{crop.min.x(), crop.min.y(), crop.min.x() + side, crop.min.y() + side};
+            proofs.set_half_cell(side / 2, side / 2);
+            const bool is_closed = proofs.is_closed(cell);
+            ++(is_closed ? closed : open);
+            for (int k = 0; k < 12; ++k) {
+                const double x = random.between(cell.low_x, cell.high_x), y = random.between(cell.low_y, cell.high_y);
+                const Spawn spawn = valid_at(map, checker, options, x, y, random);
+                if (!spawn.position.allFinite() || !taken.is_clear(spawn.position)) continue;
+                ++valid;
+                CAPTURE(seed, n, x, y, side);
+                CHECK_FALSE(is_closed);
+                if (k == 11) taken.add(spawn.position);
+            }
+        }
+    }
+    CHECK(closed > 500);
+    CHECK(open > 500);
+    CHECK(valid > 1000);
 }
 
 TEST_CASE("counts and distances out of their limits are refused")

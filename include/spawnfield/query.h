@@ -105,6 +105,8 @@ struct SpawnList {
     std::uint64_t draws = 0;      ///< all of them
     std::uint64_t too_close = 0;  ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
+    bool is_full = false;         ///< sample: fewer than count, and proven that none fits beside them
+    double undecided_area = 0;    ///< sample, if fewer and not proven: horizontal m2 in which one may still fit
 };
 
 /// More than anybody starts, and what still fits into memory.
@@ -133,7 +135,13 @@ struct SampleOptions : SpawnOptions {
 };
 
 /// Valid poses distributed uniformly by horizontal area over the feasible region of all chosen layers, each confirmed
-/// exactly, at least min_distance apart. Fewer than count if draws keep failing (1000 * count, at least 100000 in a row).
+/// exactly, at least min_distance apart.
+///
+/// When draws keep failing, it goes over to cells that cover the region: those in which no further spawn can stand are proven
+/// so from the scene's geometry and left out, the others are drawn from, uniformly by area as before, and split. It ends
+/// with fewer than count when no cell is left (is_full), or when the cells are too small (0.1 mm) or too many to go on.
+/// Sources: White, Cline, Egbert, Poisson disk point sets by hierarchical dart throwing, 2007; Ebeida et al., A simple
+/// algorithm for maximal Poisson-disk sampling in high dimensions, 2012.
 SpawnList sample(const Map& map, const CollisionChecker& checker, const SampleOptions& options);
 
 }  // namespace spawnfield

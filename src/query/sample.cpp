@@ -1,15 +1,26 @@
 #include "base/chosen_bounds.h"
+#include "query/cell_proofs.h"
 #include "query/spawning.h"
 
 #include <spawnfield/error.h>
 
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 namespace spawnfield {
 namespace {
 
-/// Draws in a row without a spawn after which the feasible region counts as full.
-constexpr std::uint64_t patience = 200000;
+/// Draws without a spawn in a row after which cells are looked at; or of so many draws less than a share gave one.
+constexpr std::uint64_t blind_patience = 2000, blind_window = 1 << 17;
+constexpr double least_share = 0.02;
+constexpr double fair_share = 0.05;  // with which it goes on in the same cells
+constexpr double first_cells = 1024, most_first_cells = 65536;
+constexpr std::size_t most_cells = 1 << 24;  // kept at a time
+/// Proofs made in all: some, half as many where next to nothing is left to decide, and more for each spawn found.
+constexpr std::size_t some_proofs = 1 << 19, proofs_per_spawn = 12;
+constexpr double next_to_nothing = 2e-5;                        // of the region
+constexpr double smallest_cell = 0.0001;                        // m
 
 /// Layers of a column that were chosen, from the top.
 std::vector<double> chosen_layers(const Column& column, const LayerChoice& choice)
@@ -21,32 +32,176 @@ std::vector<double> chosen_layers(const Column& column, const LayerChoice& choic
     return out;
 }
 
+/// A region in equal cells, of which some are left. They are split all at once, so that to draw one of them, and then a
+/// point of it, is to draw by area.
+class Cells {
+public:
+    Cells(const Bounds& box, double min_distance) : box_(box), size_(box.max.head<2>() - box.min.head<2>())
+    {
+        if (!(size_.minCoeff() >= 0)) return;  // no region at all
+        const double area = std::max(size_.x() * size_.y(), smallest_cell * smallest_cell);
+        const double side = std::clamp(min_distance / std::numbers::sqrt2, std::sqrt(area / most_first_cells), std::sqrt(area / first_cells));
+        cols_ = count(size_.x(), side);
+        rows_ = count(size_.y(), side);
+        left_.reserve(std::size_t{cols_} * rows_);
+        for (std::uint32_t row = 0; row < rows_; ++row)
+            for (std::uint32_t col = 0; col < cols_; ++col) left_.push_back({col, row});
+    }
+
+    std::size_t size() const { return left_.size(); }
+    double width() const { return size_.x() / cols_; }
+    double height() const { return size_.y() / rows_; }
+    double area() const { return double(left_.size()) * width() * height(); }
+
+    double region_area() const { return size_.x() * size_.y(); }
+
+    Rect at(std::size_t i) const
+    {
+        const auto [col, row] = left_[i];
+        const auto x = [&](std::uint32_t c) { return std::min(box_.max.x(), box_.min.x() + c * width()); };
+        const auto y = [&](std::uint32_t r) { return std::min(box_.max.y(), box_.min.y() + r * height()); };
+        return {x(col), y(row), x(col + 1), y(row + 1)};
+    }
+
+    bool can_split() const { return std::max(cols_, rows_) < 1u << 31; }
+
+    void split()
+    {
+        cols_ *= 2;
+        rows_ *= 2;
+        std::vector<Cell> out;
+        out.reserve(4 * left_.size());
+        for (const auto& [col, row] : left_)
+            for (std::uint32_t k = 0; k < 4; ++k) out.push_back({2 * col + k % 2, 2 * row + k / 2});
+        left_ = std::move(out);
+    }
+
+    /// Keeps those whose flag is 0.
+    void drop(const std::vector<std::uint8_t>& flags)
+    {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < left_.size(); ++i)
+            if (flags[i] == 0) left_[kept++] = left_[i];
+        left_.resize(kept);
+    }
+
+private:
+    struct Cell {
+        std::uint32_t col, row;
+    };
+    static std::uint32_t count(double length, double side) { return std::uint32_t(std::clamp(std::ceil(length / side), 1.0, most_first_cells)); }
+
+    const Bounds box_;
+    const Eigen::Vector2d size_;
+    std::uint32_t cols_ = 1, rows_ = 1;
+    std::vector<Cell> left_;
+};
+
+Bounds within(Bounds box, const Bounds& limits)
+{
+    for (int axis = 0; axis < 2; ++axis) {
+        box.min[axis] = std::max(box.min[axis], limits.min[axis] - touch_tolerance);
+        box.max[axis] = std::min(box.max[axis], limits.max[axis] + touch_tolerance);
+    }
+    return box;
+}
+
 /// One pass with a fixed number of slots per column. A draw takes one slot at one point; a slot without a layer gives
 /// nothing. So each layer is drawn with equal density, however many there are above each other.
 class Sampler {
 public:
     Sampler(const Map& map, const CollisionChecker& checker, const SampleOptions& options, std::size_t slots)
-        : map_(map), options_(options), judging_(map, checker, standing(options)), box_(chosen_bounds("sample", options.bounds, map.bounds, 2)), slots_(slots),
-          taken_(options.min_distance)
+        : map_(map), checker_(checker), options_(options), judging_(map, checker, standing(options)),
+          box_(chosen_bounds("sample", options.bounds, map.bounds, 2)), slots_(slots), taken_(options.min_distance)
     {
     }
 
     /// False if a column had more layers than slots: then nothing that was drawn counts.
     bool run(SpawnList& out)
     {
-        std::uint64_t failures = 0;
-        const auto batch_size = [&](std::uint64_t draws) { return batch_for(options_.count, out.spawns.size(), draws); };
-        draw_in_order(0, judging_, share_found(options_, out), batch_size, [this](std::uint64_t index, SpawnJudge& judge) { return look(index, judge); }, [&](const Candidate& candidate) {
-            ++out.draws;
-            ++failures;
-            if (overfull_) return false;
-            if (candidate.on_ground && take(candidate, out)) failures = 0;
-            return out.spawns.size() < options_.count && failures < patience;
+        const auto point = [&](Draw& from) {
+            const double x = from.uniform(box_.min.x(), box_.max.x()), y = from.uniform(box_.min.y(), box_.max.y());
+            return Vec2(x, y);
+        };
+        std::size_t before = 0;
+        draw(out, std::numeric_limits<std::uint64_t>::max(), point, [&](std::uint64_t draws, std::uint64_t failures) {
+            if (failures >= blind_patience) return false;
+            if (draws % blind_window != 0) return true;
+            return double(out.spawns.size() - std::exchange(before, out.spawns.size())) > least_share * double(blind_window);
         });
+        if (!overfull_ && out.spawns.size() < options_.count) fill(out);
         return !overfull_;
     }
 
 private:
+    using Vec2 = Eigen::Vector2d;
+
+    /// At most so many draws of points, until all are found or go_on(draws, failures in a row) says no. Returns how many
+    /// spawns they gave.
+    template <class Point, class GoOn>
+    std::size_t draw(SpawnList& out, std::uint64_t most, const Point& point, const GoOn& go_on)
+    {
+        const std::size_t before = out.spawns.size();
+        std::uint64_t failures = 0, draws = 0;
+        const auto batch_size = [&](std::uint64_t so_far) {
+            return std::size_t(std::min<std::uint64_t>(most - so_far, batch_for(options_.count, out.spawns.size(), out.draws)));
+        };
+        const auto look_at = [&](std::uint64_t index, SpawnJudge& judge) { return look(index, point, judge); };
+        next_ = draw_in_order(next_, judging_, share_found(options_, out), taken_, batch_size, look_at, [&](const Candidate& candidate) {
+            ++out.draws;
+            ++draws;
+            ++failures;
+            if (overfull_) return false;
+            if (candidate.on_ground && take(candidate, out)) failures = 0;
+            return out.spawns.size() < options_.count && draws < most && go_on(draws, failures);
+        });
+        taken_.settle();
+        return out.spawns.size() - before;
+    }
+
+    /// Goes on in the cells that are not proven full, as long as they can be split.
+    void fill(SpawnList& out)
+    {
+        Cells cells(within(box_, map_.bounds), options_.min_distance);
+        CellProofs proofs(map_, checker_, options_, taken_.before());
+        std::size_t proofs_made = 0;
+        const auto point = [&](Draw& from) {
+            const Rect cell = cells.at(std::min(cells.size() - 1, std::size_t(from.unit() * double(cells.size()))));
+            const double x = from.uniform(cell.low_x, cell.high_x), y = from.uniform(cell.low_y, cell.high_y);
+            return Vec2(x, y);
+        };
+        for (bool is_last = false;;) {
+            proofs_made += cells.size();
+            close(cells, proofs, out);
+            if (is_last || cells.size() == 0) break;
+            const std::size_t round = std::max<std::size_t>(256, cells.size());
+            std::size_t found = round;
+            while (!is_done(out) && double(found) > fair_share * double(round))
+                found = draw(out, round, point, [](std::uint64_t, std::uint64_t) { return true; });
+            if (is_done(out)) return;
+            const bool is_nearly_decided = cells.area() < next_to_nothing * cells.region_area();
+            const std::size_t affordable = some_proofs / (is_nearly_decided ? 2 : 1) + proofs_per_spawn * out.spawns.size();
+            const bool is_smallest = std::max(cells.width(), cells.height()) < 2 * smallest_cell || !cells.can_split();
+            if (!is_smallest && 4 * cells.size() <= most_cells && proofs_made + 4 * cells.size() <= affordable) cells.split();
+            else is_last = double(found) < least_share * double(round) || proofs_made > affordable;
+        }
+        out.undecided_area = cells.area();
+        out.is_full = cells.size() == 0;
+    }
+
+    bool is_done(const SpawnList& out) const { return overfull_ || out.spawns.size() == options_.count; }
+
+    void close(Cells& cells, CellProofs& proofs, const SpawnList& out) const
+    {
+        constexpr std::size_t chunk = 64;
+        proofs.set_half_cell(cells.width() / 2, cells.height() / 2);
+        std::vector<std::uint8_t> flags(cells.size());
+        parallel_for((flags.size() + chunk - 1) / chunk, options_.threads, share_found(options_, out), [&](std::size_t c) {
+            for (std::size_t i = c * chunk; i < std::min(flags.size(), (c + 1) * chunk); ++i) flags[i] = proofs.is_closed(cells.at(i));
+        });
+        cells.drop(flags);
+    }
+
     static QueryOptions standing(const SampleOptions& options)
     {
         QueryOptions out = options;
@@ -54,20 +209,21 @@ private:
         return out;
     }
 
-    Candidate look(std::uint64_t index, SpawnJudge& judge)
+    template <class Point>
+    Candidate look(std::uint64_t index, const Point& point, SpawnJudge& judge)
     {
-        Draw draw(options_.seed, index);
-        const double x = draw.uniform(box_.min.x(), box_.max.x()), y = draw.uniform(box_.min.y(), box_.max.y());
-        const double slot = draw.uniform(0, double(slots_));
+        Draw from(options_.seed, index);
+        const Vec2 at = point(from);
+        const double x = at.x(), y = at.y(), slot = from.uniform(0, double(slots_));
         Candidate out;
-        out.spawn.yaw = draw_yaw(options_, draw);
+        out.spawn.yaw = draw_yaw(options_, from);
         const Column column = column_at(map_.geometry, x, y);
         const std::vector<double> layers = chosen_layers(column, options_.layers);
         if (layers.size() > slots_) overfull_ = true;
         if (slot >= double(layers.size())) return out;
         out.on_ground = true;
         out.spawn.position = Vec3(x, y, layers[std::size_t(slot)] + options_.offset);
-        out.clear = taken_.is_clear(out.spawn.position);
+        out.clear = taken_.before().is_clear(out.spawn.position);
         if (!out.clear) return out;
         out.set(judge.at(y, out.spawn.yaw).at(column, x, out.spawn.position.z()));
         return out;
@@ -75,7 +231,7 @@ private:
 
     bool take(const Candidate& candidate, SpawnList& out)
     {
-        if (!candidate.clear || !taken_.is_clear(candidate.spawn.position)) {
+        if (!candidate.clear || !taken_.is_still_clear(candidate.spawn.position)) {
             ++out.too_close;
             return false;
         }
@@ -88,11 +244,13 @@ private:
     }
 
     const Map& map_;
+    const CollisionChecker& checker_;
     const SampleOptions& options_;
     const Judging judging_;
     const Bounds box_;
     const std::size_t slots_;
-    SpacedPoints taken_;
+    TakenPoints taken_;
+    std::uint64_t next_ = 0;  ///< draw
     std::atomic<bool> overfull_{false};
 };
 

@@ -74,7 +74,7 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
     const Bounds box = chosen_bounds("search", options.bounds, map.bounds);
     const Judging judging(map, checker, options);
     const FarAbove far_above(options.exhaustive ? nullptr : &map, options.max_height);
-    SpacedPoints checked(options.min_distance);
+    TakenPoints checked(options.min_distance);
 
     const auto look = [&](std::uint64_t index, SpawnJudge& judge) {
         Draw draw(options.seed, index);
@@ -82,7 +82,7 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
         Vec3& p = out.spawn.position;
         for (int axis = 0; axis < 3; ++axis) p[axis] = draw.uniform(box.min[axis], box.max[axis]);
         out.spawn.yaw = draw_yaw(options, draw);
-        out.clear = checked.is_clear(p);
+        out.clear = checked.before().is_clear(p);
         if (!out.clear) return out;
         if (far_above.holds(p)) out.verdict = Verdict::Aerial;
         else out.set(judge.at(p.y(), out.spawn.yaw).at(column_at(map.geometry, p.x(), p.y()), p.x(), p.z()));
@@ -91,10 +91,10 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
     SpawnList out;
     std::uint64_t failures = 0;
     const auto batch_size = [&](std::uint64_t draws) { return batch_for(options.count, out.spawns.size(), draws); };
-    draw_in_order(0, judging, share_found(options, out), batch_size, look, [&](const Candidate& candidate) {
+    draw_in_order(0, judging, share_found(options, out), checked, batch_size, look, [&](const Candidate& candidate) {
         ++out.draws;
         ++failures;
-        if (!candidate.clear || !checked.is_clear(candidate.spawn.position)) {
+        if (!candidate.clear || !checked.is_still_clear(candidate.spawn.position)) {
             ++out.too_close;
         } else {
             checked.add(candidate.spawn.position);

@@ -52,6 +52,12 @@ public:
         }
     }
 
+    void clear()
+    {
+        points_.clear();
+        std::fill(heads_.begin(), heads_.end(), none);
+    }
+
 private:
     using Cell = std::array<std::uint64_t, 3>;
     struct Point {

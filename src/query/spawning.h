@@ -26,7 +26,6 @@ struct Candidate {
     bool clear = false;
     bool exact_check = false;
     Verdict verdict = Verdict::Outside;
-    std::uint32_t place = 0;  ///< that it was drawn from, where there are several
     Spawn spawn;
 
     void set(const Judgement& judgement)
@@ -54,6 +53,32 @@ private:
     double yaw_ = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Positions that others keep their distance from, when draws are looked at in batches: what was added since the batch began
+/// is all that a draw which was clear then is still to be held against.
+class TakenPoints {
+public:
+    explicit TakenPoints(double distance) : before_(distance), since_(distance) {}
+
+    const SpacedPoints& before() const { return before_; }
+    bool is_still_clear(const Vec3& point) const { return since_.is_clear(point); }
+    void add(const Vec3& point)
+    {
+        since_.add(point);
+        news_.push_back(point);
+    }
+    /// To be called between batches.
+    void settle()
+    {
+        for (const Vec3& point : news_) before_.add(point);
+        news_.clear();
+        since_.clear();
+    }
+
+private:
+    SpacedPoints before_, since_;
+    std::vector<Vec3> news_;
+};
+
 /// The share of the wanted spawns that were found, told to whoever waits: also while none are.
 inline Progress share_found(const SpawnOptions& options, const SpawnList& found)
 {
@@ -65,12 +90,13 @@ inline Progress share_found(const SpawnOptions& options, const SpawnList& found)
 /// by one in their order, and stops the work by returning false. `batch_size(draws)` tells how many to judge after so many;
 /// how far ahead they are judged never shows in the result. `progress` hears of it meanwhile. Returns the next draw's number.
 template <class BatchSize, class Look, class Take>
-std::uint64_t draw_in_order(std::uint64_t first, const Judging& judging, const Progress& progress, const BatchSize& batch_size,
-                            const Look& look, const Take& take)
+std::uint64_t draw_in_order(std::uint64_t first, const Judging& judging, const Progress& progress, TakenPoints& taken,
+                            const BatchSize& batch_size, const Look& look, const Take& take)
 {
     constexpr std::size_t chunk = 64;
     std::vector<Candidate> batch;
     for (std::uint64_t next = first;;) {
+        taken.settle();
         batch.resize(batch_size(next - first));
         parallel_for((batch.size() + chunk - 1) / chunk, judging.options().threads, progress, [&](std::size_t c) {
             SpawnJudge judge(judging);

@@ -3,6 +3,7 @@
 #include <spawnfield/error.h>
 
 #include <cmath>
+#include <cstdio>
 
 namespace spawnfield::cli {
 namespace {
@@ -27,6 +28,18 @@ void fill_spawn(SpawnOptions& options, const SpawnArgs& args, const std::string&
     if (!args.region.empty()) options.bounds = parse_bounds("--region", args.region, true);
 }
 
+std::string shortfall(const SpawnOptions& options, const SpawnList& list, const std::string& command)
+{
+    const std::string found = std::to_string(list.spawns.size()), of_count = found + " of " + std::to_string(options.count) + " spawns ";
+    const std::string advice = "a smaller --min-distance, " + std::string(command == "sample" ? "another --offset or a wider --region" : "more --max-failures or wider --bounds");
+    if (list.is_full && list.spawns.empty()) return "no spawn fits: it is proven that no pose is valid; " + advice + " may give some";
+    if (list.is_full) return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice + " may give more";
+    if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
+    char area[32];
+    std::snprintf(area, sizeof area, "%.3g", list.undecided_area);
+    return "only " + of_count + "were found; one more may fit within " + area + " m2 that are neither proven full nor blocked, and nowhere else; " + advice + " may give more";
+}
+
 int finish(Summary& summary, const SpawnArgs& args, const Session& session, const SpawnOptions& options, const SpawnList& list,
            const std::string& command)
 {
@@ -43,10 +56,7 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
                      std::to_string(list.draws) + " draws, " + std::to_string(list.too_close) + " too close"};
     summary.finish();
     if (list.spawns.size() == options.count) return done;
-    notice(args, "only " + std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) +
-                     " spawns were found; a smaller --min-distance, " +
-                     (command == "sample" ? "another --offset or a wider --region" : "more --max-failures or wider --bounds") +
-                     " may give more");
+    notice(args, shortfall(options, list, command));
     return fewer_found;
 }
 

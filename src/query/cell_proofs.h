@@ -1,0 +1,56 @@
+#pragma once
+
+#include "query/spaced_points.h"
+
+#include <spawnfield/query.h>
+
+#include <vector>
+
+namespace spawnfield {
+
+/// A rectangle as seen from above, m.
+struct Rect {
+    double low_x, low_y, high_x, high_y;
+
+    double centre_x() const { return (low_x + high_x) / 2; }
+    double centre_y() const { return (low_y + high_y) / 2; }
+};
+
+/// Proofs that no further sample can stand anywhere in a cell, from the scene's own geometry: the mask has no part in them, so
+/// that they are the same with it and without it.
+///
+/// A cell's layers lie between heights that the planes of its terrain give. At each such height, all poses must be too close
+/// to one taken position, under water, or collide: the robot drawn in by half a cell does at its centre, or some point of
+/// the robot is inside the ground at every pose. Lines within 1e-9 m of an upright face are left aside. What is not
+/// proven stays open: cells half on an obstacle as flat as the offset, for one.
+class CellProofs {
+public:
+    /// `taken` may grow between calls of is_closed, never during them.
+    CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const SpacedPoints& taken);
+    ~CellProofs();
+
+    /// For cells of these half sides, m. Not to be called while others ask.
+    void set_half_cell(double half_x, double half_y);
+    bool is_closed(const Rect& cell) const;
+
+private:
+    struct Facet;
+    struct Facets;
+    struct Prism;
+    class Cell;
+    /// The robot's inside, smaller by half a cell and by half a range of heights: where it collides, the robot does at every
+    /// pose of the cell.
+    struct DrawnIn {
+        double half_height;  ///< m
+        CollisionChecker checker;
+    };
+    Robot drawn_in(double half_x, double half_y, double half_height) const;
+
+    const Map& map_;
+    const SampleOptions& options_;
+    const SpacedPoints& taken_;
+    std::vector<Prism> prisms_;        ///< within the robot at every yaw that is drawn, relative to its origin
+    std::vector<DrawnIn> drawn_in_;    ///< from the lowest range of heights on
+};
+
+}  // namespace spawnfield
