@@ -22,5 +22,6 @@ ProgramRun run_program(const TempFolder& folder, const std::string& arguments) {
 
 ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds)
 {
-    return run(folder, "timeout --preserve-status --signal=INT --kill-after=30 " + std::to_string(seconds), arguments);
+    // In the foreground only the program is told: a group's members are told twice, and the second Ctrl-C ends it at once.
+    return run(folder, "timeout --foreground --preserve-status --signal=INT --kill-after=30 " + std::to_string(seconds), arguments);
 }
