@@ -79,14 +79,16 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"raster map -o out --dims 3 --step 1 --bounds 0,0,1,1" + husky, "spawnfield: --bounds has 4 numbers, needs 6: x0,y0,z0,x1,y1,z1"},
         {raster + "--max-height -1", "spawnfield: --max-height is -1, needs >= 0 m"},
         {raster + "--max-water-depth nan", "spawnfield: --max-water-depth is nan, needs >= 0 m"},
-        {raster + "--yaw inf", "spawnfield: raster: yaw is inf, needs a finite number, rad"},
+        {raster + "--yaw inf", "spawnfield: --yaw is inf, needs a finite number, rad"},
+        {raster + "--offset inf", "spawnfield: --offset is inf, needs a finite number, m"},
         {raster + "--write-aerial", "spawnfield: --write-aerial is for --dims 3"},
+        {"raster map -o out --dims 2 --step 0.00001" + husky, "spawnfield: columns is 640001600001, needs at most 2147483647; take a larger step"},
         {"raster map -o out --dims 3 --step 1 --write-aerial --layers top" + husky,
          "spawnfield: --write-aerial needs --layers all: aerial poses are above no layer"},
         {raster + "--no-height-check",
-         "spawnfield: raster: without height check needs dims 3: a pose of a 2D raster stands on its layer by definition"},
+         "spawnfield: without height check needs dims 3: a pose of a 2D raster stands on its layer by definition"},
         {sample + "-n 0", "spawnfield: -n is 0, needs >= 1"},
-        {sample + "-n 5 --min-distance -1", "spawnfield: sample: min_distance is -1, needs >= 0 m"},
+        {sample + "-n 5 --min-distance -1", "spawnfield: --min-distance is -1, needs >= 0 m"},
         {sample + "-n 5 --yaw north", "spawnfield: --yaw: \"north\" is no finite number"},
         {sample + "-n 5 --region 1,1,0,0", "spawnfield: --region: x1 is 0, needs at least x0: the lower corner comes first"},
         {search + "-n 5 --max-failures 0", "spawnfield: --max-failures is 0, needs >= 1"},
@@ -97,12 +99,16 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"bake scene.yaml -o new --bounds 0,0,0,1,1,-1", "spawnfield: --bounds: z1 is -1, needs at least z0: the lower corner comes first"},
         {"bake scene.yaml -o new --label a=grass",
          "spawnfield: --label is \"a=grass\", needs GLOB=terrain, GLOB=obstacle, GLOB=water or GLOB=ignore"},
-        {"bake scene.yaml -o new --scale 2", "spawnfield: load_scene: up and scale are for a bare mesh; give them in scene.yaml (keys up, scale)"},
+        {"bake scene.yaml -o new --scale 2", "spawnfield: up and scale are for a bare mesh; give them in scene.yaml (keys up, scale)"},
         {"bake scene.yaml -o new --scale 0", "spawnfield: --scale is 0, needs > 0"},
+        {"bake scene.yaml -o new --resolution 0.00001",
+         "spawnfield: columns at a cell of 1e-05 m is 6.4e+11, needs at most 1e+08; take a coarser resolution"},
+        {"frob map", "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap"},
+        {sample + "-n 5 --seed -1", "--seed: -1 is no whole number from 0 to 18446744073709551615" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);
     for (const std::string arguments : {"fly map", "raster map --dims 4 --step 1", "raster map --dims 2 --step x", "sample map -n many",
-                                        "sample map -n 5 --seed -1", "sample map -n 5 --format xml", "info map --threads -1",
+                                        "sample map -n 5 --format xml", "info map --threads -1",
                                         "heatmap map -o out --size 20", "check map --poses poses.csv --collision guess"}) {
         CAPTURE(arguments);
         const ProgramRun run = run_program(desk, arguments + (arguments.starts_with("raster") || arguments.starts_with("sample") ||

@@ -182,6 +182,8 @@ TEST_CASE("info says of a house with a face missing that it is a shell")
     CHECK_THAT(run_program(folder, "info closed.obj").out, Contains("closed: mesh, terrain, 4 triangles, 1 solid\n"));
     CHECK_THAT(run_program(folder, "info open.obj").out,
                Contains("open: mesh, terrain, 3 triangles, 1 shell (without thickness, not filled; 3 open edges)\n"));
+    run_program(folder, "bake closed.obj -o map");
+    CHECK_THAT(run_program(folder, "info map").out, Contains(" m, 1 layer; voxels of "));
 }
 
 TEST_CASE("check adds verdicts to the poses it is given, on standard output or into a file")

@@ -237,6 +237,13 @@ TEST_CASE("options out of their limits are refused by function, argument, value 
     CHECK(complaint(folder, [&] { search(map, checker, search_options); }) == "search: max_failures is 0, needs >= 1");
 }
 
+TEST_CASE("an error about an argument can be told without the function")
+{
+    CHECK(std::string(ArgumentError("raster", "step", 0, "> 0 m").message()) == "step is 0, needs > 0 m");
+    CHECK(std::string(ArgumentError("raster", "needs dims 3").message()) == "needs dims 3");
+    CHECK(std::string(ArgumentError("--dims: 4").message()) == "--dims: 4");
+}
+
 TEST_CASE("a bake refuses bad options and a scene without terrain, and makes no folder")
 {
     const TempFolder folder;

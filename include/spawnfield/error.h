@@ -9,7 +9,14 @@ namespace spawnfield {
 class ArgumentError : public std::invalid_argument {
 public:
     using std::invalid_argument::invalid_argument;
+    ArgumentError(const std::string& function, const std::string& message);
     ArgumentError(const std::string& function, const std::string& argument, double value, const std::string& limit);
+
+    /// what() without the function, for users of a program, who call none.
+    const char* message() const { return what() + prefix_length_; }
+
+private:
+    std::size_t prefix_length_ = 0;
 };
 
 /// An input file is missing, malformed or refused. what() names file, place, value and limit.

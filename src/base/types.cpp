@@ -7,9 +7,14 @@
 
 namespace spawnfield {
 
+ArgumentError::ArgumentError(const std::string& function, const std::string& message)
+    : std::invalid_argument(function + ": " + message), prefix_length_(function.size() + 2)
+{
+}
+
 ArgumentError::ArgumentError(const std::string& function, const std::string& argument, double value,
                              const std::string& limit)
-    : std::invalid_argument(function + ": " + argument + " is " + number(value) + ", needs " + limit)
+    : ArgumentError(function, argument + " is " + number(value) + ", needs " + limit)
 {
 }
 

@@ -32,7 +32,7 @@ VoxelBox voxels_in(const Bounds& bounds, double resolution)
         const double low = std::floor(bounds.min[axis] / resolution + 1e-9);
         const double high = std::max(low, std::ceil(bounds.max[axis] / resolution - 1e-9) - 1);
         if (!(low >= -key_offset && high < key_offset))
-            throw ArgumentError("build_occupancy", "resolution", resolution,
+            throw ArgumentError("build_occupancy", "occupancy resolution", resolution,
                                 "at least " + number(std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis])) / (key_offset - 1)) +
                                     " m here (OctoMap reaches 32768 voxels from the origin)");
         box.low[axis] = int(low);

@@ -15,7 +15,7 @@ namespace {
 int count_steps(double from, double to, double step, const char* axis)
 {
     const double count = std::floor((to - from) / step + 1e-9) + 1;
-    if (!(count <= 2147483647.0)) throw ArgumentError("raster", std::string("steps along ") + axis, count, "at most 2147483647");
+    if (!(count <= 2147483647.0)) throw ArgumentError("raster", std::string("steps along ") + axis, count, "at most 2147483647; take a larger step");
     return static_cast<int>(count);
 }
 
@@ -46,7 +46,7 @@ void check(const RasterOptions& options)
     if (!std::isfinite(options.offset)) throw ArgumentError("raster", "offset", options.offset, "a finite number, m");
     if (!std::isfinite(options.yaw)) throw ArgumentError("raster", "yaw", options.yaw, "a finite number, rad");
     if (!options.height_check && options.dims != 3)
-        throw ArgumentError("raster: without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
+        throw ArgumentError("raster", "without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
 }
 
 /// Poses of one row of columns, with what is counted but not kept.

@@ -62,7 +62,7 @@ Robot box_robot(const std::string& argument)
     if (size.size() != 3)
         throw ArgumentError("robot \"" + argument + "\": has " + std::to_string(size.size()) + " side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])");
     for (const double side : size)
-        if (!(side > 0)) throw ArgumentError("robot \"" + argument + "\"", "side length", side, "> 0 m");
+        if (!(side > 0)) throw ArgumentError("robot \"" + argument + "\": side length is " + number(side) + ", needs > 0 m");
     RobotPart part;
     part.shape.size = {size[0], size[1], size[2]};
     part.shape.pose.position = {0, 0, size[2] / 2};

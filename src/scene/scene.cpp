@@ -222,7 +222,7 @@ Scene read_bare_file(const std::filesystem::path& file, const std::string& exten
     }
     if (is_octomap(extension)) {
         if (options.up != 0 || options.scale != 1.0)
-            throw ArgumentError("load_scene: up and scale are for a mesh; " + file.string() + " is an OctoMap, in metres and z up");
+            throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() + " is an OctoMap, in metres and z up");
         for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
             if (matches(rule->pattern, scene.name)) fallback = rule->label;
         const std::uint32_t part = add_part(scene, scene.name, "octomap", fallback);
@@ -260,7 +260,7 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options)
     const std::string extension = lower_extension(file);
     const bool yaml = extension == ".yaml" || extension == ".yml";
     if (yaml && (options.up != 0 || options.scale != 1.0))
-        throw ArgumentError("load_scene: up and scale are for a bare mesh; give them in " + file.string() + " (keys up, scale)");
+        throw ArgumentError("load_scene", "up and scale are for a bare mesh; give them in " + file.string() + " (keys up, scale)");
     Scene scene = yaml ? read_scene_yaml(file, options) : read_bare_file(file, extension, options);
     if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored");
     return scene;

@@ -26,10 +26,9 @@ LabelRule parse_label(const std::string& text)
 
 std::string words(const BakeReport& report)
 {
-    char text[160];
-    std::snprintf(text, sizeof text, "%d %s, %zu occupancy leaves, %.1f MB", report.layers,
-                  report.layers == 1 ? "layer" : "layers", report.occupancy_leaves, double(report.bytes) / 1e6);
-    return text;
+    char megabytes[32];
+    std::snprintf(megabytes, sizeof megabytes, "%.1f MB", double(report.bytes) / 1e6);
+    return counted(std::uint64_t(report.layers), "layer") + ", " + std::to_string(report.occupancy_leaves) + " occupancy leaves, " + megabytes;
 }
 
 int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)

@@ -83,6 +83,11 @@ void notice(const CommonArgs& args, const std::string& text)
     std::cerr << "notice: " << text << "\n";
 }
 
+std::string counted(std::uint64_t count, const std::string& noun)
+{
+    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 Progress progress_bar(const CommonArgs& args, const std::string& label)
 {
     const bool shown = !args.quiet && isatty(STDERR_FILENO) != 0;
@@ -155,6 +160,12 @@ bool parse_yaw(const std::string& text, double& yaw)
 double parse_positive(const std::string& option, double value)
 {
     if (!(value > 0) || !std::isfinite(value)) throw bad_value(option, value, "> 0");
+    return value;
+}
+
+double parse_finite(const std::string& option, double value, const std::string& unit)
+{
+    if (!std::isfinite(value)) throw bad_value(option, value, "a finite number, " + unit);
     return value;
 }
 

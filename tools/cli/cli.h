@@ -38,6 +38,9 @@ void add_query(CLI::App& command, QueryArgs& args);
 /// Words for people: notices, one at a time on standard error, unless --quiet.
 void notice(const CommonArgs& args, const std::string& text);
 
+/// "1 layer", "2 layers".
+std::string counted(std::uint64_t count, const std::string& noun);
+
 /// A bar on standard error while it is a terminal; without one it only notices Ctrl-C.
 Progress progress_bar(const CommonArgs& args, const std::string& label);
 void clear_progress_bar();
@@ -48,6 +51,7 @@ LayerChoice parse_layers(const std::string& text);  ///< all|top|bottom|N
 /// "random" or radians; false if it is random.
 bool parse_yaw(const std::string& text, double& yaw);
 double parse_positive(const std::string& option, double value);
+double parse_finite(const std::string& option, double value, const std::string& unit);
 /// "--step is 0, needs > 0", to be thrown.
 ArgumentError bad_value(const std::string& option, double value, const std::string& limit);
 

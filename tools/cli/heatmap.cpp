@@ -35,8 +35,8 @@ int run_heatmap(const HeatmapArgs& args, bool step_given)
     RasterOptions options;
     fill(options, args, "heatmap");
     options.exact_time = &summary.exact_time;
-    options.offset = args.offset;
-    options.yaw = args.yaw;
+    options.offset = parse_finite("--offset", args.offset, "m");
+    options.yaw = parse_finite("--yaw", args.yaw, "rad");
     options.layers = parse_layers(args.layers);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     HeatmapOptions picture;

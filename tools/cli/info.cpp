@@ -103,11 +103,11 @@ std::string extent_lines(const Json& bounds)
 std::string part_line(const Json& part)
 {
     std::string line = "  " + part["name"].get<std::string>() + ": " + part["kind"].get<std::string>() + ", " + part["label"].get<std::string>();
-    if (part["triangles"] > 0) line += ", " + part["triangles"].dump() + " triangles";
+    if (part["triangles"] > 0) line += ", " + counted(part["triangles"], "triangle");
     if (part["solid_pieces"] > 0) line += ", " + part["solid_pieces"].dump() + " solid";
     if (part["sheet_pieces"] > 0) {
         line += ", " + part["sheet_pieces"].dump() + (part["kind"] == "mesh" ? " shell" : " sheet") + " (without thickness, not filled";
-        if (part["open_edges"] > 0) line += "; " + part["open_edges"].dump() + " open edges";
+        if (part["open_edges"] > 0) line += "; " + counted(part["open_edges"], "open edge");
         line += ")";
     }
     if (part["solid_pieces"] == 0 && part["sheet_pieces"] == 0) line += ", left out";
@@ -118,7 +118,7 @@ std::string scene_lines(const Json& scene)
 {
     std::string out = "labels\n";
     for (const auto& [label, counts] : scene["labels"].items())
-        out += "  " + label + ": " + counts["triangles"].dump() + " triangles, " + counts["primitives"].dump() + " primitives\n";
+        out += "  " + label + ": " + counted(counts["triangles"], "triangle") + ", " + counted(counts["primitives"], "primitive") + "\n";
     out += "parts\n";
     for (const Json& part : scene["parts"]) out += part_line(part);
     return out;
@@ -128,7 +128,7 @@ std::string map_lines(const Json& map)
 {
     std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() + ", hash " +
                       map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
-    out += "  terrain cells of " + map["resolution"].dump() + " m, " + map["layers"].dump() + " layers; voxels of " +
+    out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") + "; voxels of " +
            map["occupancy_resolution"].dump() + " m\n";
     out += scene_lines(map) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";

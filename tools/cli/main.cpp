@@ -3,6 +3,7 @@
 
 #include <spawnfield/error.h>
 
+#include <algorithm>
 #include <iostream>
 
 namespace {
@@ -24,7 +25,7 @@ int guarded(const Run& run)
     } catch (const Interrupted&) {
         return tell(interrupted, "interrupted; nothing was written");
     } catch (const ArgumentError& error) {
-        return tell(wrong_usage, error.what());
+        return tell(wrong_usage, error.message());
     } catch (const FileError& error) {
         return tell(input_refused, error.what());
     } catch (const std::bad_alloc&) {
@@ -32,6 +33,19 @@ int guarded(const Run& run)
     } catch (const std::exception& error) {
         return tell(failure, error.what());
     }
+}
+
+std::vector<std::string> command_names(CLI::App& app)
+{
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) names.push_back(command->get_name());
+    return names;
+}
+
+/// Whether the first argument is meant to be a command, but is none.
+bool has_unknown_command(const std::vector<std::string>& names, int argc, char** argv)
+{
+    return argc > 1 && argv[1][0] != '-' && std::find(names.begin(), names.end(), argv[1]) == names.end();
 }
 
 }  // namespace
@@ -52,6 +66,9 @@ int main(int argc, char** argv)
     add_search(app, run);
     add_sample(app, run);
     add_heatmap(app, run);
+    const std::vector<std::string> names = command_names(app);
+    if (has_unknown_command(names, argc, argv))
+        return tell(wrong_usage, std::string(argv[1]) + " is no command, needs one of " + CLI::detail::join(names, ", "));
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

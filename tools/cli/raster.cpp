@@ -20,8 +20,8 @@ RasterOptions options_of(const RasterArgs& args, bool step_z_given)
     options.dims = args.dims;
     options.step = parse_positive("--step", args.step);
     if (step_z_given) options.step_z = parse_positive("--step-z", args.step_z);
-    options.offset = args.offset;
-    options.yaw = args.yaw;
+    options.offset = parse_finite("--offset", args.offset, "m");
+    options.yaw = parse_finite("--yaw", args.yaw, "rad");
     options.layers = parse_layers(args.layers);
     options.height_check = !args.no_height_check;
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, args.dims == 2);

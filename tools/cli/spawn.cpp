@@ -2,7 +2,7 @@
 
 #include <spawnfield/error.h>
 
-#include <cmath>
+#include <charconv>
 #include <cstdio>
 
 namespace spawnfield::cli {
@@ -21,7 +21,8 @@ void fill_spawn(SpawnOptions& options, const SpawnArgs& args, const std::string&
     if (args.count < 1) throw bad_value("-n", double(args.count), ">= 1");
     if (args.count > static_cast<long long>(max_spawns)) throw bad_value("-n", double(args.count), "at most " + std::to_string(max_spawns));
     options.count = std::size_t(args.count);
-    options.min_distance = args.min_distance;
+    options.min_distance = parse_finite("--min-distance", args.min_distance, "m");
+    if (options.min_distance < 0) throw bad_value("--min-distance", options.min_distance, ">= 0 m");
     options.seed = args.seed;
     options.random_yaw = !parse_yaw(args.yaw, options.yaw);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, false);
@@ -53,7 +54,7 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
     summary.map_hash = session.map.hash;
     summary.seed = args.seed;
     summary.extra = {std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns",
-                     std::to_string(list.draws) + " draws, " + std::to_string(list.too_close) + " too close"};
+                     counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close"};
     summary.finish();
     if (list.spawns.size() == options.count) return done;
     notice(args, shortfall(options, list, command));
@@ -78,12 +79,21 @@ int run_sample(const SpawnArgs& args)
     Summary summary("sample", args);
     SampleOptions options;
     fill_spawn(options, args, "sample");
-    options.offset = args.offset;
+    options.offset = parse_finite("--offset", args.offset, "m");
     options.layers = parse_layers(args.layers);
     const auto session = open_session(args);
     summary.lap("load");
     const SpawnList list = sample(session->map, *session->checker, options);
     return finish(summary, args, *session, options, list, "sample");
+}
+
+/// CLI11's own words for -1 are a range of 309 digits.
+std::string seed_complaint(const std::string& text)
+{
+    std::uint64_t seed = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    if (error == std::errc{} && stop == text.data() + text.size()) return "";
+    return text + " is no whole number from 0 to " + std::to_string(std::numeric_limits<std::uint64_t>::max());
 }
 
 void add_spawn_options(CLI::App& command, SpawnArgs& args)
@@ -92,7 +102,7 @@ void add_spawn_options(CLI::App& command, SpawnArgs& args)
     command.add_option("-n,--count", args.count, "Spawns wanted")->required();
     command.add_option("--min-distance", args.min_distance, "Between positions, m (default 0)");
     command.add_option("--yaw", args.yaw, "rad, or random (default 0)");
-    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)")->check(CLI::NonNegativeNumber);
+    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)")->check(seed_complaint);
     command.add_option("--format", args.format, "csv or json (default csv)")->check(CLI::IsMember({"csv", "json"}));
     command.add_option("--out,-o", args.out, "File to write (default: standard output)");
 }

@@ -65,11 +65,11 @@ std::string Summary::line(double total) const
     std::string text = "spawnfield " + command_ + ": ";
     for (const std::string& words : extra) text += words + "; ";
     if (has_counts_) {
-        text += std::to_string(poses) + (poses == 1 ? " pose" : " poses");
+        text += counted(poses, "pose");
         std::string verdicts;
         for (std::size_t v = verdict_count; v-- > 0;)  // valid first
             if (counts_[v] > 0) verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(counts_[v]) + " " + to_string(Verdict(v));
-        text += verdicts + "; " + std::to_string(exact_checks) + " exact checks; ";
+        text += verdicts + "; " + counted(exact_checks, "exact check") + "; ";
     }
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.3f s", total);
