@@ -140,6 +140,8 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
         {"bake typo.yaml -o map", "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
         {"bake label.yaml -o new", "spawnfield: label.yaml: part \"b\": label is \"lava\", needs one of terrain, obstacle, water, ignore (line 3)"},
         {"bake nan.obj -q -o new", "spawnfield: nan.obj: node \"a\": a vertex is (0, 0, nan), needs finite coordinates"},
+        {"bake scene.yaml -o new --bounds 90,0,-1,95,5,1",
+         "spawnfield: scene.yaml: bounds are 90, 0, -1 to 95, 5, 1 m, need to meet the scene: -4, -4, -1 to 4, 4, 1 m"},
         {"info typo.yaml", "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
         {"info none", "spawnfield: none: does not exist; is the path right?"},
         {"check map --poses none.csv -o out" + husky, "spawnfield: none.csv: is missing or cannot be read"},

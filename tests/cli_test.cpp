@@ -129,11 +129,14 @@ TEST_CASE("bake passes its options on")
     CHECK(plain.status == 0);
     CHECK(plain.err.empty());
     CHECK_THAT(run_program(folder, "bake a.obj -o map").err, Contains("notice: a.obj: no label given, so everything is terrain"));
+    CHECK_THAT(run_program(folder, "bake a.obj -o map --bounds 0.8,0.8,0,3,3,1").err,
+               Contains("notice: no robot can stand in the bounds 0.8, 0.8, 0 to 3, 3, 1 m: there is no terrain at any cell's centre; the scene is "
+                        "0, 0, 0 to 1, 1, 1 m\n"));
     CHECK(run_program(folder, "bake a.obj -o map --label '*=obstacle'").status == 4);
     CHECK(run_program(folder, "bake a.obj -o map --label '*=obstacle' --allow-no-terrain").status == 0);
 }
 
-TEST_CASE("a bake over a map replaces it; a folder that is no map stays as it is")
+TEST_CASE("a bake over a map replaces it, but keeps what others put there; a folder that is no map stays as it is")
 {
     const Arena arena;
     const std::string before = bytes_of(arena / "map/map.yaml");
@@ -141,6 +144,16 @@ TEST_CASE("a bake over a map replaces it; a folder that is no map stays as it is
     CHECK(spawnfield::read_map(arena / "map").resolution == 0.5);
     CHECK(bytes_of(arena / "map/map.yaml") != before);
     CHECK(arena.names() == std::set<std::string>{"map"});
+
+    arena.write("map/spawns.csv", "mine");
+    arena.write("map/notes/today.txt", "mine too");
+    arena.write("map/preview.png", "not mine");
+    CHECK(arena("bake " + scene + " -o map --resolution 0.25").status == 0);
+    CHECK(spawnfield::read_map(arena / "map").resolution == 0.25);
+    CHECK(bytes_of(arena / "map/spawns.csv") == "mine");
+    CHECK(bytes_of(arena / "map/notes/today.txt") == "mine too");
+    CHECK(arena.names() == std::set<std::string>{"map"});
+    CHECK_THAT(arena("info map --verify").out, Contains("all files match"));
 
     arena.write("work/thesis.tex", "years");
     const ProgramRun run = arena("bake " + scene + " -o work");

@@ -262,6 +262,8 @@ TEST_CASE("a bake refuses bad options and a scene without terrain, and makes no 
     CHECK(bake_complaint(floor, [](auto& o) { o.bounds = {{0, 0, 0}, {-1, 1, 1}}; }) == "bake: bounds.max.x is -1, needs at least bounds.min.x");
     CHECK(bake_complaint(floor, [](auto& o) { o.resolution = 1e-6; }) ==
           "frame_around: columns at a cell of 1e-06 m is 1e+12, needs at most 1e+08; take a coarser resolution");
+    CHECK(bake_complaint(floor, [](auto& o) { o.bounds = {{0, 0, 0.75}, {1, 1, 2}}; }) ==
+          "@/scene.yaml: bounds are 0, 0, 0.75 to 1, 1, 2 m, need to meet the scene: -0.5, -0.5, -0.5 to 0.5, 0.5, 0.5 m");
     CHECK(bake_complaint(load_parts(folder, "  - {name: a, box: [1, 1, 1]}\n"), [](auto&) {}) ==
           "@/scene.yaml: has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') or pass "
           "--allow-no-terrain");

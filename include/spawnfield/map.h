@@ -23,6 +23,9 @@ struct Map {
     std::filesystem::path folder;
 };
 
+/// The files of a map folder beside map.yaml. What else lies there is none of spawnfield's.
+inline constexpr std::array map_files{"bounds.bin", "geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"};
+
 struct BakeOptions {
     double resolution = 0;            ///< m; 0: 0.1 m, or coarser with a notice where that passes max_columns
     double occupancy_resolution = 0;  ///< m; 0: 2.5 times the resolution, or coarser with a notice where OctoMap needs it
@@ -42,10 +45,11 @@ struct BakeReport {
     std::string hash;          ///< as Map::hash
 };
 
-/// Writes the map folder: map.yaml, terrain.tiff, heightmap.png, occupancy.bt, geometry.bin, preview.png.
+/// Writes the map folder: map.yaml and map_files.
 ///
-/// Written into a temporary folder beside it, then renamed: an old map stays whole until the new one is complete.
-/// Throws FileError if the scene has no terrain (unless allowed), ArgumentError for bad options, OutputError.
+/// Written into a temporary folder beside it, then renamed: an old map stays whole until the new one is complete. Other
+/// files that lie in an old map's folder move to the new one. Throws FileError if the scene has no terrain (unless allowed)
+/// or does not meet the bounds, ArgumentError for bad options, OutputError.
 BakeReport bake(Scene scene, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
                 const BakeOptions& options = {});
 

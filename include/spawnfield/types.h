@@ -56,6 +56,8 @@ inline constexpr std::size_t verdict_count = 6;
 /// Poses per verdict, indexed by Verdict.
 using VerdictCounts = std::array<std::uint64_t, verdict_count>;
 
+/// "0, 0, 0 to 1, 2, 3 m", or of the first axes only; rounded to nine digits.
+std::string to_string(const Bounds& bounds, int axes = 3);
 const char* to_string(Label label);      ///< as in scene.yaml: "terrain", …
 const char* to_string(Verdict verdict);  ///< as in CSV files: "off_terrain", …
 

@@ -4,6 +4,7 @@
 #include <spawnfield/types.h>
 
 #include <cmath>
+#include <sstream>
 
 namespace spawnfield {
 
@@ -28,6 +29,17 @@ Mat3 rotation_from_rpy(double roll, double pitch, double yaw)
                 sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
                 -sp,     cp * sr,                cp * cr;
     return rotation;
+}
+
+std::string to_string(const Bounds& bounds, int axes)
+{
+    const auto corner = [&](const Vec3& at) {
+        std::ostringstream text;
+        text.precision(9);
+        for (int axis = 0; axis < axes; ++axis) text << (axis > 0 ? ", " : "") << at[axis];
+        return text.str();
+    };
+    return corner(bounds.min) + " to " + corner(bounds.max) + " m";
 }
 
 const char* to_string(Label label)

@@ -16,6 +16,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace spawnfield {
@@ -55,10 +56,25 @@ public:
             if (fs::exists(old)) fs::rename(old, target_, ignored);
             throw OutputError(target_.string(), "cannot be written: " + error.message());
         }
+        if (!fs::exists(old)) return;
+        keep_foreign_files(old);
         fs::remove_all(old, ignored);
     }
 
 private:
+    /// What people put into the old folder moves to the new one.
+    void keep_foreign_files(const fs::path& old) const
+    {
+        const std::vector<fs::directory_entry> entries(fs::directory_iterator(old), {});  // read first: some will leave
+        for (const fs::directory_entry& entry : entries) {
+            const fs::path name = entry.path().filename();
+            if (name == "map.yaml" || std::find(map_files.begin(), map_files.end(), name) != map_files.end()) continue;
+            std::error_code error;
+            fs::rename(entry.path(), target_ / name, error);
+            if (error) throw OutputError(entry.path().string(), "cannot be moved into the new map: " + error.message());
+        }
+    }
+
     /// Others have a map.yaml too: nav2's map server.
     static bool is_map_folder(const fs::path& folder)
     {
@@ -148,7 +164,10 @@ Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& 
         throw ArgumentError("bake", "occupancy_resolution", options.occupancy_resolution, "> 0 m (0: chosen)");
     Map map;
     map.name = scene.name.empty() ? scene_file.stem().string() : scene.name;
-    map.bounds = chosen_bounds("bake", options.bounds, scene.bounds());
+    const Bounds extent = scene.bounds();
+    map.bounds = chosen_bounds("bake", options.bounds, extent);
+    const bool meet = (map.bounds.min.array() <= extent.max.array()).all() && (map.bounds.max.array() >= extent.min.array()).all();
+    if (!meet) throw FileError(scene_file.string(), "bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
     map.resolution = options.resolution > 0 ? options.resolution : default_resolution(map.bounds, report);
     map.occupancy_resolution = options.occupancy_resolution > 0
                                    ? options.occupancy_resolution
@@ -169,11 +188,16 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     const GridFrame frame = frame_around(map.bounds, map.resolution);
     NewFolder target(folder);
     map.geometry = Geometry(scene, options.threads);
+    const bool has_terrain = scene.has_terrain();
+    const Bounds extent = scene.bounds();
     scene = {};
     lap("geometry");
     const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads, part_of(options.progress, 0, 0.3));
     lap("terrain");
     const std::pair<double, double> z_range = write_images(terrain, target.path(), map, options.threads);
+    if (map.layers == 0 && has_terrain)
+        report.notices.push_back("no robot can stand in the bounds " + to_string(map.bounds) + ": there is no terrain at any cell's centre; the scene is " +
+                                 to_string(extent));
     lap("images");
     map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads, part_of(options.progress, 0.3, 0.6));
     write_bounds(target.path() / "bounds.bin", map.solid_bounds);

@@ -61,7 +61,7 @@ std::string label_counts(const LabelCounts& counts)
 std::string file_lines(const fs::path& folder)
 {
     std::string out;
-    for (const char* name : {"bounds.bin", "geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"}) {
+    for (const char* const name : map_files) {
         const std::string bytes = read_file(folder / name);
         out += std::string("  ") + name + ": {bytes: " + std::to_string(bytes.size()) + ", xxh64: \"" + checksum(bytes) + "\"";
         if (const std::string head = head_checksum(bytes); !head.empty()) out += ", head_xxh64: \"" + head + "\"";

@@ -54,7 +54,8 @@ Json map_json(const Map& map, bool verified)
                 {"occupancy_resolution", map.occupancy_resolution}, {"layers", map.layers},
                 {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
     if (verified) out["verified"] = true;
-    for (const auto& entry : fs::directory_iterator(map.folder)) out["files"][entry.path().filename().string()] = entry.file_size();
+    out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
+    for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
     out.update(json_of(map.geometry.labels(), map.geometry.parts()));
     return out;
 }
