@@ -130,6 +130,7 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
     desk.write("robot.yaml", "format: spawnfield-robot/1\nparts: []\n");
     desk.write("word.csv", "x,y,z\n1,2,3\n1,two,3\n");
     desk.write("column.csv", "x,z\n1,2\n");
+    desk.write("upper.csv", "X,Y,Z\n1,2,3\n");
     desk.remember();
     const std::string keys = "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, scale, solid, "
                              "sides, labels";
@@ -142,6 +143,8 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
         {"bake nan.obj -q -o new", "spawnfield: nan.obj: node \"a\": a vertex is (0, 0, nan), needs finite coordinates"},
         {"bake scene.yaml -o new --bounds 90,0,-1,95,5,1",
          "spawnfield: scene.yaml: bounds are 90, 0, -1 to 95, 5, 1 m, need to meet the scene: -4, -4, -1 to 4, 4, 1 m"},
+        {"check map --poses upper.csv -o out" + husky,
+         "spawnfield: upper.csv: line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw; there is X, but names are lower case"},
         {"info typo.yaml", "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
         {"info none", "spawnfield: none: does not exist; is the path right?"},
         {"check map --poses none.csv -o out" + husky, "spawnfield: none.csv: is missing or cannot be read"},

@@ -273,6 +273,8 @@ TEST_CASE("sample and search find what they are asked for, the same at any threa
     }
     const auto json = nlohmann::json::parse(arena("sample map -n 3 --format json" + husky).out);
     CHECK(json["poses"].size() == 3);
+    CHECK(json["full"] == false);
+    CHECK(json["undecided_area"] == 0.0);
 }
 
 TEST_CASE("fewer spawns than asked for end with 3, and those found are written")
@@ -284,8 +286,40 @@ TEST_CASE("fewer spawns than asked for end with 3, and those found are written")
     CHECK(found > 0);
     CHECK(found < 10);
     CHECK_THAT(run.err, Contains(std::to_string(found) + " of 50 spawns"));
-    CHECK(summary(arena / "s.json", "sample")["counts"]["valid"] >= found);
-    CHECK(arena("search map -n 5 --min-distance 100 --max-failures 50" + husky).status == 3);
+    const auto told = summary(arena / "s.json", "sample");
+    CHECK(told["counts"]["valid"] >= found);
+    CHECK(told["full"] == true);
+    CHECK(told["undecided_area"] == 0.0);
+    CHECK(nlohmann::json::parse(arena("sample map -n 50 --min-distance 15 --format json" + husky).out)["full"] == true);
+    CHECK(arena("search map -n 5 --min-distance 100 --max-failures 50 --summary s.json" + husky).status == 3);
+    CHECK_FALSE(summary(arena / "s.json", "search").contains("full"));
+}
+
+TEST_CASE("the output of check can be checked again")
+{
+    const Arena arena;
+    arena.write("poses.csv", "x,y,z,name\n0,0,0.1,\"a, \"\"b\"\"\"\n-2,0,0.1,c\n");
+    CHECK(arena("check map --poses poses.csv -o once.csv" + husky).status == 0);
+    const ProgramRun again = arena("check map --poses once.csv" + husky);
+    CHECK(again.out == bytes_of(arena / "once.csv"));
+    CHECK_THAT(again.err, Contains("notice: once.csv: column verdict is replaced by a new one\n"));
+    arena.write("mixed.csv", "hit,x,verdict,y,z\nlamp,0,\"1,2\",0,0.1\n");
+    CHECK(arena("check map --poses mixed.csv" + husky).out == "x,y,z,verdict,ground,height_above,hit\n0,0,0.1,valid,-0.05,0.15000000000000002,\n");
+}
+
+TEST_CASE("columns that are known but for their case, and files of no poses, are told of")
+{
+    const Arena arena;
+    arena.write("poses.csv", "x,y,z,Yaw\n0,0,0.1,1\n");
+    arena.write("none.csv", "x,y,z\n");
+    const std::string yaw = "notice: poses.csv: column Yaw is carried along, not read: names are lower case (yaw)\n";
+    const ProgramRun run = arena("check map --poses poses.csv" + husky);
+    CHECK(run.err.starts_with(yaw));
+    CHECK(row(run.out, 0).starts_with("x,y,z,Yaw,verdict"));
+    CHECK_THAT(arena("heatmap map -o a.png --step 2 --spawns poses.csv" + husky).err, Contains(yaw));
+    const ProgramRun none = arena("check map --poses none.csv" + husky);
+    CHECK(none.status == 0);
+    CHECK(none.err.starts_with("notice: none.csv: has a header, but no poses\n"));
 }
 
 TEST_CASE("heatmap draws a picture")

@@ -106,6 +106,8 @@ TEST_CASE("a poses file that makes no sense is told by line and column")
     CHECK(complaint("\n \n") == "is empty, needs a header x,y,z,roll,pitch,yaw");
     CHECK(complaint("x,y\n1,2\n") == "line 1: column z is missing, needs a header x,y,z,roll,pitch,yaw");
     CHECK(complaint("1,2,3\n4,5,6\n") == "line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw");
+    CHECK(complaint("X,Y,Z\n4,5,6\n") ==
+          "line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw; there is X, but names are lower case");
     CHECK(complaint("x,y,z,x\n1,2,3,4\n") == "line 1: column x is given twice");
     CHECK(complaint("x,y,z,qx,qw\n1,2,3,0,1\n") == "line 1: has some of the columns qx,qy,qz,qw, needs all four or none");
     CHECK(complaint("x,y,z,yaw,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n") ==
@@ -124,6 +126,28 @@ TEST_CASE("a poses file that makes no sense is told by line and column")
     CHECK_THROWS_WITH(read_poses("/none/poses.csv"), "/none/poses.csv: is missing or cannot be read");
 }
 
+TEST_CASE("what may be a slip of the pen in a poses file is told")
+{
+    const auto notices = [](const std::string& text) {
+        const TempFolder folder;
+        const auto file = folder.write("poses.csv", text);
+        std::string out;
+        for (const std::string& notice : read_poses(file).notices) out += notice.substr(file.string().size()) + "\n";
+        return out;
+    };
+    CHECK(notices("id,x,y,z,yaw\n1,2,3,4,5\n").empty());
+    CHECK(notices("x,y,z,Yaw\n1,2,3,4\n") == ": column Yaw is carried along, not read: names are lower case (yaw)\n");
+    CHECK(notices("x,y,z\n\n") == ": has a header, but no poses\n");
+}
+
+TEST_CASE("verdicts take the place of older ones")
+{
+    const PoseTable table = read("hit,x,\"verdict\",y,z,note\nlamp,0,\"1,2\",0,0.1,\"a, \"\"b\"\"\"\n");
+    CHECK(replaced_columns(table) == std::vector<std::string>{"hit", "verdict"});
+    CHECK(replaced_columns(read("x,y,z,Hit\n")).empty());
+    CHECK(verdicts_csv(table, {Judgement{}}, {}) == "x,y,z,note,verdict,ground,height_above,hit\n0,0,0.1,\"a, \"\"b\"\"\",outside,,,\n");
+}
+
 TEST_CASE("spawns that were written read back to the same doubles")
 {
     SpawnList list;
@@ -133,7 +157,7 @@ TEST_CASE("spawns that were written read back to the same doubles")
     CHECK(lines_of(text)[0] == "x,y,z,roll,pitch,yaw");
     const PoseTable table = read(text);
     const TempFolder folder;
-    const std::vector<Spawn> spawns = read_spawns(folder.write("spawns.csv", text));
+    const std::vector<Spawn> spawns = spawns_of(read_poses(folder.write("spawns.csv", text)));
     REQUIRE(table.poses.size() == list.spawns.size());
     REQUIRE(spawns.size() == list.spawns.size());
     for (std::size_t i = 0; i < spawns.size(); ++i) {
@@ -223,6 +247,7 @@ TEST_CASE("spawns as JSON have quaternions of unit length, their settings and th
     SpawnList list;
     list.spawns = {{{1, 2, 3}, 0.5}};
     list.counts[std::size_t(Verdict::Valid)] = 1;
+    list.undecided_area = 2.5;
     Map map;
     map.name = "arena";
     map.hash = "0123456789abcdef";
@@ -242,6 +267,10 @@ TEST_CASE("spawns as JSON have quaternions of unit length, their settings and th
     CHECK(json["settings"]["seed"] == 42);
     CHECK(json["settings"]["yaw"] == "random");
     CHECK(json["counts"]["valid"] == 1);
+    CHECK(json["full"] == false);
+    CHECK(json["undecided_area"] == 2.5);
+    const auto searched = nlohmann::json::parse(spawns_json(list, map, robot, options, "search"));
+    CHECK_FALSE((searched.contains("full") || searched.contains("undecided_area")));
     REQUIRE(json["poses"].size() == 1);
     CHECK(json["poses"][0]["position"] == std::vector<double>{1, 2, 3});
     const auto q = json["poses"][0]["quaternion"].get<std::vector<double>>();

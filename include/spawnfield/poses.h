@@ -13,16 +13,20 @@ struct PoseTable {
     std::string header;
     std::vector<std::string> rows;  ///< one for each pose, without line end
     std::vector<Pose> poses;
+    std::vector<std::string> notices;  ///< what may be a slip of the pen, for the user to see
 };
 
 /// Header x,y,z,roll,pitch,yaw in any order; roll, pitch, yaw default to 0; qx,qy,qz,qw may stand for them; other columns
 /// are carried through. Metres and radians. Throws FileError that names line and column.
 PoseTable read_poses(const std::filesystem::path& file);
 
-/// Spawns of a CSV file as sample and search write it (x, y, z, yaw; roll and pitch are left aside).
-std::vector<Spawn> read_spawns(const std::filesystem::path& file);
+/// Poses as sample and search write them (x, y, z, yaw; roll and pitch are left aside).
+std::vector<Spawn> spawns_of(const PoseTable& table);
 
-/// Table's columns, then verdict,ground,height_above,hit. Numbers read back to the same double.
+/// The table's columns that are named as some that verdicts_csv adds: those take their place.
+std::vector<std::string> replaced_columns(const PoseTable& table);
+
+/// Table's columns but the replaced ones, then verdict,ground,height_above,hit. Numbers read back to the same double.
 std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const std::vector<Part>& parts);
 
 /// x,y,z,yaw,layer,verdict, told to `sink` in pieces; layer is empty where the ground is no layer. With `aerial` also the
@@ -32,7 +36,7 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
 /// x,y,z,roll,pitch,yaw.
 std::string spawns_csv(const SpawnList& list);
 
-/// Poses with quaternions (x, y, z, w) and what they were made from.
+/// Poses with quaternions (x, y, z, w) and what they were made from; of a sample also whether it is full.
 std::string spawns_json(const SpawnList& list, const Map& map, const Robot& robot, const SpawnOptions& options,
                         const std::string& command);
 

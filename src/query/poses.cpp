@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace spawnfield {
@@ -43,6 +44,41 @@ std::string quoted_if_needed(const std::string& text)
     return out + "\"";
 }
 
+std::string lower_case(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+bool is_pose_column(const std::string& name)
+{
+    constexpr std::array names{"x", "y", "z", "roll", "pitch", "yaw", "qx", "qy", "qz", "qw"};
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool is_verdict_column(const std::string& name)
+{
+    constexpr std::array names{"verdict", "ground", "height_above", "hit"};
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// The line's fields as they are written, quotes and all, each with a comma behind it, but those that are flagged.
+void append_fields(std::string& text, const std::string& line, const std::vector<std::uint8_t>& left_out)
+{
+    if (std::find(left_out.begin(), left_out.end(), 1) == left_out.end()) {
+        text += line + ',';
+        return;
+    }
+    std::size_t field = 0, start = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i <= line.size(); ++i) {
+        if (i < line.size() && line[i] == '"') quoted = !quoted;
+        if (i < line.size() && (line[i] != ',' || quoted)) continue;
+        if (left_out[field++] == 0) text.append(line, start, i - start) += ',';
+        start = i + 1;
+    }
+}
+
 /// Which field holds what; -1: not in the file.
 struct PoseColumns {
     int x, y, z, roll, pitch, yaw, qx, qy, qz, qw;
@@ -69,6 +105,7 @@ public:
             if (line.find_first_not_of(" \t") == std::string::npos) continue;
             if (!has_header) {
                 columns = read_header(line);
+                tell_other_case(line, table);
                 table.header = line;
                 has_header = true;
                 continue;
@@ -78,6 +115,7 @@ public:
             table.rows.push_back(std::move(line));
         }
         if (!has_header) throw FileError(file_, "is empty, needs a header x,y,z,roll,pitch,yaw");
+        if (table.poses.empty()) table.notices.push_back(file_ + ": has a header, but no poses");
         return table;
     }
 
@@ -93,12 +131,26 @@ private:
         PoseColumns c{find("x"),  find("y"),  find("z"),  find("roll"), find("pitch"),
                       find("yaw"), find("qx"), find("qy"), find("qz"), find("qw"), names.size()};
         for (const auto& [column, name] : {std::pair{c.x, "x"}, std::pair{c.y, "y"}, std::pair{c.z, "z"}})
-            if (column < 0) fail(std::string("column ") + name + " is missing, needs a header x,y,z,roll,pitch,yaw");
+            if (column < 0) {
+                const auto other = std::find_if(names.begin(), names.end(), [&](const std::string& n) { return lower_case(n) == name; });
+                fail(std::string("column ") + name + " is missing, needs a header x,y,z,roll,pitch,yaw" +
+                     (other == names.end() ? "" : "; there is " + *other + ", but names are lower case"));
+            }
         const int quaternions = (c.qx >= 0) + (c.qy >= 0) + (c.qz >= 0) + (c.qw >= 0);
         if (quaternions != 0 && quaternions != 4) fail("has some of the columns qx,qy,qz,qw, needs all four or none");
         if (quaternions == 4 && (c.roll >= 0 || c.pitch >= 0 || c.yaw >= 0))
             fail("has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
         return c;
+    }
+
+    /// A name that is known but for its case is read as any other: not at all.
+    void tell_other_case(const std::string& header, PoseTable& table) const
+    {
+        for (const std::string& name : split_line(header)) {
+            const std::string lower = lower_case(name);
+            if (name == lower || !is_pose_column(lower)) continue;
+            table.notices.push_back(file_ + ": column " + name + " is carried along, not read: names are lower case (" + lower + ")");
+        }
     }
 
     Pose read_pose(const std::vector<std::string>& fields, const PoseColumns& c) const
@@ -163,20 +215,33 @@ PoseTable read_poses(const std::filesystem::path& file)
     return PoseReader(file).read(text);
 }
 
-std::vector<Spawn> read_spawns(const std::filesystem::path& file)
+std::vector<Spawn> spawns_of(const PoseTable& table)
 {
     std::vector<Spawn> out;
-    for (const Pose& pose : read_poses(file).poses)
+    for (const Pose& pose : table.poses)
         out.push_back({pose.position, std::atan2(pose.rotation(1, 0), pose.rotation(0, 0))});
     return out;
 }
 
+std::vector<std::string> replaced_columns(const PoseTable& table)
+{
+    std::vector<std::string> names = split_line(table.header);
+    std::erase_if(names, [](const std::string& name) { return !is_verdict_column(name); });
+    return names;
+}
+
 std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const std::vector<Part>& parts)
 {
-    std::string text = table.header + ",verdict,ground,height_above,hit\n";
+    std::vector<std::uint8_t> replaced;
+    for (const std::string& name : split_line(table.header)) replaced.push_back(is_verdict_column(name));
+    std::string text;
+    append_fields(text, table.header, replaced);
+    text += "verdict,ground,height_above,hit\n";
     for (std::size_t i = 0; i < judgements.size(); ++i) {
         const Judgement& judged = judgements[i];
-        text += table.rows[i] + ',' + to_string(judged.verdict) + ',';
+        append_fields(text, table.rows[i], replaced);
+        text += to_string(judged.verdict);
+        text += ',';
         if (judged.ground) append_numbers(text, {judged.ground->height, table.poses[i].position.z() - judged.ground->height});
         else text += ',';
         text += ',';
@@ -236,6 +301,10 @@ std::string spawns_json(const SpawnList& list, const Map& map, const Robot& robo
                        {"yaw", options.random_yaw ? nlohmann::ordered_json("random") : nlohmann::ordered_json(options.yaw)}};
     out["frame"] = "metres, radians, x forward, y left, z up (REP-103)";
     out["quaternion_order"] = "xyzw";
+    if (command == "sample") {
+        out["full"] = list.is_full;
+        out["undecided_area"] = list.undecided_area;
+    }
     for (std::size_t verdict = 0; verdict < verdict_count; ++verdict)
         out["counts"][to_string(Verdict(verdict))] = list.counts[verdict];
     out["poses"] = nlohmann::ordered_json::array();

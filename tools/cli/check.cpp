@@ -13,7 +13,8 @@ int run_check(const CheckArgs& args)
     QueryOptions options;
     fill(options, args, "check");
     options.exact_time = &summary.exact_time;
-    const PoseTable table = read_poses(args.poses);
+    const PoseTable table = open_poses(args, args.poses);
+    for (const std::string& name : replaced_columns(table)) notice(args, args.poses + ": column " + name + " is replaced by a new one");
     const auto session = open_session(args);
     summary.lap("load");
     const std::vector<Judgement> judgements = check_poses(session->map, *session->checker, table.poses, options);
@@ -38,7 +39,7 @@ void add_check(CLI::App& app, Run& run)
     auto args = std::make_shared<CheckArgs>();
     CLI::App& command = *app.add_subcommand("check", "Verdict and reason for each pose of a CSV file");
     add_query(command, *args);
-    command.add_option("--poses,-p", args->poses, "CSV file: x,y,z[,roll,pitch,yaw | ,qx,qy,qz,qw]; m, rad; other columns are kept")->required();
+    command.add_option("--poses,-p", args->poses, "CSV file: x,y,z[,roll,pitch,yaw | ,qx,qy,qz,qw]; m, rad; other columns are kept, but verdict,ground,height_above,hit replaced")->required();
     command.add_option("--out,-o", args->out, "CSV file to write (default: standard output)");
     command.footer("Example:\n"
                    "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/poses.csv\n"

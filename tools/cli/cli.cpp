@@ -169,6 +169,13 @@ double parse_finite(const std::string& option, double value, const std::string& 
     return value;
 }
 
+PoseTable open_poses(const CommonArgs& args, const std::string& file)
+{
+    PoseTable table = read_poses(file);
+    for (const std::string& text : table.notices) notice(args, text);
+    return table;
+}
+
 std::unique_ptr<Session> open_session(const QueryArgs& args)
 {
     auto session = std::make_unique<Session>();

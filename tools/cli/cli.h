@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,11 @@ public:
     ExactTime exact_time;                                     ///< for a query's options
     std::vector<std::string> extra;                           ///< further words for the line, in front
     std::vector<std::pair<std::string, double>> more_stages;  ///< a bake's own
+    struct Fullness {
+        bool is_full;
+        double undecided_area;  // m2
+    };
+    std::optional<Fullness> fullness;  ///< of a sample
 
     void finish();  ///< tells standard error and writes the JSON
 
@@ -91,6 +97,9 @@ struct Session {
     Robot robot;
     std::unique_ptr<CollisionChecker> checker;
 };
+/// Poses of a CSV file; tells what is odd about it.
+PoseTable open_poses(const CommonArgs& args, const std::string& file);
+
 /// Heap-held: the checker keeps references into it.
 std::unique_ptr<Session> open_session(const QueryArgs& args);
 void fill(QueryOptions& options, const QueryArgs& args, const std::string& label);

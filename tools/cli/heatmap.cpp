@@ -42,7 +42,7 @@ int run_heatmap(const HeatmapArgs& args, bool step_given)
     HeatmapOptions picture;
     picture.quantity = quantity_of(args.quantity);
     picture.pixels = args.size;
-    if (!args.spawns.empty()) picture.spawns = read_spawns(args.spawns);
+    if (!args.spawns.empty()) picture.spawns = spawns_of(open_poses(args, args.spawns));
     const auto session = open_session(args);
     options.step = step_given ? parse_positive("--step", args.step) : default_step(session->map, options);
     const TerrainMap terrain = read_terrain(session->map);

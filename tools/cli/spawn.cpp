@@ -84,6 +84,7 @@ int run_sample(const SpawnArgs& args)
     const auto session = open_session(args);
     summary.lap("load");
     const SpawnList list = sample(session->map, *session->checker, options);
+    summary.fullness = {list.is_full, list.undecided_area};
     return finish(summary, args, *session, options, list, "sample");
 }
 

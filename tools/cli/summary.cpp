@@ -85,6 +85,10 @@ std::string Summary::json(double total) const
     if (has_counts_)
         for (std::size_t v = 0; v < verdict_count; ++v) out["counts"][to_string(Verdict(v))] = counts_[v];
     out["exact_checks"] = exact_checks;
+    if (fullness) {
+        out["full"] = fullness->is_full;
+        out["undecided_area"] = fullness->undecided_area;
+    }
     const double load = seconds_of("load"), write = seconds_of("write");
     // Exact checks run on all threads: their share of the query's time is told.
     const double query = total - load - write, judging = seconds_of("query");
