@@ -207,4 +207,17 @@ TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
     CHECK(full.status == 1);
     CHECK(full.err == "spawnfield: standard output: cannot be written\n");
     desk.check({"bake scene.yaml -q -o out", "spawnfield: out: exists and is no map; choose another name or remove it"}, 1);
+    const std::string raster = "raster map -q --dims 2 --step 1" + husky;
+    desk.check({raster + "-o /dev/full --heatmap new.png", "spawnfield: /dev/full: cannot be written: No space left on device"}, 1);
+    desk.check({raster + "-o new.csv --heatmap none/new.png", "spawnfield: none/new.png: cannot be written: No such file or directory"}, 1);
+}
+
+TEST_CASE("a summary that cannot be written is told before all work, and nothing is written")
+{
+    const Desk desk;
+    const std::string told = "spawnfield: none/s.json: cannot be written: No such file or directory";
+    for (const std::string& arguments : {std::string("bake scene.yaml -o new"), std::string("info map"), "check map --poses poses.csv -o out" + husky,
+                                         "raster map -o out --dims 2 --step 1" + husky, "sample map -o out -n 1" + husky,
+                                         "search map -o out -n 1" + husky, "heatmap map -o out" + husky})
+        desk.check({arguments + " --summary none/s.json", told}, 1);
 }

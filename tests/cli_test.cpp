@@ -355,6 +355,9 @@ TEST_CASE("a pipe and /dev/null are written directly")
     CHECK(lines(arena("sample map -n 2 -q -o /dev/stdout" + husky + "| cat").out) == 3);
     CHECK(lines(arena("sample map -n 2 -q -o /proc/self/fd/1" + husky).out) == 3);
     CHECK(fs::is_symlink("/dev/stdout"));  // written through, not replaced
+    const std::string both = arena("sample map -n 2 -q --summary /dev/stdout" + husky).out;
+    CHECK(both.starts_with("x,y,z,"));
+    CHECK(nlohmann::json::parse(both.substr(both.find('{')))["command"] == "sample");
 }
 
 TEST_CASE("a link is written through, and stays a link")

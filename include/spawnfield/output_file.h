@@ -16,6 +16,7 @@ public:
     ~OutputFile();
 
     void write(std::string_view bytes);  ///< throws OutputError
+    void flush();                        ///< so that only the renaming can still fail; throws OutputError
     void commit();                       ///< throws OutputError
 
 private:

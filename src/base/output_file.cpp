@@ -42,7 +42,8 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file))
         target_ = target_of(file_);
         written_ = target_.string() + ".tmp-" + std::to_string(getpid());
     }
-    stream_.open(written_, std::ios::binary);
+    // A file behind /dev/stdout may hold something already.
+    stream_.open(written_, std::ios::binary | (target_.empty() ? std::ios::app : std::ios::trunc));
     if (!stream_) fail(std::strerror(errno));
 }
 
@@ -58,10 +59,15 @@ void OutputFile::write(std::string_view bytes)
     if (!stream_) fail(std::strerror(errno));
 }
 
-void OutputFile::commit()
+void OutputFile::flush()
 {
     stream_.flush();
     if (!stream_) fail(std::strerror(errno));
+}
+
+void OutputFile::commit()
+{
+    flush();
     if (!target_.empty()) {
         std::error_code error;
         fs::rename(written_, target_, error);

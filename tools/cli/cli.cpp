@@ -202,18 +202,22 @@ void fill(QueryOptions& options, const QueryArgs& args, const std::string& label
     if (!(options.max_water_depth >= 0)) throw bad_value("--max-water-depth", options.max_water_depth, ">= 0 m");
 }
 
-void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer)
+void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer,
+                  const std::function<void()>& then)
 {
     clear_progress_bar();
     if (file.empty() || file == "-") {
         writer([](std::string_view text) { std::cout << text; });
         std::cout.flush();
         if (!std::cout) throw OutputError("standard output", "cannot be written");
+        then();
         return;
     }
     OutputFile out(file);
     writer([&](std::string_view text) { out.write(text); });
+    out.flush();
     if (was_interrupted()) throw Interrupted{};
+    then();
     out.commit();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <spawnfield/error.h>
+#include <spawnfield/output_file.h>
 #include <spawnfield/poses.h>
 #include <spawnfield/query.h>
 
@@ -59,6 +60,7 @@ ArgumentError bad_value(const std::string& option, double value, const std::stri
 /// What a run did. Written as one line and, with --summary, as JSON (DESIGN.md, Commands).
 class Summary {
 public:
+    /// Throws OutputError if the JSON will not be written: before all work, so that none is half done.
     Summary(std::string command, const CommonArgs& args);
 
     void lap(const std::string& stage);  ///< seconds since the last lap go to this stage
@@ -85,6 +87,7 @@ private:
 
     std::string command_;
     const CommonArgs& args_;
+    std::optional<OutputFile> file_;
     bool has_counts_ = false;
     VerdictCounts counts_{};
     std::vector<std::pair<std::string, double>> seconds_;
@@ -104,8 +107,10 @@ PoseTable open_poses(const CommonArgs& args, const std::string& file);
 std::unique_ptr<Session> open_session(const QueryArgs& args);
 void fill(QueryOptions& options, const QueryArgs& args, const std::string& label);
 
-/// `-o FILE`, whole or not at all, or standard output where the file is empty or "-".
-void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer);
+/// `-o FILE`, whole or not at all, or standard output where the file is empty or "-". `then` runs when all is written but
+/// the file has not its name yet: it gets that only if `then` succeeds too.
+void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer,
+                  const std::function<void()>& then = [] {});
 
 /// Each adds its command to the app; `run` is set when it is chosen.
 using Run = std::function<int()>;

@@ -40,13 +40,14 @@ int run_raster(const RasterArgs& args, bool step_z_given)
     summary.lap("load");
     const RasterResult result = raster(session->map, *session->checker, options);
     summary.lap("query");
-    if (!args.heatmap.empty()) {
+    const auto draw = [&] {
+        if (args.heatmap.empty()) return;
         HeatmapOptions picture;
         picture.title = session->map.name + ", " + session->robot.name;
         write_heatmap(session->map, read_terrain(session->map), result, picture, args.heatmap);
-    }
-    if (!args.out.empty() || args.heatmap.empty())
-        write_output(args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink); });
+    };
+    if (args.out.empty() && !args.heatmap.empty()) draw();
+    else write_output(args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink); }, draw);
     summary.lap("write");
     summary.set_counts(result.counts);
     summary.exact_checks = result.exact_checks;

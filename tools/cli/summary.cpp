@@ -1,7 +1,5 @@
 #include "cli.h"
 
-#include <spawnfield/output_file.h>
-
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
@@ -9,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <thread>
 
@@ -29,7 +28,12 @@ std::uint64_t peak_memory_bytes()
 
 }  // namespace
 
-Summary::Summary(std::string command, const CommonArgs& args) : command_(std::move(command)), args_(args), start_(now()), last_(start_) {}
+Summary::Summary(std::string command, const CommonArgs& args) : command_(std::move(command)), args_(args), start_(now()), last_(start_)
+{
+    std::error_code ignored;
+    const bool is_pipe = std::filesystem::is_fifo(args.summary, ignored);  // to open it is to wait for its reader
+    if (!args.summary.empty() && !is_pipe) file_.emplace(args.summary);
+}
 
 void Summary::lap(const std::string& stage)
 {
@@ -106,7 +110,11 @@ std::string Summary::json(double total) const
 void Summary::finish()
 {
     const double total = now() - start_;
-    if (!args_.summary.empty()) write_file_atomically(args_.summary, json(total));
+    if (!args_.summary.empty()) {
+        if (!file_) file_.emplace(args_.summary);
+        file_->write(json(total));
+        file_->commit();
+    }
     clear_progress_bar();
     if (!args_.quiet) std::cerr << line(total) << "\n";
 }
