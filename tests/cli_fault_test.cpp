@@ -62,7 +62,8 @@ const std::string hint = "\nRun with --help for more information.";
 TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
 {
     const Desk desk;
-    const std::string raster = "raster map -o out --dims 2 --step 1" + husky, sample = "sample map -o out" + husky,
+    const std::string raster = "raster map -o out --dims 2 --step 1" + husky, raster3 = "raster map -o out --dims 3 --step 1" + husky,
+                      sample = "sample map -o out" + husky,
                       search = "search map -o out --min-distance 1" + husky;
     const Refusal refusals[] = {
         {"", "A subcommand is required" + hint},
@@ -77,16 +78,20 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {raster + "--bounds 0,0,-1,5", "spawnfield: --bounds: x1 is -1, needs at least x0: the lower corner comes first"},
         {raster + "--bounds 0,0,1", "spawnfield: --bounds has 3 numbers, needs 6: x0,y0,z0,x1,y1,z1 (or 4: x0,y0,x1,y1)"},
         {"raster map -o out --dims 3 --step 1 --bounds 0,0,1,1" + husky, "spawnfield: --bounds has 4 numbers, needs 6: x0,y0,z0,x1,y1,z1"},
-        {raster + "--max-height -1", "spawnfield: --max-height is -1, needs >= 0 m"},
+        {raster3 + "--max-height -1", "spawnfield: --max-height is -1, needs >= 0 m"},
         {raster + "--max-water-depth nan", "spawnfield: --max-water-depth is nan, needs >= 0 m"},
         {raster + "--yaw inf", "spawnfield: --yaw is inf, needs a finite number, rad"},
         {raster + "--offset inf", "spawnfield: --offset is inf, needs a finite number, m"},
-        {raster + "--write-aerial", "spawnfield: --write-aerial is for --dims 3"},
+        {raster + "--write-aerial", "spawnfield: --write-aerial is for --dims 3: in 2D poses stand on their layers"},
+        {raster + "--step-z 1", "spawnfield: --step-z is for --dims 3: in 2D poses stand on their layers"},
+        {raster + "--max-height 1", "spawnfield: --max-height is for --dims 3: in 2D poses stand on their layers"},
+        {raster3 + "--offset 0.1", "spawnfield: --offset is for --dims 2: in 3D poses stand at heights of their own"},
+        {raster3 + "--no-height-check --layer 0", "spawnfield: --layers says nothing with --no-height-check, which looks for collisions alone"},
         {"raster map -o out --dims 2 --step 0.00001" + husky, "spawnfield: columns is 640001600001, needs at most 2147483647; take a larger step"},
-        {"raster map -o out --dims 3 --step 1 --write-aerial --layers top" + husky,
+        {raster3 + "--write-aerial --layers top",
          "spawnfield: --write-aerial needs --layers all: aerial poses are above no layer"},
         {raster + "--no-height-check",
-         "spawnfield: without height check needs dims 3: a pose of a 2D raster stands on its layer by definition"},
+         "spawnfield: --no-height-check is for --dims 3: in 2D poses stand on their layers"},
         {sample + "-n 0", "spawnfield: -n is 0, needs >= 1"},
         {sample + "-n 5 --min-distance -1", "spawnfield: --min-distance is -1, needs >= 0 m"},
         {sample + "-n 5 --yaw north", "spawnfield: --yaw: \"north\" is no finite number"},
@@ -103,8 +108,13 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"bake scene.yaml -o new --scale 0", "spawnfield: --scale is 0, needs > 0"},
         {"bake scene.yaml -o new --resolution 0.00001",
          "spawnfield: columns at a cell of 1e-05 m is 6.4e+11, needs at most 1e+08; take a coarser resolution"},
+        {"info map --up y", "spawnfield: --up is for a bare mesh; map is a folder"},
+        {"info map --package-path .", "spawnfield: --package-path is for a robot; map is a folder"},
+        {"info scene.yaml --verify", "spawnfield: --verify is for a map folder; scene.yaml is none"},
+        {"info box:1,1,1 --scale 1", "spawnfield: --scale is for a bare mesh; box:1,1,1 is a robot"},
         {"frob map", "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap"},
         {sample + "-n 5 --seed -1", "--seed: -1 is no whole number from 0 to 18446744073709551615" + hint},
+        {sample + "-n 5 --max-height 1", "The following arguments were not expected: 1 --max-height" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);
     for (const std::string arguments : {"fly map", "raster map --dims 4 --step 1", "raster map --dims 2 --step x", "sample map -n many",

@@ -295,6 +295,44 @@ TEST_CASE("fewer spawns than asked for end with 3, and those found are written")
     CHECK_FALSE(summary(arena / "s.json", "search").contains("full"));
 }
 
+TEST_CASE("a robot that stands in all flat ground is told of, with an offset that would do")
+{
+    const Arena arena;
+    const std::string low = " --robot box:0.5,0.5,0.5@0,0,0.04 ", query[] = {"sample map -n 1", "raster map --dims 2 --step 2", "heatmap map --step 2 -o a.png"};
+    const std::string told = "the robot's lowest point is 0.21 m below its origin, --offset is 0.1 m: it collides on all flat ground; --offset 0.22 would do\n";
+    for (const std::string& command : query) {
+        INFO(command);
+        const ProgramRun run = arena(command + low);
+        CHECK(run.err.starts_with("notice: " + told));
+        CHECK_THAT(arena(command + low + "--offset 0.22").err, !Contains("notice"));
+        CHECK_THAT(arena(command + low + "--offset 0.21").err, Contains("--offset is 0.21 m"));
+        CHECK(arena(command + low + "-q").err.empty());
+        CHECK_THAT(arena(command + husky).err, !Contains("notice"));
+    }
+    CHECK_THAT(arena("raster map --dims 3 --step 2" + low).err, !Contains("notice"));
+}
+
+TEST_CASE("what lies off the map, and a layer that it has not, is told of")
+{
+    const Arena arena;
+    const std::string off = " 50, 50 to 60, 60 m lies off the map, which is -10.1, -10.1 to 10.1, 10.1 m\n";
+    const std::string query[] = {"sample map -n 1 --region 50,50,60,60", "raster map --dims 2 --step 2 --bounds 50,50,60,60",
+                                 "raster map --dims 3 --step 2 --bounds 50,50,0,60,60,1", "heatmap map --step 2 -o a.png --bounds 50,50,60,60",
+                                 "search map -n 1 --max-failures 9 --bounds 50,50,0,60,60,1"};
+    for (const std::string& command : query) {
+        INFO(command);
+        const std::string option = command.starts_with("sample") ? "--region" : "--bounds";
+        CHECK(arena(command + husky).err.starts_with("notice: " + option + off));
+    }
+    CHECK_THAT(arena("raster map --dims 2 --step 2 --bounds 9,9,60,60" + husky).err, !Contains("notice"));
+    const std::string layers = "notice: --layers 2: no cell of the map has so many, the most is 2 layers (0 is the highest)\n";
+    for (const std::string command : {"sample map -n 1", "raster map --dims 2 --step 2", "raster map --dims 3 --step 2", "heatmap map --step 2 -o a.png"}) {
+        INFO(command);
+        CHECK(arena(command + " --layer 2" + husky).err.starts_with(layers));
+        CHECK_THAT(arena(command + " --layer 1" + husky).err, !Contains("notice: --layers"));
+    }
+}
+
 TEST_CASE("the output of check can be checked again")
 {
     const Arena arena;

@@ -68,12 +68,22 @@ void add_query(CLI::App& command, QueryArgs& args)
     command.add_option("map", args.map, "Map folder, from `spawnfield bake`")->required();
     command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, or box:LX,LY,LZ[@x,y,z] (m)")->required();
     command.add_option("--package-path", args.package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
-    command.add_option("--max-height", args.max_height, "Most metres of the robot's origin above its ground (default 1)");
     command.add_option("--max-water-depth", args.max_water_depth, "Water higher than this above the ground does not count, m (default: all does)");
     command.add_option("--collision", args.collision, "What the robot must not touch: geometry (exact), or octree (the baked voxels)")
         ->check(CLI::IsMember({"geometry", "octree"}));
     command.add_flag("--exhaustive", args.exhaustive, "Check every pose exactly, without the free-space mask: the same answers, slowly");
     add_common(command, args);
+}
+
+void add_max_height(CLI::App& command, QueryArgs& args)
+{
+    command.add_option("--max-height", args.max_height, "Most metres of the robot's origin above its ground (default 1)");
+}
+
+void refuse(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason)
+{
+    for (const std::string& option : options)
+        if (command.count(option) > 0) throw ArgumentError(option + " " + reason);
 }
 
 void notice(const CommonArgs& args, const std::string& text)
@@ -200,6 +210,32 @@ void fill(QueryOptions& options, const QueryArgs& args, const std::string& label
     options.progress = progress_bar(args, label);
     if (!(options.max_height >= 0)) throw bad_value("--max-height", options.max_height, ">= 0 m");
     if (!(options.max_water_depth >= 0)) throw bad_value("--max-water-depth", options.max_water_depth, ">= 0 m");
+}
+
+void tell_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds)
+{
+    const bool meet = bounds.min.x() <= map.bounds.max.x() && bounds.max.x() >= map.bounds.min.x() &&
+                      bounds.min.y() <= map.bounds.max.y() && bounds.max.y() >= map.bounds.min.y();
+    if (!bounds.is_empty() && !meet)
+        notice(args, option + " " + to_string(bounds, 2) + " lies off the map, which is " + to_string(map.bounds, 2));
+}
+
+void tell_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice& layers)
+{
+    if (layers.kind == LayerChoice::Kind::Index && layers.index >= map.layers)
+        notice(args, "--layers " + std::to_string(layers.index) + ": no cell of the map has so many, the most is " + counted(std::uint64_t(map.layers), "layer") +
+                         " (0 is the highest)");
+}
+
+void tell_if_in_ground(const CommonArgs& args, const Robot& robot, double offset)
+{
+    const double depth = 0 - robot.bounds().min.z();  // never -0
+    if (offset > depth + CollisionChecker::touch_margin) return;
+    const double enough = (std::floor(100 * depth + 0.001) + 1) / 100;  // the next centimetre
+    char text[200];
+    std::snprintf(text, sizeof text, "the robot's lowest point is %.6g m below its origin, --offset is %.6g m: it collides on all flat ground; --offset %.6g would do",
+                  depth, offset, enough);
+    notice(args, text);
 }
 
 void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer,

@@ -36,6 +36,11 @@ struct QueryArgs : CommonArgs {
     double max_water_depth = std::numeric_limits<double>::infinity();
 };
 void add_query(CLI::App& command, QueryArgs& args);
+/// For commands whose poses stand anywhere, not on their layer.
+void add_max_height(CLI::App& command, QueryArgs& args);
+
+/// Throws ArgumentError "--option REASON" if one of the options was given.
+void refuse(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason);
 
 /// Words for people: notices, one at a time on standard error, unless --quiet.
 void notice(const CommonArgs& args, const std::string& text);
@@ -106,6 +111,12 @@ PoseTable open_poses(const CommonArgs& args, const std::string& file);
 /// Heap-held: the checker keeps references into it.
 std::unique_ptr<Session> open_session(const QueryArgs& args);
 void fill(QueryOptions& options, const QueryArgs& args, const std::string& label);
+
+/// A notice where an answer is plain before it is asked for: the region lies off the map, no column has that layer, the robot
+/// stands in all flat ground.
+void tell_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds);
+void tell_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice& layers);
+void tell_if_in_ground(const CommonArgs& args, const Robot& robot, double offset);
 
 /// `-o FILE`, whole or not at all, or standard output where the file is empty or "-". `then` runs when all is written but
 /// the file has not its name yet: it gets that only if `then` succeeds too.

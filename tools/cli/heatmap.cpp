@@ -45,6 +45,9 @@ int run_heatmap(const HeatmapArgs& args, bool step_given)
     if (!args.spawns.empty()) picture.spawns = spawns_of(open_poses(args, args.spawns));
     const auto session = open_session(args);
     options.step = step_given ? parse_positive("--step", args.step) : default_step(session->map, options);
+    tell_if_off_map(args, session->map, "--bounds", options.bounds);
+    tell_if_no_layer(args, session->map, options.layers);
+    tell_if_in_ground(args, session->robot, options.offset);
     const TerrainMap terrain = read_terrain(session->map);
     summary.lap("load");
     const RasterResult result = raster(session->map, *session->checker, options);

@@ -160,19 +160,25 @@ bool is_robot(const std::string& what)
     return text.str().find("spawnfield-robot/") != std::string::npos;
 }
 
-int run_info(const InfoArgs& args)
+int run_info(const InfoArgs& args, const CLI::App& command)
 {
     const Progress listen = progress_bar(args, "info");
     Summary summary("info", args);
     Json out;
     if (fs::is_directory(args.what)) {
+        refuse(command, {"--up", "--scale"}, "is for a bare mesh; " + args.what + " is a folder");
+        refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is a folder");
         if (args.verify) verify_map(args.what);
         const Map map = read_map(args.what);
         summary.map_hash = map.hash;
         out = map_json(map, args.verify);
     } else if (is_robot(args.what)) {
+        refuse(command, {"--up", "--scale"}, "is for a bare mesh; " + args.what + " is a robot");
+        refuse(command, {"--verify"}, "is for a map; " + args.what + " is a robot");
         out = robot_json(load_robot(args.what, {{args.package_paths.begin(), args.package_paths.end()}}));
     } else {
+        refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is none");
+        refuse(command, {"--verify"}, "is for a map folder; " + args.what + " is none");
         SceneOptions options;
         options.up = args.up.empty() ? char{0} : args.up[0];
         options.scale = parse_positive("--scale", args.scale);
@@ -208,7 +214,7 @@ void add_info(CLI::App& app, Run& run)
     command.add_option("--package-path", args->package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
     add_common(command, *args);
     command.footer("Example:\n  spawnfield info maps/training/scene.yaml");
-    command.callback([=, &run] { run = [=] { return run_info(*args); }; });
+    command.callback([=, &command, &run] { run = [=, &command] { return run_info(*args, command); }; });
 }
 
 }  // namespace spawnfield::cli

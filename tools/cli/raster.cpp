@@ -13,30 +13,43 @@ struct RasterArgs : QueryArgs {
     bool no_height_check = false, write_aerial = false;
 };
 
-RasterOptions options_of(const RasterArgs& args, bool step_z_given)
+/// Options that say nothing about such a raster are a slip of the pen.
+void refuse_idle_options(const RasterArgs& args, const CLI::App& command)
 {
+    if (args.dims == 3) refuse(command, {"--offset"}, "is for --dims 2: in 3D poses stand at heights of their own");
+    if (args.dims == 2)
+        refuse(command, {"--step-z", "--max-height", "--no-height-check", "--write-aerial"}, "is for --dims 3: in 2D poses stand on their layers");
+    if (args.no_height_check)
+        refuse(command, {"--max-height", "--max-water-depth", "--layers"}, "says nothing with --no-height-check, which looks for collisions alone");
+}
+
+RasterOptions options_of(const RasterArgs& args, const CLI::App& command)
+{
+    refuse_idle_options(args, command);
     RasterOptions options;
     fill(options, args, "raster");
     options.dims = args.dims;
     options.step = parse_positive("--step", args.step);
-    if (step_z_given) options.step_z = parse_positive("--step-z", args.step_z);
+    if (command.count("--step-z") > 0) options.step_z = parse_positive("--step-z", args.step_z);
     options.offset = parse_finite("--offset", args.offset, "m");
     options.yaw = parse_finite("--yaw", args.yaw, "rad");
     options.layers = parse_layers(args.layers);
     options.height_check = !args.no_height_check;
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, args.dims == 2);
-    if (args.write_aerial && args.dims == 2) throw ArgumentError("--write-aerial is for --dims 3");
     if (args.write_aerial && options.layers.kind != LayerChoice::Kind::All)
         throw ArgumentError("--write-aerial needs --layers all: aerial poses are above no layer");
     return options;
 }
 
-int run_raster(const RasterArgs& args, bool step_z_given)
+int run_raster(const RasterArgs& args, const CLI::App& command)
 {
     Summary summary("raster", args);
-    RasterOptions options = options_of(args, step_z_given);
+    RasterOptions options = options_of(args, command);
     options.exact_time = &summary.exact_time;
     const auto session = open_session(args);
+    tell_if_off_map(args, session->map, "--bounds", options.bounds);
+    tell_if_no_layer(args, session->map, options.layers);
+    if (args.dims == 2) tell_if_in_ground(args, session->robot, options.offset);
     summary.lap("load");
     const RasterResult result = raster(session->map, *session->checker, options);
     summary.lap("query");
@@ -63,11 +76,12 @@ void add_raster(CLI::App& app, Run& run)
     auto args = std::make_shared<RasterArgs>();
     CLI::App& command = *app.add_subcommand("raster", "Verdict at every position of a 2D or 3D raster");
     add_query(command, *args);
+    add_max_height(command, *args);
     command.add_option("--dims", args->dims, "2: a pose per column and layer; 3: a pose per column and height")
         ->required()
         ->check(CLI::IsMember({2, 3}));
     command.add_option("--step", args->step, "Between columns, m")->required();
-    auto* step_z = command.add_option("--step-z", args->step_z, "Between heights, m (default: --step)");
+    command.add_option("--step-z", args->step_z, "Between heights, m (default: --step)");
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer in 2D, m (default 0.1)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
     command.add_option("--bounds", args->bounds, "x0,y0,z0,x1,y1,z1 in m; 2D takes x0,y0,x1,y1 too and leaves z aside (default: the map's)");
@@ -78,7 +92,7 @@ void add_raster(CLI::App& app, Run& run)
     command.add_option("--heatmap", args->heatmap, "PNG file to draw");
     command.footer("Example:\n"
                    "  spawnfield raster /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --step 0.5 --offset 0.5 -o /tmp/raster.csv");
-    command.callback([=, &run] { run = [=] { return run_raster(*args, step_z->count() > 0); }; });
+    command.callback([=, &command, &run] { run = [=, &command] { return run_raster(*args, command); }; });
 }
 
 }  // namespace spawnfield::cli

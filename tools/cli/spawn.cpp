@@ -69,6 +69,7 @@ int run_search(const SpawnArgs& args)
     if (args.max_failures < 1) throw bad_value("--max-failures", double(args.max_failures), ">= 1");
     options.max_failures = std::uint64_t(args.max_failures);
     const auto session = open_session(args);
+    tell_if_off_map(args, session->map, "--bounds", options.bounds);
     summary.lap("load");
     const SpawnList list = search(session->map, *session->checker, options);
     return finish(summary, args, *session, options, list, "search");
@@ -82,6 +83,9 @@ int run_sample(const SpawnArgs& args)
     options.offset = parse_finite("--offset", args.offset, "m");
     options.layers = parse_layers(args.layers);
     const auto session = open_session(args);
+    tell_if_off_map(args, session->map, "--region", options.bounds);
+    tell_if_no_layer(args, session->map, options.layers);
+    tell_if_in_ground(args, session->robot, options.offset);
     summary.lap("load");
     const SpawnList list = sample(session->map, *session->checker, options);
     summary.fullness = {list.is_full, list.undecided_area};
@@ -115,6 +119,7 @@ void add_search(CLI::App& app, Run& run)
     auto args = std::make_shared<SpawnArgs>();
     CLI::App& command = *app.add_subcommand("search", "N spawns by random search in a box, away from all positions checked before");
     add_spawn_options(command, *args);
+    add_max_height(command, *args);
     command.add_option("--max-failures", args->max_failures, "Draws in a row that gave nothing, after which it stops (default 100000)");
     command.add_option("--bounds", args->bounds, "Box of the draws: x0,y0,z0,x1,y1,z1 in m (default: the map's)");
     command.footer("Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 --max-failures 10000");
