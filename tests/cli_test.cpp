@@ -93,6 +93,22 @@ TEST_CASE("every command has help with an example, and the program tells its ver
     CHECK(version.out == spawnfield::version() + "\n");
 }
 
+TEST_CASE("every example works after README's steps, and leaves their files as they are")
+{
+    const TempFolder folder;  // stands for /tmp and for the source folder
+    fs::create_symlink(SPAWNFIELD_CLI, folder / "spawnfield");
+    fs::create_symlink(SPAWNFIELD_SOURCE "/maps", folder / "maps");
+    for (const char* const name : {"poses.csv", "spawns.csv", "raster.csv"}) folder.write(name, "mine");
+    for (const std::string& command : commands) {
+        const std::string help = run_program(folder, command + " --help").out;
+        std::string script = help.substr(help.find("Example:") + 8);
+        for (std::size_t at = script.find("/tmp/"); at != std::string::npos; at = script.find("/tmp/")) script.erase(at, 5);
+        INFO(script);
+        CHECK(run_program(folder, "--version && set -e && PATH=$PWD:$PATH\n" + script).status == 0);
+    }
+    for (const char* const name : {"poses.csv", "spawns.csv", "raster.csv"}) CHECK(bytes_of(folder / name) == "mine");
+}
+
 TEST_CASE("bake writes a map, tells what it made, and its summary")
 {
     const TempFolder folder;

@@ -43,8 +43,8 @@ void add_check(CLI::App& app, Run& run)
     command.add_option("--poses,-p", args->poses, "CSV file: x,y,z[,roll,pitch,yaw | ,qx,qy,qz,qw]; m, rad; other columns are kept, but verdict,ground,height_above,hit replaced")->required();
     command.add_option("--out,-o", args->out, "CSV file to write (default: standard output)");
     command.footer("Example:\n"
-                   "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/poses.csv\n"
-                   "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/poses.csv");
+                   "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/two_poses.csv\n"
+                   "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv");
     command.callback([=, &run] { run = [=] { return run_check(*args); }; });
 }
 

@@ -91,7 +91,7 @@ void add_raster(CLI::App& app, Run& run)
     command.add_option("--out,-o", args->out, "CSV file to write (default: standard output, or none with --heatmap)");
     command.add_option("--heatmap", args->heatmap, "PNG file to draw");
     command.footer("Example:\n"
-                   "  spawnfield raster /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --step 0.5 --offset 0.5 -o /tmp/raster.csv");
+                   "  spawnfield raster /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --step 0.5 --offset 0.5 -o /tmp/box_raster.csv");
     command.callback([=, &command, &run] { run = [=, &command] { return run_raster(*args, command); }; });
 }
 
