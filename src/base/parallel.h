@@ -14,6 +14,9 @@
 
 namespace spawnfield {
 
+/// How many threads are meant; 0: all cores.
+inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
+
 /// Calls body(i) for each i < count on `threads` threads (0: all cores). Each i must write to its own slot only.
 /// `progress` hears of it after each item; an exception from there or from body ends the loop and is thrown on.
 template <class Body>
@@ -34,9 +37,8 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
         }
         finished.exchange(true, std::memory_order_acq_rel);
     };
-    if (threads == 0) threads = tbb::info::default_concurrency();
-    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
-    tbb::task_arena arena(threads);
+    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, std::size_t(thread_count(threads)));
+    tbb::task_arena arena(thread_count(threads));
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), run); });
     static_cast<void>(finished.load(std::memory_order_acquire));
 }

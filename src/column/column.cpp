@@ -50,6 +50,12 @@ public:
     /// Appends what the hits, in the order of their elements, amount to.
     void build(std::span<const SurfaceHit> hits, Column& out)
     {
+        if (hits.empty()) return;
+        if (hits.size() == 1 && !hits[0].filled) {  // open ground
+            add(hits[0].z, hits[0], hits[0].terrain, out);
+            if (hits[0].terrain) out.layers.push_back(hits[0].z.top);
+            return;
+        }
         const std::size_t first_span = out.spans.size(), first_water = out.water.size();
         for (std::size_t i = 0; i < hits.size();) {
             const SurfaceHit& hit = hits[i];
@@ -190,65 +196,91 @@ void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces
 
 namespace {
 
-/// First and last index of a block, inclusive, whose coordinate lies in [low, high]; a_step is 1 / step.
-std::pair<int, int> indices_in(double low, double high, double origin, double step, double shift, double a_step, int first, int count)
+/// Indices of a block along one axis.
+struct IndexRange {
+    int first, last;  ///< inclusive
+    bool is_empty() const { return first > last; }
+};
+
+/// Those whose coordinate may lie in [low, high], from the block's first on; a_step is 1 / step.
+inline IndexRange indices_in(double low, double high, double origin, double a_step, double shift, int first, int count)
 {
-    const auto nearest = [&](double value) { return int(std::max(double(first) - 1, std::min(double(first + count), (value - origin) * a_step - shift))); };
-    int from = std::max(first, nearest(low)), to = std::min(first + count - 1, nearest(high) + 1);
-    while (from <= to && origin + (from + shift) * step < low) ++from;
-    while (to >= from && origin + (to + shift) * step > high) --to;
-    return {from, to};
+    constexpr double rounding = 1e-6;  // of a step: more than indices up to 2^31 lose
+    const double from = std::max(std::ceil((low - origin) * a_step - shift - rounding) - first, 0.0);
+    const double to = std::min(std::floor((high - origin) * a_step - shift + rounding) - first, count - 1.0);
+    if (!(from <= to)) return {0, -1};
+    return {int(from), int(to)};
 }
+
+/// The hits of each column of a block, each column's in a list.
+class HitLists {
+public:
+    void start(std::size_t columns)
+    {
+        heads_.assign(columns, none);
+        hits_.clear();
+        next_.clear();
+    }
+    /// To be written. Until the next call.
+    SurfaceHit& add(std::size_t column)
+    {
+        next_.push_back(heads_[column]);
+        heads_[column] = std::uint32_t(next_.size() - 1);
+        return hits_.emplace_back();
+    }
+    /// In the order of their elements. Until the next call.
+    std::span<const SurfaceHit> of(std::size_t column)
+    {
+        const std::uint32_t head = heads_[column];
+        if (head == none) return {};
+        if (next_[head] == none) return {&hits_[head], 1};
+        sorted_.clear();
+        for (std::uint32_t h = head; h != none; h = next_[h]) sorted_.push_back(hits_[h]);
+        std::sort(sorted_.begin(), sorted_.end(), [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
+        return sorted_;
+    }
+
+private:
+    static constexpr std::uint32_t none = 0xffffffff;
+    std::vector<std::uint32_t> heads_, next_;
+    std::vector<SurfaceHit> hits_, sorted_;
+};
 
 }  // namespace
 
 void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
 {
-    thread_local std::vector<SurfaceHit> hits, sorted;
-    thread_local std::vector<std::uint32_t> columns;
-    hits.clear();
-    columns.clear();
+    thread_local HitLists lists;
+    HitLists& hits = lists;
+    const std::size_t count = std::size_t(grid.cols) * std::size_t(grid.rows);
+    hits.start(count);
     const double a_step = 1 / grid.step;
     const auto visit = [&](const Tile& tile, std::uint32_t element) {
-        if (!counts(tile, element, surfaces)) return;
         const ElementBox& box = tile.boxes[element];
-        const auto [i0, i1] = indices_in(box.min[0], box.max[0], grid.x0, grid.step, grid.shift, a_step, grid.first_col, grid.cols);
-        if (i0 > i1) return;
-        const auto [j0, j1] = indices_in(box.min[1], box.max[1], grid.y0, grid.step, grid.shift, a_step, grid.first_row, grid.rows);
-        if (j0 > j1) return;
-        const auto visit_columns = [&](const auto& hit_at) {
-            for (int j = j0; j <= j1; ++j)
-                for (int i = i0; i <= i1; ++i)
-                    if (const auto hit = hit_at(grid.x_of(i), grid.y_of(j))) {
-                        hits.push_back(*hit);
-                        columns.push_back(std::uint32_t(j - grid.first_row) * std::uint32_t(grid.cols) + std::uint32_t(i - grid.first_col));
-                    }
+        const IndexRange cols = indices_in(box.min[0], box.max[0], grid.x0, a_step, grid.shift, grid.first_col, grid.cols);
+        if (cols.is_empty()) return;
+        const IndexRange rows = indices_in(box.min[1], box.max[1], grid.y0, a_step, grid.shift, grid.first_row, grid.rows);
+        if (rows.is_empty() || !counts(tile, element, surfaces)) return;
+        const auto visit_columns = [&](const auto& meet) {
+            for (int j = rows.first; j <= rows.last; ++j)
+                for (int i = cols.first; i <= cols.last; ++i)
+                    meet(grid.x_of(grid.first_col + i), grid.y_of(grid.first_row + j),
+                         [&]() -> SurfaceHit& { return hits.add(std::size_t(j) * std::size_t(grid.cols) + std::size_t(i)); });
         };
         if (tile.is_triangle(element)) {
             const SeenTriangle seen(tile, element);
-            visit_columns([&](double x, double y) { return seen.hit(x, y); });
+            visit_columns([&](double x, double y, const auto& new_hit) { seen.meet(x, y, new_hit); });
         } else {
-            visit_columns([&](double x, double y) { return hit_of(tile, element, x, y); });
+            visit_columns([&](double x, double y, const auto& new_hit) {
+                if (const auto hit = hit_of(tile, element, x, y)) new_hit() = *hit;
+            });
         }
     };
     geometry.impl().visit_in(grid.x_of(grid.first_col), grid.y_of(grid.first_row), grid.x_of(grid.first_col + grid.cols - 1),
                              grid.y_of(grid.first_row + grid.rows - 1), visit);
-
-    // Counting sort by column, then each column's few hits by element.
-    const std::size_t count = std::size_t(grid.cols) * std::size_t(grid.rows);
-    thread_local std::vector<std::uint32_t> starts;
-    starts.assign(count + 1, 0);
-    for (const std::uint32_t column : columns) ++starts[column + 1];
-    for (std::size_t column = 1; column <= count; ++column) starts[column] += starts[column - 1];
-    sorted.resize(hits.size());
-    for (std::size_t h = 0; h < hits.size(); ++h) sorted[starts[columns[h]]++] = hits[h];
-    std::size_t first = 0;
+    ColumnBuilder& columns = builder();
     for (std::size_t column = 0; column < count; ++column) {
-        const std::span<SurfaceHit> in_column(sorted.data() + first, starts[column] - first);
-        first = starts[column];
-        if (in_column.size() > 1)
-            std::sort(in_column.begin(), in_column.end(), [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
-        builder().build(in_column, column_);
+        columns.build(hits.of(column), column_);
         end_column();
     }
 }

@@ -39,88 +39,69 @@ void extend(const Vec3& p, const Vec3& q, double x, double y, std::optional<Inte
     joined = joined ? Interval{std::min(joined->bottom, here.bottom), std::max(joined->top, here.top)} : here;
 }
 
-}  // namespace
-
-SeenTriangle::SeenTriangle(const Tile& tile, std::uint32_t triangle) : corners_(tile.corners(triangle))
+/// The segment in which the line runs along a vertical triangle.
+std::optional<Interval> segment(const std::array<Vec3, 3>& corners, double x, double y)
 {
-    const auto& [a, b, c] = corners_;
-    const Vec2 ab = (b - a).head<2>(), ac = (c - a).head<2>(), bc = (c - b).head<2>();
-    area_ = ab.x() * ac.y() - ab.y() * ac.x();
-    squared_lengths_ = {ab.squaredNorm(), bc.squaredNorm(), ac.squaredNorm()};
-    is_vertical_ = area_ * area_ <= squared_tolerance * std::max({squared_lengths_[0], squared_lengths_[1], squared_lengths_[2]});
-    x_ = {std::min({a.x(), b.x(), c.x()}), std::max({a.x(), b.x(), c.x()})};
-    y_ = {std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()})};
-    z_ = {std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()})};
-    const TileTriangle& from = tile.triangles[triangle];
-    const TilePiece& piece = tile.pieces[from.piece];
-    hit_.element = tile.ids[triangle];
-    hit_.piece = piece.piece;
-    hit_.part = piece.part;
-    hit_.filled = piece.solid != 0;
-    hit_.open = piece.open != 0;
-    hit_.terrain = from.label == Label::Terrain && (piece.sides_up == 0 || hit_.filled || area_ > 0);
-    hit_.water = from.label == Label::Water;
-    hit_.piece_bottom = piece.bottom;
+    std::optional<Interval> joined;
+    for (std::size_t k = 0; k < 3; ++k) extend(corners[k], corners[(k + 1) % 3], x, y, joined);
+    return joined;
 }
 
-std::optional<SurfaceHit> SeenTriangle::hit(double x, double y) const
+Interval extent(const std::array<Vec3, 3>& corners, int axis)
 {
-    if (!may_meet(x, y)) return std::nullopt;
-    SurfaceHit out = hit_;
-    out.crosses = hit_.filled && is_crossed(x, y);
+    const double a = corners[0][axis], b = corners[1][axis], c = corners[2][axis];
+    return {std::min({a, b, c}), std::max({a, b, c})};
+}
+
+bool may_meet(const std::array<Vec3, 3>& corners, double x, double y)
+{
+    constexpr double reach = touch_tolerance;
+    const Interval along_x = extent(corners, 0), along_y = extent(corners, 1);
+    return along_x.bottom <= x + reach && along_x.top >= x - reach && along_y.bottom <= y + reach && along_y.top >= y - reach;
+}
+
+bool is_crossed(const std::array<Vec3, 3>& corners, double x, double y)
+{
+    const auto& [a, b, c] = corners;
+    return edge_crosses(a, b, x, y) ^ edge_crosses(b, c, x, y) ^ edge_crosses(c, a, x, y);
+}
+
+/// Whether the line passes through a triangle with this sign of its area, edges included to touch_tolerance.
+bool is_touched(const std::array<Vec3, 3>& corners, double sign, double x, double y)
+{
+    const auto is_left = [&](const Vec3& p, const Vec3& q) {
+        const Vec2 edge = (q - p).head<2>();
+        const double cross = edge.x() * (y - p.y()) - edge.y() * (x - p.x());
+        return sign * cross >= 0 || cross * cross <= squared_tolerance * edge.squaredNorm();
+    };
+    const auto& [a, b, c] = corners;
+    return is_left(a, b) && is_left(b, c) && is_left(c, a);
+}
+
+}  // namespace
+
+std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x, double y) const
+{
+    if (!may_meet(corners_, x, y)) return std::nullopt;
+    const double twice = area();
+    SurfaceHit out{};
+    set_surface(twice > 0, out);
+    out.crosses = out.filled && is_crossed(corners_, x, y);
     if (out.crosses) out.crossing = height(x, y);
-    if (is_vertical_) {
+    const double longest = std::max({edges_[0].squared_length, edges_[1].squared_length, edges_[2].squared_length});
+    // Thinner than the tolerance, its height over a point means nothing.
+    const bool is_vertical = twice * twice <= squared_tolerance * longest;
+    if (is_vertical) {
         // Also where it is crossed: by rounding, a line along it may cross it as well.
-        const auto met = hit_.filled ? segment(x, y) : std::nullopt;
+        const auto met = out.filled ? segment(corners_, x, y) : std::nullopt;
         out.touches = met.has_value();
         if (met) out.z = *met;
     } else {
-        out.touches = !out.crosses && is_touched(x, y);
+        out.touches = !out.crosses && is_touched(corners_, twice > 0 ? 1 : -1, x, y);
         if (out.touches) out.z.bottom = out.z.top = height(x, y);
     }
     if (!out.crosses && !out.touches) return std::nullopt;
     return out;
-}
-
-bool SeenTriangle::may_meet(double x, double y) const
-{
-    constexpr double reach = touch_tolerance;
-    return x_.bottom <= x + reach && x_.top >= x - reach && y_.bottom <= y + reach && y_.top >= y - reach;
-}
-
-bool SeenTriangle::is_crossed(double x, double y) const
-{
-    const auto& [a, b, c] = corners_;
-    return edge_crosses(a, b, x, y) ^ edge_crosses(b, c, x, y) ^ edge_crosses(c, a, x, y);
-}
-
-/// Whether the line passes through it, edges included to touch_tolerance.
-bool SeenTriangle::is_touched(double x, double y) const
-{
-    const double sign = area_ > 0 ? 1 : -1;
-    const auto is_left = [&](const Vec3& p, const Vec3& q, double squared_length) {
-        const double cross = (q.x() - p.x()) * (y - p.y()) - (q.y() - p.y()) * (x - p.x());
-        return sign * cross >= 0 || cross * cross <= squared_tolerance * squared_length;
-    };
-    const auto& [a, b, c] = corners_;
-    return is_left(a, b, squared_lengths_[0]) && is_left(b, c, squared_lengths_[1]) && is_left(c, a, squared_lengths_[2]);
-}
-
-double SeenTriangle::height(double x, double y) const
-{
-    const auto& [a, b, c] = corners_;
-    if (area_ == 0) return z_.top;
-    const double wb = ((x - a.x()) * (c.y() - a.y()) - (y - a.y()) * (c.x() - a.x())) / area_;
-    const double wc = ((b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x())) / area_;
-    return std::clamp(a.z() + wb * (b.z() - a.z()) + wc * (c.z() - a.z()), z_.bottom, z_.top);
-}
-
-/// For a vertical triangle: the segment in which the line runs along it.
-std::optional<Interval> SeenTriangle::segment(double x, double y) const
-{
-    std::optional<Interval> joined;
-    for (std::size_t k = 0; k < 3; ++k) extend(corners_[k], corners_[(k + 1) % 3], x, y, joined);
-    return joined;
 }
 
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace spawnfield {
 namespace {
@@ -16,6 +17,32 @@ int floor_of(double value)
     return whole - (double(whole) > value);
 }
 int ceil_of(double value) { return -floor_of(-value); }
+
+/// The largest value of a tile that stays below a height.
+int values_below(const BoundsHead& head, double a_quantum, double z)
+{
+    return std::max(0, ceil_of(std::clamp((z - head.base) * a_quantum, 0.0, 65536.0)) - 1);
+}
+
+/// Whether a point is in a convex polygon, counterclockwise; in one without corners none is.
+bool is_inside(const Polygon2& polygon, const Vec2& point)
+{
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec2 edge = polygon[k + 1 < polygon.size() ? k + 1 : 0] - polygon[k], to = point - polygon[k];
+        if (edge.x() * to.y() - edge.y() * to.x() < 0) return false;
+    }
+    return !polygon.empty();
+}
+
+/// The lowest interval of a cell for which the test holds, as it then does for all above it; nullptr: there is none.
+template <class Test>
+const QuantizedSpan* lowest_where(std::span<const QuantizedSpan> spans, const Test& test)
+{
+    constexpr std::size_t few = 8;
+    const auto lowest = spans.size() <= few ? std::find_if(spans.begin(), spans.end(), test)
+                                            : std::partition_point(spans.begin(), spans.end(), [&](const QuantizedSpan& span) { return !test(span); });
+    return lowest == spans.end() ? nullptr : &*lowest;
+}
 
 /// Cells along a part's width in each pass: a look at what is near, one that follows the part's shape, one that is as fine
 /// as pays beside an exact check.
@@ -39,6 +66,7 @@ void Mask::set_footprints(const std::vector<Footprint>& footprints, double cosin
         to.outer.top = footprints[p].outer.top;
         to.inner.bottom = footprints[p].inner.bottom;
         to.inner.top = footprints[p].inner.top;
+        parts_[p].is_around_origin = is_inside(to.inner.polygon, Vec2::Zero());
         choose_passes(parts_[p]);
     }
 }
@@ -62,7 +90,7 @@ void Mask::choose_passes(Part& part) const
         while (level + 1 < raster_.levels.size() && raster_.levels[level + 1].cell * cells <= width) ++level;
         if (raster_.levels.empty() || (count > 0 && part.passes[count - 1].level == level)) continue;
         if (part.passes.size() <= count) part.passes.emplace_back();
-        if (part.passes[count].level != level) part.passes[count].tile_col = -1;
+        if (part.passes[count].level != level) part.passes[count].tiles = {};
         part.passes[count].level = level;
         part.passes[count].is_ready = false;
         ++count;
@@ -102,6 +130,7 @@ void Mask::cover(const Part& part, Pass& pass) const
     }
     const int first = int(std::floor(v + low / cell)), last = int(std::floor(v + high / cell));
     pass.rows.assign(std::size_t(last - first + 1), {0, inf, -inf, inf, -inf});
+    pass.left.resize(pass.rows.size());
     for (int row = first; row <= last; ++row) pass.rows[std::size_t(row - first)].row = row;
     const auto extend = [&](double x, int row) {
         if (row < first || row > last) return;
@@ -128,7 +157,48 @@ void Mask::cover(const Part& part, Pass& pass) const
             pass.rows[k].inner_high = std::min(lines[k][1], lines[k + 1][1]);
         }
     }
+    pass.low = inf;
+    pass.high = -inf;
+    for (const CoverRow& row : pass.rows) {
+        pass.low = std::min(pass.low, row.low);
+        pass.high = std::max(pass.high, row.high);
+    }
     pass.is_ready = true;
+}
+
+/// Tile (col, row) of the pass's level.
+const Mask::OpenTile& Mask::tile_of(Pass& pass, int col, int row) const
+{
+    OpenTile& open = pass.tiles[std::size_t(row % 2 * 2 + col % 2)];
+    if (col == open.col && row == open.row) return open;
+    open.col = col;
+    open.row = row;
+    open.tile = raster_.open(pass.level, std::uint32_t(col), std::uint32_t(row));
+    if (open.tile.head != nullptr) open.a_quantum = 1 / open.tile.head->quantum;
+    return open;
+}
+
+/// Whether nothing in the cells around a part reaches up to it: most of open ground.
+bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
+{
+    constexpr int side = BoundsTile::side;
+    const double u = (x - raster_.x0) / raster_.levels[pass.level].cell;
+    const int low = floor_of(u + pass.low), high = floor_of(u + pass.high), first = pass.rows.front().row, last = pass.rows.back().row;
+    // Coarse cells at the upper rims reach beyond the finest ones.
+    const int known_cols = int(raster_.levels[0].cols >> pass.level), known_rows = int(raster_.levels[0].rows >> pass.level);
+    if (low < 0 || first < 0 || high >= known_cols || last >= known_rows) return false;
+    const double bottom = z + part.footprint.outer.bottom;
+    for (int tile_row = first / side; tile_row <= last / side; ++tile_row)
+        for (int tile_col = low / side; tile_col <= high / side; ++tile_col) {
+            const OpenTile& open = tile_of(pass, tile_col, tile_row);
+            if (open.tile.head == nullptr) continue;
+            const int from = std::max(low - tile_col * side, 0), to = std::min(high - tile_col * side, side - 1);
+            int highest = 0;
+            for (int j = std::max(first - tile_row * side, 0); j <= std::min(last - tile_row * side, side - 1); ++j)
+                for (int i = from; i <= to; ++i) highest = std::max<int>(highest, open.tile.tops[j * side + i]);
+            if (highest > values_below(*open.tile.head, open.a_quantum, bottom)) return false;
+        }
+    return true;
 }
 
 /// A part's heights at a pose, in those of a tile.
@@ -140,14 +210,35 @@ struct Mask::Heights {
     void set_tile(const BoundsHead& head, double a_quantum)
     {
         const auto value = [&](double z) { return std::clamp((z - head.base) * a_quantum, 0.0, 65536.0); };
-        below = std::uint32_t(std::max(0, ceil_of(value(bottom)) - 1));
+        below = std::uint32_t(values_below(head, a_quantum, bottom));
         hit_low = std::uint32_t(std::max(1, ceil_of(value(inner_bottom + head.slack))));
         hit_high = std::uint32_t(floor_of(value(inner_top)));
     }
     bool is_hit(std::uint32_t value) const { return value >= hit_low && value <= hit_high; }
 };
 
-Proof Mask::at(const Part& part, Pass& pass, double x, double z) const
+/// Whether something in the cell is inside the part for certain, if the cell is.
+bool Mask::is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights)
+{
+    if (heights.is_hit(tile.tops[cell])) return true;
+    if (tile.bounds.has(cell)) {
+        const QuantizedSpan* top = lowest_where(tile.bounds.of(cell), [&](const QuantizedSpan& span) { return span.top >= heights.hit_low; });
+        if (top != nullptr && heights.is_hit(top->top)) return true;
+    }
+    if (!tile.solids.has(cell)) return false;
+    const QuantizedSpan* solid = lowest_where(tile.solids.of(cell), [&](const QuantizedSpan& span) { return tile.height(span.top) >= heights.inner_bottom; });
+    return solid != nullptr && tile.height(solid->bottom) <= heights.inner_top;
+}
+
+/// Whether nothing in the cell, which reaches above the part's underside, is where the part is.
+bool Mask::is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights)
+{
+    if (!tile.bounds.has(cell)) return false;
+    const QuantizedSpan* span = lowest_where(tile.bounds.of(cell), [&](const QuantizedSpan& s) { return tile.height(s.top) >= heights.bottom; });
+    return span == nullptr || tile.height(span->bottom) > heights.top;
+}
+
+Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const
 {
     const BoundsLevel& level = raster_.levels[pass.level];
     const Footprint& footprint = part.footprint;
@@ -157,16 +248,32 @@ Proof Mask::at(const Part& part, Pass& pass, double x, double z) const
     const double u = (x - raster_.x0) / level.cell;
     // Coarse cells at the upper rims reach beyond the finest ones.
     const int known_cols = int(raster_.levels[0].cols >> pass.level), known_rows = int(raster_.levels[0].rows >> pass.level);
-    bool is_free = true;
+    const std::size_t finer = coarser != nullptr ? coarser->level - pass.level : 0;
+    bool nothing_near = true;
     constexpr int side = BoundsTile::side;
-    const BoundsTile& tile = pass.tile;
-    if (pass.tile_col >= 0 && tile.head != nullptr) heights.set_tile(*tile.head, pass.a_quantum);
-    for (const CoverRow& cover : pass.rows) {
+    const OpenTile* open = nullptr;
+    for (std::size_t n = 0; n < pass.rows.size(); ++n) {
+        const std::size_t middle = pass.rows.size() / 2, k = n % 2 == 0 ? middle + n / 2 : middle - (n + 1) / 2;  // outwards: hits are found soon
+        const CoverRow& cover = pass.rows[k];
+        CellRange& left = pass.left[k];
+        left = {std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
         if (!(cover.low <= cover.high)) continue;
-        const int low = floor_of(u + cover.low), high = floor_of(u + cover.high);
+        int low = floor_of(u + cover.low), high = floor_of(u + cover.high);
+        if (coarser != nullptr) {
+            const int row = (cover.row >> finer) - coarser->rows.front().row;
+            if (row < 0 || row >= int(coarser->rows.size())) continue;  // on the rim to rounding, so of the margin alone
+            const CellRange& range = coarser->left[std::size_t(row)];
+            if (range.first > range.last) continue;
+            low = std::max(low, range.first << finer);
+            high = std::min(high, (range.last << finer) + (1 << finer) - 1);
+            if (low > high) continue;
+        }
+        const auto leave = [&](int from, int to) {
+            nothing_near = false;
+            left = {std::min(left.first, from), std::max(left.last, to)};
+        };
         if (low < 0 || high >= known_cols || cover.row < 0 || cover.row >= known_rows) {
-            is_free = is_free && raster_.is_whole;
-            if (!is_free && !has_inner) return Proof::Candidate;
+            if (!raster_.is_whole) leave(low, high);
             if (high < 0 || low >= int(level.cols) || cover.row < 0 || cover.row >= int(level.rows)) continue;
         }
         const int first = std::max(0, low), last = std::min(int(level.cols) - 1, high);
@@ -177,46 +284,21 @@ Proof Mask::at(const Part& part, Pass& pass, double x, double z) const
         }
         for (int col = first; col <= last;) {
             const int end = std::min(last, col / side * side + side - 1);
-            if (col / side != pass.tile_col || cover.row / side != pass.tile_row) {
-                pass.tile_col = col / side;
-                pass.tile_row = cover.row / side;
-                pass.tile = raster_.open(pass.level, std::uint32_t(pass.tile_col), std::uint32_t(pass.tile_row));
-                if (tile.head != nullptr) {
-                    pass.a_quantum = 1 / tile.head->quantum;
-                    heights.set_tile(*tile.head, pass.a_quantum);
-                }
+            if (open == nullptr || col / side != open->col || cover.row / side != open->row) {
+                open = &tile_of(pass, col / side, cover.row / side);
+                if (open->tile.head != nullptr) heights.set_tile(*open->tile.head, open->a_quantum);
             }
-            if (tile.head == nullptr) {
-                col = end + 1;
-                continue;
-            }
-            const std::uint32_t row_start = std::uint32_t(cover.row % side * side) - std::uint32_t(pass.tile_col * side);  // + col: the cell
-            std::uint32_t highest = 0;
-            for (int c = col; c <= end; ++c) highest = std::max<std::uint32_t>(highest, tile.tops[row_start + std::uint32_t(c)]);
-            if (highest > heights.below) {
-                for (int c = col; c <= end; ++c) {
-                    const std::uint32_t cell = row_start + std::uint32_t(c);
-                    if (tile.tops[cell] <= heights.below) continue;
-                    const bool within = c >= inner_first && c <= inner_last;
-                    if (within && heights.is_hit(tile.tops[cell])) return Proof::Blocked;
-                    if (!tile.bounds.has(cell)) {
-                        is_free = false;
-                    } else {
-                        for (const QuantizedSpan& span : tile.bounds.of(cell)) {
-                            if (within && heights.is_hit(span.top)) return Proof::Blocked;
-                            if (tile.height(span.top) >= heights.bottom && tile.height(span.bottom) <= heights.top) is_free = false;
-                        }
-                    }
-                    if (within && tile.solids.has(cell))
-                        for (const QuantizedSpan& solid : tile.solids.of(cell))
-                            if (tile.height(solid.top) >= heights.inner_bottom && tile.height(solid.bottom) <= heights.inner_top) return Proof::Blocked;
-                }
-                if (!is_free && !has_inner) return Proof::Candidate;
+            const BoundsTile& tile = open->tile;
+            for (; col <= end && tile.head != nullptr; ++col) {
+                const auto cell = std::uint32_t(cover.row % side * side + col % side);
+                if (tile.tops[cell] <= heights.below) continue;
+                if (col >= inner_first && col <= inner_last && is_hit(tile, cell, heights)) return Proof::Blocked;
+                if (!is_free(tile, cell, heights)) leave(col, col);
             }
             col = end + 1;
         }
     }
-    return is_free ? Proof::Free : Proof::Candidate;
+    return nothing_near ? Proof::Free : Proof::Candidate;
 }
 
 Proof Mask::at(double x, double z)
@@ -228,15 +310,28 @@ Proof Mask::at(double x, double z)
     bool is_free = true;
     for (Part& part : parts_) {
         Proof proof = Proof::Candidate;
+        const Pass* coarser = nullptr;
         for (Pass& pass : part.passes) {
             if (!pass.is_ready) cover(part, pass);
-            proof = at(part, pass, x, z);
+            proof = coarser == nullptr && is_clear(part, pass, x, z) ? Proof::Free : at(part, pass, coarser, x, z);
+            coarser = &pass;
             if (proof != Proof::Candidate) break;
         }
         if (proof == Proof::Blocked) return Proof::Blocked;
         is_free = is_free && proof == Proof::Free;
     }
     return is_free ? Proof::Free : Proof::Candidate;
+}
+
+bool Mask::is_pierced(std::span<const Span> spans, double z) const
+{
+    for (const Part& part : parts_) {
+        if (!part.is_around_origin) continue;
+        const double bottom = z + part.footprint.inner.bottom, top = z + part.footprint.inner.top;
+        for (const Span& span : spans)
+            if (span.top >= bottom && (span.sealed ? span.bottom : span.top) <= top) return true;
+    }
+    return false;
 }
 
 FreeSpace::FreeSpace(const SolidBounds& bounds, const Robot& robot)

@@ -3,7 +3,10 @@
 #include "free_space/bounds_tile.h"
 #include "free_space/footprint.h"
 
+#include <spawnfield/column.h>
 #include <spawnfield/free_space.h>
+
+#include <array>
 
 namespace spawnfield {
 
@@ -25,6 +28,8 @@ public:
     void face(const Mat3& rotation);      ///< any; if tilted, nothing is Blocked
     void set_y(double y);                 ///< of the poses to come, m
     Proof at(double x, double z);
+    /// Whether something solid on the vertical line through the origin, whose spans these are, is inside a part for certain.
+    bool is_pierced(std::span<const Span> spans, double z) const;
 
 private:
     /// Cells of one row that a part covers, relative to the column of its origin; inner ones lie within it whole.
@@ -32,24 +37,37 @@ private:
         int row;
         double low, high, inner_low, inner_high;
     };
+    struct OpenTile {
+        BoundsTile tile;
+        int col = -1, row = -1;
+        double a_quantum = 0;  ///< 1 / quantum of the tile
+    };
+    struct CellRange {
+        int first, last;  ///< columns, inclusive
+    };
     struct Pass {
         std::size_t level;
         bool is_ready = false;
-        std::vector<CoverRow> rows;
-        BoundsTile tile = {};               ///< the last one that was looked at
-        int tile_col = -1, tile_row = -1;
-        double a_quantum = 0;               ///< 1 / quantum of the tile
+        std::vector<CoverRow> rows;         ///< one after the other
+        double low = 0, high = 0;           ///< of all rows
+        std::vector<CellRange> left;        ///< of each row: outside of it, all is proven free at the last pose that was asked for
+        std::array<OpenTile, 4> tiles;      ///< the last ones that were looked at: all that a part straddles
     };
     struct Part {
         Footprint footprint;
         std::vector<Pass> passes;  ///< coarse to fine
+        bool is_around_origin;     ///< the inner prism, as seen from above
     };
     struct Heights;
 
     void set_footprints(const std::vector<Footprint>& footprints, double cosine, double sine);
     void choose_passes(Part& part) const;
     void cover(const Part& part, Pass& pass) const;
-    Proof at(const Part& part, Pass& pass, double x, double z) const;
+    const OpenTile& tile_of(Pass& pass, int col, int row) const;
+    bool is_clear(const Part& part, Pass& pass, double x, double z) const;
+    static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
+    static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
+    Proof at(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const;
 
     const FreeSpace::Impl& space_;
     const SolidBounds::Impl& raster_;

@@ -3,6 +3,7 @@
 #include "geometry/tile.h"
 
 #include <spawnfield/collision.h>
+#include <spawnfield/free_space.h>
 
 #include <fcl/geometry/octree/octree.h>
 #include <fcl/geometry/shape/box.h>
@@ -61,12 +62,18 @@ struct CheckedPart {
     Vec3 centre;
     Shape bounds_shape;              ///< for bounds at a pose; unused by hulls
     std::vector<Vec3> hull_vertices;
+    Vec3 box_centre, box_half;       ///< of the box around it, along the shape's own axes
 
     explicit CheckedPart(const RobotPart& part)
         : shape(part.shape.kind == ShapeKind::Hull ? fcl_convex(part) : fcl_shape(part.shape)),
           robot_from_shape(part.shape.kind == ShapeKind::Hull ? Pose{} : part.shape.pose), centre(part.centre()),
           bounds_shape(part.shape), hull_vertices(part.hull_vertices)
     {
+        Bounds box;
+        for (const Vec3& vertex : hull_vertices) box.extend(vertex);
+        if (bounds_shape.kind != ShapeKind::Hull) box = bounds_of({bounds_shape.kind, bounds_shape.size, {}});
+        box_centre = (box.min + box.max) / 2;
+        box_half = (box.max - box.min) / 2;
     }
 
     Bounds bounds_at(const Pose& pose) const
@@ -96,8 +103,23 @@ struct PlacedPart {
     Bounds bounds;               ///< in the scene's frame
 };
 
+/// Whether the box around a part lies beside a triangle or off its plane: most triangles near a robot, far sooner than FCL
+/// tells. By more than the margin within which FCL's answer depends on its own tolerance.
+bool is_apart(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
+{
+    const Vec3& half = placed.part->box_half;
+    std::array<Vec3, 3> seen;  // from the middle of the box, along its axes
+    for (std::size_t k = 0; k < 3; ++k)
+        seen[k] = placed.robot_from_shape.linear().transpose() * (corners[k] - placed.robot_from_shape.translation()) - placed.part->box_centre;
+    const Vec3 low = seen[0].cwiseMin(seen[1]).cwiseMin(seen[2]), high = seen[0].cwiseMax(seen[1]).cwiseMax(seen[2]);
+    if (((low - half).array() > FreeSpace::margin).any() || ((-half - high).array() > FreeSpace::margin).any()) return true;
+    const Vec3 normal = (seen[1] - seen[0]).cross(seen[2] - seen[0]);
+    return std::abs(normal.dot(seen[0])) > normal.cwiseAbs().dot(half) + FreeSpace::margin * normal.norm();
+}
+
 bool meets_triangle(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
 {
+    if (is_apart(placed, corners)) return false;
     static const fcl::detail::GJKSolver_libccd<double> solver;
     return std::visit(
         [&](const auto& shape) {

@@ -102,20 +102,22 @@ void PoseJudge::set_y(double y)
 Judgement PoseJudge::at(const ColumnView& column, double x, double z, bool with_hit)
 {
     Judgement out;
-    if (judge_ground(judging_.map_, column, {x, y_, z}, judging_.options_, out)) decide(x, z, with_hit, out);
+    if (judge_ground(judging_.map_, column, {x, y_, z}, judging_.options_, out)) decide(column, x, z, with_hit, out);
     return out;
 }
 
 Judgement PoseJudge::collision(double x, double z, bool with_hit)
 {
     Judgement out;
-    decide(x, z, with_hit, out);
+    decide({}, x, z, with_hit, out);
     return out;
 }
 
-void PoseJudge::decide(double x, double z, bool with_hit, Judgement& out)
+void PoseJudge::decide(const ColumnView& column, double x, double z, bool with_hit, Judgement& out)
 {
-    const Proof proof = mask_ ? mask_->at(x, z) : Proof::Candidate;
+    Proof proof = Proof::Candidate;
+    if (mask_ && mask_->is_pierced(column.spans, z)) proof = Proof::Blocked;
+    else if (mask_) proof = mask_->at(x, z);
     if (proof == Proof::Free) out.verdict = Verdict::Valid;
     else if (proof == Proof::Blocked && !with_hit) out.verdict = Verdict::Collision;
     else decide_exactly({{x, y_, z}, rotation_}, with_hit, out);

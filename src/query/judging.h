@@ -45,7 +45,7 @@ public:
     Judgement collision(double x, double z, bool with_hit = false);
 
 private:
-    void decide(double x, double z, bool with_hit, Judgement& out);
+    void decide(const ColumnView& column, double x, double z, bool with_hit, Judgement& out);
     void decide_exactly(const Pose& pose, bool with_hit, Judgement& out);
 
     const Judging& judging_;

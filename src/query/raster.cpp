@@ -58,7 +58,7 @@ struct Row {
 /// Strips of rows, judged block by block so that neighbouring columns share their work.
 class RasterJudge {
 public:
-    static constexpr int strip = 16, block = 128;  ///< rows, columns
+    static constexpr int most_rows = 32, block = 128;  ///< of a strip; columns of a block
 
     RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid)
         : options_(options), grid_(grid), judging_(map, checker, query_options(options))
@@ -187,7 +187,7 @@ RasterResult raster(const Map& map, const CollisionChecker& checker, const Raste
     out.grid = grid_of(map, options);
     const RasterJudge judge(map, checker, options, out.grid);
     std::vector<Row> rows(std::size_t(out.grid.rows));
-    constexpr std::size_t strip = RasterJudge::strip;
+    const std::size_t strip = std::clamp<std::size_t>(rows.size() / std::size_t(4 * thread_count(options.threads)), 1, RasterJudge::most_rows);
     parallel_for((rows.size() + strip - 1) / strip, options.threads, options.progress, [&](std::size_t s) {
         judge.judge_rows(int(s * strip), std::span(rows).subspan(s * strip, std::min(strip, rows.size() - s * strip)));
     });

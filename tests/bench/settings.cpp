@@ -104,6 +104,7 @@ Setting grid(bool hulls, Extent extent)
 {
     const int heights = extent == Extent::Quick ? 20 : 500;
     Setting out = lattice(hulls ? "grid-hull" : "grid-box", heights);
+    out.cell = 0.05;
     if (hulls) {
         out.make = [heights] { return grid_of_balls(10, 10, heights); };
         out.robot = hull_robot;
