@@ -83,10 +83,6 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {raster + "--yaw inf", "spawnfield: --yaw is inf, needs a finite number, rad"},
         {raster + "--offset inf", "spawnfield: --offset is inf, needs a finite number, m"},
         {raster + "--write-aerial", "spawnfield: --write-aerial is for --dims 3: in 2D poses stand on their layers"},
-        {raster + "--step-z 1", "spawnfield: --step-z is for --dims 3: in 2D poses stand on their layers"},
-        {raster + "--max-height 1", "spawnfield: --max-height is for --dims 3: in 2D poses stand on their layers"},
-        {raster3 + "--offset 0.1", "spawnfield: --offset is for --dims 2: in 3D poses stand at heights of their own"},
-        {raster3 + "--no-height-check --layer 0", "spawnfield: --layers says nothing with --no-height-check, which looks for collisions alone"},
         {"raster map -o out --dims 2 --step 0.00001" + husky, "spawnfield: columns is 640001600001, needs at most 2147483647; take a larger step"},
         {raster3 + "--write-aerial --layers top",
          "spawnfield: --write-aerial needs --layers all: aerial poses are above no layer"},
@@ -114,7 +110,6 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"info box:1,1,1 --scale 1", "spawnfield: --scale is for a bare mesh; box:1,1,1 is a robot"},
         {"frob map", "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap"},
         {sample + "-n 5 --seed -1", "--seed: -1 is no whole number from 0 to 18446744073709551615" + hint},
-        {sample + "-n 5 --max-height 1", "The following arguments were not expected: 1 --max-height" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);
     for (const std::string arguments : {"fly map", "raster map --dims 4 --step 1", "raster map --dims 2 --step x", "sample map -n many",

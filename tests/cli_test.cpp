@@ -328,6 +328,22 @@ TEST_CASE("a robot that stands in all flat ground is told of, with an offset tha
     CHECK_THAT(arena("raster map --dims 3 --step 2" + low).err, !Contains("notice"));
 }
 
+TEST_CASE("an option that has no effect is told of, and changes nothing")
+{
+    const Arena arena;
+    const std::array<std::string, 2> idle[] = {{"sample map -n 1", "--max-height 0.05"}, {"heatmap map --step 2 -o a.png", "--max-height 0.05"},
+                                               {"raster map --dims 2 --step 2", "--max-height 0.05"}, {"raster map --dims 2 --step 2", "--step-z 1"},
+                                               {"raster map --dims 3 --step 2", "--offset 0.7"}};
+    for (const auto& [command, option] : idle) {
+        INFO(command + " " + option);
+        const ProgramRun run = arena(command + " " + option + husky);
+        CHECK(run.err.starts_with("notice: " + option.substr(0, option.find(' ')) + " has no effect: "));
+        CHECK(run.status == 0);
+        CHECK(run.out == arena(command + husky).out);
+    }
+    CHECK_THAT(arena("raster map --dims 3 --step 2 --no-height-check --layers 0" + husky).err, Contains("notice: --layers has no effect: "));
+}
+
 TEST_CASE("what lies off the map, and a layer that it has not, is told of")
 {
     const Arena arena;

@@ -68,6 +68,7 @@ void add_query(CLI::App& command, QueryArgs& args)
     command.add_option("map", args.map, "Map folder, from `spawnfield bake`")->required();
     command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, or box:LX,LY,LZ[@x,y,z] (m)")->required();
     command.add_option("--package-path", args.package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
+    command.add_option("--max-height", args.max_height, "Most metres of the robot's origin above its ground (default 1)");
     command.add_option("--max-water-depth", args.max_water_depth, "Water higher than this above the ground does not count, m (default: all does)");
     command.add_option("--collision", args.collision, "What the robot must not touch: geometry (exact), or octree (the baked voxels)")
         ->check(CLI::IsMember({"geometry", "octree"}));
@@ -75,15 +76,16 @@ void add_query(CLI::App& command, QueryArgs& args)
     add_common(command, args);
 }
 
-void add_max_height(CLI::App& command, QueryArgs& args)
-{
-    command.add_option("--max-height", args.max_height, "Most metres of the robot's origin above its ground (default 1)");
-}
-
 void refuse(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason)
 {
     for (const std::string& option : options)
         if (command.count(option) > 0) throw ArgumentError(option + " " + reason);
+}
+
+void tell_idle(const CommonArgs& args, const CLI::App& command, const std::vector<std::string>& options, const std::string& reason)
+{
+    for (const std::string& option : options)
+        if (command.count(option) > 0) notice(args, option + " has no effect: " + reason);
 }
 
 void notice(const CommonArgs& args, const std::string& text)

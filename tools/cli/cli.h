@@ -36,11 +36,12 @@ struct QueryArgs : CommonArgs {
     double max_water_depth = std::numeric_limits<double>::infinity();
 };
 void add_query(CLI::App& command, QueryArgs& args);
-/// For commands whose poses stand anywhere, not on their layer.
-void add_max_height(CLI::App& command, QueryArgs& args);
 
 /// Throws ArgumentError "--option REASON" if one of the options was given.
 void refuse(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason);
+
+/// A notice for each of the options that was given and says nothing here.
+void tell_idle(const CommonArgs& args, const CLI::App& command, const std::vector<std::string>& options, const std::string& reason);
 
 /// Words for people: notices, one at a time on standard error, unless --quiet.
 void notice(const CommonArgs& args, const std::string& text);

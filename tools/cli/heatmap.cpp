@@ -29,12 +29,13 @@ HeatmapQuantity quantity_of(const std::string& name)
     return name == "slope" ? HeatmapQuantity::Slope : HeatmapQuantity::Verdict;
 }
 
-int run_heatmap(const HeatmapArgs& args, bool step_given)
+int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
 {
     Summary summary("heatmap", args);
     RasterOptions options;
     fill(options, args, "heatmap");
     options.exact_time = &summary.exact_time;
+    tell_idle(args, command, {"--max-height"}, "the robot stands on each layer");
     options.offset = parse_finite("--offset", args.offset, "m");
     options.yaw = parse_finite("--yaw", args.yaw, "rad");
     options.layers = parse_layers(args.layers);
@@ -44,7 +45,7 @@ int run_heatmap(const HeatmapArgs& args, bool step_given)
     picture.pixels = args.size;
     if (!args.spawns.empty()) picture.spawns = spawns_of(open_poses(args, args.spawns));
     const auto session = open_session(args);
-    options.step = step_given ? parse_positive("--step", args.step) : default_step(session->map, options);
+    options.step = command.count("--step") > 0 ? parse_positive("--step", args.step) : default_step(session->map, options);
     tell_if_off_map(args, session->map, "--bounds", options.bounds);
     tell_if_no_layer(args, session->map, options.layers);
     tell_if_in_ground(args, session->robot, options.offset);
@@ -75,13 +76,13 @@ void add_heatmap(CLI::App& app, Run& run)
         ->check(CLI::IsMember({"verdict", "height", "clearance", "slope"}));
     command.add_option("--spawns", args->spawns, "CSV file of spawns to draw as arrows");
     command.add_option("--layers,--layer", args->layers, "all (valid if one layer is), top, bottom, or N from the top (0 first)");
-    auto* step = command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
+    command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
     command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000)")->check(CLI::Range(200, 16000));
     command.footer("Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png");
-    command.callback([=, &run] { run = [=] { return run_heatmap(*args, step->count() > 0); }; });
+    command.callback([=, &command, &run] { run = [=, &command] { return run_heatmap(*args, command); }; });
 }
 
 }  // namespace spawnfield::cli

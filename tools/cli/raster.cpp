@@ -13,19 +13,18 @@ struct RasterArgs : QueryArgs {
     bool no_height_check = false, write_aerial = false;
 };
 
-/// Options that say nothing about such a raster are a slip of the pen.
-void refuse_idle_options(const RasterArgs& args, const CLI::App& command)
+void tell_idle_options(const RasterArgs& args, const CLI::App& command)
 {
-    if (args.dims == 3) refuse(command, {"--offset"}, "is for --dims 2: in 3D poses stand at heights of their own");
-    if (args.dims == 2)
-        refuse(command, {"--step-z", "--max-height", "--no-height-check", "--write-aerial"}, "is for --dims 3: in 2D poses stand on their layers");
+    if (args.dims == 3) tell_idle(args, command, {"--offset"}, "it is for --dims 2; in 3D poses stand at heights of their own");
+    if (args.dims == 2) tell_idle(args, command, {"--step-z", "--max-height"}, "it is for --dims 3; in 2D poses stand on their layers");
     if (args.no_height_check)
-        refuse(command, {"--max-height", "--max-water-depth", "--layers"}, "says nothing with --no-height-check, which looks for collisions alone");
+        tell_idle(args, command, {"--max-height", "--max-water-depth", "--layers"}, "--no-height-check looks for collisions alone");
 }
 
 RasterOptions options_of(const RasterArgs& args, const CLI::App& command)
 {
-    refuse_idle_options(args, command);
+    if (args.dims == 2) refuse(command, {"--no-height-check", "--write-aerial"}, "is for --dims 3: in 2D poses stand on their layers");
+    tell_idle_options(args, command);
     RasterOptions options;
     fill(options, args, "raster");
     options.dims = args.dims;
@@ -76,7 +75,6 @@ void add_raster(CLI::App& app, Run& run)
     auto args = std::make_shared<RasterArgs>();
     CLI::App& command = *app.add_subcommand("raster", "Verdict at every position of a 2D or 3D raster");
     add_query(command, *args);
-    add_max_height(command, *args);
     command.add_option("--dims", args->dims, "2: a pose per column and layer; 3: a pose per column and height")
         ->required()
         ->check(CLI::IsMember({2, 3}));

@@ -75,13 +75,14 @@ int run_search(const SpawnArgs& args)
     return finish(summary, args, *session, options, list, "search");
 }
 
-int run_sample(const SpawnArgs& args)
+int run_sample(const SpawnArgs& args, const CLI::App& command)
 {
     Summary summary("sample", args);
     SampleOptions options;
     fill_spawn(options, args, "sample");
     options.offset = parse_finite("--offset", args.offset, "m");
     options.layers = parse_layers(args.layers);
+    tell_idle(args, command, {"--max-height"}, "samples stand on their layers");
     const auto session = open_session(args);
     tell_if_off_map(args, session->map, "--region", options.bounds);
     tell_if_no_layer(args, session->map, options.layers);
@@ -119,7 +120,6 @@ void add_search(CLI::App& app, Run& run)
     auto args = std::make_shared<SpawnArgs>();
     CLI::App& command = *app.add_subcommand("search", "N spawns by random search in a box, away from all positions checked before");
     add_spawn_options(command, *args);
-    add_max_height(command, *args);
     command.add_option("--max-failures", args->max_failures, "Draws in a row that gave nothing, after which it stops (default 100000)");
     command.add_option("--bounds", args->bounds, "Box of the draws: x0,y0,z0,x1,y1,z1 in m (default: the map's)");
     command.footer("Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 --max-failures 10000");
@@ -135,7 +135,7 @@ void add_sample(CLI::App& app, Run& run)
     command.add_option("--region", args->region, "x0,y0,x1,y1 in m (default: the map's bounds)");
     command.add_option("--layers,--layer", args->layers, "all, top, bottom, or N from the top (0 first)");
     command.footer("Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");
-    command.callback([=, &run] { run = [=] { return run_sample(*args); }; });
+    command.callback([=, &command, &run] { run = [=, &command] { return run_sample(*args, command); }; });
 }
 
 }  // namespace spawnfield::cli
