@@ -268,7 +268,7 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
                          [&]() -> SurfaceHit& { return hits.add(std::size_t(j) * std::size_t(grid.cols) + std::size_t(i)); });
         };
         if (tile.is_triangle(element)) {
-            const SeenTriangle seen(tile, element);
+            SeenTriangle seen(tile, element);
             visit_columns([&](double x, double y, const auto& new_hit) { seen.meet(x, y, new_hit); });
         } else {
             visit_columns([&](double x, double y, const auto& new_hit) {

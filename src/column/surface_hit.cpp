@@ -80,24 +80,44 @@ bool is_touched(const std::array<Vec3, 3>& corners, double sign, double x, doubl
 
 }  // namespace
 
-std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x, double y) const
+void SeenTriangle::prepare()
+{
+    const auto& [a, b, c] = corners_;
+    const Interval z = extent(corners_, 2);
+    const double acx = c.x() - a.x(), acy = c.y() - a.y(), abz = b.z() - a.z(), acz = c.z() - a.z();
+    twice_area_ = edges_[0].x * acy - edges_[0].y * acx;
+    low_ = twice_area_ != 0 ? z.bottom : z.top;  // without an area its height over a point means nothing
+    high_ = z.top;
+    if (twice_area_ != 0) {
+        slope_x_ = (abz * acy - acz * edges_[0].y) / twice_area_;
+        slope_y_ = (acz * edges_[0].x - abz * acx) / twice_area_;
+    }
+    const TileTriangle& from = tile_.triangles[triangle_];
+    const TilePiece& piece = tile_.pieces[from.piece];
+    const bool filled = piece.solid != 0, looks_up = twice_area_ > 0;
+    within_ = {.element = tile_.ids[triangle_], .piece = piece.piece, .part = piece.part, .is_primitive = false, .filled = filled,
+               .open = piece.open != 0, .terrain = from.label == Label::Terrain && (piece.sides_up == 0 || filled || looks_up),
+               .water = from.label == Label::Water, .crosses = filled, .touches = !filled, .z = {}, .crossing = 0, .piece_bottom = piece.bottom};
+    is_prepared_ = true;
+}
+
+std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x, double y)
 {
     if (!may_meet(corners_, x, y)) return std::nullopt;
-    const double twice = area();
-    SurfaceHit out{};
-    set_surface(twice > 0, out);
+    if (!is_prepared_) prepare();
+    SurfaceHit out = within_;
     out.crosses = out.filled && is_crossed(corners_, x, y);
     if (out.crosses) out.crossing = height(x, y);
     const double longest = std::max({edges_[0].squared_length, edges_[1].squared_length, edges_[2].squared_length});
     // Thinner than the tolerance, its height over a point means nothing.
-    const bool is_vertical = twice * twice <= squared_tolerance * longest;
+    const bool is_vertical = twice_area_ * twice_area_ <= squared_tolerance * longest;
     if (is_vertical) {
         // Also where it is crossed: by rounding, a line along it may cross it as well.
         const auto met = out.filled ? segment(corners_, x, y) : std::nullopt;
         out.touches = met.has_value();
         if (met) out.z = *met;
     } else {
-        out.touches = !out.crosses && is_touched(corners_, twice > 0 ? 1 : -1, x, y);
+        out.touches = !out.crosses && is_touched(corners_, twice_area_ > 0 ? 1 : -1, x, y);
         if (out.touches) out.z.bottom = out.z.top = height(x, y);
     }
     if (!out.crosses && !out.touches) return std::nullopt;

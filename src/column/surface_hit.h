@@ -20,7 +20,7 @@ struct SurfaceHit {
     double piece_bottom;  ///< as Piece, m
 };
 
-/// A triangle as vertical lines see it.
+/// A triangle as vertical lines see it, one line after the other.
 class SeenTriangle {
 public:
     SeenTriangle(const Tile& tile, std::uint32_t triangle)
@@ -38,7 +38,7 @@ public:
     /// Where the vertical line through (x, y) meets it: new_hit(), a SurfaceHit&, is written if it does. Sheets seen edge-on
     /// give nothing.
     template <class NewHit>
-    void meet(double x, double y, const NewHit& new_hit) const
+    void meet(double x, double y, const NewHit& new_hit)
     {
         int left = 0, right = 0;  // edges that it is well to the left of, far from what rounding or a tolerance decides
         for (std::size_t k = 0; k < 3; ++k) {
@@ -53,11 +53,17 @@ public:
             right += is_clear && cross < 0;
         }
         if (left > 0 && right > 0) return;
-        if (left + right == 3) hit_within(x, y, left == 3, new_hit());
-        else if (const auto hit = hit_at_rim(x, y)) new_hit() = *hit;  // also where it has an upright edge
+        if (left + right < 3) {  // also where it has an upright edge
+            if (const auto hit = hit_at_rim(x, y)) new_hit() = *hit;
+            return;
+        }
+        if (!is_prepared_) prepare();
+        SurfaceHit& hit = new_hit();
+        hit = within_;
+        hit.crossing = hit.z.bottom = hit.z.top = height(x, y);
     }
 
-    std::optional<SurfaceHit> hit(double x, double y) const
+    std::optional<SurfaceHit> hit(double x, double y)
     {
         std::optional<SurfaceHit> out;
         meet(x, y, [&]() -> SurfaceHit& { return out.emplace(); });
@@ -71,49 +77,25 @@ private:
     };
     static constexpr double squared_rim = 16 * touch_tolerance * touch_tolerance;
 
-    /// Writes all but where.
-    void set_surface(bool looks_up, SurfaceHit& out) const
-    {
-        const TileTriangle& from = tile_.triangles[triangle_];
-        const TilePiece& piece = tile_.pieces[from.piece];
-        out.element = tile_.ids[triangle_];
-        out.piece = piece.piece;
-        out.part = piece.part;
-        out.is_primitive = false;
-        out.filled = piece.solid != 0;
-        out.open = piece.open != 0;
-        out.terrain = from.label == Label::Terrain && (piece.sides_up == 0 || piece.solid != 0 || looks_up);
-        out.water = from.label == Label::Water;
-        out.piece_bottom = piece.bottom;
-    }
-
-    void hit_within(double x, double y, bool looks_up, SurfaceHit& out) const
-    {
-        set_surface(looks_up, out);
-        out.crosses = out.filled;
-        out.touches = !out.filled;
-        out.crossing = out.z.bottom = out.z.top = height(x, y);
-    }
-
-    std::optional<SurfaceHit> hit_at_rim(double x, double y) const;
-    /// Twice, seen from above; above 0 where it looks up.
-    double area() const { return edges_[0].x * (corners_[2].y() - corners_[0].y()) - edges_[0].y * (corners_[2].x() - corners_[0].x()); }
-
+    void prepare();
+    std::optional<SurfaceHit> hit_at_rim(double x, double y);
+    /// Of its plane, within its own limits.
     double height(double x, double y) const
     {
-        const auto& [a, b, c] = corners_;
-        const double low = std::min(std::min(a.z(), b.z()), c.z()), high = std::max(std::max(a.z(), b.z()), c.z());
-        const double twice = area();
-        if (twice == 0) return high;
-        const double dx = x - a.x(), dy = y - a.y(), acx = c.x() - a.x(), acy = c.y() - a.y();
-        const double wb = (dx * acy - dy * acx) / twice, wc = (edges_[0].x * dy - edges_[0].y * dx) / twice;
-        return std::clamp(a.z() + wb * (b.z() - a.z()) + wc * (c.z() - a.z()), low, high);
+        const Vec3& a = corners_[0];
+        return std::min(std::max(a.z() + slope_x_ * (x - a.x()) + slope_y_ * (y - a.y()), low_), high_);
     }
 
     const Tile& tile_;
     const std::uint32_t triangle_;
     const std::array<Vec3, 3> corners_;
     std::array<Edge, 3> edges_;  ///< from corner k to the next
+
+    // Of those that are hit:
+    bool is_prepared_ = false;
+    double twice_area_ = 0;                 ///< seen from above; above 0 where it looks up
+    double slope_x_ = 0, slope_y_ = 0, low_ = 0, high_ = 0;
+    SurfaceHit within_;                     ///< of a line that goes well through it, but for the height
 };
 
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y);

@@ -20,17 +20,21 @@ using Polygon = std::vector<Vec3>;
 /// The part of a convex polygon where sign * (p.y - limit) <= 0.
 void clip_y(const Polygon& in, double limit, double sign, Polygon& out)
 {
-    out.clear();
+    out.resize(2 * in.size());  // each corner is kept, or a cut takes its place
+    std::size_t count = 0;
+    double dp = in.empty() ? 0 : sign * (in[0].y() - limit);
     for (std::size_t i = 0; i < in.size(); ++i) {
         const Vec3 &p = in[i], &q = in[i + 1 < in.size() ? i + 1 : 0];
-        const double dp = sign * (p.y() - limit), dq = sign * (q.y() - limit);
-        if (dp <= 0) out.push_back(p);
+        const double dq = sign * (q.y() - limit);
+        if (dp <= 0) out[count++] = p;
         if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) {
-            Vec3 cut = p + dp / (dp - dq) * (q - p);
+            Vec3& cut = out[count++];
+            cut = p + dp / (dp - dq) * (q - p);
             cut.y() = limit;
-            out.push_back(cut);
         }
+        dp = dq;
     }
+    out.resize(count);
 }
 
 Interval range_of(const Polygon& polygon, int axis)
