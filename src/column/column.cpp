@@ -178,11 +178,6 @@ Columns::Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surf
     else scan(geometry, grid, surfaces);
 }
 
-void Columns::end_column()
-{
-    starts_.push_back({std::uint32_t(column_.spans.size()), std::uint32_t(column_.layers.size()), std::uint32_t(column_.water.size())});
-}
-
 void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
 {
     thread_local std::vector<SurfaceHit> hits;
@@ -261,18 +256,20 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
         if (cols.is_empty()) return;
         const IndexRange rows = indices_in(box.min[1], box.max[1], grid.y0, a_step, grid.shift, grid.first_row, grid.rows);
         if (rows.is_empty() || !counts(tile, element, surfaces)) return;
-        const auto visit_columns = [&](const auto& meet) {
-            for (int j = rows.first; j <= rows.last; ++j)
+        const auto visit_columns = [&](auto&& set_y, auto&& meet) {
+            for (int j = rows.first; j <= rows.last; ++j) {
+                set_y(grid.y_of(grid.first_row + j));
                 for (int i = cols.first; i <= cols.last; ++i)
-                    meet(grid.x_of(grid.first_col + i), grid.y_of(grid.first_row + j),
-                         [&]() -> SurfaceHit& { return hits.add(std::size_t(j) * std::size_t(grid.cols) + std::size_t(i)); });
+                    meet(grid.x_of(grid.first_col + i), [&]() -> SurfaceHit& { return hits.add(std::size_t(j) * std::size_t(grid.cols) + std::size_t(i)); });
+            }
         };
         if (tile.is_triangle(element)) {
             SeenTriangle seen(tile, element);
-            visit_columns([&](double x, double y, const auto& new_hit) { seen.meet(x, y, new_hit); });
+            visit_columns([&](double y) { seen.set_y(y); }, [&](double x, const auto& new_hit) { seen.meet(x, new_hit); });
         } else {
-            visit_columns([&](double x, double y, const auto& new_hit) {
-                if (const auto hit = hit_of(tile, element, x, y)) new_hit() = *hit;
+            double at_y = 0;
+            visit_columns([&](double y) { at_y = y; }, [&](double x, const auto& new_hit) {
+                if (const auto hit = hit_of(tile, element, x, at_y)) new_hit() = *hit;
             });
         }
     };

@@ -56,7 +56,10 @@ private:
     };
     void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
-    void end_column();
+    void end_column()
+    {
+        starts_.push_back({std::uint32_t(column_.spans.size()), std::uint32_t(column_.layers.size()), std::uint32_t(column_.water.size())});
+    }
 
     int cols_ = 0;
     Column column_;  ///< of all columns, one after the other

@@ -5,6 +5,7 @@
 #include <spawnfield/column.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 namespace spawnfield {
@@ -32,41 +33,47 @@ public:
             edge.x = q.x() - p.x();
             edge.y = q.y() - p.y();
             edge.squared_length = edge.x * edge.x + edge.y * edge.y;
+            edge.rim = edge.squared_length > 0 ? 16 * touch_tolerance * touch_tolerance * edge.squared_length : -1;
         }
+    }
+
+    /// Of the lines to come, m.
+    void set_y(double y)
+    {
+        y_ = y;
+        for (std::size_t k = 0; k < 3; ++k) edges_[k].across = edges_[k].x * (y - corners_[k].y());
     }
 
     /// Where the vertical line through (x, y) meets it: new_hit(), a SurfaceHit&, is written if it does. Sheets seen edge-on
     /// give nothing.
     template <class NewHit>
-    void meet(double x, double y, const NewHit& new_hit)
+    void meet(double x, const NewHit& new_hit)
     {
-        int left = 0, right = 0;  // edges that it is well to the left of, far from what rounding or a tolerance decides
+        // Well to the left of all edges, or to the right, or not: far from what rounding or a tolerance decides.
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        bool is_clear = true;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Edge& edge = edges_[k];
-            const double cross = edge.x * (y - corners_[k].y()) - edge.y * (x - corners_[k].x());
-            const bool is_clear = cross * cross > squared_rim * edge.squared_length;
-            if (!is_clear && edge.squared_length > 0) {
-                left = right = 0;
-                break;
-            }
-            left += is_clear && cross > 0;
-            right += is_clear && cross < 0;
+            const double cross = edges_[k].across - edges_[k].y * (x - corners_[k].x());
+            is_clear = is_clear & (cross * cross > edges_[k].rim);
+            low = std::min(low, cross);
+            high = std::max(high, cross);
         }
-        if (left > 0 && right > 0) return;
-        if (left + right < 3) {  // also where it has an upright edge
-            if (const auto hit = hit_at_rim(x, y)) new_hit() = *hit;
+        if (is_clear && low < 0 && high > 0) return;
+        if (!is_clear || (low <= 0 && high >= 0)) {
+            if (const auto hit = hit_at_rim(x, y_)) new_hit() = *hit;
             return;
         }
         if (!is_prepared_) prepare();
         SurfaceHit& hit = new_hit();
         hit = within_;
-        hit.crossing = hit.z.bottom = hit.z.top = height(x, y);
+        hit.crossing = hit.z.bottom = hit.z.top = height(x, y_);
     }
 
     std::optional<SurfaceHit> hit(double x, double y)
     {
         std::optional<SurfaceHit> out;
-        meet(x, y, [&]() -> SurfaceHit& { return out.emplace(); });
+        set_y(y);
+        meet(x, [&]() -> SurfaceHit& { return out.emplace(); });
         return out;
     }
 
@@ -74,8 +81,9 @@ private:
     struct Edge {
         double x, y;            ///< m
         double squared_length;  ///< seen from above, m2
+        double rim;             ///< what the square of a cross product passes well off the edge; upright edges have none
+        double across;          ///< the line's part of that product, m2
     };
-    static constexpr double squared_rim = 16 * touch_tolerance * touch_tolerance;
 
     void prepare();
     std::optional<SurfaceHit> hit_at_rim(double x, double y);
@@ -90,6 +98,7 @@ private:
     const std::uint32_t triangle_;
     const std::array<Vec3, 3> corners_;
     std::array<Edge, 3> edges_;  ///< from corner k to the next
+    double y_ = 0;
 
     // Of those that are hit:
     bool is_prepared_ = false;

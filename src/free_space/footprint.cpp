@@ -86,15 +86,6 @@ Interval height_of(const RobotPart& part, const Mat3& rotation)
     return {box.min.z(), box.max.z()};
 }
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-double area_of(const Polygon2& polygon)
-{
-    double twice = 0;
-    for (std::size_t k = 0; k < polygon.size(); ++k) twice += cross(polygon[k], polygon[(k + 1) % polygon.size()]);
-    return twice / 2;
-}
-
 /// All points nearer than `reach` to the polygon lie in the result.
 Polygon2 widened(const Polygon2& polygon, double reach)
 {
@@ -117,19 +108,6 @@ Polygon2 narrowed(const Polygon2& polygon, double reach)
     if (!(nearest > 2 * reach)) return {};
     Polygon2 out;
     for (const Vec2& p : polygon) out.push_back(centre + (1 - reach / nearest) * (p - centre));
-    return out;
-}
-
-/// The part of a convex polygon to the left of the line from a to b.
-Polygon2 cut(const Polygon2& polygon, const Vec2& a, const Vec2& b)
-{
-    Polygon2 out;
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-        const double dp = cross(b - a, p - a), dq = cross(b - a, q - a);
-        if (dp >= 0) out.push_back(p);
-        if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) out.push_back(p + dp / (dp - dq) * (q - p));
-    }
     return out;
 }
 
@@ -164,7 +142,10 @@ Prism prism_within(const PartCorners& corners)
         Polygon2 polygon = slice(corners, bottom);
         const Polygon2 other = slice(corners, top);
         if (polygon.size() < 3 || other.size() < 3) continue;
-        for (std::size_t k = 0; k < other.size() && polygon.size() >= 3; ++k) polygon = cut(polygon, other[k], other[(k + 1) % other.size()]);
+        for (std::size_t k = 0; k < other.size() && polygon.size() >= 3; ++k) {
+            const Vec2 normal = normal_of(other[k], other[(k + 1) % other.size()]);
+            polygon = cut(polygon, normal, normal.dot(other[k]));
+        }
         polygon = convex_hull(std::move(polygon));
         if (polygon.size() < 3) continue;
         const double volume = area_of(polygon) * (top - bottom);

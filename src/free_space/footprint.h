@@ -1,15 +1,12 @@
 #pragma once
 
+#include "base/polygon2.h"
+
 #include <spawnfield/robot.h>
 
 #include <vector>
 
 namespace spawnfield {
-
-using Vec2 = Eigen::Vector2d;
-
-/// A convex polygon, counterclockwise.
-using Polygon2 = std::vector<Vec2>;
 
 /// An upright prism.
 struct Prism {

@@ -24,16 +24,6 @@ int values_below(const BoundsHead& head, double a_quantum, double z)
     return std::max(0, ceil_of(std::clamp((z - head.base) * a_quantum, 0.0, 65536.0)) - 1);
 }
 
-/// Whether a point is in a convex polygon, counterclockwise; in one without corners none is.
-bool is_inside(const Polygon2& polygon, const Vec2& point)
-{
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec2 edge = polygon[k + 1 < polygon.size() ? k + 1 : 0] - polygon[k], to = point - polygon[k];
-        if (edge.x() * to.y() - edge.y() * to.x() < 0) return false;
-    }
-    return !polygon.empty();
-}
-
 /// The lowest interval of a cell for which the test holds, as it then does for all above it; nullptr: there is none.
 template <class Test>
 const QuantizedSpan* lowest_where(std::span<const QuantizedSpan> spans, const Test& test)
@@ -66,7 +56,7 @@ void Mask::set_footprints(const std::vector<Footprint>& footprints, double cosin
         to.outer.top = footprints[p].outer.top;
         to.inner.bottom = footprints[p].inner.bottom;
         to.inner.top = footprints[p].inner.top;
-        parts_[p].is_around_origin = is_inside(to.inner.polygon, Vec2::Zero());
+        parts_[p].is_around_origin = contains(to.inner.polygon, Vec2::Zero());
         choose_passes(parts_[p]);
     }
 }

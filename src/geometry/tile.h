@@ -165,6 +165,32 @@ struct Geometry::Impl {
     template <class Visit>
     void visit_in(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
     {
+        const auto meets = [&](const ElementBox& box) {
+            return box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y;
+        };
+        visit_if(low_x, low_y, high_x, high_y, meets, visit);
+    }
+
+    /// The same for a closed box.
+    template <class Visit>
+    void visit_in(const Bounds& space, const Visit& visit) const
+    {
+        const Vec3 &low = space.min, &high = space.max;
+        const auto meets = [&](const ElementBox& box) {  // by height first: tiles may be tall
+            return box.min[2] <= high.z() && box.max[2] >= low.z() && box.min[0] <= high.x() && box.max[0] >= low.x() &&
+                   box.min[1] <= high.y() && box.max[1] >= low.y();
+        };
+        visit_if(low.x(), low.y(), high.x(), high.y(), meets, visit);
+    }
+
+    /// About how many elements there are in the tiles that a rectangle meets, by its share of their area.
+    double elements_near(double low_x, double low_y, double high_x, double high_y) const;
+
+private:
+    /// Elements near the rectangle for which meets(box) holds, which is nowhere else.
+    template <class Meets, class Visit>
+    void visit_if(double low_x, double low_y, double high_x, double high_y, const Meets& meets, const Visit& visit) const
+    {
         for (std::size_t l = 0; l < levels.size(); ++l) {
             const TileLevel& level = levels[l];
             // Not past the rim: the outermost tiles would answer.
@@ -176,7 +202,7 @@ struct Geometry::Impl {
                     const std::size_t t = std::size_t{row} * level.cols + col;
                     if (level.tiles[t].size == 0) continue;
                     const Tile tile = open(l, t);
-                    visit_tile(tile, low_x, low_y, high_x, high_y, [&](std::uint32_t element) {
+                    visit_tile(tile, low_x, low_y, high_x, high_y, meets, [&](std::uint32_t element) {
                         // In several tiles: the one that holds the lower left corner of what box and rectangle share tells.
                         const ElementBox& box = tile.boxes[element];
                         const Home home = tile.home(element);
@@ -187,16 +213,9 @@ struct Geometry::Impl {
         }
     }
 
-    /// About how many elements there are in the tiles that a rectangle meets, by its share of their area.
-    double elements_near(double low_x, double low_y, double high_x, double high_y) const;
-
-private:
-    template <class Visit>
-    static void visit_tile(const Tile& tile, double low_x, double low_y, double high_x, double high_y, const Visit& visit)
+    template <class Meets, class Visit>
+    static void visit_tile(const Tile& tile, double low_x, double low_y, double high_x, double high_y, const Meets& meets, const Visit& visit)
     {
-        const auto meets = [&](const ElementBox& box) {
-            return box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y;
-        };
         const std::uint32_t col0 = tile.bin_col(low_x), col1 = tile.bin_col(high_x), row0 = tile.bin_row(low_y), row1 = tile.bin_row(high_y);
         // Most bins: all elements in their order, rather than bin by bin.
         if (2.0 * (col1 - col0 + 1) * (row1 - row0 + 1) > double(tile.head->bin_cols) * tile.head->bin_rows) {

@@ -18,8 +18,6 @@ constexpr double slack = 1e-8;            // m that heights and distances are he
 constexpr std::size_t most_facets = 64;   // in a cell; beyond them only their heights count
 constexpr std::size_t most_in_cluster = 12;
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// A convex polygon of few corners, counterclockwise, without memory of its own.
 class SmallPolygon {
 public:
@@ -43,30 +41,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// The part of a convex polygon at most at `offset` along the normal: one more corner at most.
-template <class Polygon>
-Polygon cut(const Polygon& polygon, const Vec2& normal, double offset)
-{
-    Polygon out;
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec2 &p = polygon[k], &q = polygon[k + 1 < polygon.size() ? k + 1 : 0];
-        const double dp = normal.dot(p) - offset, dq = normal.dot(q) - offset;
-        if (dp <= 0) out.push_back(p);
-        if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) out.push_back(p + dp / (dp - dq) * (q - p));
-    }
-    return out;
-}
-
 /// Unit normal of the edge from p to q of a counterclockwise polygon, outwards.
-Vec2 outward(const Vec2& p, const Vec2& q) { return Vec2(q.y() - p.y(), p.x() - q.x()).normalized(); }
-
-template <class Polygon>
-double area_of(const Polygon& polygon)
-{
-    double twice = 0;
-    for (std::size_t k = 1; k + 1 < polygon.size(); ++k) twice += cross(polygon[k] - polygon[0], polygon[k + 1] - polygon[0]);
-    return twice / 2;
-}
+Vec2 outward(const Vec2& p, const Vec2& q) { return normal_of(p, q).normalized(); }
 
 /// Narrower than lines are told apart.
 bool is_sliver(const SmallPolygon& polygon)
@@ -438,7 +414,7 @@ private:
         proofs_.map_.geometry.impl().visit_in(rect.low_x, rect.low_y, rect.high_x, rect.high_y, [&](const Tile& tile, std::uint32_t element) {
             const ElementBox& box = tile.boxes[element];
             const Label label = tile.label(element);
-            if (in_primitive || label == Label::Water || label == Label::Ignore || box.min[2] > z.top || box.max[2] < z.bottom) return;
+            if (in_primitive || label == Label::Water || box.min[2] > z.top || box.max[2] < z.bottom) return;
             meets_other = true;
             if (tile.is_triangle(element)) return;
             const Shape shape = tile.primitive(element).shape();

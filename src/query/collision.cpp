@@ -198,10 +198,8 @@ struct CollisionChecker::Impl {
             all.extend(part.bounds.max);
         }
         std::uint32_t best = CollisionHit::occupancy;
-        geometry.impl().visit_in(all.min.x(), all.min.y(), all.max.x(), all.max.y(), [&](const Tile& tile, std::uint32_t element) {
-            const ElementBox& box = tile.boxes[element];
-            if (any_will_do && best != CollisionHit::occupancy) return;
-            if (box.min[2] > all.max.z() || box.max[2] < all.min.z() || tile.label(element) == Label::Water) return;
+        geometry.impl().visit_in(all, [&](const Tile& tile, std::uint32_t element) {
+            if ((any_will_do && best != CollisionHit::occupancy) || tile.label(element) == Label::Water) return;
             const std::uint32_t part = tile.part(element);
             if (part < best && element_meets(tile, element, placed, pose.position)) best = part;
         });
