@@ -216,6 +216,7 @@ public:
         hits_.clear();
         next_.clear();
     }
+    bool are_none() const { return hits_.empty(); }
     /// To be written. Until the next call.
     SurfaceHit& add(std::size_t column)
     {
@@ -251,11 +252,12 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
     hits.start(count);
     const double a_step = 1 / grid.step;
     const auto visit = [&](const Tile& tile, std::uint32_t element) {
+        if (!counts(tile, element, surfaces)) return;
         const ElementBox& box = tile.boxes[element];
         const IndexRange cols = indices_in(box.min[0], box.max[0], grid.x0, a_step, grid.shift, grid.first_col, grid.cols);
         if (cols.is_empty()) return;
         const IndexRange rows = indices_in(box.min[1], box.max[1], grid.y0, a_step, grid.shift, grid.first_row, grid.rows);
-        if (rows.is_empty() || !counts(tile, element, surfaces)) return;
+        if (rows.is_empty()) return;
         const auto visit_columns = [&](auto&& set_y, auto&& meet) {
             for (int j = rows.first; j <= rows.last; ++j) {
                 set_y(grid.y_of(grid.first_row + j));
@@ -275,6 +277,10 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
     };
     geometry.impl().visit_in(grid.x_of(grid.first_col), grid.y_of(grid.first_row), grid.x_of(grid.first_col + grid.cols - 1),
                              grid.y_of(grid.first_row + grid.rows - 1), visit);
+    if (hits.are_none()) {
+        starts_.resize(count + 1);
+        return;
+    }
     ColumnBuilder& columns = builder();
     for (std::size_t column = 0; column < count; ++column) {
         columns.build(hits.of(column), column_);

@@ -9,8 +9,7 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// std::floor and std::ceil of values that fit an int: calls of the library where the machine's oldest kind has no such
-/// instruction.
+/// std::floor and std::ceil of values that fit an int, sooner.
 int floor_of(double value)
 {
     const int whole = int(value);
@@ -228,6 +227,21 @@ bool Mask::is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& he
     return span == nullptr || tile.height(span->bottom) > heights.top;
 }
 
+/// Columns of a row that a part covers, and that the coarser pass could not prove free.
+Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u)
+{
+    if (!(cover.low <= cover.high)) return no_cells;
+    CellRange out{floor_of(u + cover.low), floor_of(u + cover.high)};
+    if (coarser == nullptr) return out;
+    const std::size_t finer = coarser->level - pass.level;
+    const int row = (cover.row >> finer) - coarser->rows.front().row;
+    if (row < 0 || row >= int(coarser->rows.size())) return no_cells;  // on the rim to rounding, so of the margin alone
+    const CellRange& range = coarser->left[std::size_t(row)];
+    if (range.first > range.last) return no_cells;
+    return {std::max(out.first, range.first << finer), std::min(out.last, (range.last << finer) + (1 << finer) - 1)};
+}
+
+/// Looks at each cell that is open: free, blocked if some cell within the part is hit, or what is left for a finer pass.
 Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const
 {
     const BoundsLevel& level = raster_.levels[pass.level];
@@ -238,7 +252,6 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
     const double u = (x - raster_.x0) / level.cell;
     // Coarse cells at the upper rims reach beyond the finest ones.
     const int known_cols = int(raster_.levels[0].cols >> pass.level), known_rows = int(raster_.levels[0].rows >> pass.level);
-    const std::size_t finer = coarser != nullptr ? coarser->level - pass.level : 0;
     bool nothing_near = true;
     constexpr int side = BoundsTile::side;
     const OpenTile* open = nullptr;
@@ -246,18 +259,9 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
         const std::size_t middle = pass.rows.size() / 2, k = n % 2 == 0 ? middle + n / 2 : middle - (n + 1) / 2;  // outwards: hits are found soon
         const CoverRow& cover = pass.rows[k];
         CellRange& left = pass.left[k];
-        left = {std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
-        if (!(cover.low <= cover.high)) continue;
-        int low = floor_of(u + cover.low), high = floor_of(u + cover.high);
-        if (coarser != nullptr) {
-            const int row = (cover.row >> finer) - coarser->rows.front().row;
-            if (row < 0 || row >= int(coarser->rows.size())) continue;  // on the rim to rounding, so of the margin alone
-            const CellRange& range = coarser->left[std::size_t(row)];
-            if (range.first > range.last) continue;
-            low = std::max(low, range.first << finer);
-            high = std::min(high, (range.last << finer) + (1 << finer) - 1);
-            if (low > high) continue;
-        }
+        left = no_cells;
+        const auto [low, high] = open_cells(pass, cover, coarser, u);
+        if (low > high) continue;
         const auto leave = [&](int from, int to) {
             nothing_near = false;
             left = {std::min(left.first, from), std::max(left.last, to)};
@@ -267,11 +271,8 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
             if (high < 0 || low >= int(level.cols) || cover.row < 0 || cover.row >= int(level.rows)) continue;
         }
         const int first = std::max(0, low), last = std::min(int(level.cols) - 1, high);
-        int inner_first = 1, inner_last = 0;
-        if (has_inner && cover.inner_low < cover.inner_high) {
-            inner_first = ceil_of(u + cover.inner_low);
-            inner_last = floor_of(u + cover.inner_high) - 1;
-        }
+        CellRange inner = no_cells;
+        if (has_inner && cover.inner_low < cover.inner_high) inner = {ceil_of(u + cover.inner_low), floor_of(u + cover.inner_high) - 1};
         for (int col = first; col <= last;) {
             const int end = std::min(last, col / side * side + side - 1);
             if (open == nullptr || col / side != open->col || cover.row / side != open->row) {
@@ -282,7 +283,7 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
             for (; col <= end && tile.head != nullptr; ++col) {
                 const auto cell = std::uint32_t(cover.row % side * side + col % side);
                 if (tile.tops[cell] <= heights.below) continue;
-                if (col >= inner_first && col <= inner_last && is_hit(tile, cell, heights)) return Proof::Blocked;
+                if (col >= inner.first && col <= inner.last && is_hit(tile, cell, heights)) return Proof::Blocked;
                 if (!is_free(tile, cell, heights)) leave(col, col);
             }
             col = end + 1;

@@ -7,6 +7,7 @@
 #include <spawnfield/free_space.h>
 
 #include <array>
+#include <limits>
 
 namespace spawnfield {
 
@@ -45,6 +46,7 @@ private:
     struct CellRange {
         int first, last;  ///< columns, inclusive
     };
+    static constexpr CellRange no_cells{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     struct Pass {
         std::size_t level;
         bool is_ready = false;
@@ -64,6 +66,7 @@ private:
     void choose_passes(Part& part) const;
     void cover(const Part& part, Pass& pass) const;
     const OpenTile& tile_of(Pass& pass, int col, int row) const;
+    static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
     bool is_clear(const Part& part, Pass& pass, double x, double z) const;
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);

@@ -29,6 +29,29 @@ struct LooseTile {
     bool is_empty() const { return bounds.spans.empty(); }
 };
 
+/// Adds what is solid in one cell: surfaces anywhere in it, and the insides on the line through its centre.
+void add_cell(const CellSpans& surfaces, std::uint32_t cell, std::span<const Span> inside, LooseTile& out)
+{
+    if (inside.empty() && !surfaces.has_more(cell)) {  // open ground
+        if (const Interval& only = surfaces.first(cell); only.bottom <= only.top) out.bounds.spans.push_back(only);
+        return;
+    }
+    thread_local std::vector<Interval> bounds, solids;
+    surfaces.get(cell, bounds);
+    solids.clear();
+    // Where no surface passes at a height, the whole cell is inside or outside there, as its centre is.
+    for (const Span& span : inside) {
+        if (span.top > span.bottom) bounds.push_back({span.bottom, span.top});
+        if (span.sealed && span.top - span.bottom >= least_solid) solids.push_back({span.bottom, span.top});
+    }
+    if (!inside.empty()) {
+        join_spans(bounds);
+        join_spans(solids);
+    }
+    out.bounds.spans.insert(out.bounds.spans.end(), bounds.begin(), bounds.end());
+    out.solids.spans.insert(out.solids.spans.end(), solids.begin(), solids.end());
+}
+
 /// Cells of one tile of the finest level; those beyond the raster stay empty.
 LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, std::uint32_t tile_col, std::uint32_t tile_row)
 {
@@ -39,26 +62,11 @@ LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, 
     const CellSpans surfaces(geometry, block);
     const Columns centres(geometry, {raster.x0, raster.y0, level.cell, col0, row0, cols, rows, 0.5}, Surfaces::Filled);
     LooseTile out;
+    out.bounds.spans.reserve(BoundsTile::cells);
     if (!surfaces.is_tight()) out.slack = std::numeric_limits<double>::infinity();
-    std::vector<Interval> bounds, solids;
     for (int row = 0; row < int(side); ++row)
         for (int col = 0; col < int(side); ++col) {
-            if (row < rows && col < cols) {
-                surfaces.get(block.id(col, row), bounds);
-                solids.clear();
-                const std::span<const Span> inside = centres.at(col, row).spans;
-                // Where no surface passes at a height, the whole cell is inside or outside there, as its centre is.
-                for (const Span& span : inside) {
-                    if (span.top > span.bottom) bounds.push_back({span.bottom, span.top});
-                    if (span.sealed && span.top - span.bottom >= least_solid) solids.push_back({span.bottom, span.top});
-                }
-                if (!inside.empty()) {
-                    join_spans(bounds);
-                    join_spans(solids);
-                }
-                out.bounds.spans.insert(out.bounds.spans.end(), bounds.begin(), bounds.end());
-                out.solids.spans.insert(out.solids.spans.end(), solids.begin(), solids.end());
-            }
+            if (row < rows && col < cols) add_cell(surfaces, block.id(col, row), centres.at(col, row).spans, out);
             const std::size_t next = std::size_t(row) * side + std::size_t(col) + 1;
             out.bounds.starts[next] = std::uint32_t(out.bounds.spans.size());
             out.solids.starts[next] = std::uint32_t(out.solids.spans.size());
@@ -91,10 +99,12 @@ public:
         put(head_);
         put_list(tile_.bounds, 2, head_.bound_cells, [&](const Interval& span) { return QuantizedSpan{down(span.bottom), up(span.top)}; });
         put_list(tile_.solids, 1, head_.solid_cells, [&](const Interval& span) { return QuantizedSpan{up(span.bottom), down(span.top)}; });
+        std::array<std::uint16_t, BoundsTile::cells> tops;
         for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) {
             const std::uint32_t end = tile_.bounds.starts[cell + 1];
-            put(end > tile_.bounds.starts[cell] ? up(tile_.bounds.spans[end - 1].top) : std::uint16_t{0});
+            tops[cell] = end > tile_.bounds.starts[cell] ? up(tile_.bounds.spans[end - 1].top) : std::uint16_t{0};
         }
+        put(tops);
         out_.resize((out_.size() + alignment - 1) / alignment * alignment, '\0');
         return std::move(out_);
     }
@@ -193,21 +203,23 @@ LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>
         tiles[t] = BoundsTile(bytes);
         out.slack = std::max(out.slack, tiles[t].head->slack);
     }
+    out.bounds.spans.reserve(BoundsTile::cells);
     std::vector<Interval> joined;
     for (std::uint32_t row = 0; row < side; ++row)
         for (std::uint32_t col = 0; col < side; ++col) {
             joined.clear();
             const BoundsTile& tile = tiles[(row >= side / 2 ? 2 : 0) + (col >= side / 2 ? 1 : 0)];
+            std::uint16_t highest = 0;  // of those below whose tops all may be solid
             for (std::uint32_t k = 0; k < 4 && tile.head != nullptr; ++k) {
                 const std::uint32_t cell = (2 * row + k / 2) % side * side + (2 * col + k % 2) % side;
-                if (tile.tops[cell] == 0) continue;
                 if (!tile.bounds.has(cell)) {
-                    joined.push_back({tile.height(0), tile.height(tile.tops[cell])});
+                    highest = std::max(highest, tile.tops[cell]);
                 } else {
                     for (const QuantizedSpan& span : tile.bounds.of(cell)) joined.push_back({tile.height(span.bottom), tile.height(span.top)});
                 }
             }
-            join_spans(joined);
+            if (highest > 0) joined.push_back({tile.height(0), tile.height(highest)});
+            if (joined.size() > 1) join_spans(joined);
             out.bounds.spans.insert(out.bounds.spans.end(), joined.begin(), joined.end());
             out.bounds.starts[row * side + col + 1] = std::uint32_t(out.bounds.spans.size());
         }

@@ -197,6 +197,7 @@ private:
             first = {std::min(first.bottom, z.bottom), std::max(first.top, z.top)};
         } else {
             out_.further_.push_back({cell, z});
+            out_.more_[cell] = true;
         }
     }
 
@@ -273,7 +274,7 @@ private:
 };
 
 CellSpans::CellSpans(const Geometry& geometry, const CellBlock& block)
-    : first_(std::size_t(block.cols) * std::size_t(block.rows), none), cols_(block.cols)
+    : first_(std::size_t(block.cols) * std::size_t(block.rows), none), more_(first_.size()), cols_(block.cols)
 {
     Collector collector(*this, block);
     geometry.impl().visit_in(block.x0 - touch_tolerance, block.y0 - touch_tolerance, block.x0 + block.cols * block.cell + touch_tolerance,
@@ -294,11 +295,10 @@ void CellSpans::get(std::uint32_t cell, std::vector<Interval>& out) const
     out.clear();
     if (first_[cell].bottom > first_[cell].top) return;
     out.push_back(first_[cell]);
+    if (!more_[cell]) return;
     const std::size_t row = cell / std::uint32_t(cols_);
-    if (starts_[row] == starts_[row + 1]) return;
     const auto end = further_.begin() + starts_[row + 1];
     auto span = std::lower_bound(further_.begin() + starts_[row], end, cell, [](const Further& f, std::uint32_t c) { return f.cell < c; });
-    if (span == end || span->cell != cell) return;
     for (; span != end && span->cell == cell; ++span) out.push_back(span->z);
     join_spans(out);
 }

@@ -23,6 +23,9 @@ class CellSpans {
 public:
     CellSpans(const Geometry& geometry, const CellBlock& block);
 
+    /// Whether there is more than one interval to a cell, before they are joined; if not, it is this one, if not empty.
+    bool has_more(std::uint32_t cell) const { return more_[cell]; }
+    const Interval& first(std::uint32_t cell) const { return first_[cell]; }
     /// Of one cell, joined, from the bottom up.
     void get(std::uint32_t cell, std::vector<Interval>& out) const;
     bool is_tight() const { return tight_; }
@@ -34,6 +37,7 @@ private:
         Interval z;
     };
     std::vector<Interval> first_;    ///< one for each cell; bottom > top: none
+    std::vector<bool> more_;         ///< whether the cell has further ones
     std::vector<Further> further_;   ///< what does not touch the first one; sorted by cell
     std::vector<std::uint32_t> starts_;  ///< in further_, by row of the block
     int cols_;

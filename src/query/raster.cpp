@@ -187,7 +187,9 @@ RasterResult raster(const Map& map, const CollisionChecker& checker, const Raste
     out.grid = grid_of(map, options);
     const RasterJudge judge(map, checker, options, out.grid);
     std::vector<Row> rows(std::size_t(out.grid.rows));
-    const std::size_t strip = std::clamp<std::size_t>(rows.size() / std::size_t(4 * thread_count(options.threads)), 1, RasterJudge::most_rows);
+    // Without heights rows share nothing, and each takes long.
+    const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
+    const std::size_t strip = std::clamp<std::size_t>(rows.size() / std::size_t(4 * thread_count(options.threads)), 1, most_rows);
     parallel_for((rows.size() + strip - 1) / strip, options.threads, options.progress, [&](std::size_t s) {
         judge.judge_rows(int(s * strip), std::span(rows).subspan(s * strip, std::min(strip, rows.size() - s * strip)));
     });
