@@ -24,23 +24,28 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
 {
     std::atomic<std::size_t> done{0};
     std::mutex telling;
-    // What TBB's own hand-over already orders, in words that a thread sanitizer reads: the library is not instrumented.
+    // What TBB's own hand-over already orders, in words that a thread sanitizer reads, as the library is not instrumented:
+    // what came before the loop comes before its parts, and what they did before what comes after, be it an exception.
     std::atomic<bool> started{false}, finished{false};
+    struct AtEnd {
+        std::atomic<bool>& flag;
+        ~AtEnd() { flag.exchange(true, std::memory_order_acq_rel); }
+    };
+    const AtEnd end{finished};
     started.store(true, std::memory_order_release);
     const auto run = [&](const tbb::blocked_range<std::size_t>& range) {
         static_cast<void>(started.load(std::memory_order_acquire));
+        const AtEnd end_of_part{finished};
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             body(i);
             if (!progress) continue;
             const std::size_t now = ++done;
             if (const std::unique_lock lock(telling, std::try_to_lock); lock) progress(double(now) / double(count));
         }
-        finished.exchange(true, std::memory_order_acq_rel);
     };
     const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, std::size_t(thread_count(threads)));
     tbb::task_arena arena(thread_count(threads));
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), run); });
-    static_cast<void>(finished.load(std::memory_order_acquire));
 }
 
 }  // namespace spawnfield
