@@ -62,6 +62,34 @@ TEST_CASE("a touching pair collides, and 1e-5 m of room is free, for all robots 
             }
 }
 
+TEST_CASE("a triangle without width is the line that it is, wherever rounding has its normal point")
+{
+    const Vec3 a(-0.62318147753626363, 0.06041809955604549, 0.16091240120913852), b(0.15029675587186375, 0.17413353081724381, -0.21990618847556576);
+    const std::vector<Robot> robots = {round_robot(ShapeKind::Sphere, {0.065, 0, 0}, {0, 0, 0}), round_robot(ShapeKind::Sphere, {1, 0, 0}, {0, 0, 0}),
+                                       round_robot(ShapeKind::Capsule, {0.065, 0.01, 0}, {0, 0, 0}), load_robot("box:0.1,0.1,0.1@0,0,0")};
+    for (const double width : {0.0, 1e-17, 1e-15, 1e-12})
+        for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.3, -0.2, 1)}) {
+            Scene scene;
+            hand::add_mesh(scene, Label::Obstacle, {{a, b, b + width * along}, {{0, 1, 2}}});
+            hand::add_mesh(scene, Label::Obstacle, {{a, a + width * along, b}, {{0, 1, 2}}});
+            const Geometry geometry(scene);
+            for (std::size_t r = 0; r < robots.size(); ++r) {
+                const CollisionChecker checker(geometry, robots[r]);
+                const double reach = r == 1 ? 1.0 : 0.065;  // from the line, at which the round ones touch
+                const Vec3 up = Vec3::UnitZ() - (b - a).normalized().z() * (b - a).normalized();
+                for (const double share : {0.1, 0.5, 0.7}) {
+                    const Vec3 foot = a + share * (b - a);
+                    CAPTURE(width, along.transpose(), r, share);
+                    CHECK(checker.is_free({foot + (reach + 0.03) * up.normalized(), Mat3::Identity()}));
+                    CHECK_FALSE(checker.is_free({foot, Mat3::Identity()}));
+                    if (r > 1) continue;
+                    CHECK(checker.is_free({foot + (reach + 1e-5) * up.normalized(), Mat3::Identity()}));
+                    CHECK_FALSE(checker.is_free({foot + (reach - 1e-5) * up.normalized(), Mat3::Identity()}));
+                }
+            }
+        }
+}
+
 TEST_CASE("a closed house is solid, the same house with a face missing is a shell")
 {
     Scene closed, open;

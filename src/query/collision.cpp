@@ -117,17 +117,26 @@ bool is_apart(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
     return std::abs(normal.dot(seen[0])) > normal.cwiseAbs().dot(half) + FreeSpace::margin * normal.norm();
 }
 
+/// Whether rounding decides where a triangle's normal points.
+bool is_sliver(const std::array<Vec3, 3>& corners)
+{
+    const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], bc = corners[2] - corners[1];
+    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
+    return ab.cross(ac).squaredNorm() <= 1e-18 * longest * longest;
+}
+
 bool meets_triangle(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
 {
     if (is_apart(placed, corners)) return false;
     static const fcl::detail::GJKSolver_libccd<double> solver;
-    return std::visit(
-        [&](const auto& shape) {
-            return solver.shapeTriangleIntersect(shape, placed.robot_from_shape, corners[0], corners[1], corners[2],
-                                                 static_cast<Vec3*>(nullptr), static_cast<double*>(nullptr),
-                                                 static_cast<Vec3*>(nullptr));
-        },
-        placed.part->shape);
+    const auto meets = [&](const auto& shape) {
+        return solver.shapeTriangleIntersect(shape, placed.robot_from_shape, corners[0], corners[1], corners[2],
+                                             static_cast<Vec3*>(nullptr), static_cast<double*>(nullptr), static_cast<Vec3*>(nullptr));
+    };
+    // FCL's own answer for spheres rests on the normal, and is wrong for slivers that are nowhere near; a capsule's does not.
+    if (const auto* sphere = std::get_if<fcl::Sphere<double>>(&placed.part->shape); sphere != nullptr && is_sliver(corners))
+        return meets(fcl::Capsule<double>(sphere->radius, 0));
+    return std::visit(meets, placed.part->shape);
 }
 
 bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& at_a, const fcl::CollisionGeometry<double>* b,
