@@ -305,6 +305,8 @@ TEST_CASE("fewer spawns than asked for end with 3, and those found are written")
     const auto told = summary(arena / "s.json", "sample");
     CHECK(told["counts"]["valid"] >= found);
     CHECK(told["full"] == true);
+    const double mask = told["seconds"]["mask"], exact = told["seconds"]["exact"], query = told["seconds"]["query"];
+    CHECK((mask > 0 && exact > 0 && mask + exact <= query));
     CHECK(told["undecided_area"] == 0.0);
     CHECK(nlohmann::json::parse(arena("sample map -n 50 --min-distance 15 --format json" + husky).out)["full"] == true);
     CHECK(arena("search map -n 5 --min-distance 100 --max-failures 50 --summary s.json" + husky).status == 3);

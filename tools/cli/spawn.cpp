@@ -44,7 +44,7 @@ std::string shortfall(const SpawnOptions& options, const SpawnList& list, const 
 int finish(Summary& summary, const SpawnArgs& args, const Session& session, const SpawnOptions& options, const SpawnList& list,
            const std::string& command)
 {
-    summary.lap("exact");
+    summary.lap("query");
     write_output(args.out, [&](const auto& sink) {
         sink(args.format == "json" ? spawns_json(list, session.map, session.robot, options, command) : spawns_csv(list));
     });
@@ -68,6 +68,7 @@ int run_search(const SpawnArgs& args)
     fill_spawn(options, args, "search");
     if (args.max_failures < 1) throw bad_value("--max-failures", double(args.max_failures), ">= 1");
     options.max_failures = std::uint64_t(args.max_failures);
+    options.exact_time = &summary.exact_time;
     const auto session = open_session(args);
     tell_if_off_map(args, session->map, "--bounds", options.bounds);
     summary.lap("load");
@@ -82,6 +83,7 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
     fill_spawn(options, args, "sample");
     options.offset = parse_finite("--offset", args.offset, "m");
     options.layers = parse_layers(args.layers);
+    options.exact_time = &summary.exact_time;
     tell_idle(args, command, {"--max-height"}, "samples stand on their layers");
     const auto session = open_session(args);
     tell_if_off_map(args, session->map, "--region", options.bounds);
