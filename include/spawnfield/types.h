@@ -24,6 +24,11 @@ struct Bounds {
     {
         return x >= min.x() - tolerance && x <= max.x() + tolerance && y >= min.y() - tolerance && y <= max.y() + tolerance;
     }
+    /// Whether the closed boxes share a point, seen along the first axes alone.
+    bool meets(const Bounds& other, int axes = 3) const
+    {
+        return (min.head(axes).array() <= other.max.head(axes).array()).all() && (max.head(axes).array() >= other.min.head(axes).array()).all();
+    }
     void extend(const Vec3& point)
     {
         min = min.cwiseMin(point);

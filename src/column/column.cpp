@@ -246,8 +246,7 @@ private:
 
 void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
 {
-    thread_local HitLists lists;
-    HitLists& hits = lists;
+    thread_local HitLists hits;
     const std::size_t count = std::size_t(grid.cols) * std::size_t(grid.rows);
     hits.start(count);
     const double a_step = 1 / grid.step;
@@ -258,22 +257,15 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
         if (cols.is_empty()) return;
         const IndexRange rows = indices_in(box.min[1], box.max[1], grid.y0, a_step, grid.shift, grid.first_row, grid.rows);
         if (rows.is_empty()) return;
-        const auto visit_columns = [&](auto&& set_y, auto&& meet) {
+        const auto visit_columns = [&](auto seen) {
             for (int j = rows.first; j <= rows.last; ++j) {
-                set_y(grid.y_of(grid.first_row + j));
+                seen.set_y(grid.y_of(grid.first_row + j));
                 for (int i = cols.first; i <= cols.last; ++i)
-                    meet(grid.x_of(grid.first_col + i), [&]() -> SurfaceHit& { return hits.add(std::size_t(j) * std::size_t(grid.cols) + std::size_t(i)); });
+                    seen.meet(grid.x_of(grid.first_col + i), [&]() -> SurfaceHit& { return hits.add(std::size_t(j) * std::size_t(grid.cols) + std::size_t(i)); });
             }
         };
-        if (tile.is_triangle(element)) {
-            SeenTriangle seen(tile, element);
-            visit_columns([&](double y) { seen.set_y(y); }, [&](double x, const auto& new_hit) { seen.meet(x, new_hit); });
-        } else {
-            double at_y = 0;
-            visit_columns([&](double y) { at_y = y; }, [&](double x, const auto& new_hit) {
-                if (const auto hit = hit_of(tile, element, x, at_y)) new_hit() = *hit;
-            });
-        }
+        if (tile.is_triangle(element)) visit_columns(SeenTriangle(tile, element));
+        else visit_columns(SeenPrimitive(tile, element));
     };
     geometry.impl().visit_in(grid.x_of(grid.first_col), grid.y_of(grid.first_row), grid.x_of(grid.first_col + grid.cols - 1),
                              grid.y_of(grid.first_row + grid.rows - 1), visit);

@@ -1,12 +1,12 @@
 #include "column/surface_hit.h"
 
+#include "base/polygon2.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace spawnfield {
 namespace {
-
-using Vec2 = Eigen::Vector2d;
 
 constexpr double squared_tolerance = touch_tolerance * touch_tolerance;
 

@@ -109,4 +109,22 @@ private:
 
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y);
 
+/// A primitive, asked as a SeenTriangle is.
+class SeenPrimitive {
+public:
+    SeenPrimitive(const Tile& tile, std::uint32_t element) : tile_(tile), element_(element) {}
+
+    void set_y(double y) { y_ = y; }
+    template <class NewHit>
+    void meet(double x, const NewHit& new_hit) const
+    {
+        if (const auto hit = hit_of(tile_, element_, x, y_)) new_hit() = *hit;
+    }
+
+private:
+    const Tile& tile_;
+    const std::uint32_t element_;
+    double y_ = 0;
+};
+
 }  // namespace spawnfield

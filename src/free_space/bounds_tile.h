@@ -73,6 +73,10 @@ struct SolidBounds::Impl {
 
     void make_states();
 
+    /// Cells of a level that lie on the finest raster whole: coarse ones at the upper rims reach beyond it.
+    std::uint32_t whole_cols(std::size_t level) const { return levels[0].cols >> level; }
+    std::uint32_t whole_rows(std::size_t level) const { return levels[0].rows >> level; }
+
     /// The tile, or one without a head where nothing is solid. Throws FileError.
     BoundsTile open(std::size_t level, std::uint32_t col, std::uint32_t row) const
     {

@@ -173,8 +173,7 @@ bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
     constexpr int side = BoundsTile::side;
     const double u = (x - raster_.x0) / raster_.levels[pass.level].cell;
     const int low = floor_of(u + pass.low), high = floor_of(u + pass.high), first = pass.rows.front().row, last = pass.rows.back().row;
-    // Coarse cells at the upper rims reach beyond the finest ones.
-    const int known_cols = int(raster_.levels[0].cols >> pass.level), known_rows = int(raster_.levels[0].rows >> pass.level);
+    const int known_cols = int(raster_.whole_cols(pass.level)), known_rows = int(raster_.whole_rows(pass.level));
     if (low < 0 || first < 0 || high >= known_cols || last >= known_rows) return false;
     const double bottom = z + part.footprint.outer.bottom;
     for (int tile_row = first / side; tile_row <= last / side; ++tile_row)
@@ -250,8 +249,7 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
     Heights heights{.bottom = z + footprint.outer.bottom, .top = z + footprint.outer.top, .inner_bottom = z + footprint.inner.bottom,
                     .inner_top = z + footprint.inner.top};
     const double u = (x - raster_.x0) / level.cell;
-    // Coarse cells at the upper rims reach beyond the finest ones.
-    const int known_cols = int(raster_.levels[0].cols >> pass.level), known_rows = int(raster_.levels[0].rows >> pass.level);
+    const int known_cols = int(raster_.whole_cols(pass.level)), known_rows = int(raster_.whole_rows(pass.level));
     bool nothing_near = true;
     constexpr int side = BoundsTile::side;
     const OpenTile* open = nullptr;

@@ -1,4 +1,5 @@
 #include "base/chosen_bounds.h"
+#include "base/polygon2.h"
 #include "query/cell_proofs.h"
 #include "query/spawning.h"
 
@@ -92,7 +93,7 @@ private:
     static std::uint32_t count(double length, double side) { return std::uint32_t(std::clamp(std::ceil(length / side), 1.0, most_first_cells)); }
 
     const Bounds box_;
-    const Eigen::Vector2d size_;
+    const Vec2 size_;
     std::uint32_t cols_ = 1, rows_ = 1;
     std::vector<Cell> left_;
 };
@@ -134,8 +135,6 @@ public:
     }
 
 private:
-    using Vec2 = Eigen::Vector2d;
-
     /// At most so many draws of points, until all are found or go_on(draws, failures in a row) says no. Returns how many
     /// spawns they gave.
     template <class Point, class GoOn>

@@ -45,9 +45,7 @@ public:
         // Lines along a border between cells see what touches it from either side.
         const auto is_near_border = [](double in_cell) { return in_cell < 1e-6 || in_cell > 1 - 1e-6; };
         if (is_near_border(u - col) || is_near_border(v - row)) return false;
-        // Coarse cells at the upper rims reach beyond the finest ones.
-        const BoundsLevel& finest_level = raster_->levels[0];
-        if (!(col >= 0 && row >= 0 && col < double(finest_level.cols >> level_) && row < double(finest_level.rows >> level_))) return false;
+        if (!(col >= 0 && row >= 0 && col < double(raster_->whole_cols(level_)) && row < double(raster_->whole_rows(level_)))) return false;
         const auto c = std::uint32_t(col), r = std::uint32_t(row);
         const BoundsTile tile = raster_->open(level_, c / BoundsTile::side, r / BoundsTile::side);
         if (tile.head == nullptr) return true;

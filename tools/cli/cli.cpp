@@ -216,9 +216,7 @@ void fill(QueryOptions& options, const QueryArgs& args, const std::string& label
 
 void tell_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds)
 {
-    const bool meet = bounds.min.x() <= map.bounds.max.x() && bounds.max.x() >= map.bounds.min.x() &&
-                      bounds.min.y() <= map.bounds.max.y() && bounds.max.y() >= map.bounds.min.y();
-    if (!bounds.is_empty() && !meet)
+    if (!bounds.is_empty() && !bounds.meets(map.bounds, 2))
         notice(args, option + " " + to_string(bounds, 2) + " lies off the map, which is " + to_string(map.bounds, 2));
 }
 
