@@ -1,5 +1,6 @@
 #include "catch.h"
 #include "compare.h"
+#include "sdf_world.h"
 #include "shared_scenes.h"
 
 #include <spawnfield/free_space.h>
@@ -123,8 +124,8 @@ std::vector<std::filesystem::path> scene_files(const std::filesystem::path& fold
     return files;
 }
 
-/// 2D across the map, 3D around some standing pose.
-compare::Tally real_rasters(const TestMap& map, const CollisionChecker& checker, const std::vector<Pose>& standing)
+/// 2D across the map, 3D around every hundredth of the poses.
+compare::Tally real_rasters(const TestMap& map, const CollisionChecker& checker, const std::vector<Pose>& poses)
 {
     compare::Tally tally;
     RasterOptions options;
@@ -136,8 +137,8 @@ compare::Tally real_rasters(const TestMap& map, const CollisionChecker& checker,
     options.dims = 3;
     options.step = 0.13;
     options.step_z = 0.11;
-    for (std::size_t i = 0; i < standing.size(); i += 100) {
-        const Vec3& near = standing[i].position;
+    for (std::size_t i = 0; i < poses.size(); i += 100) {
+        const Vec3& near = poses[i].position;
         options.bounds = {near - Vec3(1, 1, 1), near + Vec3(1, 1, 2)};
         options.height_check = i % 200 == 0;
         tally.add(compare::of_raster(map, checker, options));
@@ -385,8 +386,13 @@ TEST_CASE("every query gives the exhaustive verdicts in real scenes")
     const auto folder = shared_scenes();
     if (!folder) return;
     compare::Tally all;
-    const std::vector<std::filesystem::path> files = scene_files(*folder);
+    std::vector<std::filesystem::path> files = scene_files(*folder);
     CHECK(files.size() >= 12);
+    const TempFolder city, warehouse, moon;
+    files.push_back(scene_of_world(city, *folder / "city/worlds/simple_city.world", *folder / "city/models"));
+    files.push_back(scene_of_world(warehouse, *folder / "warehouse/worlds/small_warehouse.world", *folder / "warehouse/models"));
+    files.push_back(moon.write("scene.yaml", "format: spawnfield-scene/1\nname: moon\nparts:\n  - {name: ground, label: terrain, heightmap: {file: " +
+                                                 (*folder / "dem/moon_tif/dem_moon.tif").string() + ", size: [77.65, 77.65]}}\n"));
     for (const std::filesystem::path& file : files) {
         const HardCase real = real_case(file);
         const TestMap map = compare::map_of_case(real);
@@ -395,7 +401,7 @@ TEST_CASE("every query gives the exhaustive verdicts in real scenes")
         std::vector<Pose> poses = random_poses(real.scene, 5, 200);
         poses.insert(poses.end(), standing.begin(), standing.end());
         compare::Tally tally = compare::of_check(map, checker, poses, {});
-        tally.add(real_rasters(map, checker, standing));
+        tally.add(real_rasters(map, checker, poses));
         SampleOptions sampling;
         sampling.count = 100;
         sampling.min_distance = 0.5;
@@ -403,6 +409,7 @@ TEST_CASE("every query gives the exhaustive verdicts in real scenes")
         tally.add(compare::of_sample(map, checker, sampling));
         INFO(file.string() << ": " << tally.first);
         CHECK(tally.differences == 0);
+        CHECK(tally.poses > 5000);
         all.add(tally);
     }
     print("real scenes", all);
