@@ -1,5 +1,6 @@
 #pragma once
 
+#include "query/cell_facets.h"
 #include "query/spaced_points.h"
 
 #include <spawnfield/query.h>
@@ -7,14 +8,6 @@
 #include <vector>
 
 namespace spawnfield {
-
-/// A rectangle as seen from above, m.
-struct Rect {
-    double low_x, low_y, high_x, high_y;
-
-    double centre_x() const { return (low_x + high_x) / 2; }
-    double centre_y() const { return (low_y + high_y) / 2; }
-};
 
 /// Proofs that no further sample can stand anywhere in a cell, from the scene's own geometry: the mask has no part in them, so
 /// that they are the same with it and without it.
@@ -34,8 +27,6 @@ public:
     bool is_closed(const Rect& cell) const;
 
 private:
-    struct Facet;
-    struct Facets;
     struct Prism;
     class Cell;
     /// The robot's inside, smaller by half a cell and by half a range of heights: where it collides, the robot does at every

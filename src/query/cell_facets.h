@@ -1,0 +1,104 @@
+#pragma once
+
+#include "base/polygon2.h"
+#include "geometry/tile.h"
+
+#include <spawnfield/geometry.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+namespace spawnfield {
+
+/// A rectangle as seen from above, m.
+struct Rect {
+    double low_x, low_y, high_x, high_y;
+
+    double centre_x() const { return (low_x + high_x) / 2; }
+    double centre_y() const { return (low_y + high_y) / 2; }
+};
+
+constexpr double proof_slack = 1e-8;  ///< m that heights and distances of a cell are held away from their limits
+
+/// A convex polygon of few corners, counterclockwise, without memory of its own.
+class SmallPolygon {
+public:
+    static constexpr std::size_t most = 15;
+
+    SmallPolygon() = default;
+    SmallPolygon(std::initializer_list<Vec2> corners)
+    {
+        for (const Vec2& p : corners) push_back(p);
+    }
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    const Vec2& operator[](std::size_t k) const { return corners_[k]; }
+    const Vec2* begin() const { return corners_.data(); }
+    const Vec2* end() const { return corners_.data() + size_; }
+    void push_back(const Vec2& p) { corners_[size_++] = p; }
+    void turn_round() { std::reverse(corners_.begin(), corners_.begin() + std::ptrdiff_t(size_)); }
+
+private:
+    std::array<Vec2, most> corners_;
+    std::size_t size_ = 0;
+};
+
+SmallPolygon corners_of(const Rect& rect);
+
+/// Unit normal of the edge from p to q of a counterclockwise polygon, outwards.
+Vec2 outward_normal(const Vec2& p, const Vec2& q);
+
+/// Whether some edge of one has the other beyond it, but for `by` m.
+bool are_parted(const SmallPolygon& a, const SmallPolygon& b, double by);
+
+/// What is left of a rectangle when convex polygons are taken away.
+class Remainder {
+public:
+    explicit Remainder(const Rect& rect) : left_{corners_of(rect)} {}
+
+    void take(const SmallPolygon& polygon);
+    bool is_empty() const { return left_.empty(); }
+    bool is_hopeless() const { return left_.size() > 64; }
+
+private:
+    std::vector<SmallPolygon> left_, out_;
+};
+
+/// A flat piece of surface, or of what a primitive has above; its plane is height + slope * (x, y).
+struct Facet {
+    SmallPolygon polygon;  ///< seen from above; empty: upright, or not known
+    Interval z;           ///< within the cell, m
+    double height = 0;
+    Vec2 slope = Vec2::Zero();
+    bool has_plane = false;
+    bool terrain = false, water = false;
+    bool filled = false;  ///< of a filled mesh: only some crossings are upper ends
+    bool open = false;
+    bool crossed = false;  ///< by the line through the cell's centre
+    std::uint32_t piece = 0;
+
+    double at(double x, double y) const { return height + slope.x() * x + slope.y() * y; }
+};
+
+/// Terrain and water in a cell, as flat pieces; those of filled meshes that tell inside from outside as well.
+struct CellFacets {
+    std::vector<Facet> all;
+    bool has_too_many = false;  ///< for planes: only `terrain` counts
+    Interval terrain{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};  ///< heights of all terrain
+
+    CellFacets(const Geometry& geometry, const Rect& cell);
+
+private:
+    void set_plane(const Vec3& a, const Vec3& normal, const Interval& limits, Facet& out) const;
+    void add_triangle(const Tile& tile, std::uint32_t element, bool other_filled);
+    void add_primitive(const Tile& tile, std::uint32_t element);
+    void add_box(const Shape& box, Label label);
+
+    const Rect cell_;
+    const SmallPolygon corners_;
+    bool has_filled_terrain_ = false;
+};
+
+}  // namespace spawnfield
