@@ -12,9 +12,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
-#include <spawnfield/output_file.h>
-
-#include <unistd.h>
+#include <spawnfield/output_folder.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,69 +22,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder beside the one that is wanted; takes its place when all is written, and goes if it is not.
-class NewFolder {
-public:
-    explicit NewFolder(const fs::path& target) : target_(without_slash(target)), suffix_("-" + std::to_string(getpid()))
-    {
-        if (fs::exists(target_) && !is_map_folder(target_) && !(fs::is_directory(target_) && fs::is_empty(target_)))
-            throw OutputError(target_.string(), "exists and is no map; choose another name or remove it");
-        folder_ = target_.string() + ".tmp" + suffix_;
+/// Others have a map.yaml too: nav2's map server.
+std::string objection_to(const fs::path& folder)
+{
+    const fs::path file = folder / "map.yaml";
+    const bool is_map = fs::is_regular_file(file) && read_file(file).starts_with("format: spawnfield-map/");
+    return is_map ? "" : "exists and is no map";
+}
+
+/// What people put into the old folder moves to the new one.
+void keep_foreign_files(const fs::path& old, const fs::path& now)
+{
+    const std::vector<fs::directory_entry> entries(fs::directory_iterator(old), {});  // read first: some will leave
+    for (const fs::directory_entry& entry : entries) {
+        const fs::path name = entry.path().filename();
+        if (name == "map.yaml" || std::find(map_files.begin(), map_files.end(), name) != map_files.end()) continue;
         std::error_code error;
-        fs::create_directories(folder_, error);
-        if (error) throw OutputError(folder_.string(), "cannot be made: " + error.message());
+        fs::rename(entry.path(), now / name, error);
+        if (error) throw OutputError(entry.path().string(), "cannot be moved into the new map: " + error.message());
     }
-    NewFolder(const NewFolder&) = delete;
-    NewFolder& operator=(const NewFolder&) = delete;
-    ~NewFolder()
-    {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
-
-    const fs::path& path() const { return folder_; }
-
-    void commit()
-    {
-        std::error_code error, ignored;
-        const fs::path old = target_.string() + ".old" + suffix_;
-        if (fs::exists(target_)) fs::rename(target_, old, error);
-        if (!error) fs::rename(folder_, target_, error);
-        if (error) {
-            if (fs::exists(old)) fs::rename(old, target_, ignored);
-            throw OutputError(target_.string(), "cannot be written: " + error.message());
-        }
-        if (!fs::exists(old)) return;
-        keep_foreign_files(old);
-        fs::remove_all(old, ignored);
-    }
-
-private:
-    /// What people put into the old folder moves to the new one.
-    void keep_foreign_files(const fs::path& old) const
-    {
-        const std::vector<fs::directory_entry> entries(fs::directory_iterator(old), {});  // read first: some will leave
-        for (const fs::directory_entry& entry : entries) {
-            const fs::path name = entry.path().filename();
-            if (name == "map.yaml" || std::find(map_files.begin(), map_files.end(), name) != map_files.end()) continue;
-            std::error_code error;
-            fs::rename(entry.path(), target_ / name, error);
-            if (error) throw OutputError(entry.path().string(), "cannot be moved into the new map: " + error.message());
-        }
-    }
-
-    /// Others have a map.yaml too: nav2's map server.
-    static bool is_map_folder(const fs::path& folder)
-    {
-        const fs::path file = folder / "map.yaml";
-        return fs::is_regular_file(file) && read_file(file).starts_with("format: spawnfield-map/");
-    }
-
-    static fs::path without_slash(fs::path path) { return path.has_filename() ? path : path.parent_path(); }
-
-    fs::path target_, folder_;
-    std::string suffix_;
-};
+}
 
 double default_resolution(const Bounds& bounds, BakeReport& report)
 {
@@ -185,7 +140,7 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     const auto lap = [&](const char* stage) { report.seconds.emplace_back(stage, watch.lap()); };
     Map map = plan_map(scene, scene_file, options, report);
     const GridFrame frame = frame_around(map.bounds, map.resolution);
-    NewFolder target(folder);
+    OutputFolder target(folder, objection_to);
     map.geometry = Geometry(scene, options.threads);
     const bool has_terrain = scene.has_terrain();
     const Bounds extent = scene.bounds();
@@ -210,7 +165,7 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     report.hash = write_map_yaml(target.path(), map, terrain, z_range);
     if (options.progress) options.progress(1);
     for (const auto& entry : fs::directory_iterator(target.path())) report.bytes += entry.file_size();
-    target.commit();
+    target.commit(keep_foreign_files);
     report.layers = map.layers;
     lap("write");
     return report;

@@ -95,6 +95,12 @@ void notice(const CommonArgs& args, const std::string& text)
     std::cerr << "notice: " << text << "\n";
 }
 
+std::string number(double value)
+{
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
 std::string counted(std::uint64_t count, const std::string& noun)
 {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
@@ -125,8 +131,7 @@ void clear_progress_bar()
 
 ArgumentError bad_value(const std::string& option, double value, const std::string& limit)
 {
-    char text[32];
-    return ArgumentError(option + " is " + std::string(text, std::to_chars(text, text + sizeof text, value).ptr) + ", needs " + limit);
+    return ArgumentError(option + " is " + number(value) + ", needs " + limit);
 }
 
 Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed)
@@ -146,6 +151,14 @@ Bounds parse_bounds(const std::string& option, const std::string& text, bool fla
             throw bad_value(option + ": " + "xyz"[axis] + "1", bounds.max[axis],
                             std::string("at least ") + "xyz"[axis] + "0: the lower corner comes first");
     return bounds;
+}
+
+std::string bounds_text(const Bounds& bounds, int axes)
+{
+    std::string text;
+    for (const Vec3& corner : {bounds.min, bounds.max})
+        for (int axis = 0; axis < axes; ++axis) text += (text.empty() ? "" : ",") + number(corner[axis]);
+    return text;
 }
 
 LayerChoice parse_layers(const std::string& text)

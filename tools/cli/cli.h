@@ -46,6 +46,9 @@ void tell_idle(const CommonArgs& args, const CLI::App& command, const std::vecto
 /// Words for people: notices, one at a time on standard error, unless --quiet.
 void notice(const CommonArgs& args, const std::string& text);
 
+/// The shortest text that reads back to the same double.
+std::string number(double value);
+
 /// "1 layer", "2 layers".
 std::string counted(std::uint64_t count, const std::string& noun);
 
@@ -55,6 +58,8 @@ void clear_progress_bar();
 
 /// "x0,y0,z0,x1,y1,z1", or "x0,y0,x1,y1" where heights do not count. Throws ArgumentError.
 Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed);
+/// As parse_bounds reads it: 6 numbers, or of 2 axes 4.
+std::string bounds_text(const Bounds& bounds, int axes);
 LayerChoice parse_layers(const std::string& text);  ///< all|top|bottom|N
 /// "random" or radians; false if it is random.
 bool parse_yaw(const std::string& text, double& yaw);
@@ -71,6 +76,8 @@ public:
 
     void lap(const std::string& stage);  ///< seconds since the last lap go to this stage
     void set_counts(const VerdictCounts& counts);
+    double seconds_of(const std::string& stage) const;
+    double elapsed() const;  ///< seconds since the start
 
     std::uint64_t poses = 0, exact_checks = 0, seed = 0;
     std::string map_hash;
@@ -88,7 +95,6 @@ public:
 private:
     std::string line(double total) const;
     std::string json(double total) const;
-    double seconds_of(const std::string& stage) const;
     unsigned threads() const;
 
     std::string command_;

@@ -107,9 +107,11 @@ std::string Summary::json(double total) const
     return out.dump(2) + "\n";
 }
 
+double Summary::elapsed() const { return now() - start_; }
+
 void Summary::finish()
 {
-    const double total = now() - start_;
+    const double total = elapsed();
     if (!args_.summary.empty()) {
         if (!file_) file_.emplace(args_.summary);
         file_->write(json(total));

@@ -1,0 +1,77 @@
+#include <spawnfield/error.h>
+#include <spawnfield/output_folder.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace spawnfield {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path without_slash(const fs::path& path) { return path.has_filename() ? path : path.parent_path(); }
+
+fs::path target_of(const fs::path& folder)
+{
+    std::error_code error;
+    const fs::path target = fs::is_symlink(folder, error) ? fs::canonical(folder, error) : folder;
+    return error ? folder : target;
+}
+
+void refuse_foreign(const fs::path& target, const std::function<std::string(const fs::path&)>& objection)
+{
+    if (!fs::exists(target) || (fs::is_directory(target) && fs::is_empty(target))) return;
+    const std::string reason = objection(target);
+    if (!reason.empty()) throw OutputError(target.string(), reason + "; choose another name or remove it");
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const Path& target, const std::function<std::string(const Path&)>& objection)
+    : target_(target_of(without_slash(target)))
+{
+    refuse_foreign(target_, objection);
+    const std::string suffix = "-" + std::to_string(getpid());
+    folder_ = target_.string() + ".tmp" + suffix;
+    old_ = target_.string() + ".old" + suffix;
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) throw OutputError(folder_.string(), "cannot be made: " + error.message());
+}
+
+OutputFolder::~OutputFolder()
+{
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+}
+
+void OutputFolder::commit(const std::function<void(const Path& old, const Path& now)>& keep)
+{
+    std::error_code error, ignored;
+    if (fs::exists(target_)) fs::rename(target_, old_, error);
+    if (!error) fs::rename(folder_, target_, error);
+    if (error) {
+        if (fs::exists(old_)) fs::rename(old_, target_, ignored);
+        throw OutputError(target_.string(), "cannot be written: " + error.message());
+    }
+    if (!fs::exists(old_)) return;
+    if (keep) keep(old_, target_);
+    fs::remove_all(old_, ignored);
+}
+
+std::function<std::string(const fs::path&)> holds_only(std::span<const char* const> names, const std::string& kind)
+{
+    return [names, kind](const fs::path& folder) -> std::string {
+        if (!fs::is_directory(folder)) return "exists and is no folder";
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+            const fs::path name = entry.path().filename();
+            if (!entry.is_regular_file() || std::find(names.begin(), names.end(), name) == names.end())
+                return "holds " + name.string() + ", which is no part of a " + kind;
+        }
+        return "";
+    };
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,52 @@
+#include "spawn_args.h"
+
+#include <charconv>
+
+namespace spawnfield::cli {
+namespace {
+
+/// CLI11's own words for -1 are a range of 309 digits.
+std::string seed_complaint(const std::string& text)
+{
+    std::uint64_t seed = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    if (error == std::errc{} && stop == text.data() + text.size()) return "";
+    return text + " is no whole number from 0 to " + std::to_string(std::numeric_limits<std::uint64_t>::max());
+}
+
+}  // namespace
+
+void add_draws(CLI::App& command, DrawArgs& args)
+{
+    command.add_option("-n,--count", args.count, "Spawns wanted");
+    command.add_option("--min-distance", args.min_distance, "Between positions, m (default 0)");
+    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)")->check(seed_complaint);
+}
+
+void add_max_failures(CLI::App& command, DrawArgs& args)
+{
+    command.add_option("--max-failures", args.max_failures, "Draws in a row that gave nothing, after which it stops (default 100000)");
+}
+
+void fill(SpawnOptions& options, const QueryArgs& args, const DrawArgs& draws, const std::string& label)
+{
+    fill(options, args, label);
+    if (draws.count < 1) throw bad_value("-n", double(draws.count), ">= 1");
+    if (draws.count > static_cast<long long>(max_spawns)) throw bad_value("-n", double(draws.count), "at most " + std::to_string(max_spawns));
+    options.count = std::size_t(draws.count);
+    options.min_distance = parse_finite("--min-distance", draws.min_distance, "m");
+    if (options.min_distance < 0) throw bad_value("--min-distance", options.min_distance, ">= 0 m");
+    options.seed = draws.seed;
+}
+
+SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds, const std::string& label)
+{
+    SearchOptions options;
+    fill(options, args, draws, label);
+    if (!bounds.empty()) options.bounds = parse_bounds("--bounds", bounds, false);
+    if (draws.max_failures < 1) throw bad_value("--max-failures", double(draws.max_failures), ">= 1");
+    options.max_failures = std::uint64_t(draws.max_failures);
+    return options;
+}
+
+}  // namespace spawnfield::cli

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "cli.h"
+
+namespace spawnfield::cli {
+
+/// Options of random draws, as `search`, `sample` and `experiment` take them.
+struct DrawArgs {
+    long long count = 0, max_failures = 100000;
+    std::uint64_t seed = 0;
+    double min_distance = 0;
+};
+void add_draws(CLI::App& command, DrawArgs& args);
+void add_max_failures(CLI::App& command, DrawArgs& args);
+
+/// What search and sample share, but bounds and yaw. Throws ArgumentError.
+void fill(SpawnOptions& options, const QueryArgs& args, const DrawArgs& draws, const std::string& label);
+
+/// Everything but the yaw; `bounds` as --bounds has it, or empty. Throws ArgumentError.
+SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds, const std::string& label);
+
+}  // namespace spawnfield::cli

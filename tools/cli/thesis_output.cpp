@@ -1,0 +1,37 @@
+#include "thesis_output.h"
+
+#include "interrupt.h"
+
+namespace spawnfield::cli {
+
+Settings query_settings(const std::string& command, const QueryArgs& args, const Session& session)
+{
+    return {{"Command", command},
+            {"Version", version()},
+            {"Map", session.map.name},
+            {"Map hash", session.map.hash},
+            {"Robot", session.robot.name},
+            {"Collision", args.collision},
+            {"Exhaustive", args.exhaustive ? "yes" : "no"}};
+}
+
+std::unique_ptr<OutputFolder> thesis_folder(const std::string& out)
+{
+    if (out.empty() || out == "-") throw ArgumentError("--format thesis needs -o FOLDER");
+    return std::make_unique<OutputFolder>(out, holds_only(thesis_files, "thesis result"));
+}
+
+void write_thesis(OutputFolder& folder, const Settings& settings, const VerdictCounts& counts, const Summary& summary,
+                  const std::function<ThesisCounts(const std::filesystem::path&)>& write_locations, const std::function<void()>& then)
+{
+    clear_progress_bar();
+    const ThesisCounts written = write_locations(folder.path());
+    write_file_atomically(folder.path() / "Stats.txt", thesis_stats(settings, counts, written));
+    write_file_atomically(folder.path() / "RunTime.txt", "Load (s): " + number(summary.seconds_of("load")) + "\nQuery (s): " +
+                                                             number(summary.seconds_of("query")) + "\nTotal (s): " + number(summary.elapsed()) + "\n");
+    then();
+    if (was_interrupted()) throw Interrupted{};
+    folder.commit();
+}
+
+}  // namespace spawnfield::cli
