@@ -357,6 +357,35 @@ TEST_CASE("an option that has no effect is told of, and changes nothing")
         CHECK(run.out == arena(command + husky).out);
     }
     CHECK_THAT(arena("raster map --dims 3 --step 2 --no-height-check --layers 0" + husky).err, Contains("notice: --layers has no effect: "));
+    CHECK_THAT(arena("raster map --dims 3 --step 2 --no-height-check --max-slope 9" + husky).err, Contains("notice: --max-slope has no effect: "));
+}
+
+TEST_CASE("--max-slope asks every command how valid poses stand, and without it nobody is asked")
+{
+    const TempFolder folder;
+    folder.write("scene.yaml", "format: spawnfield-scene/1\nname: steps\nparts:\n  - {name: floor, label: terrain, box: [10, 10, 1], xyz: [0, 0, -0.5]}\n"
+                               "  - {name: beam, label: terrain, box: [6, 0.3, 0.2], xyz: [0, 0, 3]}\n"
+                               "  - {name: ramp, label: terrain, box: [3, 8, 0.1], xyz: [3, 0, 0.5], rpy_deg: [0, -20, 0]}\n");
+    folder.write("poses.csv", "x,y,z\n-3,3,0.1\n3,3,1.1\n-1,0,3.2\n");
+    CHECK(run_program(folder, "bake scene.yaml -o map").status == 0);
+    const ProgramRun asked = run_program(folder, "check map --poses poses.csv --max-slope 15 --summary s.json" + husky);
+    CHECK_THAT(row(asked.out, 1), Contains(",valid,"));
+    CHECK_THAT(row(asked.out, 2), Contains(",steep,"));
+    CHECK_THAT(row(asked.out, 3), Contains(",unstable,"));
+    CHECK_THAT(asked.err, Contains(" 3 poses: 1 valid, 1 unstable, 1 steep; "));
+    CHECK(summary(folder / "s.json", "check")["counts"]["steep"] == 1);
+    CHECK_THAT(run_program(folder, "check map --poses poses.csv" + husky).err, Contains(" 3 poses: 3 valid; "));
+    CHECK_THAT(run_program(folder, "check map --poses poses.csv --max-slope 21" + husky).err, Contains(" 3 poses: 2 valid, 1 unstable; "));
+
+    for (const std::string command : {"raster map --dims 2 --step 0.2 --offset 0.6", "raster map --dims 3 --step 0.4 --step-z 0.1", "heatmap map --step 0.2 --offset 0.6 -o map.png",
+                                      "sample map -n 200 --offset 0.6", "search map -n 50 --max-failures 3000"}) {
+        INFO(command);
+        CHECK_THAT(run_program(folder, command + " --max-slope 15" + husky).err, Contains(" steep") && Contains(" unstable"));
+        CHECK_THAT(run_program(folder, command + husky).err, !Contains(" steep") && !Contains(" unstable"));
+    }
+    const auto json = nlohmann::json::parse(run_program(folder, "sample map -n 1 --format json --max-slope 15" + husky).out);
+    CHECK(json["settings"]["max_slope"].get<double>() == Approx(15 * M_PI / 180));
+    CHECK(json["counts"].contains("unstable"));
 }
 
 TEST_CASE("what lies off the map, and a layer that it has not, is told of")

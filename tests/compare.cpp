@@ -44,7 +44,7 @@ std::string described(const RasterOptions& options)
 {
     std::ostringstream out = exact_numbers();
     out << "raster --dims " << options.dims << (options.height_check ? "" : " --no-height-check") << (options.snap ? " --snap" : "") << " --step " << options.step
-        << " --step-z " << options.step_z << " --offset " << options.offset << " --max-height " << options.max_height << " yaw "
+        << " --step-z " << options.step_z << " --offset " << options.offset << " --max-height " << options.max_height << " max-slope " << options.max_slope << " yaw "
         << options.yaw << " layers " << int(options.layers.kind) << " bounds " << described(options.bounds);
     return out.str();
 }
@@ -144,7 +144,7 @@ Tally of_check(const TestMap& map, const CollisionChecker& checker, const std::v
         tally.proven_valid += fast[i].verdict == Verdict::Valid && !fast[i].exact_check;
         tally.proven_collision += fast[i].verdict == Verdict::Collision && !fast[i].exact_check;
         if (same(fast[i], slow[i])) continue;
-        const std::string query = "check --max-height " + std::to_string(options.max_height) + " " + described(poses[i]);
+        const std::string query = "check --max-height " + std::to_string(options.max_height) + " max-slope " + std::to_string(options.max_slope) + " " + described(poses[i]);
         note(tally, two(query, described(fast[i]), described(slow[i])));
     }
     return tally;
@@ -154,8 +154,8 @@ Tally of_sample(const TestMap& map, const CollisionChecker& checker, const Sampl
 {
     Tally tally;
     std::ostringstream query = exact_numbers();
-    query << "sample -n " << options.count << " --min-distance " << options.min_distance << " --offset " << options.offset << " --seed "
-          << options.seed << " yaw " << (options.random_yaw ? "random" : std::to_string(options.yaw)) << " bounds " << described(options.bounds);
+    query << "sample -n " << options.count << " --min-distance " << options.min_distance << " --offset " << options.offset << " max-slope "
+          << options.max_slope << " --seed " << options.seed << " yaw " << (options.random_yaw ? "random" : std::to_string(options.yaw)) << " bounds " << described(options.bounds);
     compare_spawns(query.str(), sample(map, checker, options), sample(map, checker, exhaustive(options)), tally);
     return tally;
 }
@@ -166,7 +166,7 @@ Tally of_search(const TestMap& map, const CollisionChecker& checker, const Searc
     Tally tally;
     std::ostringstream query = exact_numbers();
     query << "search -n " << options.count << " --min-distance " << options.min_distance << " --max-failures " << options.max_failures
-          << " --max-height " << options.max_height << " --seed " << options.seed << " bounds " << described(options.bounds);
+          << " --max-height " << options.max_height << " max-slope " << options.max_slope << " --seed " << options.seed << " bounds " << described(options.bounds);
     compare_spawns(query.str(), fast, slow, tally);
     if (fast.counts != slow.counts || fast.draws != slow.draws || fast.too_close != slow.too_close) note(tally, query.str() + ": counts differ");
     return tally;

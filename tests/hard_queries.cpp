@@ -15,6 +15,7 @@ RasterOptions raster_options(const HardCase& hard, Random& random)
     RasterOptions options;
     options.offset = hard.offset;
     options.max_height = hard.max_height;
+    options.max_slope = hard.max_slope;
     options.yaw = hard.yaws[std::size_t(random.below(int(hard.yaws.size())))];
     options.threads = 1;
     constexpr std::array kinds = {LayerChoice::Kind::Top, LayerChoice::Kind::Bottom, LayerChoice::Kind::Index};
@@ -96,6 +97,7 @@ Tally checks(const TestMap& map, const CollisionChecker& checker, const HardCase
 {
     QueryOptions options;
     options.max_height = std::max(hard.max_height, hard.offset);
+    options.max_slope = hard.max_slope;
     options.max_water_depth = random.chance(0.8) ? std::numeric_limits<double>::infinity() : random.between(0, 0.5);
     options.threads = 1;
     Tally tally = of_check(map, checker, random_poses(hard.scene, random.next(), 250), options);
@@ -114,6 +116,7 @@ Options spawn_options(const HardCase& hard, Random& random)
     options.yaw = hard.yaws[0];
     options.seed = hard.seed;
     options.max_height = hard.max_height;
+    options.max_slope = hard.max_slope;
     options.threads = 1;
     return options;
 }

@@ -715,6 +715,7 @@ Robot mirrored(Robot robot)
         for (Vec3& vertex : part.hull_vertices) vertex = flip * vertex;
         for (auto& face : part.hull_faces) std::swap(face[1], face[2]);
     }
+    for (Vec3& contact : robot.contacts) contact = flip * contact;
     return robot;
 }
 

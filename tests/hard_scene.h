@@ -13,6 +13,7 @@ struct HardCase {
     spawnfield::Robot robot;
     double offset = 0.1;           ///< m, mostly 0 .. 1; often so that the robot just touches a level floor
     double max_height = 1;         ///< m
+    double max_slope = std::numeric_limits<double>::infinity();  ///< rad; to be set by who wants footings
     std::vector<double> yaws;      ///< rad; one to six
     spawnfield::Scene scene;       ///< its parts are named after what they make: "bridge", "wall", …
     spawnfield::Bounds map_bounds; ///< empty: the scene's

@@ -67,6 +67,8 @@ Verdict verdict_of(char letter)
     case 'O': return Verdict::OffTerrain;
     case 'S': return Verdict::Submerged;
     case 'C': return Verdict::Collision;
+    case 'T': return Verdict::Steep;
+    case 'U': return Verdict::Unstable;
     default: return Verdict::Valid;
     }
 }
@@ -181,6 +183,7 @@ int brightness(Colour colour) { return colour[0] + colour[1] + colour[2]; }
 
 // Okabe and Ito's palette, as they published it.
 const Colour valid = rgb(0x009e73), collision = rgb(0xd55e00), submerged = rgb(0x0072b2), off_terrain = rgb(0xcc79a7),
+             steep = rgb(0xe69f00), unstable = rgb(0x56b4e9),
              aerial = rgb(0xf0e442), outside = rgb(0x999999), no_pose = rgb(0xe6e6e6);
 
 Colour colour_of(char letter)
@@ -189,6 +192,8 @@ Colour colour_of(char letter)
     case 'X': return outside;
     case 'A': return aerial;
     case 'O': return off_terrain;
+    case 'T': return steep;
+    case 'U': return unstable;
     case 'S': return submerged;
     case 'C': return collision;
     case '.': return no_pose;
@@ -211,6 +216,7 @@ TEST_CASE("each column has its verdict's colour, up to its edges, where it stand
     const Drawing drawing = GENERATE(Drawing{"VCSOA",
                                              "X.VVC",
                                              "SSVOO"},
+                                     Drawing{"VTUCS"},
                                      Drawing{"CVVVVVVVVVVS"}, Drawing{"C", "V", "V", "S", "."}, Drawing{"O"});
     const int pixels = GENERATE(300, 1000, 1501);
     const RasterResult raster = raster_of(drawing);
@@ -250,14 +256,14 @@ TEST_CASE("the legend shows every verdict that a two-dimensional raster may have
 {
     const Picture picture = draw(raster_of({"V"}));
     for (const Colour& colour : {valid, collision, submerged, off_terrain}) CHECK(count_outside_plot(picture, colour) > 300);
-    for (const Colour& colour : {aerial, outside, no_pose})
+    for (const Colour& colour : {aerial, outside, steep, unstable, no_pose})
         CHECK(count_outside_plot(picture, colour) < 100);  // edges of texts are grey
 }
 
 TEST_CASE("the legend shows rare verdicts and columns without terrain where there are any")
 {
-    const Picture picture = draw(raster_of({"VXA."}));
-    for (const Colour& colour : {aerial, outside, no_pose}) CHECK(count_outside_plot(picture, colour) > 300);
+    const Picture picture = draw(raster_of({"VXATU."}));
+    for (const Colour& colour : {aerial, outside, steep, unstable, no_pose}) CHECK(count_outside_plot(picture, colour) > 300);
 }
 
 TEST_CASE("a column is valid if any of its poses is, else as the topmost says")

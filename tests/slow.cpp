@@ -1,6 +1,7 @@
 #include "slow.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -578,6 +579,108 @@ Decision decide(const Scene& scene, const Bounds& map_bounds, const Robot& robot
     case Answer::TooClose: decision.verdict.reset(); break;
     }
     return decision;
+}
+
+// ---- Footing ----
+
+namespace {
+
+/// What of a pose decides on its footing.
+struct Stand {
+    std::vector<Vec3> contacts;  ///< scene frame
+    Vec3 origin;                 ///< on the ground
+    double lowest;               ///< z of the robot's lowest point
+    double limit;                ///< tangent of the steepest slope
+};
+
+/// From the highest solid that begins at or below z, up through all that touches it.
+std::optional<double> surface(const Scene& scene, const Vec3& above, double z)
+{
+    const Column here = column(scene, above.x(), above.y());
+    std::optional<double> top;
+    for (const Span& span : here.spans)
+        if (span.bottom <= z && (!top || span.top > *top)) top = span.top;
+    for (bool grows = top.has_value(); grows;) {
+        grows = false;
+        for (const Span& span : here.spans)
+            if (span.bottom <= *top + 1e-6 && span.top > *top) {
+                top = span.top;
+                grows = true;
+            }
+    }
+    return top;
+}
+
+/// z = a + b x + c y through points, by least squares.
+Real3 plane_through(const std::vector<Vec3>& points)
+{
+    Eigen::Matrix<Real, 3, 3> normal = Eigen::Matrix<Real, 3, 3>::Zero();
+    Real3 right = Real3::Zero();
+    for (const Vec3& point : points) {
+        const Real3 row(1, point.x() - points[0].x(), point.y() - points[0].y());
+        normal += row * row.transpose();
+        right += row * Real(point.z());
+    }
+    Real3 plane = normal.fullPivLu().solve(right);
+    plane[0] -= plane[1] * points[0].x() + plane[2] * points[0].y();
+    return plane;
+}
+
+Verdict footing(const Scene& scene, const Stand& stand)
+{
+    std::vector<Vec3> points;
+    bool in_reach = true;
+    for (const Vec3& contact : stand.contacts) {
+        const auto height = surface(scene, contact, std::max(contact.z(), stand.lowest));
+        if (!height) return Verdict::Unstable;
+        points.emplace_back(contact.x(), contact.y(), *height);
+        const double distance = (contact - stand.origin).head<2>().norm();
+        if (std::abs(*height - stand.origin.z()) > distance * stand.limit + 0.02) in_reach = false;
+    }
+    const Real3 plane = plane_through(points);
+    points.push_back(stand.origin);
+    Real off = 0, low = infinity, high = -infinity;
+    for (const Vec3& point : points) {
+        off = std::max(off, std::abs(plane[0] + plane[1] * point.x() + plane[2] * point.y() - point.z()));
+        low = std::min<Real>(low, point.z());
+        high = std::max<Real>(high, point.z());
+    }
+    const bool steep = std::hypot(plane[1], plane[2]) > stand.limit;
+    if (in_reach) return steep ? Verdict::Steep : Verdict::Valid;
+    return steep && off <= 0.02 + 0.1 * (high - low) ? Verdict::Steep : Verdict::Unstable;
+}
+
+}  // namespace
+
+std::optional<Verdict> footing(const Scene& scene, const Robot& robot, const std::vector<Vec3>& contacts, const Pose& scene_from_robot,
+                               double ground, double max_slope, double margin)
+{
+    Stand stand = {{}, scene_from_robot.position, infinity, std::tan(max_slope)};
+    stand.origin.z() = ground;
+    for (const Vec3& contact : contacts) stand.contacts.push_back(moved(scene_from_robot, contact));
+    for (const RobotPart& part : robot.parts) {
+        const Convex body = convex_of(part, scene_from_robot, Rounding::Inscribed);
+        for (const Vec3& corner : body.corners) stand.lowest = std::min(stand.lowest, corner.z() - body.radius);
+    }
+    std::vector<Stand> variants;
+    const auto vary = [&](const Vec3& shift, double rise, double steeper) {
+        Stand other = stand;
+        for (Vec3& contact : other.contacts) contact += shift;
+        other.lowest += shift.z();
+        other.origin.z() += rise;
+        other.limit *= 1 + steeper;
+        variants.push_back(other);
+    };
+    for (int i = 0; i < 8; ++i) vary(margin * Vec3{std::cos(M_PI / 4 * i), std::sin(M_PI / 4 * i), 0}, 0, 0);
+    for (const double sign : {-1.0, 1.0}) {
+        vary({0, 0, sign * margin}, 0, 0);
+        vary(Vec3::Zero(), sign * margin, 0);
+        vary(Vec3::Zero(), 0, sign * margin);
+    }
+    const Verdict verdict = footing(scene, stand);
+    for (const Stand& variant : variants)
+        if (footing(scene, variant) != verdict) return {};
+    return verdict;
 }
 
 }  // namespace slow

@@ -412,7 +412,7 @@ TEST_CASE("a grown robot collides wherever the shrunk one does")
     }
 }
 
-TEST_CASE("random poses meet every verdict, and few are too close to call")
+TEST_CASE("random poses meet every verdict but footings, and few are too close to call")
 {
     std::array<int, verdict_count> counts{};
     int unclear = 0;
@@ -425,6 +425,23 @@ TEST_CASE("random poses meet every verdict, and few are too close to call")
             else ++unclear;
         }
     }
-    for (const int count : counts) CHECK(count > 5);
+    for (std::size_t i = 0; i < verdict_count; ++i) {
+        const bool of_footing = Verdict(i) == Verdict::Steep || Verdict(i) == Verdict::Unstable;
+        INFO(to_string(Verdict(i)));
+        CHECK((of_footing ? counts[i] == 0 : counts[i] > 5));
+    }
     CHECK(unclear < 60);
+}
+
+TEST_CASE("footings are valid on a plane, steep on a slope, unstable over an edge, and nothing at a limit")
+{
+    const std::vector<Vec3> contacts = {{0.5, 0.5, 0}, {-0.5, 0.5, 0}, {-0.5, -0.5, 0}, {0.5, -0.5, 0}};
+    const auto footing = [&](const Scene& scene, const Pose& pose, double max_slope) { return slow::footing(scene, cube(), contacts, pose, 0, max_slope); };
+    CHECK(footing(plane(), at(0, 0, 0.1), 0.2) == Verdict::Valid);
+    CHECK(footing(plane(), at(9.6, 0, 0.1), 0.2) == Verdict::Unstable);
+    CHECK(footing(plane(), at(9.5, 0, 0.1), 0.2) == std::nullopt);
+    const Scene slope = scene_of(hand::moved(hand::rectangle(20, 20), at(0, 0, 0, 0, 0.3, 0)), Label::Terrain, {.kind = "plane"});
+    CHECK(footing(slope, at(0, 0, 0.7, 0, 0, 1), 0.31) == Verdict::Valid);
+    CHECK(footing(slope, at(0, 0, 0.7, 0, 0, 1), 0.3) == std::nullopt);
+    CHECK(footing(slope, at(0, 0, 0.7, 0, 0, 1), 0.1) == Verdict::Steep);
 }

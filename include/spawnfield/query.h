@@ -16,6 +16,20 @@ struct ExactTime {
 struct QueryOptions {
     double max_height = 1.0;  ///< m of the origin above its ground, inclusive, >= 0
     double max_water_depth = std::numeric_limits<double>::infinity();  ///< m of water above the ground that count, >= 0
+    /// rad from level, inclusive, 0 .. pi/2 without the ends: a pose that would be valid is asked how it would stand on the
+    /// ground, and may be `steep` or `unstable`. Infinite: it is not asked.
+    ///
+    /// Contacts are the robot's own if it has three or more that are not on one line; else the corners of the convex hull,
+    /// seen from above, of all that lies within 2 cm of its lowest point. They are moved to the pose, its roll and pitch too;
+    /// on one line then (a robot on its side), it is unstable. Below each contact lies a surface: the top of the highest solid,
+    /// terrain or obstacle, that begins no higher than the contact or the robot's lowest point; what touches is one solid.
+    /// A surface is in reach if it is at most r tan(max_slope) + 2 cm above or below the pose's ground, r being the
+    /// contact's horizontal distance from the origin.
+    /// All in reach: steep if the plane through the surfaces under the contacts (least squares) is inclined by more than
+    /// max_slope, else valid. Otherwise it hangs over an edge or against a wall: unstable; but steep where that plane is too
+    /// inclined and an even slope, off which no surface, nor the ground, lies by more than 2 cm + 10 % of their range.
+    /// So no pose that is valid becomes another with a larger max_slope. What is between the contacts is not looked at.
+    double max_slope = std::numeric_limits<double>::infinity();
     bool exhaustive = false;  ///< ask the CollisionChecker at every pose, never the FreeSpace: the same answers, slowly
     int threads = 0;          ///< 0: all cores; results are the same at any number
     ExactTime* exact_time = nullptr;  ///< adds to it, if anybody wants to know
@@ -34,7 +48,7 @@ struct Judgement {
 Judgement judge(const Map& map, const CollisionChecker& checker, const Column& column, const Pose& pose,
                 const QueryOptions& options = {});
 
-/// Judges every pose by itself.
+/// Judges every pose by itself. Throws ArgumentError for a max_slope out of its range.
 std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& checker, const std::vector<Pose>& poses,
                                    const QueryOptions& options = {});
 
@@ -63,7 +77,7 @@ struct RasterOptions : QueryOptions {
     double offset = 0.1;         ///< m of the origin above its layer (2D, snap); with snap 0 .. max_height
     double yaw = 0;              ///< rad
     LayerChoice layers = {};     ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
-    bool height_check = true;    ///< false (3D only): collisions alone, at every pose
+    bool height_check = true;    ///< false (3D only): collisions alone, at every pose; max_slope is not asked for
     /// 3D with height check: each chosen layer within the bounds' z has its pose of the 2D raster, in place of the lowest
     /// step at or above it (RasterGrid::step_above) if there is one. So no terrain between two steps is lost.
     bool snap = false;

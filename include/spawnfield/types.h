@@ -54,9 +54,10 @@ inline Pose operator*(const Pose& outer, const Pose& inner)
 /// What a part of a scene is for a robot.
 enum class Label : std::uint8_t { Terrain, Obstacle, Water, Ignore };
 
-/// Verdict on a pose; the first that applies (DESIGN.md, Definitions). The first six need no settling or planning.
-enum class Verdict : std::uint8_t { Outside, Aerial, OffTerrain, Submerged, Collision, Valid };
-inline constexpr std::size_t verdict_count = 6;
+/// Verdict on a pose; the first that applies (DESIGN.md, Definitions). Steep and Unstable are given only where
+/// QueryOptions::max_slope asks for them.
+enum class Verdict : std::uint8_t { Outside, Aerial, OffTerrain, Submerged, Collision, Steep, Unstable, Valid };
+inline constexpr std::size_t verdict_count = 8;
 
 /// Poses per verdict, indexed by Verdict.
 using VerdictCounts = std::array<std::uint64_t, verdict_count>;

@@ -50,8 +50,8 @@ const char* to_string(Label label)
 
 const char* to_string(Verdict verdict)
 {
-    constexpr std::array<const char*, verdict_count> names{"outside",   "aerial",    "off_terrain",
-                                                           "submerged", "collision", "valid"};
+    constexpr std::array<const char*, verdict_count> names{"outside",   "aerial", "off_terrain", "submerged",
+                                                           "collision", "steep",  "unstable",    "valid"};
     return names[static_cast<std::size_t>(verdict)];
 }
 

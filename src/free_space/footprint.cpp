@@ -73,19 +73,6 @@ PartCorners corners_of(const RobotPart& part, const Mat3& rotation)
     return out;
 }
 
-Interval height_of(const RobotPart& part, const Mat3& rotation)
-{
-    Bounds box;
-    if (part.shape.kind == ShapeKind::Hull) {
-        for (const Vec3& vertex : part.hull_vertices) box.extend(rotation * vertex);
-    } else {
-        Shape turned = part.shape;
-        turned.pose = Pose{Vec3::Zero(), rotation} * part.shape.pose;
-        box = bounds_of(turned);
-    }
-    return {box.min.z(), box.max.z()};
-}
-
 /// All points nearer than `reach` to the polygon lie in the result.
 Polygon2 widened(const Polygon2& polygon, double reach)
 {
@@ -181,6 +168,19 @@ Polygon2 convex_hull(Polygon2 points)
     for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
     hull.pop_back();
     return hull;
+}
+
+Interval height_of(const RobotPart& part, const Mat3& rotation)
+{
+    Bounds box;
+    if (part.shape.kind == ShapeKind::Hull) {
+        for (const Vec3& vertex : part.hull_vertices) box.extend(rotation * vertex);
+    } else {
+        Shape turned = part.shape;
+        turned.pose = Pose{Vec3::Zero(), rotation} * part.shape.pose;
+        box = bounds_of(turned);
+    }
+    return {box.min.z(), box.max.z()};
 }
 
 std::vector<Footprint> footprints(const Robot& robot, const Mat3& rotation, bool with_inner)

@@ -23,6 +23,9 @@ struct Footprint {
 /// Convex hull (Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979).
 Polygon2 convex_hull(Polygon2 points);
 
+/// Lowest and highest point of the part with the robot turned by `rotation` about its origin.
+Interval height_of(const RobotPart& part, const Mat3& rotation);
+
 /// Footprints of all parts with the robot turned by `rotation`; inner prisms only if asked for.
 std::vector<Footprint> footprints(const Robot& robot, const Mat3& rotation, bool with_inner);
 

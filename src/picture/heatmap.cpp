@@ -19,7 +19,8 @@ constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 Colour colour_of(Verdict verdict)
 {
     static const std::array<Colour, verdict_count> okabe_ito{
-        rgb(0x999999), rgb(0xf0e442), rgb(0xcc79a7), rgb(0x0072b2), rgb(0xd55e00), rgb(0x009e73)};
+        rgb(0x999999), rgb(0xf0e442), rgb(0xcc79a7), rgb(0x0072b2),
+        rgb(0xd55e00), rgb(0xe69f00), rgb(0x56b4e9), rgb(0x009e73)};
     return okabe_ito[static_cast<std::size_t>(verdict)];
 }
 
@@ -220,10 +221,10 @@ Legend verdict_legend(const RasterResult& raster)
     const std::uint64_t all = total(raster.counts);
     Legend legend;
     legend.heading = counted(all, "pose");
-    for (const Verdict verdict : {Verdict::Valid, Verdict::Collision, Verdict::Submerged, Verdict::OffTerrain,
-                                  Verdict::Aerial, Verdict::Outside}) {
+    for (const Verdict verdict : {Verdict::Valid, Verdict::Steep, Verdict::Unstable, Verdict::Collision, Verdict::Submerged,
+                                  Verdict::OffTerrain, Verdict::Aerial, Verdict::Outside}) {
         const std::uint64_t count = raster.counts[static_cast<std::size_t>(verdict)];
-        const bool rare = verdict == Verdict::Outside || (verdict == Verdict::Aerial && raster.dims == 2);
+        const bool rare = verdict == Verdict::Outside || verdict == Verdict::Steep || verdict == Verdict::Unstable || (verdict == Verdict::Aerial && raster.dims == 2);
         if (count > 0 || !rare) legend.entries.push_back({colour_of(verdict), name_of(verdict), count_and_share(count, all)});
     }
     return legend;

@@ -36,6 +36,8 @@ void check_exactly(const CollisionChecker& checker, const Pose& pose, bool with_
     out.verdict = is_free ? Verdict::Valid : Verdict::Collision;
 }
 
+bool has_limit(const QueryOptions& options) { return options.max_slope != std::numeric_limits<double>::infinity(); }
+
 /// Numbers of poses, neighbours after each other, so that they find each other's tiles in the cache. Counting sort over a
 /// grid around them.
 std::vector<std::uint32_t> in_neighbourhoods(const std::vector<Pose>& poses)
@@ -62,8 +64,13 @@ std::vector<std::uint32_t> in_neighbourhoods(const std::vector<Pose>& poses)
 Judgement judge(const Map& map, const CollisionChecker& checker, const Column& column, const Pose& pose,
                 const QueryOptions& options)
 {
+    check_max_slope("judge", options);
     Judgement out;
     if (judge_ground(map, column, pose.position, options, out)) check_exactly(checker, pose, true, out);
+    if (out.verdict != Verdict::Valid || !has_limit(options)) return out;
+    Footing footing(map.geometry, checker.robot(), options.max_slope);
+    footing.face(pose.rotation);
+    out.verdict = footing.at(pose.position, out.ground->height);
     return out;
 }
 
@@ -72,9 +79,10 @@ Judging::Judging(const Map& map, const CollisionChecker& checker, const QueryOpt
 {
     if (!options.exhaustive && !checker.uses_occupancy() && !map.solid_bounds.impl().levels.empty())
         space_.emplace(map.solid_bounds, checker.robot());
+    if (has_limit(options)) footing_.emplace(map.geometry, checker.robot(), options.max_slope);
 }
 
-PoseJudge::PoseJudge(const Judging& judging) : judging_(judging)
+PoseJudge::PoseJudge(const Judging& judging) : judging_(judging), footing_(judging.footing_)
 {
     if (judging.space_) mask_.emplace(judging.space_->impl());
 }
@@ -83,11 +91,13 @@ void PoseJudge::face(double yaw)
 {
     rotation_ = rotation_from_rpy(0, 0, yaw);
     if (mask_) mask_->face(yaw);
+    if (footing_) footing_->face(rotation_);
 }
 
 void PoseJudge::face(const Mat3& rotation)
 {
     rotation_ = rotation;
+    if (footing_) footing_->face(rotation_);
     if (!mask_) return;
     if (rotation(2, 2) == 1) mask_->face(std::atan2(rotation(1, 0), rotation(0, 0)));
     else mask_->face(rotation);
@@ -103,6 +113,7 @@ Judgement PoseJudge::at(const ColumnView& column, double x, double z, bool with_
 {
     Judgement out;
     if (judge_ground(judging_.map_, column, {x, y_, z}, judging_.options_, out)) decide(column, x, z, with_hit, out);
+    if (footing_ && out.verdict == Verdict::Valid) out.verdict = footing_->at({x, y_, z}, out.ground->height);
     return out;
 }
 
@@ -140,6 +151,7 @@ PoseJudge::~PoseJudge()
 std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& checker, const std::vector<Pose>& poses,
                                    const QueryOptions& options)
 {
+    check_max_slope("check_poses", options);
     const Judging judging(map, checker, options);
     std::vector<Judgement> out(poses.size());
     const std::vector<std::uint32_t> order = in_neighbourhoods(poses);

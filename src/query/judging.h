@@ -2,6 +2,7 @@
 
 #include "column/columns.h"
 #include "free_space/mask.h"
+#include "query/footing.h"
 
 #include <spawnfield/query.h>
 
@@ -9,7 +10,8 @@
 
 namespace spawnfield {
 
-/// Judges poses for one query: the mask first, the CollisionChecker where it cannot tell. Shared by all threads.
+/// Judges poses for one query: the mask first, the CollisionChecker where it cannot tell, then the footing of those that are
+/// free. Shared by all threads.
 class Judging {
 public:
     Judging(const Map& map, const CollisionChecker& checker, const QueryOptions& options);
@@ -24,6 +26,7 @@ private:
     const CollisionChecker& checker_;
     const QueryOptions options_;
     std::optional<FreeSpace> space_;  ///< none: every pose is checked exactly
+    std::optional<Footing> footing_;  ///< none: it is not asked for; each thread takes its own copy
 };
 
 /// One thread's judge of poses that share a rotation.
@@ -41,7 +44,7 @@ public:
     /// The verdict at (x, y of set_y, z) with its ground, as judge gives it. With `with_hit` also what a pose collides with,
     /// which takes an exact check.
     Judgement at(const ColumnView& column, double x, double z, bool with_hit = false);
-    /// Valid or Collision: of collisions alone.
+    /// Valid or Collision: of collisions alone, whatever the footing.
     Judgement collision(double x, double z, bool with_hit = false);
 
 private:
@@ -50,6 +53,7 @@ private:
 
     const Judging& judging_;
     std::optional<Mask> mask_;
+    std::optional<Footing> footing_;
     Mat3 rotation_ = Mat3::Identity();
     double y_ = 0;
     std::chrono::nanoseconds exact_time_{0};

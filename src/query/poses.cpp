@@ -284,6 +284,7 @@ std::string spawns_json(const SpawnList& list, const Map& map, const Robot& robo
     out["robot"] = robot.name;
     out["settings"] = {{"count", options.count}, {"min_distance", options.min_distance}, {"seed", options.seed},
                        {"yaw", options.random_yaw ? nlohmann::ordered_json("random") : nlohmann::ordered_json(options.yaw)}};
+    if (std::isfinite(options.max_slope)) out["settings"]["max_slope"] = options.max_slope;
     out["frame"] = "metres, radians, x forward, y left, z up (REP-103)";
     out["quaternion_order"] = "xyzw";
     if (command == "sample") {

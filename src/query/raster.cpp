@@ -42,6 +42,7 @@ void check(const RasterOptions& options)
     if (!(options.step_z >= 0) || !std::isfinite(options.step_z)) throw ArgumentError("raster", "step_z", options.step_z, "> 0 m");
     if (!(options.max_height >= 0)) throw ArgumentError("raster", "max_height", options.max_height, ">= 0 m");
     if (!(options.max_water_depth >= 0)) throw ArgumentError("raster", "max_water_depth", options.max_water_depth, ">= 0 m");
+    check_max_slope("raster", options);
     if (!std::isfinite(options.offset)) throw ArgumentError("raster", "offset", options.offset, "a finite number, m");
     if (!std::isfinite(options.yaw)) throw ArgumentError("raster", "yaw", options.yaw, "a finite number, rad");
     if (!options.height_check && options.dims != 3)

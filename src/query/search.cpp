@@ -17,6 +17,7 @@ void check_spawn_options(const char* function, const SpawnOptions& options)
         throw ArgumentError(function, "min_distance", options.min_distance, ">= 0 m");
     if (!(options.max_height >= 0)) throw ArgumentError(function, "max_height", options.max_height, ">= 0 m");
     if (!(options.max_water_depth >= 0)) throw ArgumentError(function, "max_water_depth", options.max_water_depth, ">= 0 m");
+    check_max_slope(function, options);
     if (!std::isfinite(options.yaw)) throw ArgumentError(function, "yaw", options.yaw, "a finite number, rad");
 }
 

@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <numbers>
 
 namespace spawnfield::cli {
 namespace {
@@ -70,6 +71,7 @@ void add_query(CLI::App& command, QueryArgs& args)
     command.add_option("--package-path", args.package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
     command.add_option("--max-height", args.max_height, "Most metres of the robot's origin above its ground (default 1)");
     command.add_option("--max-water-depth", args.max_water_depth, "Water higher than this above the ground does not count, m (default: all does)");
+    command.add_option("--max-slope", args.max_slope, "Ask poses that would be valid how they stand too: steep above so many degrees, unstable over an edge (default: not asked)");
     command.add_option("--collision", args.collision, "What the robot must not touch: geometry (exact), or octree (the baked voxels)")
         ->check(CLI::IsMember({"geometry", "octree"}));
     command.add_flag("--exhaustive", args.exhaustive, "Check every pose exactly, without the free-space mask: the same answers, slowly");
@@ -223,6 +225,8 @@ void fill(QueryOptions& options, const QueryArgs& args, const std::string& label
     options.exhaustive = args.exhaustive;
     options.threads = args.threads;
     options.progress = progress_bar(args, label);
+    if (args.max_slope && !(*args.max_slope > 0 && *args.max_slope < 90)) throw bad_value("--max-slope", *args.max_slope, "> 0 and < 90 degrees");
+    if (args.max_slope) options.max_slope = *args.max_slope * std::numbers::pi / 180;
     if (!(options.max_height >= 0)) throw bad_value("--max-height", options.max_height, ">= 0 m");
     if (!(options.max_water_depth >= 0)) throw bad_value("--max-water-depth", options.max_water_depth, ">= 0 m");
 }

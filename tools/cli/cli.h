@@ -34,6 +34,7 @@ struct QueryArgs : CommonArgs {
     double max_height = 1.0;
     bool exhaustive = false;
     double max_water_depth = std::numeric_limits<double>::infinity();
+    std::optional<double> max_slope;  ///< degrees
 };
 void add_query(CLI::App& command, QueryArgs& args);
 

@@ -8,7 +8,7 @@ void tell_idle_options(const RasterArgs& args, const CLI::App& command)
     if (args.dims == 3 && !args.snap) tell_idle(args, command, {"--offset"}, "it is for --dims 2 and --snap; in 3D poses stand at heights of their own");
     if (args.dims == 2) tell_idle(args, command, {"--max-height"}, "it is for --dims 3; in 2D poses stand on their layers");
     if (args.no_height_check)
-        tell_idle(args, command, {"--max-height", "--max-water-depth", "--layers"}, "--no-height-check looks for collisions alone");
+        tell_idle(args, command, {"--max-height", "--max-water-depth", "--max-slope", "--layers"}, "--no-height-check looks for collisions alone");
 }
 
 /// Poses on their layers, so that they stand there as in 2D.

@@ -1,0 +1,128 @@
+#include "query/footing.h"
+
+#include "free_space/footprint.h"
+#include "query/contacts.h"
+
+#include <spawnfield/error.h>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace spawnfield {
+namespace {
+
+constexpr double step = 0.02;      // m by which the ground may rise or fall under any contact
+constexpr double evenness = 0.1;   // of the range of heights: what lies further off its plane is no slope
+constexpr double rounding = 1e-9;  // of gradients
+
+/// What is solid on the column's line, all that touches taken as one, from the bottom up.
+void join_solids(const Column& column, std::vector<Interval>& out)
+{
+    out.clear();
+    for (const Span& span : column.spans) out.push_back({span.bottom, span.top});
+    std::sort(out.begin(), out.end(), [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
+    std::size_t kept = 0;
+    for (const Interval& next : out) {
+        if (kept > 0 && next.bottom <= out[kept - 1].top + layer_tolerance) out[kept - 1].top = std::max(out[kept - 1].top, next.top);
+        else out[kept++] = next;
+    }
+    out.resize(kept);
+}
+
+/// Top of the highest solid that begins at or below z.
+std::optional<double> surface_below(const std::vector<Interval>& solids, double z)
+{
+    for (auto solid = solids.rbegin(); solid != solids.rend(); ++solid)
+        if (solid->bottom <= z + touch_tolerance) return solid->top;
+    return std::nullopt;
+}
+
+}  // namespace
+
+void check_max_slope(const char* function, const QueryOptions& options)
+{
+    const double slope = options.max_slope;
+    if (slope != std::numeric_limits<double>::infinity() && !(slope > 0 && slope < std::numbers::pi / 2))
+        throw ArgumentError(function, "max_slope", slope, "> 0 and < pi/2 rad, or infinite");
+}
+
+Footing::Footing(const Geometry& geometry, const Robot& robot, double max_slope)
+    : geometry_(&geometry), robot_(&robot), points_(contacts_of(robot)), lowest_(robot.bounds().min.z()), steepest_(std::tan(max_slope))
+{
+}
+
+void Footing::face(const Mat3& rotation)
+{
+    double lowest = lowest_;
+    if (rotation(2, 2) != 1) {
+        lowest = std::numeric_limits<double>::infinity();
+        for (const RobotPart& part : robot_->parts) lowest = std::min(lowest, height_of(part, rotation).bottom);
+    }
+    std::vector<Vec3> turned;
+    for (const Vec3& point : points_) turned.push_back(rotation * point);
+    contacts_.clear();
+    looked_at_.reset();
+    if (!span_area(turned)) return;
+
+    const Vec3 sum = std::accumulate(turned.begin(), turned.end(), Vec3(Vec3::Zero()));
+    middle_ = sum.head<2>() / double(turned.size());
+    Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+    for (const Vec3& point : turned) scatter += (point.head<2>() - middle_) * (point.head<2>() - middle_).transpose();
+    const Eigen::Matrix2d inverse = scatter.inverse();
+    for (const Vec3& point : turned) {
+        const Vec2 shift = point.head<2>();
+        contacts_.push_back({shift, std::max(point.z(), lowest), shift.norm() * steepest_ + step, inverse * (shift - middle_), {}});
+    }
+}
+
+void Footing::look_at(double x, double y)
+{
+    if (looked_at_ == Vec2(x, y)) return;
+    looked_at_ = Vec2(x, y);
+    for (Contact& contact : contacts_) join_solids(column_at(*geometry_, x + contact.shift.x(), y + contact.shift.y()), contact.solids);
+}
+
+Verdict Footing::at(const Vec3& position, double ground)
+{
+    if (contacts_.empty()) return Verdict::Unstable;
+    look_at(position.x(), position.y());
+    rises_.clear();
+    bool all_in_reach = true;
+    for (const Contact& contact : contacts_) {
+        const std::optional<double> surface = surface_below(contact.solids, position.z() + contact.level);
+        if (!surface) return Verdict::Unstable;
+        rises_.push_back(*surface - ground);
+        all_in_reach = all_in_reach && std::abs(rises_.back()) <= contact.reach + touch_tolerance;
+    }
+    const Vec2 slope = gradient();
+    const bool is_steep = slope.norm() > steepest_ + rounding;
+    if (all_in_reach) return is_steep ? Verdict::Steep : Verdict::Valid;
+    return is_steep && is_even(slope) ? Verdict::Steep : Verdict::Unstable;
+}
+
+/// Of the plane that fits the surfaces best (least squares of heights).
+Vec2 Footing::gradient() const
+{
+    Vec2 out = Vec2::Zero();
+    for (std::size_t i = 0; i < contacts_.size(); ++i) out += rises_[i] * contacts_[i].weight;
+    return out;
+}
+
+/// Whether contacts and the pose's ground lie on that plane, as those of a slope do and those at an edge do not.
+bool Footing::is_even(const Vec2& gradient) const
+{
+    const double mean = std::accumulate(rises_.begin(), rises_.end(), 0.0) / double(rises_.size());
+    double farthest = std::abs(mean - gradient.dot(middle_)), lowest = 0, highest = 0;  // at the origin
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        farthest = std::max(farthest, std::abs(mean + gradient.dot(contacts_[i].shift - middle_) - rises_[i]));
+        lowest = std::min(lowest, rises_[i]);
+        highest = std::max(highest, rises_[i]);
+    }
+    return farthest <= step + evenness * (highest - lowest);
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,477 @@
+#include "catch.h"
+#include "compare.h"
+#include "hand_scene.h"
+#include "query/contacts.h"
+#include "slow.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/poses.h>
+
+#include <cmath>
+#include <iostream>
+
+using namespace spawnfield;
+using enum Verdict;
+
+// How a robot would stand, where max_slope asks for it.
+
+namespace {
+
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+constexpr std::uint64_t scene_count = 60;
+#else
+constexpr std::uint64_t scene_count = 10;  // unoptimised or watched, the same would take many minutes
+#endif
+constexpr bool all_scenes = scene_count >= 60;
+
+constexpr double off = std::numeric_limits<double>::infinity();
+
+double rad(double degrees) { return degrees * M_PI / 180; }
+
+Pose pose_at(double x, double y, double z, double yaw = 0, double roll = 0, double pitch = 0)
+{
+    return {{x, y, z}, rotation_of_rpy(roll, pitch, yaw)};
+}
+
+void add_box(Scene& scene, const Vec3& low, const Vec3& high, Label label = Label::Terrain)
+{
+    hand::add_shape(scene, label, {ShapeKind::Box, high - low, {(low + high) / 2, Mat3::Identity()}});
+}
+
+Scene floor_scene()
+{
+    Scene scene;
+    add_box(scene, {-10, -10, -1}, {10, 10, 0});
+    return scene;
+}
+
+/// Open ground that rises towards +x.
+Scene slope_scene(double degrees)
+{
+    Scene scene;
+    const Pose raised = {Vec3::Zero(), rotation_of_rpy(0, -rad(degrees), 0)};
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(30, 20), raised), {.kind = "plane"});
+    return scene;
+}
+
+/// The mask's and the exhaustive verdict of one pose, which are the same; max_slope in degrees.
+Verdict verdict_of(const Scene& scene, const Robot& robot, const Pose& pose, double max_slope)
+{
+    const TestMap map = map_of(scene);
+    const CollisionChecker checker = checker_of(map, robot);
+    QueryOptions options;
+    options.max_slope = max_slope == off ? off : rad(max_slope);
+    options.threads = 1;
+    const Verdict verdict = check_poses(map, checker, {pose}, options)[0].verdict;
+    CHECK(judge(map, checker, column_at(map.geometry, pose.position.x(), pose.position.y()), pose, options).verdict == verdict);
+    set_exhaustive(options);
+    CHECK(check_poses(map, checker, {pose}, options)[0].verdict == verdict);
+    return verdict;
+}
+
+/// A box on wheels whose contacts are as far from its origin.
+Robot robot_on(double x, double y)
+{
+    Robot robot = load_robot("box:0.99,0.67,0.39");
+    robot.contacts = {{x, y, 0}, {x, -y, 0}, {-x, y, 0}, {-x, -y, 0}};
+    return robot;
+}
+
+Robot robot_of(const Shape& shape)
+{
+    Robot robot;
+    robot.parts.resize(1);
+    robot.parts[0].shape = shape;
+    return robot;
+}
+
+/// Farthest point of a polygon in a direction.
+double extent(const Polygon2& polygon, const Vec2& direction)
+{
+    double out = -off;
+    for (const Vec2& corner : polygon) out = std::max(out, corner.dot(direction));
+    return out;
+}
+
+/// The hard case of a seed with some limit, and every other robot on contacts of its own.
+HardCase case_with_limit(std::uint64_t seed, const HardOptions& hard_options = {})
+{
+    HardCase hard = hard_case(seed, hard_options);
+    Random random{seed + 5};
+    hard.max_slope = rad(random.between(3, 40));
+    const int contacts = random.chance(0.5) ? 3 + random.below(3) : 0;
+    for (int i = 0; i < contacts; ++i)
+        hard.robot.contacts.emplace_back(random.between(-0.4, 0.4), random.between(-0.4, 0.4), random.between(-0.1, 0.1));
+    return hard;
+}
+
+RasterOptions raster_options(const TestMap& map, const HardCase& hard, int columns)
+{
+    RasterOptions options;
+    options.offset = hard.offset;
+    options.yaw = hard.yaws[0];
+    options.max_slope = hard.max_slope;
+    options.threads = 1;
+    options.step = (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / (columns - 0.37);
+    return options;
+}
+
+bool is_footing(Verdict verdict) { return verdict == Steep || verdict == Unstable; }
+
+}  // namespace
+
+TEST_CASE("a robot stands on the corners of what is low of it, unless its file tells its contacts")
+{
+    const std::vector<Vec3> box = contacts_of(load_robot("box:1,0.6,0.4"));
+    REQUIRE(box.size() == 4);
+    for (const Vec3& contact : box) CHECK(contact.cwiseAbs().isApprox(Vec3(0.5, 0.3, 0.02), 1e-12));
+
+    const Polygon2 ball = lowest_footprint(robot_of({ShapeKind::Sphere, {0.5, 0, 0}, pose_at(1, 0, 0.7)}));
+    CHECK(extent(ball, {1, 0}) == Approx(1 + std::sqrt(0.25 - 0.48 * 0.48)));
+    CHECK(extent(ball, {0, -1}) == Approx(std::sqrt(0.25 - 0.48 * 0.48)));
+    const Polygon2 disc = lowest_footprint(robot_of({ShapeKind::Cylinder, {0.2, 0.1, 0}, pose_at(0, 0, 0.05)}));
+    CHECK(extent(disc, {0.6, 0.8}) == Approx(0.2).epsilon(0.01));
+    CHECK(extent(disc, Vec2(1, 1).normalized()) < 0.21);  // round robots have no corners to hang over with
+    const Polygon2 wheel = lowest_footprint(robot_of({ShapeKind::Cylinder, {0.165, 0.1, 0}, pose_at(0, 0.3, 0.165, 0, M_PI / 2)}));
+    CHECK(extent(wheel, {1, 0}) == Approx(std::sqrt(0.165 * 0.165 - 0.145 * 0.145)).epsilon(0.03));
+    CHECK(extent(wheel, {0, 1}) == Approx(0.35));
+    const Polygon2 pill = lowest_footprint(robot_of({ShapeKind::Capsule, {0.1, 1, 0}, pose_at(0, 0, 0.1, 0, 0, M_PI / 2)}));
+    CHECK(extent(pill, {1, 0}) == Approx(0.5 + std::sqrt(0.01 - 0.0064)));
+    CHECK(extent(pill, {0, 1}) == Approx(std::sqrt(0.01 - 0.0064)));
+
+    Robot raised = load_robot("box:1,0.6,0.4@0,0,0.3");
+    raised.parts.push_back(load_robot("box:0.2,0.2,0.2").parts[0]);
+    CHECK(extent(lowest_footprint(raised), {1, 0}) == Approx(0.1));  // the body is too high to carry it
+
+    CHECK(contacts_of(robot_on(0.2, 0.3)) == robot_on(0.2, 0.3).contacts);
+    Robot bicycle = load_robot("box:1,0.6,0.4");
+    for (const std::vector<Vec3>& line : {std::vector<Vec3>{{0.3, 0, 0}}, {{0.3, 0, 0}, {-0.3, 0, 0}}, {{0.3, 0.1, 0}, {0, 0, 0.2}, {-0.3, -0.1, 0}}}) {
+        bicycle.contacts = line;
+        CHECK(contacts_of(bicycle) == box);
+    }
+}
+
+TEST_CASE("footprints of low parts are those of dense samples")
+{
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        Robot robot = random_robot(seed);
+        std::erase_if(robot.parts, [](const RobotPart& part) { return part.shape.kind == ShapeKind::Hull; });
+        if (robot.parts.empty()) continue;
+        const Bounds bounds = robot.bounds();
+        Polygon2 low;
+        for (double x = bounds.min.x(); x <= bounds.max.x(); x += 0.004)
+            for (double y = bounds.min.y(); y <= bounds.max.y(); y += 0.004)
+                for (const RobotPart& part : robot.parts)
+                    if (const auto z = vertical_interval(part.shape, x, y); z && z->bottom <= bounds.min.z() + contact_depth) low.emplace_back(x, y);
+        const Polygon2 polygon = lowest_footprint(robot);
+        for (int k = 0; k < 16; ++k) {
+            const Vec2 direction(std::cos(M_PI / 8 * k), std::sin(M_PI / 8 * k));
+            CAPTURE(seed, k);
+            CHECK(extent(polygon, direction) == Approx(extent(low, direction)).margin(0.008));
+        }
+    }
+}
+
+TEST_CASE("on level ground a robot stands at any limit, and leaning a little too")
+{
+    for (const Robot& robot : {husky(), load_robot("box:0.99,0.67,0.39"), robot_of({ShapeKind::Sphere, {0.3, 0, 0}, pose_at(0, 0, 0.3)})})
+        for (const double limit : {0.1, 20.0, 89.9}) {
+            CHECK(verdict_of(floor_scene(), robot, pose_at(1, 2, 0.1, 0.3), limit) == Valid);
+            CHECK(verdict_of(floor_scene(), robot, pose_at(1, 2, 0.3, 0.3, 0.1, -0.2), limit) == Valid);
+        }
+    CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.1, 0.3), off) == Valid);
+    CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.7, 0.3, M_PI / 2), 20) == Unstable);  // on its side: two contacts above two
+    CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.7, 0.3, M_PI / 2), off) == Valid);
+}
+
+TEST_CASE("a slope is steep above the limit, at the limit it is not, whichever way the robot looks")
+{
+    for (const double slope : {5.0, 10.0, 20.0, 40.0})
+        for (const double limit : {1.0, 5.0, 9.9, 10.0, 19.0, 20.0, 30.0, 45.0, 80.0})
+            for (const double yaw : {0.0, 0.7, 2.0}) {
+                CAPTURE(slope, limit, yaw);
+                const Pose pose = pose_at(0.3, 1, 0.7 + 0.3 * std::tan(rad(slope)), yaw);
+                for (const Robot& robot : {husky(), robot_on(0.1, 0.1)})
+                    CHECK(verdict_of(slope_scene(slope), robot, pose, limit) == (slope > limit ? Steep : Valid));
+            }
+    const Robot own = load_robot("box:0.3,0.3,0.3");
+    CHECK(verdict_of(slope_scene(60), own, pose_at(0, 0, 0.5, 0.4), 20) == Steep);
+    CHECK(verdict_of(slope_scene(60), own, pose_at(0, 0, 0.5, 0.4), 61) == Valid);
+}
+
+TEST_CASE("a robot that stands as its slope lies is asked about the slope all the same")
+{
+    const Pose along = pose_at(0, 0, 0.2, 0, 0, -rad(20));
+    CHECK(verdict_of(slope_scene(20), husky(), along, 25) == Valid);
+    CHECK(verdict_of(slope_scene(20), husky(), along, 15) == Steep);
+}
+
+TEST_CASE("on a beam between its wheels, on a pillar and over an edge a robot is unstable")
+{
+    Scene scene = floor_scene();
+    add_box(scene, {-8, -0.15, 0}, {-2, 0.15, 5});   // beam
+    add_box(scene, {1, -0.15, 0}, {1.3, 0.15, 5});   // pillar
+    add_box(scene, {3, -6, 4.8}, {9, 6, 5});         // deck
+    const double limit = 30;
+    CHECK(verdict_of(scene, husky(), pose_at(-5, 0, 5.1), off) == Valid);
+    CHECK(verdict_of(scene, husky(), pose_at(-5, 0, 5.1), limit) == Unstable);
+    CHECK(verdict_of(scene, husky(), pose_at(-5, 0, 5.1, M_PI / 2), limit) == Unstable);
+    CHECK(verdict_of(scene, robot_on(0.3, 0.14), pose_at(-5, 0, 5.1), limit) == Valid);  // narrow enough for the beam
+    CHECK(verdict_of(scene, robot_on(0.3, 0.14), pose_at(-5, 0.02, 5.1), limit) == Unstable);
+    CHECK(verdict_of(scene, robot_on(0.3, 0.14), pose_at(-5, 0, 5.1, 0.2), limit) == Unstable);
+    CHECK(verdict_of(scene, husky(), pose_at(1.15, 0, 5.1), limit) == Unstable);
+    CHECK(verdict_of(scene, load_robot("box:0.29,0.29,1"), pose_at(1.15, 0, 5.1), limit) == Valid);
+    CHECK(verdict_of(scene, load_robot("box:0.31,0.31,1"), pose_at(1.15, 0, 5.1), limit) == Unstable);
+
+    CHECK(verdict_of(scene, husky(), pose_at(8.7, 0, 5.1), limit) == Valid);
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 5.1), limit) == Unstable);                // both front wheels over
+    CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), limit) == Unstable);     // one of them
+    CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), 80) == Unstable);
+    CHECK(verdict_of(scene, husky(), pose_at(6, 0, 0.1), limit) == Valid);                     // below the deck
+    CHECK(verdict_of(scene, husky(), pose_at(9.6, 9.6, 0.1, 1), limit) == Valid);
+    CHECK(verdict_of(scene, husky(), pose_at(9.7, 9.6, 0.1, 1), limit) == Unstable);           // the end of the world
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 7), limit) == Aerial);                    // the first that applies
+}
+
+TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is not")
+{
+    Scene scene = floor_scene();
+    add_box(scene, {-8, -3, 0}, {8, -0.2, 0.1}, Label::Obstacle);
+    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 20) == Valid);
+    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 9) == Unstable);  // 9.9 degrees: no slope, an edge
+    Scene bench = floor_scene();
+    hand::add_mesh(bench, Label::Obstacle, hand::moved(hand::rectangle(4, 2), {Vec3(0, -1.2, 0.4), Mat3::Identity()}), {.kind = "plane"});
+    CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), off) == Valid);
+    CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), 20) == Unstable);  // it would come down on it
+    CHECK(verdict_of(bench, load_robot("box:0.6,0.5,0.2"), pose_at(0, -1, 0.1), 20) == Valid);  // below it
+}
+
+TEST_CASE("a sunk solid and a stack are one, and a thin crack under the origin does not matter")
+{
+    Scene scene = floor_scene();
+    add_box(scene, {-3, -3, -0.5}, {3, 3, 0.05});                      // a plate sunk into the floor
+    add_box(scene, {-3, -3, 0.05}, {3, 3, 0.1}, Label::Obstacle);      // and one upon it
+    add_box(scene, {-0.1, -0.1, 0.1}, {0.1, 0.1, 0.13});               // terrain to stand above
+    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 10) == Valid);
+    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 1) == Unstable);  // 3 cm lower than the ground
+}
+
+TEST_CASE("frames, rails and pillars of a bridge that is terrain throughout are found out, its deck and the ground are not")
+{
+    Scene scene = floor_scene();
+    const auto boxes = [](std::initializer_list<std::pair<Vec3, Vec3>> all) {
+        hand::Mesh mesh;
+        for (const auto& [low, high] : all) {
+            const hand::Mesh box = hand::moved(hand::box(high - low), {(low + high) / 2, Mat3::Identity()});
+            const auto first = std::uint32_t(mesh.vertices.size());
+            mesh.vertices.insert(mesh.vertices.end(), box.vertices.begin(), box.vertices.end());
+            for (const Triangle& t : box.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+        }
+        return mesh;
+    };
+    hand::add_mesh(scene, Label::Terrain, boxes({{{-6, -2, 2}, {6, 2, 2.2}}}));                                       // deck
+    for (const double y : {-1.95, 1.95}) {
+        hand::add_piece(scene, boxes({{{-6, y - 0.05, 2.2}, {6, y + 0.05, 3.2}}}));                                   // rails
+        for (const double x : {-4.0, 4.0}) {
+            hand::add_piece(scene, boxes({{{x - 0.15, y * 1.2 - 0.15, 0}, {x + 0.15, y * 1.2 + 0.15, 6}}}));          // pillars
+            hand::add_piece(scene, boxes({{{x - 0.15, -2.5, 6}, {x + 0.15, 2.5, 6.3}}}));                             // frames
+        }
+    }
+    const TestMap map = map_of(scene);
+    const CollisionChecker checker = checker_of(map, husky());
+    RasterOptions options;
+    options.step = 0.11;
+    const RasterResult without = raster(map, checker, options);
+    options.max_slope = rad(25);
+    const RasterResult with = raster(map, checker, options);
+    std::size_t frames = 0, deck = 0, ground = 0;
+    REQUIRE(with.poses.size() == without.poses.size());
+    for (std::size_t i = 0; i < with.poses.size(); ++i) {
+        const RasterPose& pose = with.poses[i];
+        const double height = pose.z - options.offset;
+        frames += without.poses[i].verdict == Valid && height > 2.5;
+        if (pose.verdict != Valid) continue;
+        CHECK((std::abs(height) < 1e-9 || std::abs(height - 2.2) < 1e-9));
+        ++(height > 1 ? deck : ground);
+    }
+    CHECK(frames > 100);
+    CHECK(deck > 2000);
+    CHECK(ground > 10000);
+    CHECK(with.counts[std::size_t(Steep)] == 0);
+    CHECK(with.counts[std::size_t(Unstable)] + with.counts[std::size_t(Valid)] == without.counts[std::size_t(Valid)]);
+}
+
+TEST_CASE("a limit out of its range is wrong usage, named with its function, value and limits")
+{
+    const TestMap map = map_of(floor_scene());
+    const CollisionChecker checker = checker_of(map, husky());
+    const std::pair<double, std::string> bad[] = {
+        {0, "0"}, {-0.1, "-0.1"}, {M_PI / 2, "1.5707963267948966"}, {2, "2"}, {std::nan(""), "nan"}, {-off, "-inf"}};
+    for (const auto& [limit, text] : bad) {
+        const std::string message = ": max_slope is " + text + ", needs > 0 and < pi/2 rad, or infinite";
+        QueryOptions options;
+        RasterOptions rasters;
+        SampleOptions samples;
+        SearchOptions searches;
+        options.max_slope = rasters.max_slope = samples.max_slope = searches.max_slope = limit;
+        CHECK_THROWS_WITH(check_poses(map, checker, {}, options), "check_poses" + message);
+        CHECK_THROWS_WITH(raster(map, checker, rasters), "raster" + message);
+        CHECK_THROWS_WITH(sample(map, checker, samples), "sample" + message);
+        CHECK_THROWS_WITH(search(map, checker, searches), "search" + message);
+    }
+}
+
+TEST_CASE("a footing only takes valid poses, fewer the larger the limit, and takes no further exact check")
+{
+    std::size_t steep = 0, unstable = 0, valid = 0, changed = 0, regained = 0;
+    for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
+        const HardCase hard = case_with_limit(seed);
+        const TestMap map = compare::map_of_case(hard);
+        const CollisionChecker checker = checker_of(map, hard.robot);
+        RasterOptions options = raster_options(map, hard, 40);
+        std::vector<RasterResult> results;  // from no limit to ever smaller ones
+        for (const double limit : {off, 1.5, 1.0, 0.6, 0.35, 0.2, 0.1, 0.01}) {
+            options.max_slope = limit;
+            results.push_back(raster(map, checker, options));
+        }
+        for (std::size_t r = 1; r < results.size(); ++r) {
+            CHECK(results[r].exact_checks == results[0].exact_checks);
+            REQUIRE(results[r].poses.size() == results[0].poses.size());
+            for (std::size_t i = 0; i < results[r].poses.size(); ++i) {
+                const Verdict without = results[0].poses[i].verdict, verdict = results[r].poses[i].verdict;
+                changed += verdict != without && !(without == Valid && is_footing(verdict));
+                regained += verdict == Valid && results[r - 1].poses[i].verdict != Valid;
+                steep += verdict == Steep;
+                unstable += verdict == Unstable;
+                valid += verdict == Valid;
+            }
+        }
+    }
+    CHECK(changed == 0);
+    CHECK(regained == 0);
+    if (all_scenes) CHECK((steep > 1000 && unstable > 1000 && valid > 1000));
+}
+
+TEST_CASE("a mirrored scene mirrors footings")
+{
+    std::size_t footings = 0, valid = 0, differences = 0;
+    for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
+        const HardCase hard = case_with_limit(seed, {.razor = false});
+        const TestMap map = map_at(hard.scene, hard.resolution), mirror = map_at(mirrored(hard.scene), hard.resolution);
+        const CollisionChecker checker = checker_of(map, hard.robot), mirror_checker = checker_of(mirror, mirrored(hard.robot));
+        std::vector<Pose> poses = compare::standing_poses(map, checker, hard, map.bounds, 200), mirrored_poses = poses;
+        for (Pose& pose : mirrored_poses) {
+            const Eigen::DiagonalMatrix<double, 3> flip(1, -1, 1);
+            pose = {flip * pose.position, flip * pose.rotation * flip};
+        }
+        QueryOptions options;
+        options.max_slope = hard.max_slope;
+        options.max_height = std::max(hard.max_height, hard.offset);
+        options.threads = 1;
+        const auto here = check_poses(map, checker, poses, options), there = check_poses(mirror, mirror_checker, mirrored_poses, options);
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            if (!is_footing(here[i].verdict) && here[i].verdict != Valid) continue;
+            differences += here[i].verdict != there[i].verdict;
+            ++(here[i].verdict == Valid ? valid : footings);
+        }
+    }
+    CHECK(differences == 0);
+    if (all_scenes) CHECK((valid > 300 && footings > 300));
+}
+
+TEST_CASE("footings agree with their definition in random scenes")
+{
+    std::array<std::size_t, verdict_count> seen{};
+    std::size_t undecided = 0;
+    for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
+        const TestMap map = map_of(random_scene(seed));
+        Robot robot = random_robot(seed);
+        if (seed % 2 == 0) robot.contacts = {{0.3, 0.2, -0.05}, {0.3, -0.2, 0.1}, {-0.4, 0, 0}};
+        const CollisionChecker checker = checker_of(map, robot);
+        const std::vector<Pose> poses = random_poses(map.scene, seed, 120);
+        QueryOptions options;
+        options.max_slope = rad(4 + 5 * double(seed % 7));
+        options.threads = 1;
+        const std::vector<Judgement> judged = check_poses(map, checker, poses, options);
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const Verdict verdict = judged[i].verdict;
+            if (verdict != Valid && !is_footing(verdict)) continue;
+            const auto slow = slow::footing(map.scene, robot, contacts_of(robot), poses[i], judged[i].ground->height, options.max_slope);
+            if (!slow) ++undecided;
+            else ++seen[std::size_t(*slow)];
+            INFO("scene " << seed << " " << compare::described(poses[i]) << ": " << to_string(verdict));
+            CHECK(slow.value_or(verdict) == verdict);
+        }
+    }
+    std::cout << "footings: " << seen[std::size_t(Valid)] << " valid, " << seen[std::size_t(Steep)] << " steep, "
+              << seen[std::size_t(Unstable)] << " unstable, " << undecided << " too close to call\n";
+    if (all_scenes) CHECK((seen[std::size_t(Valid)] > 1000 && seen[std::size_t(Steep)] > 100 && seen[std::size_t(Unstable)] > 100));
+}
+
+TEST_CASE("with footings every query gives the exhaustive verdicts in random hard scenes")
+{
+    compare::CaseTally all;
+    for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
+        const compare::CaseTally tally = compare::of_case(case_with_limit(seed));
+        all.add(tally);
+        INFO("scene " << seed << ": " << tally.sum().first);
+        CHECK(tally.sum().differences == 0);
+    }
+    if (!all_scenes) return;
+    for (const compare::Tally& tally : {all.raster_2d, all.raster_3d, all.check})
+        for (const Verdict verdict : {Steep, Unstable, Valid}) {
+            INFO(to_string(verdict));
+            CHECK(tally.verdicts[std::size_t(verdict)] > 100);
+        }
+    CHECK(all.sample.poses > 200);
+    CHECK(all.search.poses > 100);
+    CHECK(all.collisions.verdicts[std::size_t(Unstable)] + all.collisions.verdicts[std::size_t(Steep)] == 0);
+}
+
+TEST_CASE("samples stand, and footings are the same bytes at any number of threads")
+{
+    for (std::uint64_t seed = 1; seed <= scene_count / 10; ++seed) {
+        const HardCase hard = case_with_limit(seed);
+        const TestMap map = compare::map_of_case(hard);
+        const CollisionChecker checker = checker_of(map, hard.robot);
+        RasterOptions options = raster_options(map, hard, 60);
+        SampleOptions samples;
+        samples.count = 60;
+        samples.random_yaw = true;
+        samples.offset = hard.offset;
+        samples.max_slope = hard.max_slope;
+        std::vector<std::string> texts;
+        for (const int threads : {1, 2, 8}) {
+            options.threads = samples.threads = threads;
+            std::string text;
+            write_raster_csv(raster(map, checker, options), false, [&](std::string_view piece) { text += piece; });
+            const SpawnList list = sample(map, checker, samples);
+            texts.push_back(text + spawns_csv(list));
+            QueryOptions asked = samples;
+            asked.max_height = off;
+            for (const Spawn& spawn : list.spawns)
+                CHECK(check_poses(map, checker, {{spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}}, asked)[0].verdict == Valid);
+        }
+        CAPTURE(seed);
+        CHECK(texts[0] == texts[1]);
+        CHECK(texts[0] == texts[2]);
+    }
+}
+
+TEST_CASE("where all is too steep, a sample gives none, and calls nothing full that is not proven")
+{
+    const TestMap map = map_of(slope_scene(20));
+    const CollisionChecker checker = checker_of(map, load_robot("box:0.4,0.4,0.3"));
+    SampleOptions options;
+    options.count = 5;
+    options.max_slope = rad(15);
+    options.bounds = {Vec3(-1, -1, 0), Vec3(1, 1, 0)};
+    options.offset = 0.3;
+    const SpawnList list = sample(map, checker, options);
+    CHECK(list.spawns.empty());
+    CHECK(list.counts[std::size_t(Steep)] > 0);
+    CHECK_FALSE(list.is_full);
+    CHECK(list.undecided_area == Approx(4).epsilon(0.01));
+    options.max_slope = rad(25);
+    CHECK(sample(map, checker, options).spawns.size() == 5);
+}
