@@ -53,7 +53,9 @@ ThesisClass thesis_class_of(Verdict verdict)
     case Verdict::OffTerrain: return ThesisClass::Aerial;
     case Verdict::Outside:
     case Verdict::Submerged:
-    case Verdict::Collision: break;
+    case Verdict::Collision:
+    case Verdict::Steep:
+    case Verdict::Unstable: break;
     }
     return ThesisClass::Invalid;
 }
