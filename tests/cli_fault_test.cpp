@@ -64,6 +64,7 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
     const Desk desk;
     const std::string raster = "raster map -o out --dims 2 --step 1" + husky, raster3 = "raster map -o out --dims 3 --step 1" + husky,
                       sample = "sample map -o out" + husky,
+                      experiment = "experiment map -o out" + husky,
                       search = "search map -o out --min-distance 1" + husky;
     const Refusal refusals[] = {
         {"", "A subcommand is required" + hint},
@@ -117,7 +118,25 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"info map --package-path .", "spawnfield: --package-path is for a robot; map is a folder"},
         {"info scene.yaml --verify", "spawnfield: --verify is for a map folder; scene.yaml is none"},
         {"info box:1,1,1 --scale 1", "spawnfield: --scale is for a bare mesh; box:1,1,1 is a robot"},
-        {"frob map", "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap"},
+        {experiment + "--dims 2", "spawnfield: --steps is required, as 0.5:2:0.5 (or --search)"},
+        {experiment + "--steps 1", "spawnfield: --dims is required, 2 or 3 (or --search)"},
+        {experiment + "--dims 2 --steps 0.5:2", "spawnfield: --steps is \"0.5:2\", needs FROM:TO:BY or one number, m"},
+        {experiment + "--dims 2 --steps 0.5:two:1", "spawnfield: --steps: \"two\" is no finite number"},
+        {experiment + "--dims 2 --steps 0", "spawnfield: --steps is 0, needs > 0"},
+        {experiment + "--dims 2 --steps 0:2:1", "spawnfield: --steps: FROM is 0, needs > 0"},
+        {experiment + "--dims 2 --steps 1:2:0", "spawnfield: --steps: BY is 0, needs > 0"},
+        {experiment + "--dims 2 --steps 2:1:0.5", "spawnfield: --steps: TO is 1, needs at least FROM"},
+        {experiment + "--dims 2 --steps 1:2:0.00001", "spawnfield: --steps: number of steps is 100001, needs at most 10000"},
+        {experiment + "--dims 3 --steps 1:3:1 --steps-z 1:2:1", "spawnfield: --steps-z has 2 steps, needs 1 or as many as --steps: 3"},
+        {experiment + "--dims 2 --steps 1 --runs 0", "spawnfield: --runs is 0, needs >= 1"},
+        {experiment + "--dims 2 --steps 1 --snap", "spawnfield: --snap is for --dims 3: in 2D poses stand on their layers"},
+        {experiment + "--dims 2 --steps 1 -n 5", "spawnfield: -n needs --search"},
+        {experiment + "--search", "spawnfield: --search needs -n, the spawns wanted"},
+        {experiment + "--search -n 5 --steps 1", "spawnfield: --steps is for rasters, not for --search"},
+        {experiment + "--search -n 5 --bounds 0,0,1,1", "spawnfield: --bounds has 4 numbers, needs 6: x0,y0,z0,x1,y1,z1"},
+        {experiment + "--search -n 5 --max-failures 0", "spawnfield: --max-failures is 0, needs >= 1"},
+        {"experiment map --dims 2 --steps 1" + husky, "--out is required" + hint},
+        {"frob map", "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap, experiment"},
         {sample + "-n 5 --seed -1", "--seed: -1 is no whole number from 0 to 18446744073709551615" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);
@@ -169,6 +188,7 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
         {"raster none -o out --dims 2 --step 1" + husky, "spawnfield: none: does not exist; is the path right?"},
         {"sample none -o out -n 5" + husky, "spawnfield: none: does not exist; is the path right?"},
         {"search scene.yaml -o out -n 5 --min-distance 0" + husky, "spawnfield: scene.yaml: is no map folder"},
+        {"experiment none -o new --dims 2 --steps 1" + husky, "spawnfield: none: does not exist; is the path right?"},
         {"heatmap none -o out" + husky, "spawnfield: none: does not exist; is the path right?"},
         {"heatmap map -o out --spawns word.csv" + husky, "spawnfield: word.csv: line 3: column y is \"two\", needs a number"},
         {"sample map -o out -n 5 --robot none.urdf", "spawnfield: none.urdf: does not exist; a robot is a robot.yaml, a .urdf or box:LX,LY,LZ[@x,y,z]"},
@@ -223,6 +243,9 @@ TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
     desk.check({"bake scene.yaml -q -o out", "spawnfield: out: exists and is no map; choose another name or remove it"}, 1);
     const std::string raster = "raster map -q --dims 2 --step 1" + husky;
     desk.check({raster + "-o /dev/full --heatmap new.png", "spawnfield: /dev/full: cannot be written: No space left on device"}, 1);
+    desk.check({"experiment map -q --dims 2 --steps 1 -o out" + husky, "spawnfield: out: exists and is no folder; choose another name or remove it"}, 1);
+    desk.check({"experiment map -q --dims 2 --steps 1 -o map" + husky,
+                "spawnfield: map: holds bounds.bin, which is no part of a former experiment; choose another name or remove it"}, 1);
     desk.check({raster + "-o new.csv --heatmap none/new.png", "spawnfield: none/new.png: cannot be written: No such file or directory"}, 1);
 }
 
@@ -232,6 +255,7 @@ TEST_CASE("a summary that cannot be written is told before all work, and nothing
     const std::string told = "spawnfield: none/s.json: cannot be written: No such file or directory";
     for (const std::string& arguments : {std::string("bake scene.yaml -o new"), std::string("info map"), "check map --poses poses.csv -o out" + husky,
                                          "raster map -o out --dims 2 --step 1" + husky, "sample map -o out -n 1" + husky,
-                                         "search map -o out -n 1" + husky, "heatmap map -o out" + husky})
+                                         "search map -o out -n 1" + husky, "heatmap map -o out" + husky,
+                                         "experiment map -o new --dims 2 --steps 1" + husky})
         desk.check({arguments + " --summary none/s.json", told}, 1);
 }

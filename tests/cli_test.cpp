@@ -17,7 +17,7 @@ namespace {
 
 const std::string scene = "'" SPAWNFIELD_SOURCE "/maps/training/scene.yaml'";
 const std::string husky = " --robot '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml' ";
-const std::vector<std::string> commands = {"bake", "info", "check", "raster", "search", "sample", "heatmap"};
+const std::vector<std::string> commands = {"bake", "info", "check", "raster", "search", "sample", "heatmap", "experiment"};
 
 /// A folder with a copy of one baked arena in `map`.
 class Arena : public TempFolder {
@@ -452,7 +452,8 @@ TEST_CASE("--quiet silences all but errors")
     for (const std::string& arguments : {"bake " + scene + " -o new -q", std::string("info map -q"), "check map -q --poses poses.csv" + husky,
                                          "raster map -q --dims 2 --step 2" + husky, "sample map -q -n 2" + husky,
                                          "search map -q -n 2 --min-distance 0 --max-failures 9999" + husky,
-                                         "heatmap map -q --step 2 -o a.png" + husky}) {
+                                         "heatmap map -q --step 2 -o a.png" + husky,
+                                         "experiment map -q --dims 2 --steps 2 -o steps" + husky}) {
         INFO(arguments);
         const ProgramRun run = arena(arguments);
         CHECK(run.status == 0);
@@ -492,6 +493,7 @@ TEST_CASE("Ctrl-C ends long work with 130 and leaves old files as they were")
     const std::string before = bytes_of(arena / "map/map.yaml");
     const std::string cases[] = {"raster map --dims 3 --step 0.02 --no-height-check -o out.csv" + husky,
                                  "search map -n 5 --min-distance 0 --max-failures 2000000000 --bounds 0,0,50,1,1,60 -o out.csv" + husky,
+                                 "experiment map --dims 3 --steps 0.02 --no-height-check -o steps" + husky,
                                  "bake " + scene + " -o map --resolution 0.0025"};
     for (const std::string& arguments : cases) {
         INFO(arguments);

@@ -65,12 +65,13 @@ std::function<std::string(const fs::path&)> holds_only(std::span<const char* con
 {
     return [names, kind](const fs::path& folder) -> std::string {
         if (!fs::is_directory(folder)) return "exists and is no folder";
+        std::string foreign;  // the first by name: folders have no order
         for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-            const fs::path name = entry.path().filename();
-            if (!entry.is_regular_file() || std::find(names.begin(), names.end(), name) == names.end())
-                return "holds " + name.string() + ", which is no part of a " + kind;
+            const std::string name = entry.path().filename().string();
+            const bool known = entry.is_regular_file() && std::find(names.begin(), names.end(), name) != names.end();
+            if (!known && (foreign.empty() || name < foreign)) foreign = name;
         }
-        return "";
+        return foreign.empty() ? "" : "holds " + foreign + ", which is no part of a " + kind;
     };
 }
 

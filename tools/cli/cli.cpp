@@ -30,22 +30,6 @@ void note_interrupt(int signal)
 
 bool bar_shown = false;
 
-std::vector<double> parse_numbers(const std::string& option, const std::string& text)
-{
-    std::vector<double> out;
-    for (std::size_t start = 0; start <= text.size();) {
-        const std::size_t comma = std::min(text.find(',', start), text.size());
-        double value = 0;
-        const char* const end = text.data() + comma;
-        const auto [stop, error] = std::from_chars(text.data() + start, end, value);
-        if (error != std::errc{} || stop != end || !std::isfinite(value))
-            throw ArgumentError(option + ": \"" + text.substr(start, comma - start) + "\" is no finite number");
-        out.push_back(value);
-        start = comma + 1;
-    }
-    return out;
-}
-
 }  // namespace
 
 void catch_interrupts()
@@ -134,6 +118,22 @@ void clear_progress_bar()
 ArgumentError bad_value(const std::string& option, double value, const std::string& limit)
 {
     return ArgumentError(option + " is " + number(value) + ", needs " + limit);
+}
+
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, char separator)
+{
+    std::vector<double> out;
+    for (std::size_t start = 0; start <= text.size();) {
+        const std::size_t between = std::min(text.find(separator, start), text.size());
+        double value = 0;
+        const char* const end = text.data() + between;
+        const auto [stop, error] = std::from_chars(text.data() + start, end, value);
+        if (error != std::errc{} || stop != end || !std::isfinite(value))
+            throw ArgumentError(option + ": \"" + text.substr(start, between - start) + "\" is no finite number");
+        out.push_back(value);
+        start = between + 1;
+    }
+    return out;
 }
 
 Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed)

@@ -57,6 +57,8 @@ std::string counted(std::uint64_t count, const std::string& noun);
 Progress progress_bar(const CommonArgs& args, const std::string& label);
 void clear_progress_bar();
 
+/// Finite numbers with `separator` between them. Throws ArgumentError.
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, char separator = ',');
 /// "x0,y0,z0,x1,y1,z1", or "x0,y0,x1,y1" where heights do not count. Throws ArgumentError.
 Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed);
 /// As parse_bounds reads it: 6 numbers, or of 2 axes 4.
@@ -79,6 +81,7 @@ public:
     void set_counts(const VerdictCounts& counts);
     double seconds_of(const std::string& stage) const;
     double elapsed() const;  ///< seconds since the start
+    unsigned threads() const;
 
     std::uint64_t poses = 0, exact_checks = 0, seed = 0;
     std::string map_hash;
@@ -96,7 +99,6 @@ public:
 private:
     std::string line(double total) const;
     std::string json(double total) const;
-    unsigned threads() const;
 
     std::string command_;
     const CommonArgs& args_;
@@ -140,5 +142,6 @@ void add_raster(CLI::App& app, Run& run);
 void add_search(CLI::App& app, Run& run);
 void add_sample(CLI::App& app, Run& run);
 void add_heatmap(CLI::App& app, Run& run);
+void add_experiment(CLI::App& app, const std::string& command_line, Run& run);
 
 }  // namespace spawnfield::cli

@@ -4,6 +4,8 @@
 #include <spawnfield/error.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <iostream>
 
 namespace {
@@ -42,6 +44,23 @@ std::vector<std::string> command_names(CLI::App& app)
     return names;
 }
 
+/// What a shell would read as one word.
+std::string quoted_if_needed(const std::string& word)
+{
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || std::strchr("-_./:,=@+%", c); });
+    if (plain) return word;
+    std::string out = "'";
+    for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
+    return out + "'";
+}
+
+std::string command_line(int argc, char** argv)
+{
+    std::string out = "spawnfield";
+    for (int i = 1; i < argc; ++i) out += " " + quoted_if_needed(argv[i]);
+    return out;
+}
+
 /// Whether the first argument is meant to be a command, but is none.
 bool has_unknown_command(const std::vector<std::string>& names, int argc, char** argv)
 {
@@ -66,6 +85,7 @@ int main(int argc, char** argv)
     add_search(app, run);
     add_sample(app, run);
     add_heatmap(app, run);
+    add_experiment(app, command_line(argc, argv), run);
     const std::vector<std::string> names = command_names(app);
     if (has_unknown_command(names, argc, argv))
         return tell(wrong_usage, std::string(argv[1]) + " is no command, needs one of " + CLI::detail::join(names, ", "));

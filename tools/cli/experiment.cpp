@@ -1,0 +1,208 @@
+#include "experiment_report.h"
+#include "interrupt.h"
+#include "raster_args.h"
+#include "spawn_args.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/output_folder.h>
+
+#include <cmath>
+
+namespace spawnfield::cli {
+namespace {
+
+constexpr std::array experiment_files{"experiment.csv", "experiment.md"};
+
+struct ExperimentArgs : RasterArgs {
+    DrawArgs draws;
+    bool search = false;
+    long long runs = 1;
+    std::string steps, steps_z, out, command_line;
+};
+
+/// "FROM:TO:BY", TO included (to 1e-9 of BY), or one number; m. Each is rounded to 1e-9 m, so that 0.1:0.5:0.1 has 0.3 in it
+/// and not its neighbour. Throws ArgumentError.
+std::vector<double> parse_steps(const std::string& option, const std::string& text)
+{
+    constexpr double most = 10000;
+    const std::vector<double> v = parse_numbers(option, text, ':');
+    if (v.size() == 1) return {parse_positive(option, v[0])};
+    if (v.size() != 3) throw ArgumentError(option + " is \"" + text + "\", needs FROM:TO:BY or one number, m");
+    const double from = parse_positive(option + ": FROM", v[0]), to = v[1], by = parse_positive(option + ": BY", v[2]);
+    if (to < from) throw bad_value(option + ": TO", to, "at least FROM");
+    const double count = std::floor((to - from) / by + 1e-9) + 1;
+    if (!(count <= most)) throw bad_value(option + ": number of steps", count, "at most " + number(most));
+    std::vector<double> out{from};
+    for (int i = 1; i < int(count); ++i) out.push_back(std::round((from + i * by) * 1e9) / 1e9);
+    return out;
+}
+
+/// Steps across and up, pairwise; up is 0, which means as across, if nothing else was asked for.
+std::vector<std::pair<double, double>> step_pairs(const ExperimentArgs& args)
+{
+    const std::vector<double> across = parse_steps("--steps", args.steps);
+    const std::vector<double> up = args.steps_z.empty() ? std::vector<double>{0} : parse_steps("--steps-z", args.steps_z);
+    if (up.size() != 1 && up.size() != across.size())
+        throw ArgumentError("--steps-z has " + counted(up.size(), "step") + ", needs 1 or as many as --steps: " + std::to_string(across.size()));
+    std::vector<std::pair<double, double>> out;
+    for (std::size_t i = 0; i < across.size(); ++i) out.emplace_back(across[i], up[up.size() == 1 ? 0 : i]);
+    return out;
+}
+
+void check_usage(const ExperimentArgs& args, const CLI::App& command)
+{
+    if (args.runs < 1) throw bad_value("--runs", double(args.runs), ">= 1");
+    if (args.runs > 1000000) throw bad_value("--runs", double(args.runs), "at most 1000000");
+    if (args.search) {
+        refuse(command, {"--dims", "--steps", "--steps-z", "--offset", "--layers", "--no-height-check", "--snap"}, "is for rasters, not for --search");
+        if (command.count("-n") == 0) throw ArgumentError("--search needs -n, the spawns wanted");
+        return;
+    }
+    refuse(command, {"-n", "--min-distance", "--max-failures", "--seed"}, "needs --search");
+    if (command.count("--dims") == 0) throw ArgumentError("--dims is required, 2 or 3 (or --search)");
+    if (args.steps.empty()) throw ArgumentError("--steps is required, as 0.5:2:0.5 (or --search)");
+    if (args.dims == 2) tell_idle(args, command, {"--steps-z"}, "it is for --dims 3; in 2D poses stand on their layers");
+}
+
+/// The share of all runs that is done.
+Progress share_of_runs(const Progress& whole, std::size_t done, std::size_t all)
+{
+    return [=](double share) { whole((double(done) + share) / double(all)); };
+}
+
+/// The command's stages: what was asked for, then the map, then run after run.
+class ExperimentCommand {
+public:
+    ExperimentCommand(const ExperimentArgs& args, const CLI::App& command) : args_(args), summary_("experiment", args)
+    {
+        check_usage(args, command);
+        if (args.search) prepare_searches();
+        else prepare_rasters(command);
+    }
+
+    int run()
+    {
+        OutputFolder folder(args_.out, holds_only(experiment_files, "former experiment"));
+        session_ = open_session(args_);
+        if (args_.search) tell_if_off_map(args_, session_->map, "--bounds", search_.bounds);
+        else tell_about(args_, *session_, raster_);
+        summary_.lap("load");
+        std::vector<ExperimentRun> runs = args_.search ? run_searches() : run_rasters();
+        summary_.lap("query");
+        write(folder, std::move(runs));
+        return finish();
+    }
+
+private:
+    void prepare_rasters(const CLI::App& command)
+    {
+        raster_ = raster_options(args_, command);
+        raster_.exact_time = &summary_.exact_time;
+        steps_ = step_pairs(args_);
+    }
+
+    void prepare_searches()
+    {
+        search_ = search_options(args_, args_.draws, args_.bounds, "experiment");
+        search_.yaw = parse_finite("--yaw", args_.yaw, "rad");
+        search_.exact_time = &summary_.exact_time;
+    }
+
+    std::vector<ExperimentRun> run_rasters()
+    {
+        std::vector<ExperimentRun> out;
+        const std::size_t all = steps_.size() * std::size_t(args_.runs);
+        const Progress whole = raster_.progress;
+        for (const auto& [step, step_z] : steps_)
+            for (int number = 1; number <= args_.runs; ++number) {
+                RasterOptions options = raster_;
+                options.step = step;
+                options.step_z = step_z;
+                options.progress = share_of_runs(whole, out.size(), all);
+                const double start = summary_.elapsed();
+                const RasterResult result = raster(session_->map, *session_->checker, options);
+                const double seconds = summary_.elapsed() - start;
+                const std::optional<double> up = options.dims == 3 ? std::optional(result.grid.step_z) : std::nullopt;
+                out.push_back({number, step, up, std::nullopt, result.counts, result.exact_checks, seconds});
+            }
+        return out;
+    }
+
+    std::vector<ExperimentRun> run_searches()
+    {
+        std::vector<ExperimentRun> out;
+        const Progress whole = search_.progress;
+        for (int number = 1; number <= args_.runs; ++number) {
+            SearchOptions options = search_;
+            options.seed = search_.seed + std::uint64_t(number - 1);
+            options.progress = share_of_runs(whole, out.size(), std::size_t(args_.runs));
+            const double start = summary_.elapsed();
+            const SpawnList list = search(session_->map, *session_->checker, options);
+            out.push_back({number, {}, {}, options.seed, list.counts, list.exact_checks, summary_.elapsed() - start});
+            short_runs_ += list.spawns.size() < options.count;
+        }
+        return out;
+    }
+
+    void write(OutputFolder& folder, std::vector<ExperimentRun> runs)
+    {
+        clear_progress_bar();
+        VerdictCounts counts{};
+        for (const ExperimentRun& run : runs) {
+            for (std::size_t v = 0; v < verdict_count; ++v) counts[v] += run.counts[v];
+            summary_.exact_checks += run.exact_checks;
+        }
+        summary_.set_counts(counts);
+        Experiment experiment{args_.command_line, session_->map.name, session_->map.hash, session_->robot.name, summary_.threads(), {}, std::move(runs)};
+        if (args_.search) experiment.seed = search_.seed;
+        write_file_atomically(folder.path() / "experiment.csv", experiment_csv(experiment.runs));
+        write_file_atomically(folder.path() / "experiment.md", experiment_markdown(experiment));
+        if (was_interrupted()) throw Interrupted{};
+        folder.commit();
+        summary_.lap("write");
+    }
+
+    int finish()
+    {
+        const std::string runs = counted(std::uint64_t(args_.runs), "run");
+        summary_.extra = {args_.out, args_.search ? runs : runs + " of " + counted(steps_.size(), "step")};
+        summary_.map_hash = session_->map.hash;
+        summary_.seed = args_.search ? search_.seed : 0;
+        summary_.finish();
+        if (short_runs_ == 0) return done;
+        notice(args_, counted(short_runs_, "run") + " of " + std::to_string(args_.runs) + " found fewer than " + std::to_string(search_.count) +
+                          " spawns; a smaller --min-distance, more --max-failures or wider --bounds may give more");
+        return fewer_found;
+    }
+
+    const ExperimentArgs& args_;
+    Summary summary_;
+    RasterOptions raster_;  ///< but for the steps
+    SearchOptions search_;  ///< of the first run
+    std::vector<std::pair<double, double>> steps_;
+    std::unique_ptr<Session> session_;
+    std::uint64_t short_runs_ = 0;
+};
+
+}  // namespace
+
+void add_experiment(CLI::App& app, const std::string& command_line, Run& run)
+{
+    auto args = std::make_shared<ExperimentArgs>();
+    args->command_line = command_line;
+    CLI::App& command = *app.add_subcommand("experiment", "Rasters of many steps, or random searches of many seeds, timed and counted");
+    add_raster_query(command, *args);
+    command.add_option("--steps", args->steps, "Between columns: FROM:TO:BY with TO included, or one number, m");
+    command.add_option("--steps-z", args->steps_z, "Between heights: as many as --steps, pairwise, or one for all, m (default: --steps)");
+    command.add_option("--runs", args->runs, "Of each step, or of the search (default 1)");
+    command.add_flag("--search", args->search, "Random searches instead of rasters: seed --seed, the next one for each further run");
+    add_draws(command, args->draws);
+    add_max_failures(command, args->draws);
+    command.add_option("--out,-o", args->out, "Folder to write: experiment.csv, experiment.md; a former one is replaced")->required();
+    command.footer("Example:\n"
+                   "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --steps 0.5:2:0.5 --offset 0.5 --runs 3 -o /tmp/box_steps\n"
+                   "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --search -n 20 --min-distance 1.5 --runs 5 -o /tmp/box_searches");
+    command.callback([=, &command, &run] { run = [=, &command] { return ExperimentCommand(*args, command).run(); }; });
+}
+
+}  // namespace spawnfield::cli

@@ -1,0 +1,133 @@
+#include "experiment_report.h"
+
+#include "cli.h"
+
+#include <cstdio>
+#include <fstream>
+#include <numeric>
+#include <span>
+#include <thread>
+
+namespace spawnfield::cli {
+namespace {
+
+using Runs = std::span<const ExperimentRun>;
+
+std::string number_or_nothing(const std::optional<double>& value) { return value ? number(*value) : ""; }
+
+/// Valid first, as in summary lines.
+template <class Visit>
+void for_each_verdict(const Visit& visit)
+{
+    for (std::size_t v = verdict_count; v-- > 0;) visit(Verdict(v));
+}
+
+std::uint64_t poses_of(const ExperimentRun& run) { return std::accumulate(run.counts.begin(), run.counts.end(), std::uint64_t{0}); }
+
+template <class Value>
+double mean(Runs runs, const Value& value)
+{
+    double sum = 0;
+    for (const ExperimentRun& run : runs) sum += double(value(run));
+    return sum / double(runs.size());
+}
+
+/// As people read it; the CSV file has all digits.
+std::string six_digits(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+double sample_variance(Runs runs)
+{
+    const double centre = mean(runs, [](const ExperimentRun& run) { return run.seconds; });
+    double sum = 0;
+    for (const ExperimentRun& run : runs) sum += (run.seconds - centre) * (run.seconds - centre);
+    return sum / double(runs.size() - 1);
+}
+
+/// Runs of the same step from `first` on.
+Runs runs_of_step(Runs all, std::size_t first)
+{
+    std::size_t end = first + 1;
+    while (end < all.size() && all[end].step == all[first].step && all[end].step_z == all[first].step_z) ++end;
+    return all.subspan(first, end - first);
+}
+
+std::string processor()
+{
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("model name") && line.find(": ") != std::string::npos) return line.substr(line.find(": ") + 2);
+    return "unknown processor";
+}
+
+std::string table_head(bool is_raster, bool is_3d)
+{
+    std::string names, rule;
+    const auto column = [&](const std::string& name) {
+        names += "| " + name + " ";
+        rule += "|--:";
+    };
+    if (is_raster) column("step (m)");
+    if (is_3d) column("step z (m)");
+    column("checks");
+    for_each_verdict([&](Verdict verdict) { column(to_string(verdict)); });
+    column("exact checks");
+    column("mean time (s)");
+    column("variance (s2)");
+    return names + "|\n" + rule + "|\n";
+}
+
+std::string table_row(Runs runs)
+{
+    std::string text;
+    const auto cell = [&](const std::string& value) { text += "| " + value + " "; };
+    if (runs[0].step) cell(number(*runs[0].step));
+    if (runs[0].step_z) cell(number(*runs[0].step_z));
+    cell(number(mean(runs, poses_of)));
+    for_each_verdict([&](Verdict verdict) { cell(number(mean(runs, [&](const ExperimentRun& run) { return run.counts[std::size_t(verdict)]; }))); });
+    cell(number(mean(runs, [](const ExperimentRun& run) { return run.exact_checks; })));
+    cell(six_digits(mean(runs, [](const ExperimentRun& run) { return run.seconds; })));
+    cell(runs.size() > 1 ? six_digits(sample_variance(runs)) : "");
+    return text + "|\n";
+}
+
+}  // namespace
+
+std::string experiment_csv(const std::vector<ExperimentRun>& runs)
+{
+    std::string text = "run,step,step_z,poses";
+    for_each_verdict([&](Verdict verdict) { text += std::string(",") + to_string(verdict); });
+    text += ",exact_checks,seconds,seed\n";
+    for (const ExperimentRun& run : runs) {
+        text += std::to_string(run.number) + "," + number_or_nothing(run.step) + "," + number_or_nothing(run.step_z) + "," + std::to_string(poses_of(run));
+        for_each_verdict([&](Verdict verdict) { text += "," + std::to_string(run.counts[std::size_t(verdict)]); });
+        text += "," + std::to_string(run.exact_checks) + "," + number(run.seconds) + "," + (run.seed ? std::to_string(*run.seed) : "") + "\n";
+    }
+    return text;
+}
+
+std::string experiment_markdown(const Experiment& experiment)
+{
+    const Runs runs = experiment.runs;
+    const std::size_t repeated = runs_of_step(runs, 0).size();
+    std::string text = "# Experiment\n\n```\n" + experiment.command_line + "\n```\n\n";
+    text += "- map " + experiment.map + ", hash " + experiment.map_hash + "\n";
+    text += "- robot " + experiment.robot + "\n";
+    text += "- " + (experiment.seed ? "seed " + std::to_string(*experiment.seed) + ", one more for each further run" : "no seed: rasters draw nothing") + "\n";
+    text += "- " + processor() + ", " + counted(std::thread::hardware_concurrency(), "core") + "; " + counted(experiment.threads, "thread") + "\n";
+    text += "- spawnfield " + version() + "\n\n";
+    text += repeated > 1 ? "Each row: means of " + counted(repeated, "run") + ", and the sample variance of their times. " : "Each row: one run. ";
+    text += "Times are those of the query alone; the very first one also reads\nwhat it needs of the map.\n\n" + table_head(runs[0].step.has_value(), runs[0].step_z.has_value());
+    for (std::size_t first = 0; first < runs.size();) {
+        const Runs same = runs_of_step(runs, first);
+        text += table_row(same);
+        first += same.size();
+    }
+    return text;
+}
+
+}  // namespace spawnfield::cli
