@@ -1,5 +1,4 @@
-#include "catch.h"
-#include "program.h"
+#include "arena.h"
 
 #include <spawnfield/map.h>
 #include <spawnfield/poses.h>
@@ -8,40 +7,13 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include <set>
-
 namespace fs = std::filesystem;
 using spawnfield::read_poses;
 
 namespace {
 
-const std::string scene = "'" SPAWNFIELD_SOURCE "/maps/training/scene.yaml'";
-const std::string husky = " --robot '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml' ";
+const std::string &scene = training_scene, &husky = husky_option;
 const std::vector<std::string> commands = {"bake", "info", "check", "raster", "search", "sample", "heatmap", "experiment"};
-
-/// A folder with a copy of one baked arena in `map`.
-class Arena : public TempFolder {
-public:
-    Arena() { fs::copy(baked() / "map", *this / "map"); }
-
-    ProgramRun operator()(const std::string& arguments) const { return run_program(*this, arguments); }
-
-    std::set<std::string> names() const
-    {
-        std::set<std::string> out;
-        for (const auto& entry : fs::directory_iterator(path())) out.insert(entry.path().filename().string());
-        return out;
-    }
-
-private:
-    static const TempFolder& baked()
-    {
-        static const TempFolder folder;
-        static const ProgramRun run = run_program(folder, "bake " + scene + " -o map --resolution 0.2");
-        REQUIRE(run.status == 0);
-        return folder;
-    }
-};
 
 std::size_t lines(const std::string& text) { return std::size_t(std::count(text.begin(), text.end(), '\n')); }
 

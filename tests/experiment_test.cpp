@@ -1,5 +1,4 @@
-#include "catch.h"
-#include "program.h"
+#include "arena.h"
 
 #include <spawnfield/poses.h>
 
@@ -14,21 +13,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string training = "'" SPAWNFIELD_SOURCE "/maps/training/scene.yaml'";
-const std::string husky = " --robot '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml' ";
+const std::string& husky = husky_option;
 
-/// A folder with the baked arena in `map`.
-class Arena : public TempFolder {
-public:
-    Arena() { REQUIRE(run_program(*this, "bake " + training + " -o map --resolution 0.5").status == 0); }
-    ProgramRun operator()(const std::string& arguments) const { return run_program(*this, arguments); }
-
-    nlohmann::json summary(const std::string& arguments) const
-    {
-        CHECK((*this)(arguments + " --summary .s.json").status == 0);
-        return nlohmann::json::parse(bytes_of(path() / ".s.json"));
-    }
-};
+/// What a run of the program says in its summary.
+nlohmann::json summary(const Arena& arena, const std::string& arguments)
+{
+    CHECK(arena(arguments + " --summary .s.json").status == 0);
+    return nlohmann::json::parse(bytes_of(arena / ".s.json"));
+}
 
 using Row = std::map<std::string, std::string>;
 
@@ -103,7 +95,7 @@ TEST_CASE("an experiment of rasters has the counts of raster at each step, run a
             CHECK(rows[i].at("step") == (i < 2 ? "0.7" : i < 4 ? "1" : "1.3"));
             CHECK(rows[i].at("step_z") == (is_3d ? rows[i].at("step") : ""));
             CHECK(rows[i].at("seed").empty());
-            check_counts(rows[i], arena.summary("raster map -o /dev/null " + option + " --step " + rows[i].at("step") + husky));
+            check_counts(rows[i], summary(arena, "raster map -o /dev/null " + option + " --step " + rows[i].at("step") + husky));
         }
     }
 }
@@ -116,7 +108,7 @@ TEST_CASE("steps up are one for all, or as many as those across")
         std::vector<std::string> out;
         for (const Row& row : rows_of(arena / "out/experiment.csv")) {
             out.push_back(row.at("step") + " x " + row.at("step_z"));
-            check_counts(row, arena.summary("raster map --dims 3 -o /dev/null --step " + row.at("step") + " --step-z " + row.at("step_z") + husky));
+            check_counts(row, summary(arena, "raster map --dims 3 -o /dev/null --step " + row.at("step") + " --step-z " + row.at("step_z") + husky));
         }
         return out;
     };
@@ -162,7 +154,7 @@ TEST_CASE("an experiment of searches has the counts of search at each seed")
 {
     const Arena arena;
     const std::string draws = "map -n 15 --min-distance 0.5 --max-failures 5000 --bounds -9,-9,-0.1,9,9,1 --yaw 0.3" + husky;
-    const nlohmann::json told = arena.summary("experiment --search --seed 7 --runs 3 -o out " + draws);
+    const nlohmann::json told = summary(arena, "experiment --search --seed 7 --runs 3 -o out " + draws);
     CHECK(told["command"] == "experiment");
     CHECK(told["seed"] == 7);
     CHECK(told["counts"]["valid"] == 45);
@@ -172,7 +164,7 @@ TEST_CASE("an experiment of searches has the counts of search at each seed")
     for (std::size_t i = 0; i < 3; ++i) {
         CHECK(rows[i].at("seed") == std::to_string(7 + i));
         CHECK(rows[i].at("step").empty());
-        check_counts(rows[i], arena.summary("search -o /dev/null --seed " + rows[i].at("seed") + " " + draws));
+        check_counts(rows[i], summary(arena, "search -o /dev/null --seed " + rows[i].at("seed") + " " + draws));
         different.insert(rows[i].at("poses"));
     }
     CHECK(different.size() > 1);

@@ -1,16 +1,11 @@
-#include "catch.h"
-#include "hand_scene.h"
-#include "program.h"
+#include "arena.h"
 #include "test_map.h"
 
-#include <spawnfield/output_folder.h>
 #include <spawnfield/poses.h>
 #include <spawnfield/thesis.h>
 
 #include <Eigen/LU>
 
-#include <algorithm>
-#include <set>
 #include <sstream>
 
 using namespace spawnfield;
@@ -46,23 +41,6 @@ std::string value_of(const std::string& text, const std::string& name)
     return "no " + name;
 }
 
-std::set<std::string> names(const fs::path& folder)
-{
-    std::set<std::string> out;
-    for (const auto& entry : fs::directory_iterator(folder)) out.insert(entry.path().filename().string());
-    return out;
-}
-
-const std::string training = "'" SPAWNFIELD_SOURCE "/maps/training/scene.yaml'";
-const std::string husky_file = " --robot '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml' ";
-
-/// A folder with the baked arena in `map`.
-class Arena : public TempFolder {
-public:
-    Arena() { REQUIRE((*this)("bake " + training + " -o map --resolution 0.5").status == 0); }
-    ProgramRun operator()(const std::string& arguments) const { return run_program(*this, arguments); }
-};
-
 }  // namespace
 
 TEST_CASE("Unity's frame is left-handed with y up")
@@ -77,7 +55,7 @@ TEST_CASE("Unity's frame is left-handed with y up")
     write_thesis_locations(folder.path(), list);
     CHECK(bytes_of(folder / "Valid_Locations.txt") == "1.5, 0.125, -2.25\n");
     CHECK(bytes_of(folder / "Invalid_Locations.txt").empty());
-    CHECK(names(folder.path()) == std::set<std::string>{"Valid_Locations.txt", "Invalid_Locations.txt"});
+    CHECK(names_in(folder.path()) == std::set<std::string>{"Valid_Locations.txt", "Invalid_Locations.txt"});
 }
 
 TEST_CASE("in the thesis's terms valid is valid, aerial and off_terrain are aerial, all the rest is invalid")
@@ -117,11 +95,11 @@ TEST_CASE("locations of rasters read back to the same poses, class by class, wit
 TEST_CASE("raster --format thesis writes a folder whose counts are those of the summary")
 {
     const Arena arena;
-    const std::string command = "raster map --dims 3 --step 1 --step-z 0.5 --format thesis -o out" + husky_file;
+    const std::string command = "raster map --dims 3 --step 1 --step-z 0.5 --format thesis -o out" + husky_option;
     const ProgramRun run = arena(command + "--write-aerial");
     CHECK(run.status == 0);
     CHECK(run.out.empty());
-    CHECK(names(arena / "out") == std::set<std::string>(thesis_files.begin(), thesis_files.end()));
+    CHECK(names_in(arena / "out") == std::set<std::string>(thesis_files.begin(), thesis_files.end()));
     const std::string stats = bytes_of(arena / "out/Stats.txt"), times = bytes_of(arena / "out/RunTime.txt");
     std::size_t lines = 0;
     for (const char* const name : {"Valid", "Invalid", "Air"}) {
@@ -144,8 +122,8 @@ TEST_CASE("raster --format thesis writes a folder whose counts are those of the 
     CHECK(arena(command).status == 0);  // over its own result
     CHECK_FALSE(fs::exists(arena / "out/Air_Locations.txt"));
     CHECK(value_of(bytes_of(arena / "out/Stats.txt"), "Aerial") == value_of(stats, "Aerial"));
-    CHECK(names(arena.path()) == std::set<std::string>{"map", "out"});
-    const ProgramRun flat = arena("raster map --dims 2 --step 1 --format thesis --write-aerial -o out" + husky_file);
+    CHECK(arena.names() == std::set<std::string>{"map", "out"});
+    const ProgramRun flat = arena("raster map --dims 2 --step 1 --format thesis --write-aerial -o out" + husky_option);
     CHECK(flat.status == 0);
     CHECK(fs::exists(arena / "out/Air_Locations.txt"));
 }
@@ -154,7 +132,7 @@ TEST_CASE("search and sample write their spawns as valid locations, and say what
 {
     const Arena arena;
     for (const std::string command : {"sample", "search"}) {
-        const std::string query = command + " map -n 7 --min-distance 0.3 --seed 5" + husky_file;
+        const std::string query = command + " map -n 7 --min-distance 0.3 --seed 5" + husky_option;
         CHECK(arena(query + "-o spawns.csv").status == 0);
         CHECK(arena(query + "--format thesis -o " + command).status == 0);
         std::vector<Vec3> expected;
@@ -168,16 +146,16 @@ TEST_CASE("search and sample write their spawns as valid locations, and say what
         CHECK(value_of(stats, "Lines of Valid_Locations.txt") == "7");
         CHECK(value_of(stats, "Lines of Invalid_Locations.txt") == "0");
         CHECK(value_of(stats, "Positions that are not valid") == "counted, not written");
-        CHECK(names(arena / command) == std::set<std::string>{"Valid_Locations.txt", "Invalid_Locations.txt", "Stats.txt", "RunTime.txt"});
+        CHECK(names_in(arena / command) == std::set<std::string>{"Valid_Locations.txt", "Invalid_Locations.txt", "Stats.txt", "RunTime.txt"});
     }
-    CHECK(arena("sample map -n 50 --min-distance 15 --format thesis -o few" + husky_file).status == 3);
+    CHECK(arena("sample map -n 50 --min-distance 15 --format thesis -o few" + husky_option).status == 3);
     CHECK_FALSE(locations(arena / "few/Valid_Locations.txt").empty());
 }
 
 TEST_CASE("a folder that holds anything else is refused, and stays as it was")
 {
     const Arena arena;
-    const std::string command = "raster map --dims 2 --step 1 --format thesis" + husky_file;
+    const std::string command = "raster map --dims 2 --step 1 --format thesis" + husky_option;
     arena.write("out/Stats.txt", "old");
     arena.write("out/notes.txt", "mine");
     const ProgramRun run = arena(command + "-o out");
@@ -195,15 +173,15 @@ TEST_CASE("a folder that holds anything else is refused, and stays as it was")
     CHECK(nowhere.err == "spawnfield: --format thesis needs -o FOLDER\n");
     const ProgramRun picture = arena(command + "-o new --heatmap none/new.png");
     CHECK(picture.status == 1);
-    CHECK(names(arena.path()) == std::set<std::string>{"map", "out", "file", "nested"});
+    CHECK(arena.names() == std::set<std::string>{"map", "out", "file", "nested"});
 
     fs::create_directory(arena / "empty");
     fs::create_directory_symlink("empty", arena / "link");
     CHECK(arena(command + "-o link/").status == 0);
     CHECK(fs::is_symlink(arena / "link"));
-    CHECK(names(arena / "empty").contains("Valid_Locations.txt"));
-    const ProgramRun stopped = interrupt_program(arena, "raster map --dims 3 --step 0.02 --no-height-check --format thesis -o empty" + husky_file, 1.0);
+    CHECK(names_in(arena / "empty").contains("Valid_Locations.txt"));
+    const ProgramRun stopped = interrupt_program(arena, "raster map --dims 3 --step 0.02 --no-height-check --format thesis -o empty" + husky_option, 1.0);
     CHECK(stopped.status == 130);
     CHECK(value_of(bytes_of(arena / "empty/Stats.txt"), "Dimensions") == "2");
-    CHECK(names(arena.path()) == std::set<std::string>{"map", "out", "file", "nested", "empty", "link"});
+    CHECK(arena.names() == std::set<std::string>{"map", "out", "file", "nested", "empty", "link"});
 }

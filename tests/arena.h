@@ -1,0 +1,36 @@
+#pragma once
+
+#include "catch.h"
+#include "program.h"
+
+#include <set>
+
+inline const std::string training_scene = "'" SPAWNFIELD_SOURCE "/maps/training/scene.yaml'";
+inline const std::string husky_option = " --robot '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml' ";
+
+/// Names of what a folder holds.
+inline std::set<std::string> names_in(const std::filesystem::path& folder)
+{
+    std::set<std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) out.insert(entry.path().filename().string());
+    return out;
+}
+
+/// A folder with a copy of one baked arena in `map`, in which the program runs.
+class Arena : public TempFolder {
+public:
+    Arena() { std::filesystem::copy(baked() / "map", *this / "map"); }
+
+    ProgramRun operator()(const std::string& arguments) const { return run_program(*this, arguments); }
+
+    std::set<std::string> names() const { return names_in(path()); }
+
+private:
+    static const TempFolder& baked()
+    {
+        static const TempFolder folder;
+        static const ProgramRun run = run_program(folder, "bake " + training_scene + " -o map --resolution 0.2");
+        REQUIRE(run.status == 0);
+        return folder;
+    }
+};
