@@ -267,6 +267,19 @@ TEST_CASE("raster writes each column's layers, and its counts are those of the r
     CHECK(arena("raster map --dims 2 --step 1 --layers 7" + husky).out == "x,y,z,yaw,layer,verdict\n");
 }
 
+TEST_CASE("raster --snap gives each layer its pose, --offset above it")
+{
+    const Arena arena;
+    const std::string command = "raster map --dims 3 --step 2 --step-z 2.5 --bounds -10,-10,-0.1,10,10,5 ";
+    const ProgramRun run = arena(command + "--snap --offset 0.25" + husky);
+    CHECK(run.status == 0);
+    CHECK_THAT(run.err, !Contains("notice"));
+    CHECK_THAT(run.out, Contains(",0.2,0,0,valid\n"));  // the floor is at -0.05
+    CHECK_THAT(arena(command + husky).out, !Contains(",valid"));
+    CHECK_THAT(arena(command + "--snap --offset 0.26 --robot box:0.5,0.5,0.5@0,0,0").err, !Contains("collides on all flat ground"));
+    CHECK_THAT(arena(command + "--snap --robot box:0.5,0.5,0.5@0,0,0").err, Contains("collides on all flat ground"));
+}
+
 TEST_CASE("sample and search find what they are asked for, the same at any thread count")
 {
     const Arena arena;

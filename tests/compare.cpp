@@ -43,7 +43,7 @@ std::string described(const Bounds& bounds)
 std::string described(const RasterOptions& options)
 {
     std::ostringstream out = exact_numbers();
-    out << "raster --dims " << options.dims << (options.height_check ? "" : " --no-height-check") << " --step " << options.step
+    out << "raster --dims " << options.dims << (options.height_check ? "" : " --no-height-check") << (options.snap ? " --snap" : "") << " --step " << options.step
         << " --step-z " << options.step_z << " --offset " << options.offset << " --max-height " << options.max_height
         << " max-slope " << options.max_slope << " yaw " << options.yaw << " layers " << int(options.layers.kind) << " bounds " << described(options.bounds);
     return out.str();
@@ -79,7 +79,7 @@ std::string two(const std::string& query, const std::string& fast, const std::st
 
 bool same(const RasterPose& a, const RasterPose& b)
 {
-    return a.x == b.x && a.y == b.y && a.z == b.z && a.layer == b.layer && a.verdict == b.verdict;
+    return a.x == b.x && a.y == b.y && a.z == b.z && a.layer == b.layer && a.verdict == b.verdict && a.snapped == b.snapped;
 }
 
 bool same(const Judgement& a, const Judgement& b)
@@ -180,12 +180,13 @@ void CaseTally::add(const CaseTally& other)
     check.add(other.check);
     sample.add(other.sample);
     search.add(other.search);
+    snap.add(other.snap);
 }
 
 Tally CaseTally::sum() const
 {
     Tally all;
-    for (const Tally& tally : {raster_2d, raster_3d, collisions, check, sample, search}) all.add(tally);
+    for (const Tally& tally : {raster_2d, raster_3d, collisions, check, sample, search, snap}) all.add(tally);
     return all;
 }
 

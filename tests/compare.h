@@ -26,7 +26,7 @@ Tally of_search(const TestMap& map, const spawnfield::CollisionChecker& checker,
 
 /// All queries of a case, a few hundred poses each.
 struct CaseTally {
-    Tally raster_2d, raster_3d, collisions, check, sample, search;
+    Tally raster_2d, raster_3d, collisions, check, sample, search, snap;
 
     void add(const CaseTally& other);
     Tally sum() const;

@@ -172,14 +172,17 @@ TEST_CASE("every query gives the exhaustive verdicts, pose by pose, in random ha
     print("check", all.check);
     print("sample", all.sample);
     print("search", all.search);
+    print("3D rasters with snap", all.snap);
     check_verdicts(all.raster_2d, {Outside, OffTerrain, Submerged, Collision, Valid}, 1000);
     check_verdicts(all.raster_3d, {Outside, OffTerrain, Submerged, Collision, Valid}, 1000);
     check_verdicts(all.collisions, {Collision, Valid}, 10000);
     check_verdicts(all.check, {Outside, Aerial, OffTerrain, Submerged, Collision, Valid}, 500);
     check_verdicts(all.sample, {Valid}, 2000);
     check_verdicts(all.search, {Valid}, 1000);
+    check_verdicts(all.snap, {Outside, OffTerrain, Submerged, Collision, Valid}, 1000);
     check_shares(all.raster_2d, 0.2);
     check_shares(all.raster_3d, 0.2);
+    check_shares(all.snap, 0.2);
     check_shares(all.collisions, 0.1);
     check_shares(all.check, 0.1);
     if (all_scenes) CHECK(all.check.proven_valid > 1000);  // what a blocked pose collides with takes an exact check
@@ -372,8 +375,15 @@ TEST_CASE("with a mask that is made on first use, rasters are the same bytes at 
             options.bounds = {};
             options.step = std::max(0.1, (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 60);
             options.threads = threads;
-            const RasterResult result = raster(map, checker, options);
-            const std::string text = csv(result) + std::to_string(result.exact_checks);
+            std::string text;
+            for (const int dims : {2, 3}) {
+                options.dims = dims;
+                options.snap = dims == 3;
+                options.step_z = 1.7;
+                options.offset = std::clamp(options.offset, 0.0, options.max_height);
+                const RasterResult result = raster(map, checker, options);
+                text += csv(result) + std::to_string(result.exact_checks);
+            }
             if (threads == 1) expected = text;
             CAPTURE(seed, threads);
             CHECK(text == expected);

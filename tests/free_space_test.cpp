@@ -1,7 +1,7 @@
 #include "catch.h"
 #include "free_space/bounds_tile.h"
 #include "free_space/footprint.h"
-#include "hand_scene.h"
+#include "worlds/hand_scene.h"
 #include "slow.h"
 #include "test_map.h"
 

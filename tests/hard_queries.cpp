@@ -75,6 +75,24 @@ Tally rasters_3d(const TestMap& map, const CollisionChecker& checker, const Hard
     return of_raster(map, checker, options);
 }
 
+/// Steps that are fine, and so wide that none is near most layers.
+Tally rasters_snapped(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+{
+    Tally tally;
+    for (const bool wide : {false, true}) {
+        RasterOptions options = raster_options(hard, random);
+        options.step = random.chance(0.5) ? hard.resolution : wide_step(map, 31);
+        options.bounds = crop_near(map, random, options.step, 14);
+        options.snap = true;
+        options.offset = std::max(0.0, options.offset);
+        options.max_height = std::max(options.max_height, options.offset);
+        limit_heights(options, hard, random, 40);
+        if (wide) options.step_z = random.between(0.5, 3);
+        tally.add(of_raster(map, checker, options));
+    }
+    return tally;
+}
+
 Tally checks(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
 {
     QueryOptions options;
@@ -161,6 +179,7 @@ CaseTally of_case(const HardCase& hard)
     tally.check = checks(map, checker, hard, random);
     if (has_room(tally.raster_2d)) tally.sample = samples(map, checker, hard, random);
     tally.search = searches(map, checker, hard, random);
+    tally.snap = rasters_snapped(map, checker, hard, random);
     return tally;
 }
 

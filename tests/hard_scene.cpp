@@ -1,6 +1,6 @@
 #include "hard_scene.h"
 
-#include "hand_scene.h"
+#include "worlds/hand_scene.h"
 #include "slow.h"
 
 #include <algorithm>

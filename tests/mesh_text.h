@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hand_scene.h"
+#include "worlds/hand_scene.h"
 
 #include <string>
 #include <vector>

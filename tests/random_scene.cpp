@@ -1,6 +1,6 @@
 #include "random_scene.h"
 
-#include "hand_scene.h"
+#include "worlds/hand_scene.h"
 #include "slow.h"
 
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
 #include "catch.h"
-#include "hand_scene.h"
+#include "worlds/hand_scene.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>
@@ -211,4 +211,142 @@ TEST_CASE("a raster refuses steps and heights out of their limits")
     CHECK_THROWS_WITH(run([](RasterOptions& o) { o.max_height = -1; }), "raster: max_height is -1, needs >= 0 m");
     CHECK_THROWS_WITH(run([](RasterOptions& o) { o.dims = 4; }), "raster: dims is 4, needs 2 or 3");
     CHECK_THROWS_AS(run([](RasterOptions& o) { o.height_check = false; }), ArgumentError);
+}
+
+namespace {
+
+RasterOptions snapped(double step, double step_z, double offset)
+{
+    RasterOptions options;
+    options.dims = 3;
+    options.step = step;
+    options.step_z = step_z;
+    options.offset = offset;
+    options.snap = true;
+    return options;
+}
+
+/// A level floor of 4 x 4 m at this height.
+void add_floor(Scene& scene, double height)
+{
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(4, 4), {Vec3(0, 0, height)}));
+}
+
+std::vector<double> heights_of(const RasterResult& raster)
+{
+    std::vector<double> out;
+    for_each_pose(raster, true, [&](const RasterPose& pose) { out.push_back(pose.z); });
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("with snap a floor between two steps is found, without it is not")
+{
+    Scene scene;
+    add_floor(scene, 1.2);  // steps at 0, 2.5 and 5: the next one above is 1.3 m up
+    const TestMap map = map_of(scene);
+    const CollisionChecker checker = checker_of(map, load_robot("box:0.1,0.1,0.05"));
+    RasterOptions options = snapped(1, 2.5, 0.1);
+    options.bounds = {Vec3(-1, -1, 0), Vec3(1, 1, 6)};
+    const RasterResult found = raster(map, checker, options);
+    CHECK(found.poses.size() == 9);
+    for (const RasterPose& pose : found.poses) {
+        CHECK(pose.z == 1.2 + 0.1);
+        CHECK(pose.layer == 0);
+        CHECK(pose.verdict == Verdict::Valid);
+        CHECK(pose.snapped);
+    }
+    CHECK(found.counts == VerdictCounts{0, 9 * 2, 0, 0, 0, 0, 0, 9});  // of 0, 2.5 and 5 the second is replaced
+    options.snap = false;
+    const RasterResult missed = raster(map, checker, options);
+    CHECK(missed.poses.empty());
+    CHECK(missed.counts == VerdictCounts{0, 9 * 3, 0, 0, 0, 0});
+}
+
+TEST_CASE("snapped poses take the place of steps: one for two layers below it, none beyond the last, none off the bounds")
+{
+    Scene scene;
+    for (const double height : {0.4, 1.6, 2.2, 5.5, 7.0, -1.0}) add_floor(scene, height);
+    const TestMap map = map_of(scene);
+    const CollisionChecker checker = checker_of(map, load_robot("box:0.1,0.1,0.05"));
+    RasterOptions options = snapped(1, 2.5, 0.25);
+    options.bounds = {Vec3(0, 0, 0), Vec3(0, 0, 6)};
+    const auto heights = [&] { return heights_of(raster(map, checker, options)); };
+    CHECK(heights() == std::vector<double>{5.75, 5.0, 2.45, 1.85, 0.65, 0.0});  // 2.5 is replaced by three, 5.5 is an extra one
+    options.layers = {LayerChoice::Kind::Index, 2};
+    CHECK(raster(map, checker, options).poses.size() == 1);  // 2.45: the steps near it went
+    options.layers = {LayerChoice::Kind::Bottom, 0};
+    const RasterResult bottom = raster(map, checker, options);
+    REQUIRE(bottom.poses.size() == 1);  // the layer is below the bounds, the step 0 is a metre above it
+    CHECK_FALSE(bottom.poses[0].snapped);
+    options.layers = {};
+    options.step_z = 0.2;
+    options.bounds.max.z() = 0.8;
+    CHECK(heights() == std::vector<double>{0.8, 0.65, 0.2 * 3, 0.2, 0});  // in place of 0.4, above the step that follows
+    options.offset = 0.4;  // where a step is, too: both stay
+    CHECK(heights() == std::vector<double>{0.8, 0.8, 0.2 * 3, 0.2, 0});
+}
+
+TEST_CASE("a floor that is at a step but for rounding replaces that one")
+{
+    RasterGrid grid;
+    grid.step_z = 0.1;
+    grid.heights = 8;
+    CHECK(grid.step_above(0.3) == 3);  // 3 * 0.1 is more
+    CHECK(grid.step_above(0.7) == 7);  // 7 * 0.1 is more, 0.7 / 0.1 less
+    CHECK(grid.step_above(0.7 + 5e-10) == 7);
+    CHECK(grid.step_above(0.7 + 5e-9) == 8);
+    CHECK(grid.step_above(0.31) == 4);
+    CHECK(grid.step_above(-5) == 0);
+    CHECK(grid.step_above(9) == 8);
+}
+
+TEST_CASE("the poses of the 2D raster are among those of the 3D raster with snap, in all maps")
+{
+    std::size_t valid = 0, other = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const TestMap map = seed == 1 ? training_map() : map_of(random_scene(seed));
+        const CollisionChecker checker = checker_of(map, random_robot(seed));
+        RasterOptions options = snapped(0.9, 2.1, 0.3 + 0.02 * double(seed % 9));
+        options.yaw = 0.2;
+        options.bounds = {map.bounds.min - Vec3(1, 0, 0), map.bounds.max};
+        options.bounds.min.z() = map.bounds.min.z() + 0.2;
+        const RasterResult all = raster(map, checker, options);
+        std::vector<RasterPose> on_layers;
+        std::copy_if(all.poses.begin(), all.poses.end(), std::back_inserter(on_layers), [](const RasterPose& pose) { return pose.snapped; });
+        options.dims = 2;
+        options.snap = false;
+        auto next = on_layers.begin();
+        for (const RasterPose& pose : raster(map, checker, options).poses) {
+            const double layer = column_at(map.geometry, pose.x, pose.y).layers[std::size_t(pose.layer)];
+            if (layer < options.bounds.min.z() - 1e-9 || layer > options.bounds.max.z() + 1e-9) continue;
+            REQUIRE(next != on_layers.end());
+            CHECK((next->x == pose.x && next->y == pose.y && next->z == pose.z && next->layer == pose.layer && next->verdict == pose.verdict));
+            ++(pose.verdict == Verdict::Valid ? valid : other);
+            ++next;
+        }
+        CHECK(next == on_layers.end());
+        std::uint64_t visited = 0, listed = 0;
+        for (const std::uint64_t count : all.counts) listed += count;
+        for_each_pose(all, true, [&](const RasterPose&) { ++visited; });
+        CHECK(visited == listed);
+    }
+    CHECK((valid > 500 && other > 500));
+}
+
+TEST_CASE("snap refuses 2D, no height check, and offsets that would be aerial")
+{
+    const TestMap map = training_map();
+    const CollisionChecker checker = checker_of(map, husky());
+    RasterOptions options = snapped(1, 1, 1.5);
+    CHECK_THROWS_WITH(raster(map, checker, options), "raster: offset is 1.5, needs 0 .. max_height with snap: poses on their layers would be aerial");
+    options.offset = -0.1;
+    CHECK_THROWS_AS(raster(map, checker, options), ArgumentError);
+    options.offset = 0.1;
+    options.height_check = false;
+    CHECK_THROWS_WITH(raster(map, checker, options), "raster: snap needs the height check: collisions alone know no layers");
+    options.height_check = true;
+    options.dims = 2;
+    CHECK_THROWS_AS(raster(map, checker, options), ArgumentError);
 }

@@ -1,7 +1,7 @@
 #include "slow.h"
 
 #include "catch.h"
-#include "hand_scene.h"
+#include "worlds/hand_scene.h"
 #include "random_scene.h"
 
 #include <cmath>

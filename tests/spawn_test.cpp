@@ -1,6 +1,6 @@
 #include "catch.h"
 #include "compare.h"
-#include "hand_scene.h"
+#include "worlds/hand_scene.h"
 #include "test_map.h"
 
 #include "query/cell_proofs.h"

@@ -1,5 +1,5 @@
 #include "catch.h"
-#include "hand_scene.h"
+#include "worlds/hand_scene.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>

@@ -74,10 +74,13 @@ struct RasterOptions : QueryOptions {
     Bounds bounds = {};          ///< empty: the map's; two-dimensional rasters leave z aside
     double step = 1.0;           ///< m between columns, > 0
     double step_z = 0;           ///< m between heights, > 0; 0: as step
-    double offset = 0.1;         ///< m of the origin above its layer (2D)
+    double offset = 0.1;         ///< m of the origin above its layer (2D, snap); with snap 0 .. max_height
     double yaw = 0;              ///< rad
     LayerChoice layers = {};     ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
     bool height_check = true;    ///< false (3D only): collisions alone, at every pose; max_slope is not asked for
+    /// 3D with height check: each chosen layer within the bounds' z has its pose of the 2D raster, in place of the lowest
+    /// step at or above it (RasterGrid::step_above) if there is one. So no terrain between two steps is lost.
+    bool snap = false;
 };
 
 /// Columns x0 + i * step, y0 + j * step; heights z0 + k * step_z.
@@ -88,18 +91,21 @@ struct RasterGrid {
     double x_of(int i) const { return x0 + i * step; }
     double y_of(int j) const { return y0 + j * step; }
     double z_of(int k) const { return z0 + k * step_z; }
+    /// The lowest of the heights at or above this one, to touch_tolerance; `heights` if there is none.
+    int step_above(double height) const;
 };
 
 struct RasterPose {
     double x, y, z;
-    std::int32_t layer;  ///< the layer that is its ground, 0 the highest; -1: its ground is no layer
+    std::int32_t layer;  ///< the layer that is its ground (2D, snap: that it was placed on), 0 the highest; -1: its ground is no layer
     Verdict verdict;
+    bool snapped = false;  ///< 3D: on a layer, in place of a step
 };
 
 struct RasterResult {
     int dims = 2;
     RasterGrid grid;
-    double yaw = 0;
+    double yaw = 0, offset = 0;
     std::vector<RasterPose> poses;  ///< y after y, x fastest, from the top down; of 3D rasters without the aerial ones
     VerdictCounts counts{};         ///< of all poses, the aerial ones too
     std::uint64_t exact_checks = 0;
@@ -107,6 +113,9 @@ struct RasterResult {
 
 /// Every pose of a raster. Throws ArgumentError for a step of 0, bounds the wrong way round, more than 2^31 columns.
 RasterResult raster(const Map& map, const CollisionChecker& checker, const RasterOptions& options);
+
+/// A raster's poses in their order, with `aerial` also the aerial ones of a 3D raster that it does not list, in their places.
+void for_each_pose(const RasterResult& raster, bool aerial, const std::function<void(const RasterPose&)>& visit);
 
 struct Spawn {
     Vec3 position;

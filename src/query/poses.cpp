@@ -197,13 +197,13 @@ void append_numbers(std::string& text, std::initializer_list<double> values)
     }
 }
 
-void append_row(std::string& text, double x, double y, double z, double yaw, std::int32_t layer, Verdict verdict)
+void append_row(std::string& text, const RasterPose& pose, double yaw)
 {
-    append_numbers(text, {x, y, z, yaw});
+    append_numbers(text, {pose.x, pose.y, pose.z, yaw});
     text += ',';
-    if (layer >= 0) text += std::to_string(layer);
+    if (pose.layer >= 0) text += std::to_string(pose.layer);
     text += ',';
-    text += to_string(verdict);
+    text += to_string(pose.verdict);
     text += '\n';
 }
 
@@ -255,27 +255,12 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
 {
     constexpr std::size_t piece = 1 << 20;
     std::string text = "x,y,z,yaw,layer,verdict\n";
-    const auto row = [&](double x, double y, double z, std::int32_t layer, Verdict verdict) {
-        append_row(text, x, y, z, raster.yaw, layer, verdict);
+    for_each_pose(raster, aerial, [&](const RasterPose& pose) {
+        append_row(text, pose, raster.yaw);
         if (text.size() < piece) return;
         sink(text);
         text.clear();
-    };
-    if (!aerial || raster.dims != 3) {
-        for (const RasterPose& pose : raster.poses) row(pose.x, pose.y, pose.z, pose.layer, pose.verdict);
-        sink(text);
-        return;
-    }
-    const RasterGrid& grid = raster.grid;
-    auto next = raster.poses.begin();
-    for (int j = 0; j < grid.rows; ++j)
-        for (int i = 0; i < grid.cols; ++i)
-            for (int k = grid.heights - 1; k >= 0; --k) {
-                const double x = grid.x_of(i), y = grid.y_of(j), z = grid.z_of(k);
-                const bool kept = next != raster.poses.end() && next->x == x && next->y == y && next->z == z;
-                row(x, y, z, kept ? next->layer : -1, kept ? next->verdict : Verdict::Aerial);
-                next += kept;
-            }
+    });
     sink(text);
 }
 

@@ -19,9 +19,8 @@ int count_steps(double from, double to, double step, const char* axis)
     return static_cast<int>(count);
 }
 
-RasterGrid grid_of(const Map& map, const RasterOptions& options)
+RasterGrid grid_of(const Bounds& bounds, const RasterOptions& options)
 {
-    const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
     RasterGrid grid;
     grid.x0 = bounds.min.x();
     grid.y0 = bounds.min.y();
@@ -48,6 +47,28 @@ void check(const RasterOptions& options)
     if (!std::isfinite(options.yaw)) throw ArgumentError("raster", "yaw", options.yaw, "a finite number, rad");
     if (!options.height_check && options.dims != 3)
         throw ArgumentError("raster", "without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
+    if (!options.snap) return;
+    if (options.dims != 3) throw ArgumentError("raster", "snap needs dims 3: a pose of a 2D raster stands on its layer by definition");
+    if (!options.height_check) throw ArgumentError("raster", "snap needs the height check: collisions alone know no layers");
+    if (!(options.offset >= 0 && options.offset <= options.max_height))
+        throw ArgumentError("raster", "offset", options.offset, "0 .. max_height with snap: poses on their layers would be aerial");
+}
+
+/// Numbers of heights, from the top down, each once.
+using Steps = std::vector<int>;
+
+bool contains(const Steps& steps, int k) { return std::find(steps.begin(), steps.end(), k) != steps.end(); }
+
+/// Those in whose place a column's snapped poses stand.
+Steps replaced_steps(const RasterGrid& grid, double offset, std::span<const RasterPose> column)
+{
+    Steps out;
+    for (const RasterPose& pose : column) {
+        if (!pose.snapped) continue;
+        const int k = grid.step_above(pose.z - offset);
+        if (k < grid.heights && (out.empty() || out.back() != k)) out.push_back(k);
+    }
+    return out;
 }
 
 /// Poses of one row of columns, with what is counted but not kept.
@@ -61,8 +82,8 @@ class RasterJudge {
 public:
     static constexpr int most_rows = 32, block = 128;  ///< of a strip; columns of a block
 
-    RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid)
-        : options_(options), grid_(grid), judging_(map, checker, query_options(options))
+    RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid, double top)
+        : options_(options), grid_(grid), top_(top), judging_(map, checker, query_options(options))
     {
     }
 
@@ -94,31 +115,41 @@ private:
 
     void judge_column(PoseJudge& judge, const Columns& columns, int i, int j, double x, double y, Row& out) const
     {
-        if (!options_.height_check || (options_.dims == 3 && !judging_.map().bounds.contains_xy(x, y, touch_tolerance))) {
-            all_heights(judge, x, y, out);
+        const ColumnView column = options_.height_check ? columns.at(i, j) : ColumnView();
+        if (options_.dims == 2) {
+            layers(judge, column, x, y, out);
             return;
         }
-        const ColumnView column = columns.at(i, j);
-        if (options_.dims == 2) layers(judge, column, x, y, out);
-        else heights(judge, column, x, y, out);
+        const std::size_t first = out.poses.size();
+        if (options_.snap) layers(judge, column, x, y, out);
+        const std::size_t steps = out.poses.size();
+        const Steps replaced = replaced_steps(grid_, options_.offset, std::span(out.poses).subspan(first));
+        if (options_.height_check && judging_.map().bounds.contains_xy(x, y, touch_tolerance)) heights(judge, column, replaced, x, y, out);
+        else all_heights(judge, replaced, x, y, out);
+        if (steps > first)
+            std::inplace_merge(out.poses.begin() + std::ptrdiff_t(first), out.poses.begin() + std::ptrdiff_t(steps), out.poses.end(),
+                               [](const RasterPose& a, const RasterPose& b) { return a.z > b.z; });
     }
 
     void layers(PoseJudge& judge, const ColumnView& column, double x, double y, Row& out) const
     {
         const int count = int(column.layers.size());
         for (int layer = 0; layer < count; ++layer) {
+            const double height = column.layers[std::size_t(layer)];
             if (!options_.layers.includes(layer, count)) continue;
-            const double z = column.layers[std::size_t(layer)] + options_.offset;
+            if (options_.snap && !(height >= grid_.z0 - touch_tolerance && height <= top_ + touch_tolerance)) continue;
+            const double z = height + options_.offset;
             const Judgement judged = judge.at(column, x, z);
             out.exact_checks += judged.exact_check;
-            out.poses.push_back({x, y, z, layer, judged.verdict});
+            out.poses.push_back({x, y, z, layer, judged.verdict, options_.snap});
         }
     }
 
-    /// Heights at which the ground may be near enough, from the top down: the rest is aerial without a look.
-    const std::vector<int>& near_heights(const ColumnView& column) const
+    /// Heights at which the ground may be near enough, and the replaced ones, from the top down: the rest is aerial without
+    /// a look.
+    const Steps& near_heights(const ColumnView& column, const Steps& replaced) const
     {
-        thread_local std::vector<int> near;
+        thread_local Steps near;
         near.clear();
         for (const Span& span : column.spans) {
             const double first = std::ceil((span.top - grid_.z0) / grid_.step_z) - 1;
@@ -127,19 +158,21 @@ private:
             const int to = int(std::clamp(last, -1.0, double(grid_.heights - 1)));
             for (int k = to; k >= from; --k) near.push_back(k);
         }
-        if (column.spans.size() > 1) {
+        near.insert(near.end(), replaced.begin(), replaced.end());
+        if (column.spans.size() + replaced.size() > 1) {
             std::sort(near.begin(), near.end(), std::greater<>());
             near.erase(std::unique(near.begin(), near.end()), near.end());
         }
         return near;
     }
 
-    void heights(PoseJudge& judge, const ColumnView& column, double x, double y, Row& out) const
+    void heights(PoseJudge& judge, const ColumnView& column, const Steps& replaced, double x, double y, Row& out) const
     {
         const bool every_layer = options_.layers.kind == LayerChoice::Kind::All;
-        const std::vector<int>& near = near_heights(column);
+        const Steps& near = near_heights(column, replaced);
         if (every_layer) out.aerial += std::uint64_t(grid_.heights) - near.size();
         for (const int k : near) {
+            if (contains(replaced, k)) continue;
             const double z = grid_.z_of(k);
             if (!every_layer) {
                 const std::int32_t layer = layer_of(column, ground_below(column, z));
@@ -153,9 +186,10 @@ private:
     }
 
     /// A column whose heights all count: outside the map, or for collisions alone.
-    void all_heights(PoseJudge& judge, double x, double y, Row& out) const
+    void all_heights(PoseJudge& judge, const Steps& replaced, double x, double y, Row& out) const
     {
         for (int k = grid_.heights - 1; k >= 0; --k) {
+            if (contains(replaced, k)) continue;
             const double z = grid_.z_of(k);
             Judgement judged;  // outside
             if (!options_.height_check) judged = judge.collision(x, z);
@@ -174,10 +208,20 @@ private:
 
     const RasterOptions& options_;
     const RasterGrid& grid_;
+    const double top_;  ///< upper limit of the bounds' z
     const Judging judging_;
 };
 
 }  // namespace
+
+int RasterGrid::step_above(double height) const
+{
+    const double lowest = height - touch_tolerance;
+    int k = int(std::clamp(std::ceil((lowest - z0) / step_z), 0.0, double(heights)));
+    while (k > 0 && z_of(k - 1) >= lowest) --k;  // what rounding took
+    while (k < heights && z_of(k) < lowest) ++k;
+    return k;
+}
 
 RasterResult raster(const Map& map, const CollisionChecker& checker, const RasterOptions& options)
 {
@@ -185,8 +229,10 @@ RasterResult raster(const Map& map, const CollisionChecker& checker, const Raste
     RasterResult out;
     out.dims = options.dims;
     out.yaw = options.yaw;
-    out.grid = grid_of(map, options);
-    const RasterJudge judge(map, checker, options, out.grid);
+    out.offset = options.offset;
+    const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
+    out.grid = grid_of(bounds, options);
+    const RasterJudge judge(map, checker, options, out.grid, bounds.max.z());
     std::vector<Row> rows(std::size_t(out.grid.rows));
     // Without heights rows share nothing, and each takes long.
     const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
@@ -206,6 +252,29 @@ RasterResult raster(const Map& map, const CollisionChecker& checker, const Raste
         row = {};
     }
     return out;
+}
+
+void for_each_pose(const RasterResult& raster, bool aerial, const std::function<void(const RasterPose&)>& visit)
+{
+    if (!aerial || raster.dims != 3) {
+        for (const RasterPose& pose : raster.poses) visit(pose);
+        return;
+    }
+    const RasterGrid& grid = raster.grid;
+    auto next = raster.poses.begin();
+    for (int j = 0; j < grid.rows; ++j)
+        for (int i = 0; i < grid.cols; ++i) {
+            const double x = grid.x_of(i), y = grid.y_of(j);
+            const auto end = std::find_if(next, raster.poses.end(), [&](const RasterPose& pose) { return pose.x != x || pose.y != y; });
+            const Steps replaced = replaced_steps(grid, raster.offset, std::span(next, end));
+            for (int k = grid.heights - 1; k >= 0; --k) {
+                const double z = grid.z_of(k);
+                while (next != end && (next->z > z || (next->snapped && next->z == z))) visit(*next++);
+                if (next != end && next->z == z) visit(*next++);
+                else if (!contains(replaced, k)) visit({x, y, z, -1, Verdict::Aerial});
+            }
+            while (next != end) visit(*next++);
+        }
 }
 
 }  // namespace spawnfield

@@ -89,9 +89,8 @@ private:
 
 }  // namespace
 
-MeshNames append_mesh(Scene& scene, std::uint32_t part, const std::filesystem::path& file, const MeshOptions& options)
+MeshNames append_mesh(Scene& scene, std::uint32_t part, const FileMesh& mesh, const MeshOptions& options)
 {
-    const FileMesh mesh = read_mesh(file);
     const char up = options.up != 0 ? options.up : mesh.up;
     MeshNames names{{}, mesh.materials};
     for (const FileMesh::Node& node : mesh.nodes) {

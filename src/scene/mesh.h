@@ -5,6 +5,8 @@
 #include <spawnfield/scene.h>
 
 #include <filesystem>
+#include <map>
+#include <memory>
 
 namespace spawnfield {
 
@@ -42,6 +44,20 @@ struct FileMesh {
 /// coordinates which are no finite numbers.
 FileMesh read_mesh(const std::filesystem::path& file);
 
+/// Reads each file once for all parts that name it, and keeps it only until the last of them has it.
+class MeshFiles {
+public:
+    void expect(const std::filesystem::path& file) { ++files_[file].uses_left; }
+    std::shared_ptr<const FileMesh> read(const std::filesystem::path& file);
+
+private:
+    struct Entry {
+        std::size_t uses_left = 0;
+        std::shared_ptr<const FileMesh> mesh;
+    };
+    std::map<std::filesystem::path, Entry> files_;
+};
+
 /// y up to z up: (x, y, z) becomes (x, -z, y).
 inline Vec3 turned_up(const Vec3& point, char up) { return up == 'y' ? Vec3(point.x(), -point.z(), point.y()) : point; }
 
@@ -50,8 +66,8 @@ struct MeshNames {
     std::vector<std::string> nodes, materials;
 };
 
-/// Appends the file's faces to the scene as pieces of `part`.
-MeshNames append_mesh(Scene& scene, std::uint32_t part, const std::filesystem::path& file, const MeshOptions& options);
+/// Appends the mesh's faces to the scene as pieces of `part`.
+MeshNames append_mesh(Scene& scene, std::uint32_t part, const FileMesh& mesh, const MeshOptions& options);
 
 /// A horizontal rectangle of the given side lengths around the pose's origin.
 void append_plane(Scene& scene, std::uint32_t part, double size_x, double size_y, const Pose& pose, bool sides_up);

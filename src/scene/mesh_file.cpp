@@ -146,4 +146,14 @@ FileMesh read_mesh(const std::filesystem::path& file)
     return mesh;
 }
 
+std::shared_ptr<const FileMesh> MeshFiles::read(const std::filesystem::path& file)
+{
+    Entry& entry = files_[file];
+    if (!entry.mesh) entry.mesh = std::make_shared<const FileMesh>(read_mesh(file));
+    std::shared_ptr<const FileMesh> mesh = entry.mesh;
+    if (entry.uses_left <= 1) entry.mesh.reset();
+    else --entry.uses_left;
+    return mesh;
+}
+
 }  // namespace spawnfield

@@ -106,12 +106,6 @@ void tell_idle_rules(const std::filesystem::path& file, const std::vector<LabelR
             scene.notices.push_back(file.string() + ": label \"" + rule.pattern + "\" matches no node, material or part; there are " + some);
 }
 
-void add_names(const Names& more, Names& names)
-{
-    for (const std::string& name : more)
-        if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-}
-
 /// Reads a file that the part names; what is wrong with it is told with part and key.
 template <class Read>
 void in_part(const YamlMap& map, const std::string& key, Read read)
@@ -140,7 +134,26 @@ MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
     return mesh;
 }
 
-void read_part(const YamlMap& map, const std::filesystem::path& folder, const SceneOptions& options, Scene& scene, Names& names)
+void add_names(const Names& more, Names& names)
+{
+    for (const std::string& name : more)
+        if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+/// What the parts of a scene.yaml have in common.
+struct SceneFile {
+    std::filesystem::path folder;
+    const SceneOptions& options;
+    MeshFiles meshes;
+    Names names;  ///< that label rules of the options can match
+
+    void add(const Names& more)
+    {
+        if (!options.labels.empty()) add_names(more, names);  // a scene may have 100,000 names
+    }
+};
+
+void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
 {
     const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
                                       {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels"});
@@ -152,8 +165,8 @@ void read_part(const YamlMap& map, const std::filesystem::path& folder, const Sc
     Label label = read_label(map, "obstacle");
     const std::string name = map.text("name");
     if (kind != "mesh") {
-        add_names({name}, names);
-        for (const FaceRule& rule : either_rules(options.labels))
+        file.add({name});
+        for (const FaceRule& rule : either_rules(file.options.labels))
             if (matches(rule.pattern, name)) {
                 label = rule.label;
                 break;
@@ -161,12 +174,12 @@ void read_part(const YamlMap& map, const std::filesystem::path& folder, const Sc
     }
     const std::uint32_t part = add_part(scene, name, kind, label);
     if (kind == "mesh") {
-        const MeshOptions mesh = read_mesh_options(map, options);
-        in_part(map, "mesh", [&](const auto& file) {
-            const MeshNames found = append_mesh(scene, part, folder / file, mesh);
+        const MeshOptions mesh = read_mesh_options(map, file.options);
+        in_part(map, "mesh", [&](const auto& path) {
+            const MeshNames found = append_mesh(scene, part, *file.meshes.read(file.folder / path), mesh);
             tell_idle_rules(map, mesh.rules, found, scene);
-            add_names(found.nodes, names);
-            add_names(found.materials, names);
+            file.add(found.nodes);
+            file.add(found.materials);
         });
     } else if (label == Label::Ignore) {
         return;
@@ -176,11 +189,11 @@ void read_part(const YamlMap& map, const std::filesystem::path& folder, const Sc
     } else if (kind == "heightmap") {
         const HeightmapOptions heightmap = read_heightmap_options(map.map("heightmap"));
         const bool up = map.one_of("sides", {"both", "up"}, "both") == "up";
-        in_part(map.map("heightmap"), "file", [&](const auto& file) {
-            append_heightmap(scene, part, read_heightmap(folder / file, heightmap), map.pose(), up);
+        in_part(map.map("heightmap"), "file", [&](const auto& path) {
+            append_heightmap(scene, part, read_heightmap(file.folder / path, heightmap), map.pose(), up);
         });
     } else if (kind == "octomap") {
-        in_part(map, "octomap", [&](const auto& file) { append_octomap(scene, part, folder / file, map.pose()); });
+        in_part(map, "octomap", [&](const auto& path) { append_octomap(scene, part, file.folder / path, map.pose()); });
     } else {
         scene.primitives.push_back({read_shape(map, kind), part, label});
         scene.parts[part].solid_pieces = 1;
@@ -194,7 +207,9 @@ Scene read_scene_yaml(const std::filesystem::path& file, const SceneOptions& opt
     Scene scene;
     scene.name = root.text("name", file.stem().string());
     std::set<std::string> part_names;
-    Names names;
+    SceneFile common{file.parent_path(), options, {}, {}};
+    for (const YAML::Node& node : root.list("parts"))
+        if (node.IsMap() && node["mesh"] && node["mesh"].IsScalar()) common.meshes.expect(common.folder / node["mesh"].Scalar());
     std::size_t number = 0;
     for (const YAML::Node& node : root.list("parts")) {
         ++number;
@@ -202,10 +217,10 @@ Scene read_scene_yaml(const std::filesystem::path& file, const SceneOptions& opt
         const std::string name = unnamed.text("name");
         const YamlMap map(node, file.string(), "part \"" + name + "\"");
         if (!part_names.insert(name).second) map.fail("name", "is given to an earlier part too, needs to be unique");
-        read_part(map, file.parent_path(), options, scene, names);
+        read_part(map, common, scene);
     }
     if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
-    tell_idle_rules(file, options.labels, names, scene);
+    tell_idle_rules(file, options.labels, common.names, scene);
     return scene;
 }
 
@@ -234,7 +249,7 @@ Scene read_bare_file(const std::filesystem::path& file, const std::string& exten
     mesh.scale = Vec3::Constant(options.scale);
     mesh.up = options.up;
     mesh.rules = either_rules(options.labels);
-    const MeshNames found = append_mesh(scene, add_part(scene, scene.name, "mesh", fallback), file, mesh);
+    const MeshNames found = append_mesh(scene, add_part(scene, scene.name, "mesh", fallback), read_mesh(file), mesh);
     Names names;
     add_names(found.nodes, names);
     add_names(found.materials, names);

@@ -1,10 +1,11 @@
 #include "floors.h"
 
-#include "things.h"
+#include "worlds/things.h"
 
 #include <algorithm>
 
 using namespace spawnfield;
+using namespace worlds;
 
 namespace bench {
 namespace {

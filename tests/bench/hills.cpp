@@ -1,6 +1,6 @@
 #include "hills.h"
 
-#include "things.h"
+#include "worlds/things.h"
 
 #include <Eigen/Geometry>
 
@@ -10,6 +10,7 @@
 #include <queue>
 
 using namespace spawnfield;
+using namespace worlds;
 
 namespace bench {
 namespace {

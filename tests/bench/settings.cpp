@@ -1,11 +1,12 @@
 #include "workbench.h"
 
 #include "hills.h"
-#include "lattice.h"
+#include "worlds/lattice.h"
 #include "floors.h"
 #include "town.h"
 
 using namespace spawnfield;
+using namespace worlds;
 
 namespace bench {
 namespace {

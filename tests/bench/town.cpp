@@ -1,6 +1,6 @@
 #include "town.h"
 
-#include "things.h"
+#include "worlds/things.h"
 
 #include <Eigen/Geometry>
 
@@ -9,6 +9,7 @@
 #include <numbers>
 
 using namespace spawnfield;
+using namespace worlds;
 
 namespace bench {
 namespace {

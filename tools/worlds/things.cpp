@@ -8,7 +8,7 @@
 
 using namespace spawnfield;
 
-namespace bench {
+namespace worlds {
 
 using Vec2 = Eigen::Vector2d;
 
@@ -231,4 +231,4 @@ Pieces fence_panel(Random& random, const Vec3& from, const Vec3& to)
     return out;
 }
 
-}  // namespace bench
+}  // namespace worlds

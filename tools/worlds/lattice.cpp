@@ -7,7 +7,7 @@
 
 using namespace spawnfield;
 
-namespace bench {
+namespace worlds {
 namespace {
 
 Mat3 any_rotation(Random& random)
@@ -87,4 +87,4 @@ Robot hull_robot()
     return robot;
 }
 
-}  // namespace bench
+}  // namespace worlds

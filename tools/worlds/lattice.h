@@ -3,7 +3,7 @@
 #include <spawnfield/robot.h>
 #include <spawnfield/scene.h>
 
-namespace bench {
+namespace worlds {
 
 /// cols x rows x heights obstacles 1 m apart in the open, the first at the origin: nothing that casts ground. Each is
 /// 0.2 to 0.4 m across; a robot that is less than 0.5 m long from its origin meets one at each lattice point.
@@ -17,4 +17,4 @@ spawnfield::Scene empty_scene();  ///< nothing at all
 /// An ellipsoid as large as the Husky's box, of 224 triangles.
 spawnfield::Robot hull_robot();
 
-}  // namespace bench
+}  // namespace worlds

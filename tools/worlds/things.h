@@ -1,10 +1,10 @@
 #pragma once
 
-#include "../hand_scene.h"
-#include "../random_scene.h"
+#include "hand_scene.h"
+#include "random.h"
 
 /// What stands in the benchmark's landscapes: closed pieces around their own origin, the ground at z = 0, metres.
-namespace bench {
+namespace worlds {
 
 using Pieces = std::vector<hand::Mesh>;
 
@@ -30,4 +30,4 @@ Pieces rock(Random& random);  ///< a rough ball, half sunk
 /// A post at `from`, and two rails 2 to 4 cm thick from there to `to`.
 Pieces fence_panel(Random& random, const spawnfield::Vec3& from, const spawnfield::Vec3& to);
 
-}  // namespace bench
+}  // namespace worlds

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <spawnfield/scene.h>
+
+#include <filesystem>
+
+/// Worlds made by program: the same seed gives the same world everywhere.
+namespace worlds {
+
+/// A place worth a look.
+struct Landmark {
+    std::string name;
+    spawnfield::Bounds where;  ///< m; z as high as what stands there
+};
+
+struct World {
+    spawnfield::Scene scene;
+    std::vector<Landmark> landmarks = {};
+};
+
+/// Cubes of 0.5 m, 1 m apart, the first at the origin: 10 x 10 x 500 of them, and no ground. A robot's body of 0.5 m or
+/// more meets one at each integer position.
+World benchmark_cubes(int heights = 500);
+
+/// The same of convex balls of 80 triangles and 0.5 m across.
+World benchmark_balls(int heights = 500);
+
+/// Writes scene.yaml, meshes/<part>.obj for parts of triangles, and landmarks.csv (name,x0,y0,z0,x1,y1,z1) into a folder that
+/// is made where missing. Lengths are rounded to 0.01 mm. load_scene reads the world back.
+/// Throws std::runtime_error if something can't be written.
+void write_world(const World& world, const std::filesystem::path& folder);
+
+}  // namespace worlds
