@@ -1,8 +1,8 @@
 #include "catch.h"
 #include "compare.h"
-#include "hand_scene.h"
 #include "query/contacts.h"
 #include "slow.h"
+#include "worlds/hand_scene.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>

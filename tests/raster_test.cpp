@@ -257,7 +257,7 @@ TEST_CASE("with snap a floor between two steps is found, without it is not")
         CHECK(pose.verdict == Verdict::Valid);
         CHECK(pose.snapped);
     }
-    CHECK(found.counts == VerdictCounts{0, 9 * 2, 0, 0, 0, 9});  // of 0, 2.5 and 5 the second is replaced
+    CHECK(found.counts == VerdictCounts{0, 9 * 2, 0, 0, 0, 0, 0, 9});  // of 0, 2.5 and 5 the second is replaced
     options.snap = false;
     const RasterResult missed = raster(map, checker, options);
     CHECK(missed.poses.empty());
