@@ -1,4 +1,5 @@
 #include "bridge.h"
+#include "complex_landmarks.h"
 #include "island.h"
 #include "things.h"
 
@@ -16,7 +17,7 @@ namespace {
 constexpr int house_models = 28, tower_models = 4, car_models = 6;
 constexpr int wild_trees = 1500;
 constexpr double highest = 80;       // m, of all that stands on the island
-constexpr double deepest_floor = 1;  // m under the sea: houses do not stand deeper
+constexpr double deepest_floor = 1.5;  // m under the sea: houses do not stand deeper
 constexpr double panel = 3;          // m, length of a fence's
 constexpr double low_fence = 0.9, high_fence = 1.6;
 
@@ -247,7 +248,7 @@ void Settler::add_street_cars(const Vec2& corner)
     for (int i = 0; i < 5; ++i) {
         const bool along_u = random_.chance(0.6), across = random_.chance(0.1);
         const double at = random_.between(8, along_u ? StreetGrid::block_u - 8 : StreetGrid::block_v - 8);
-        const double side = random_.between(2.6, 3.6) * (random_.chance(0.5) ? 1 : -1);
+        const double side = random_.between(across ? 0 : 2.6, across ? 1.5 : 3.6) * (random_.chance(0.5) ? 1 : -1);
         const Vec2 uv = corner + (along_u ? Vec2(at, side) : Vec2(side, at));
         add_car({StreetGrid::to_world(uv), (along_u ? 0 : 1) + (across ? 1 : 0) + 2 * random_.below(2)}, 0.12);
     }
@@ -287,6 +288,7 @@ World Settler::settle()
         for (int i = -Island::most_blocks; i < Island::most_blocks; ++i)
             if (island_.is_settled(i, j)) add_block(i, j);
     add_wild_trees();
+    world_.landmarks = complex_landmarks(world_.scene, island_);
     return std::move(world_);
 }
 

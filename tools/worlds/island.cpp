@@ -12,14 +12,15 @@ namespace worlds {
 namespace {
 
 // Shares of the square's columns, which fix the rim and the height of the sea.
-constexpr double ground_share = 0.731;  // the rim's own columns come on top
-constexpr double dry_share = 0.437;
+constexpr double ground_share = 0.7325;  // the rim's own columns come on top
+constexpr double dry_share = 0.4335;
 
 // m, beside the lengths in StreetGrid.
-constexpr double rim_radius = 570, shore_inland = 95;
-constexpr double bed_slope = 0.06, beach_slope = 0.35;  // rise per run
+constexpr double rim_radius = 583, shore_inland = 95;
+constexpr double coast_width = 120, dune_height = 0.4;
+constexpr double bed_slope = 0.056;  // rise per run
 constexpr double canal_depth = 2.5, canal_width = 30, canal_end = 80;
-constexpr double kerb = 0.2, roughness = 0.25;
+constexpr double kerb = 0.2, roughness = 0.4;
 
 double smooth_step(double from, double to, double value)
 {
@@ -56,12 +57,13 @@ double Waves::at(const Vec2& p) const
 Vec2 StreetGrid::to_world(const Vec2& uv) { return origin() + Eigen::Rotation2Dd(turn) * uv; }
 Vec2 StreetGrid::from_world(const Vec2& p) { return Eigen::Rotation2Dd(-turn) * (p - origin()); }
 
-Island::Island(Random& random) : bays_(random, 330), coves_(random, 90), swell_(random, 260), knolls_(random, 45)
+Island::Island(Random& random)
+    : bays_(random, 330), coves_(random, 90), shoals_(random, 200), swell_(random, 260), knolls_(random, 80)
 {
-    hills_ = {{830, 800}, {600, 930}, {930, 520}};
-    for (Vec2& hill : hills_) {
+    hills_ = {{{830, 800}, 36, 95}, {{600, 930}, 20, 80}, {{930, 520}, 14, 75}};
+    for (Hill& hill : hills_) {
         const double east = random.between(-40, 40), north = random.between(-40, 40);
-        hill += Vec2(east, north);
+        hill.top += Vec2(east, north);
     }
     choose_blocks();
     shape(random);
@@ -73,29 +75,33 @@ Island::Island(Random& random) : bays_(random, 330), coves_(random, 90), swell_(
 double Island::inland(const Vec2& p) const
 {
     const Vec2 d = (p - StreetGrid::origin()).cwiseAbs();
-    const double radius = std::pow(std::pow(d.x(), 4) + std::pow(d.y(), 4), 0.25);
-    return rim_radius - radius + 22 * std::clamp(bays_.at(p), -1.8, 1.8) + 6 * std::clamp(coves_.at(p), -2.0, 2.0);
+    const double radius = std::cbrt(std::pow(d.x(), 3) + std::pow(d.y(), 3));
+    return rim_radius - radius + 28 * std::clamp(bays_.at(p), -1.5, 1.5) + 5 * std::clamp(coves_.at(p), -2.0, 2.0);
+}
+
+/// m from the shore inwards: it keeps away from the rim, now more, now less.
+double Island::from_shore(const Vec2& p) const
+{
+    return inland(p) - shore_inland - 24 * std::clamp(shoals_.at(p), -1.6, 1.6);
 }
 
 /// m above the sea, far from shore and canal: low in the south-west, hills in the north-east.
 double Island::land(const Vec2& p) const
 {
     const double north_east = (p - StreetGrid::origin()).dot(Vec2(0.6, 0.8));
-    const double upland = smooth_step(-80, 420, north_east);
-    double height = 0.8 + 0.9 * swell_.at(p) + upland * (22 + 1.5 * knolls_.at(p));
-    const double tops[] = {36, 20, 14}, spreads[] = {95, 80, 75};
-    for (std::size_t i = 0; i < hills_.size(); ++i)
-        height += tops[i] * std::exp(-0.5 * (p - hills_[i]).squaredNorm() / (spreads[i] * spreads[i]));
+    double height = 0.5 + 0.9 * swell_.at(p) + smooth_step(-80, 420, north_east) * (22 + 0.9 * knolls_.at(p));
+    for (const Hill& hill : hills_) height += hill.height * std::exp(-0.5 * (p - hill.top).squaredNorm() / (hill.spread * hill.spread));
     return height;
 }
 
 /// m above the sea, without kerbs and roughness.
 double Island::smooth_height(const Vec2& p) const
 {
-    const double from_shore = inland(p) - shore_inland;
-    const double coast = from_shore * (from_shore < 0 ? bed_slope : beach_slope);
+    const double depth = from_shore(p);
+    if (depth < 0) return bed_slope * depth;
+    const double dune = dune_height * std::min(1.0, depth / 10);
     const double bank = 0.5 * (canal_distance(StreetGrid::from_world(p)) - canal_width / 2) - canal_depth;
-    return std::min({coast, land(p), std::max(bank, -canal_depth)});
+    return std::min(dune + land(p) * std::min(1.0, depth / coast_width), std::max(bank, -canal_depth));
 }
 
 void Island::choose_blocks()
@@ -104,7 +110,7 @@ void Island::choose_blocks()
         for (int i = -most_blocks; i < most_blocks; ++i) {
             const Vec2 middle = StreetGrid::to_world({(i + 0.5) * StreetGrid::block_u, (j + 0.5) * StreetGrid::block_v});
             const double east = land(middle + Vec2(20, 0)) - land(middle - Vec2(20, 0)), north = land(middle + Vec2(0, 20)) - land(middle - Vec2(0, 20));
-            settled_.push_back(inland(middle) > shore_inland + 30 && land(middle) < 26 && std::hypot(east, north) / 40 < 0.13);
+            settled_.push_back(from_shore(middle) > 25 && land(middle) < 26 && std::hypot(east, north) / 40 < 0.13);
         }
 }
 

@@ -37,7 +37,7 @@ struct StreetGrid {
 class Island {
 public:
     static constexpr double low_x = -128, low_y = -212, side = 1280;  // m, of the square
-    static constexpr double cell = 2, sea_level = 4;                  // m
+    static constexpr double cell = 2, sea_level = 3.35;               // m
     static constexpr double canal_u = -StreetGrid::block_u / 2;       // m, of its middle line where the bridge is
     static constexpr double bridge_v = -StreetGrid::block_v;          // m, of the street that crosses it
 
@@ -53,11 +53,16 @@ public:
     void add_to(spawnfield::Scene& scene) const;  ///< ground, streets and sea
 
 private:
+    struct Hill {
+        Vec2 top;
+        double height, spread;  ///< m; the spread is its shape's standard deviation
+    };
     static constexpr int cells = int(side / cell);
 
     double smooth_height(const Vec2& p) const;
     double land(const Vec2& p) const;
     double inland(const Vec2& p) const;
+    double from_shore(const Vec2& p) const;
     bool is_street(const Vec2& p) const;
     hand::Mesh sheet(bool streets) const;
     void choose_blocks();
@@ -69,8 +74,8 @@ private:
     static Vec2 middle(int row, int col) { return {low_x + cell * (col + 0.5), low_y + cell * (row + 0.5)}; }
     static Vec2 corner(int row, int col) { return {low_x + cell * col, low_y + cell * row}; }
 
-    Waves bays_, coves_, swell_, knolls_;
-    std::vector<Vec2> hills_;
+    Waves bays_, coves_, shoals_, swell_, knolls_;
+    std::vector<Hill> hills_;
     std::vector<double> heights_;       ///< m, of the corners, row after row from the least y
     std::vector<char> has_ground_;      ///< of the cells, likewise
     std::vector<char> settled_;         ///< of the blocks
