@@ -1,10 +1,12 @@
 #include "catch.h"
 #include "temp_folder.h"
+#include "test_map.h"
 #include "worlds/world.h"
 
 #include <spawnfield/scene.h>
 
 #include <cmath>
+#include <map>
 
 using namespace spawnfield;
 
@@ -48,4 +50,166 @@ TEST_CASE("equal meshes share a file, each at its own place")
             largest = std::max(largest, (scene.vertices[scene.triangles[t][corner]] - world.scene.vertices[world.scene.triangles[t][corner]]).norm());
     CHECK(largest < 2e-5);
     for (const Piece& piece : scene.pieces) CHECK(piece.solid);
+}
+
+namespace {
+
+constexpr worlds::Bridge both_bridges[] = {worlds::Bridge::OneObject, worlds::Bridge::DeckAlone};
+
+struct ComplexDistrict {
+    TestMap map;  ///< as it is read back
+    std::vector<worlds::Landmark> landmarks;
+};
+
+const ComplexDistrict& complex_district(worlds::Bridge bridge)
+{
+    static std::map<worlds::Bridge, ComplexDistrict> made;
+    if (made.count(bridge) == 0) {
+        const worlds::World world = worlds::complex_district(1, bridge);
+        made[bridge] = {map_of(read_back(world), 2), world.landmarks};
+    }
+    return made[bridge];
+}
+
+/// The Husky's box, 1 m above each layer.
+RasterResult husky_raster(const TestMap& map, const Bounds& bounds, double step)
+{
+    RasterOptions options;
+    options.bounds = bounds;
+    options.step = step;
+    options.offset = 1;
+    return raster(map, checker_of(map, load_robot("box:0.99,0.67,0.39")), options);
+}
+
+double count_of(const RasterResult& result, Verdict verdict) { return double(result.counts[std::size_t(verdict)]); }
+
+/// Bounds of the triangles of parts whose names begin so.
+std::vector<Bounds> bounds_of(const Scene& scene, const std::string& beginning)
+{
+    std::map<std::uint32_t, Bounds> bounds;
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        const std::uint32_t part = scene.pieces[scene.triangle_pieces[t]].part;
+        if (!scene.parts[part].name.starts_with(beginning)) continue;
+        for (const std::uint32_t v : scene.triangles[t]) bounds[part].extend(scene.vertices[v]);
+    }
+    std::vector<Bounds> list;
+    for (const auto& [part, of_part] : bounds) list.push_back(of_part);
+    return list;
+}
+
+}  // namespace
+
+TEST_CASE("the complex district has the extents of its model, and nothing on its rim but sea")
+{
+    const TestMap& map = complex_district(worlds::Bridge::OneObject).map;
+    CHECK(map.bounds.min.head<2>() == Eigen::Vector2d(-128, -212));
+    CHECK(map.bounds.max.head<2>() == Eigen::Vector2d(1152, 1068));
+    CHECK(map.bounds.min.z() > -6);
+    CHECK(map.bounds.max.z() > 70);
+    CHECK(map.bounds.max.z() <= 80);
+    CHECK(map.scene.triangles.size() < 1500000);
+    for (const char* sheet : {"ground", "streets"})
+        for (const Bounds& bounds : bounds_of(map.scene, sheet)) {
+            CHECK((bounds.min - map.bounds.min).head<2>().minCoeff() > 4);
+            CHECK((map.bounds.max - bounds.max).head<2>().minCoeff() > 4);
+        }
+}
+
+TEST_CASE("of the complex district's columns as many are valid, invalid and without terrain as of its model's")
+{
+    const TestMap& map = complex_district(worlds::Bridge::OneObject).map;
+    const RasterResult result = husky_raster(map, {}, 10);
+    const double columns = double(result.grid.cols) * result.grid.rows;
+    const double valid = count_of(result, Verdict::Valid);
+    const double invalid = count_of(result, Verdict::Submerged) + count_of(result, Verdict::Collision);
+    CHECK(valid / columns == Approx(0.377).margin(0.01));
+    CHECK(invalid / columns == Approx(0.355).margin(0.01));
+    CHECK((valid + invalid) / columns == Approx(0.732).margin(0.01));
+    CHECK(count_of(result, Verdict::Collision) > 0.04 * columns);
+}
+
+TEST_CASE("the same seed gives the same complex district, another seed another")
+{
+    const auto files_of = [](std::uint64_t seed) {
+        const TempFolder folder;
+        worlds::write_world(worlds::complex_district(seed), folder.path());
+        std::map<std::string, std::string> files;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
+            if (entry.is_regular_file()) files[std::filesystem::relative(entry.path(), folder.path()).string()] = bytes_of(entry.path());
+        return files;
+    };
+    const auto files = files_of(5);
+    CHECK(files.size() < 400);  // houses and cars share theirs
+    CHECK(files == files_of(5));
+    CHECK(files != files_of(6));
+}
+
+TEST_CASE("houses, cars and the bridge are solid when they are read back")
+{
+    for (const worlds::Bridge bridge : both_bridges) {
+        std::map<std::string, int> solids;
+        for (const Part& part : complex_district(bridge).map.scene.parts) {
+            const std::string kind = part.name.substr(0, part.name.find('-'));
+            if (kind != "house" && kind != "car" && kind != "bridge") continue;
+            INFO(part.name);
+            CHECK(part.open_edges == 0);
+            CHECK(part.sheet_pieces == 0);
+            CHECK(part.solid_pieces > 0);
+            ++solids[kind];
+        }
+        CHECK(solids["house"] > 500);
+        CHECK(solids["car"] > 300);
+        CHECK(solids["bridge"] == (bridge == worlds::Bridge::OneObject ? 1 : 11));
+    }
+}
+
+TEST_CASE("a Husky finds room on the bridge's deck under its frames, which are layers only where they are terrain")
+{
+    const Scene& scene = complex_district(worlds::Bridge::DeckAlone).map.scene;
+    const std::vector<Bounds> frames = bounds_of(scene, "bridge-frame");
+    REQUIRE(frames.size() == 5);
+    for (const worlds::Bridge bridge : both_bridges) {
+        const TestMap& map = complex_district(bridge).map;
+        const CollisionChecker checker = checker_of(map, husky());
+        for (const Bounds& frame : frames) {
+            const Vec3 middle = (frame.min + frame.max) / 2;
+            const double deck = frame.min.z() + 0.1;  // the frame's feet reach into it
+            const std::vector<double> layers = column_at(map.geometry, middle.x(), middle.y()).layers;
+            REQUIRE(layers.size() == (bridge == worlds::Bridge::OneObject ? 3 : 2));
+            CHECK(layers[layers.size() - 2] == Approx(deck).margin(1e-4));
+            const Pose pose = {{middle.x(), middle.y(), deck + 0.1}, rotation_from_rpy(0, 0, 0.3)};
+            CHECK(check_poses(map, checker, {pose}).front().verdict == Verdict::Valid);
+        }
+    }
+}
+
+TEST_CASE("landmarks of the complex district hold what they say")
+{
+    const auto& [map, landmarks] = complex_district(worlds::Bridge::OneObject);
+    std::map<std::string, Bounds> regions;
+    for (const auto& [name, where] : landmarks) regions[name] = where;
+    REQUIRE(regions.size() == 5);
+    const auto parts_in = [&, &map = map](const char* region, const char* kind) {
+        const std::vector<Bounds> bounds = bounds_of(map.scene, kind);
+        return std::count_if(bounds.begin(), bounds.end(), [&](const Bounds& part) { return part.meets(regions.at(region)); });
+    };
+    const auto fences_in = [&, &map = map](const Bounds& region) {
+        return std::count_if(map.scene.primitives.begin(), map.scene.primitives.end(), [&](const Primitive& primitive) {
+            const Vec3& place = primitive.shape.pose.position;
+            return primitive.shape.kind == ShapeKind::Box && region.contains_xy(place.x(), place.y(), 0);
+        });
+    };
+    CHECK(parts_in("car", "car") >= 1);
+    CHECK(parts_in("houses", "house") >= 8);
+    CHECK(parts_in("bridge", "bridge") == 1);
+    CHECK(fences_in(regions.at("fence_and_water")) >= 1);
+    for (const auto& [name, region] : regions) {
+        INFO(name);
+        CHECK((region.max - region.min).head<2>().minCoeff() >= 15);
+        CHECK((region.max - region.min).head<2>().maxCoeff() <= 80);
+        const RasterResult result = husky_raster(map, region, 1);
+        CHECK(count_of(result, Verdict::Valid) > 0);
+        const bool has_water = name == "fence_and_water" || name == "bridge" || name == "shore";
+        CHECK((count_of(result, Verdict::Submerged) > 0.2 * double(result.poses.size())) == has_water);
+    }
 }

@@ -271,11 +271,7 @@ Mat3 Settler::along_ground(const Vec2& p, double turn) const
 
 void Settler::add(const char* name, const Pieces& pieces, const Pose& pose)
 {
-    const Pose placed = Pose{{corner_.x(), corner_.y(), 0}, Mat3::Identity()} * pose;
-    const std::string number = std::to_string(scene_.parts.size());
-    hand::add_mesh(scene_, Label::Obstacle, hand::moved(pieces.front(), placed));
-    for (std::size_t i = 1; i < pieces.size(); ++i) hand::add_piece(scene_, hand::moved(pieces[i], placed));
-    scene_.parts.back().name = name + ("-" + number);
+    add_thing(scene_, name, Label::Obstacle, pieces, Pose{{corner_.x(), corner_.y(), 0}, Mat3::Identity()} * pose);
 }
 
 /// Its floor at the highest ground around it, its foundation below the lowest.

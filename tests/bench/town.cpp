@@ -32,8 +32,6 @@ public:
 private:
     double shore(double y) const;
     double height(double x, double y) const;
-    void add(const char* name, Label label, const hand::Mesh& mesh);
-    void add_all(const char* name, const Pieces& pieces, const Pose& pose);
     void add_ground();
     void add_bridge();
     void add_block(const Vec2& corner);
@@ -64,18 +62,6 @@ double Town::height(double x, double y) const
     return std::max(-12.0, 0.12 * inland) + 0.4 * std::min(1.0, -inland / 20) * std::sin(x / 9) * std::cos(y / 7);
 }
 
-void Town::add(const char* name, Label label, const hand::Mesh& mesh)
-{
-    hand::add_mesh(scene_, label, mesh);
-    scene_.parts.back().name = name + ("-" + std::to_string(scene_.parts.size() - 1));
-}
-
-void Town::add_all(const char* name, const Pieces& pieces, const Pose& pose)
-{
-    add(name, Label::Obstacle, hand::moved(pieces.front(), pose));
-    for (std::size_t i = 1; i < pieces.size(); ++i) hand::add_piece(scene_, hand::moved(pieces[i], pose));
-}
-
 void Town::add_ground()
 {
     const Vec3 middle(side_ / 2, side_ / 2, 0);
@@ -98,14 +84,14 @@ void Town::add_bridge()
         return hand::moved(hand::extruded(side, -y1, -y0), {Vec3::Zero(), upright});
     };
     // Seen from its first corner all of the profile lies in view only in two halves.
-    add("bridge", Label::Terrain, beam({profile[0], profile[1], profile[4], profile[5]}, y - half, y + half));
+    add_thing(scene_, "bridge", Label::Terrain, {beam({profile[0], profile[1], profile[4], profile[5]}, y - half, y + half)}, {});
     hand::add_piece(scene_, beam({profile[1], profile[2], profile[3], profile[4]}, y - half, y + half));
     for (const double edge : {y - half + 0.2, y + half - 0.4})
-        add("railing", Label::Obstacle, beam({{from + 50, deck - 0.1}, {to, deck - 0.1}, {to, deck + 1}, {from + 50, deck + 1}}, edge, edge + 0.2));
+        add_thing(scene_, "railing", Label::Obstacle, {beam({{from + 50, deck - 0.1}, {to, deck - 0.1}, {to, deck + 1}, {from + 50, deck + 1}}, edge, edge + 0.2)}, {});
     for (double x = from + 55; x < to; x += 25)
         for (const double pier : {y - 3, y + 3}) {
             const double foot = height(x, pier) - 1;
-            add("pier", Label::Obstacle, hand::moved(hand::box({1.2, 1.2, deck - 0.7 - foot}), {{x, pier, (deck - 0.7 + foot) / 2}, Mat3::Identity()}));
+            add_thing(scene_, "pier", Label::Obstacle, {hand::moved(hand::box({1.2, 1.2, deck - 0.7 - foot}), {{x, pier, (deck - 0.7 + foot) / 2}, Mat3::Identity()})}, {});
         }
 }
 
@@ -115,42 +101,14 @@ void Town::add_pavement(const Vec2& corner)
     const double y0 = corner.y() + street / 2, y1 = corner.y() + block - street / 2;
     const BlockGrid ring = {{x0, x0 + pavement, x1 - pavement, x1}, {y0, y0 + pavement, y1 - pavement, y1}, {ground - 1, ground + kerb},
                             [](int i, int j, int) { return i != 1 || j != 1; }};
-    add("pavement", Label::Terrain, blocks(ring));
-}
-
-/// A block of a house: windows and the door are recesses; some have an upper storey set back.
-hand::Mesh recessed_house(Random& random)
-{
-    const double length = random.between(10, 14), depth = random.between(8, 10), storey = random.between(2.7, 3.2);
-    const int windows = 3, storeys = 1 + random.below(3);
-    const int door = random.below(windows);
-    BlockGrid grid;
-    grid.x = {-length / 2};
-    for (int i = 0; i < windows; ++i) {
-        const double middle = -length / 2 + (i + 0.5) * length / windows;
-        grid.x.insert(grid.x.end(), {middle - 0.6, middle + 0.6});
-    }
-    grid.x.push_back(length / 2);
-    const double recess = random.between(0.15, 1.2);
-    grid.y = {-depth / 2, -depth / 2 + recess, depth / 2 - 0.2, depth / 2};
-    grid.z = {-1};
-    for (int i = 0; i < storeys; ++i) grid.z.insert(grid.z.end(), {i * storey + (i == 0 ? 0.1 : 0), i * storey + 0.9, i * storey + 2.2});
-    grid.z.push_back(storeys * storey);
-    const bool set_back = random.chance(0.4);
-    grid.filled = [=, top = 3 * storeys](int i, int j, int k) {
-        const bool opening = i % 2 == 1, front = j == 0, back = j == 2, window = k % 3 == 2, sill = k == 1;
-        if (set_back && storeys > 1 && k > top - 3 && i < 2) return false;
-        if (!opening || !(front || back)) return true;
-        return !(window || (sill && front && i / 2 == door));
-    };
-    return blocks(grid);
+    add_thing(scene_, "pavement", Label::Terrain, {blocks(ring)}, {});
 }
 
 void Town::add_house(const Vec2& centre, double turn)
 {
     const Pose pose = {{centre.x(), centre.y(), ground}, rotation_from_rpy(0, 0, turn)};
-    if (random_.chance(0.35)) add_all("house", house(random_, 1), pose);
-    else add("house", Label::Obstacle, hand::moved(recessed_house(random_), pose));
+    if (random_.chance(0.35)) add_thing(scene_, "house", Label::Obstacle, house(random_, 1), pose);
+    else add_thing(scene_, "house", Label::Obstacle, {recessed_house(random_)}, pose);
 }
 
 /// A fence with gaps around the yard within the block, and trees in it.
@@ -162,11 +120,11 @@ void Town::add_garden(const Vec2& centre)
         for (int k = 0; k < 7; ++k) {
             if (random_.chance(0.15)) continue;
             const Vec2 along = (corners[(i + 1) % 4] - corners[i]) / 7, from = centre + corners[i] + k * along, to = from + along;
-            add_all("fence", fence_panel(random_, {from.x(), from.y(), ground}, {to.x(), to.y(), ground}), {});
+            add_thing(scene_, "fence", Label::Obstacle, fence_panel(random_, {from.x(), from.y(), ground}, {to.x(), to.y(), ground}), {});
         }
     for (int i = 0; i < 5; ++i) {
         const double x = random_.between(-9, 9), y = random_.between(-9, 9), turn = random_.between(-3, 3);
-        add_all("tree", tree(random_), {{centre.x() + x, centre.y() + y, ground}, rotation_from_rpy(0, 0, turn)});
+        add_thing(scene_, "tree", Label::Obstacle, tree(random_), {{centre.x() + x, centre.y() + y, ground}, rotation_from_rpy(0, 0, turn)});
     }
 }
 
@@ -177,11 +135,11 @@ void Town::add_street_things(const Vec2& corner)
         const bool along_x = random_.chance(0.5);
         const double at = random_.between(street, block - street), side = street / 2 - 1.1;
         const Vec2 place = corner + (along_x ? Vec2(at, side) : Vec2(side, at));
-        add_all("car", car(random_), {{place.x(), place.y(), ground}, rotation_from_rpy(0, 0, along_x ? 0 : std::numbers::pi / 2)});
+        add_thing(scene_, "car", Label::Obstacle, car(random_), {{place.x(), place.y(), ground}, rotation_from_rpy(0, 0, along_x ? 0 : std::numbers::pi / 2)});
     }
     for (double at = street; at < block - street; at += 14) {
         const Vec2 place = corner + Vec2(at, street / 2 + 0.7);
-        add_all("tree", tree(random_), {{place.x(), place.y(), ground + kerb}, Mat3::Identity()});
+        add_thing(scene_, "tree", Label::Obstacle, tree(random_), {{place.x(), place.y(), ground + kerb}, Mat3::Identity()});
     }
 }
 

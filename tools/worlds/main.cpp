@@ -15,6 +15,8 @@ const std::map<std::string, Make>& makers()
     static const std::map<std::string, Make> all = {
         {"benchmark-cubes", [](std::uint64_t) { return worlds::benchmark_cubes(); }},
         {"benchmark-balls", [](std::uint64_t) { return worlds::benchmark_balls(); }},
+        {"complex", [](std::uint64_t seed) { return worlds::complex_district(seed); }},
+        {"complex-deck", [](std::uint64_t seed) { return worlds::complex_district(seed, worlds::Bridge::DeckAlone); }},
     };
     return all;
 }

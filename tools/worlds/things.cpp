@@ -186,6 +186,33 @@ Pieces house(Random& random, double foundation)
     return out;
 }
 
+hand::Mesh recessed_house(Random& random, const RecessedHouse& plan)
+{
+    const double length = random.between(10, 14), depth = random.between(8, 10), storey = random.between(2.7, 3.2);
+    const int windows = 3, storeys = plan.least_storeys + random.below(plan.most_storeys - plan.least_storeys + 1);
+    const int door = random.below(windows);
+    BlockGrid grid;
+    grid.x = {-length / 2};
+    for (int i = 0; i < windows; ++i) {
+        const double middle = -length / 2 + (i + 0.5) * length / windows;
+        grid.x.insert(grid.x.end(), {middle - 0.6, middle + 0.6});
+    }
+    grid.x.push_back(length / 2);
+    const double recess = random.between(0.15, 1.2);
+    grid.y = {-depth / 2, -depth / 2 + recess, depth / 2 - 0.2, depth / 2};
+    grid.z = {-plan.foundation};
+    for (int i = 0; i < storeys; ++i) grid.z.insert(grid.z.end(), {i * storey + (i == 0 ? 0.1 : 0), i * storey + 0.9, i * storey + 2.2});
+    grid.z.push_back(storeys * storey);
+    const bool set_back = random.chance(0.4);
+    grid.filled = [=, top = 3 * storeys](int i, int j, int k) {
+        const bool opening = i % 2 == 1, front = j == 0, back = j == 2, window = k % 3 == 2, sill = k == 1;
+        if (set_back && storeys > 1 && k > top - 3 && i < 2) return false;
+        if (!opening || !(front || back)) return true;
+        return !(window || (sill && front && i / 2 == door));
+    };
+    return blocks(grid);
+}
+
 Pieces tree(Random& random)
 {
     Pieces out;
@@ -229,6 +256,13 @@ Pieces fence_panel(Random& random, const Vec3& from, const Vec3& to)
         out.push_back(hand::moved(hand::box({along.norm(), thickness, 0.12}), pose));
     }
     return out;
+}
+
+void add_thing(Scene& scene, const char* name, Label label, const Pieces& pieces, const Pose& pose)
+{
+    hand::add_mesh(scene, label, hand::moved(pieces.front(), pose));
+    for (std::size_t i = 1; i < pieces.size(); ++i) hand::add_piece(scene, hand::moved(pieces[i], pose));
+    scene.parts.back().name = name + ("-" + std::to_string(scene.parts.size() - 1));
 }
 
 }  // namespace worlds

@@ -23,11 +23,22 @@ hand::Mesh blocks(const BlockGrid& grid);
 /// Walls with gables, a roof that juts out, a chimney, at times a wing; `foundation` m deep. Along x.
 Pieces house(Random& random, double foundation);
 
+struct RecessedHouse {
+    double foundation = 1;                   ///< m below the ground
+    int least_storeys = 1, most_storeys = 3;
+};
+
+/// A block of a house, along x, its door to -y: windows and the door are recesses; some have an upper storey set back.
+hand::Mesh recessed_house(Random& random, const RecessedHouse& plan = {});
+
 Pieces tree(Random& random);  ///< trunk and crown, either of needles (cones) or of leaves (a rough ball)
 Pieces car(Random& random);   ///< a coarse body on four wheels, along x
 Pieces rock(Random& random);  ///< a rough ball, half sunk
 
 /// A post at `from`, and two rails 2 to 4 cm thick from there to `to`.
 Pieces fence_panel(Random& random, const spawnfield::Vec3& from, const spawnfield::Vec3& to);
+
+/// Adds a part of these pieces, named after its number in the scene.
+void add_thing(spawnfield::Scene& scene, const char* name, spawnfield::Label label, const Pieces& pieces, const spawnfield::Pose& pose);
 
 }  // namespace worlds

@@ -25,6 +25,13 @@ World benchmark_cubes(int heights = 500);
 /// The same of convex balls of 80 triangles and 0.5 m across.
 World benchmark_balls(int heights = 500);
 
+/// Whether frames, pillars and railings of a bridge are one part with its deck, terrain like it, or obstacles of their own.
+enum class Bridge { OneObject, DeckAlone };
+
+/// A partly flooded district on an island in 1280 m x 1280 m of sea, after the "complex" environment of Ropelato's thesis:
+/// houses, cars, fences, trunks, streets, and a bridge over a canal. 26.8 % of the square have no terrain at all.
+World complex_district(std::uint64_t seed = 1, Bridge bridge = Bridge::OneObject);
+
 /// Writes scene.yaml, meshes/<part>.obj for parts of triangles, and landmarks.csv (name,x0,y0,z0,x1,y1,z1) into a folder that
 /// is made where missing. Lengths are rounded to 0.01 mm. load_scene reads the world back.
 /// Throws std::runtime_error if something can't be written.
