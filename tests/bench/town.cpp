@@ -78,20 +78,17 @@ void Town::add_bridge()
     const double y = side_ / 2, from = shore(y) - 60, to = std::min(side_ - 20, shore(y) + 0.3 * side_), deck = 7, half = 5;
     const std::vector<Vec2> profile = {{from, height(from, y) - 1}, {from + 50, deck - 0.8}, {to, deck - 0.8}, {to, deck},
                                        {from + 50, deck},           {from, height(from, y)}};
-    Mat3 upright;  // (x, y, z) to (x, -z, y)
-    upright << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-    const auto beam = [&](const std::vector<Vec2>& side, double y0, double y1) {
-        return hand::moved(hand::extruded(side, -y1, -y0), {Vec3::Zero(), upright});
-    };
     // Seen from its first corner all of the profile lies in view only in two halves.
-    add_thing(scene_, "bridge", Label::Terrain, {beam({profile[0], profile[1], profile[4], profile[5]}, y - half, y + half)}, {});
-    hand::add_piece(scene_, beam({profile[1], profile[2], profile[3], profile[4]}, y - half, y + half));
+    add_thing(scene_, "bridge", Label::Terrain, {profile_along_y({profile[0], profile[1], profile[4], profile[5]}, y - half, y + half)}, {});
+    hand::add_piece(scene_, profile_along_y({profile[1], profile[2], profile[3], profile[4]}, y - half, y + half));
+    const std::vector<Vec2> railing = {{from + 50, deck - 0.1}, {to, deck - 0.1}, {to, deck + 1}, {from + 50, deck + 1}};
     for (const double edge : {y - half + 0.2, y + half - 0.4})
-        add_thing(scene_, "railing", Label::Obstacle, {beam({{from + 50, deck - 0.1}, {to, deck - 0.1}, {to, deck + 1}, {from + 50, deck + 1}}, edge, edge + 0.2)}, {});
+        add_thing(scene_, "railing", Label::Obstacle, {profile_along_y(railing, edge, edge + 0.2)}, {});
     for (double x = from + 55; x < to; x += 25)
         for (const double pier : {y - 3, y + 3}) {
             const double foot = height(x, pier) - 1;
-            add_thing(scene_, "pier", Label::Obstacle, {hand::moved(hand::box({1.2, 1.2, deck - 0.7 - foot}), {{x, pier, (deck - 0.7 + foot) / 2}, Mat3::Identity()})}, {});
+            const Pose middle = {{x, pier, (deck - 0.7 + foot) / 2}, Mat3::Identity()};
+            add_thing(scene_, "pier", Label::Obstacle, {hand::box({1.2, 1.2, deck - 0.7 - foot})}, middle);
         }
 }
 
@@ -120,11 +117,13 @@ void Town::add_garden(const Vec2& centre)
         for (int k = 0; k < 7; ++k) {
             if (random_.chance(0.15)) continue;
             const Vec2 along = (corners[(i + 1) % 4] - corners[i]) / 7, from = centre + corners[i] + k * along, to = from + along;
-            add_thing(scene_, "fence", Label::Obstacle, fence_panel(random_, {from.x(), from.y(), ground}, {to.x(), to.y(), ground}), {});
+            const Pieces panel = fence_panel(random_, {from.x(), from.y(), ground}, {to.x(), to.y(), ground});
+            add_thing(scene_, "fence", Label::Obstacle, panel, {});
         }
     for (int i = 0; i < 5; ++i) {
         const double x = random_.between(-9, 9), y = random_.between(-9, 9), turn = random_.between(-3, 3);
-        add_thing(scene_, "tree", Label::Obstacle, tree(random_), {{centre.x() + x, centre.y() + y, ground}, rotation_from_rpy(0, 0, turn)});
+        const Pose pose = {{centre.x() + x, centre.y() + y, ground}, rotation_from_rpy(0, 0, turn)};
+        add_thing(scene_, "tree", Label::Obstacle, tree(random_), pose);
     }
 }
 
@@ -135,7 +134,8 @@ void Town::add_street_things(const Vec2& corner)
         const bool along_x = random_.chance(0.5);
         const double at = random_.between(street, block - street), side = street / 2 - 1.1;
         const Vec2 place = corner + (along_x ? Vec2(at, side) : Vec2(side, at));
-        add_thing(scene_, "car", Label::Obstacle, car(random_), {{place.x(), place.y(), ground}, rotation_from_rpy(0, 0, along_x ? 0 : std::numbers::pi / 2)});
+        const Pose pose = {{place.x(), place.y(), ground}, rotation_from_rpy(0, 0, along_x ? 0 : std::numbers::pi / 2)};
+        add_thing(scene_, "car", Label::Obstacle, car(random_), pose);
     }
     for (double at = street; at < block - street; at += 14) {
         const Vec2 place = corner + Vec2(at, street / 2 + 0.7);

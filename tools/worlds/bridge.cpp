@@ -19,13 +19,7 @@ hand::Mesh box_between(const Vec3& low, const Vec3& high)
     return hand::moved(hand::box(high - low), {(low + high) / 2, Mat3::Identity()});
 }
 
-/// A profile in x and height, counterclockwise seen from -y, as wide as the bridge.
-hand::Mesh across(const std::vector<Eigen::Vector2d>& profile)
-{
-    Mat3 upright;  // (x, y, z) to (x, -z, y)
-    upright << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-    return hand::moved(hand::extruded(profile, -bridge_half_width, bridge_half_width), {Vec3::Zero(), upright});
-}
+hand::Mesh across(const std::vector<Eigen::Vector2d>& profile) { return profile_along_y(profile, -bridge_half_width, bridge_half_width); }
 
 /// A level slab between two wedges, which reach a little into it: what is rounded on its way to a file leaves no gap.
 Pieces deck_of(const BridgeSite& site)
@@ -48,8 +42,8 @@ Pieces frame_at(double x, double deck)
 Pieces pillars_at(double x, const BridgeSite& site)
 {
     Pieces out;
-    for (const double y : {-2.0, 2.0})
-        out.push_back(box_between({x - pillar / 2, y - pillar / 2, site.bed - foundation}, {x + pillar / 2, y + pillar / 2, site.deck - thickness / 2}));
+    const double foot = site.bed - foundation, top = site.deck - thickness / 2, half = pillar / 2;
+    for (const double y : {-2.0, 2.0}) out.push_back(box_between({x - half, y - half, foot}, {x + half, y + half, top}));
     return out;
 }
 

@@ -20,6 +20,7 @@ constexpr double highest = 80;       // m, of all that stands on the island
 constexpr double deepest_floor = 1.5;  // m under the sea: houses do not stand deeper
 constexpr double panel = 3;          // m, length of a fence's
 constexpr double low_fence = 0.9, high_fence = 1.6;
+constexpr double lot_width = 17, lot_depth = (StreetGrid::block_v - StreetGrid::street) / 2;
 
 /// A model and the room that it takes around its middle, m.
 struct Model {
@@ -185,8 +186,6 @@ void Settler::add_fence(const Vec2& from, const Vec2& to, double height)
         if (!random_.chance(0.1)) add_panel(from + i * step, from + (i + 1) * step, height);
 }
 
-constexpr double lot_width = 17, lot_depth = (StreetGrid::block_v - StreetGrid::street) / 2;
-
 /// A house at the street (towards -y), and a garden behind it with fences and a tree.
 void Settler::add_lot(const Site& lot)
 {
@@ -237,7 +236,7 @@ void Settler::add_park(const Site& block)
     const Vec2 corners[] = {{-42, -26}, {42, -26}, {42, 26}, {-42, 26}};
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec2 from = corners[i], to = corners[(i + 1) % 4];
-        for (const double start : {0.0, 0.55}) // a gate in the middle of each side
+        for (const double start : {0.0, 0.55})  // a gate in the middle of each side
             add_fence(block.to_world(from + start * (to - from)), block.to_world(from + (start + 0.45) * (to - from)), high_fence);
     }
 }
@@ -267,14 +266,13 @@ void Settler::add_block(int i, int j)
     add_street_cars(corner);
 }
 
-/// Between the town and the hills' tops, not in the streets' part of the island.
+/// On dry ground out of the town.
 void Settler::add_wild_trees()
 {
     for (int i = 0; i < wild_trees; ++i) {
         const double x = random_.between(0, Island::side), y = random_.between(0, Island::side);
-        const Vec2 p(Island::low_x + x, Island::low_y + y), uv = StreetGrid::from_world(p);
-        const bool in_town = island_.is_settled(int(std::floor(uv.x() / StreetGrid::block_u)), int(std::floor(uv.y() / StreetGrid::block_v)));
-        if (!in_town && island_.height(p) > Island::sea_level + 1) add_tree(p);
+        const Vec2 p(Island::low_x + x, Island::low_y + y);
+        if (!island_.is_in_town(StreetGrid::from_world(p)) && island_.height(p) > Island::sea_level + 1) add_tree(p);
     }
 }
 

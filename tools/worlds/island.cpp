@@ -18,7 +18,8 @@ constexpr double dry_share = 0.4335;
 // m, beside the lengths in StreetGrid.
 constexpr double rim_radius = 583, shore_inland = 95;
 constexpr double coast_width = 120, dune_height = 0.4;
-constexpr double bed_slope = 0.056;  // rise per run
+constexpr double highest_block = 26;  // above the sea
+constexpr double bed_slope = 0.056, bank_slope = 0.5, steepest_block = 0.13;  // rise per run
 constexpr double canal_depth = 2.5, canal_width = 30, canal_end = 80;
 constexpr double kerb = 0.2, roughness = 0.4;
 
@@ -100,17 +101,19 @@ double Island::smooth_height(const Vec2& p) const
     const double depth = from_shore(p);
     if (depth < 0) return bed_slope * depth;
     const double dune = dune_height * std::min(1.0, depth / 10);
-    const double bank = 0.5 * (canal_distance(StreetGrid::from_world(p)) - canal_width / 2) - canal_depth;
+    const double bank = bank_slope * (canal_distance(StreetGrid::from_world(p)) - canal_width / 2) - canal_depth;
     return std::min(dune + land(p) * std::min(1.0, depth / coast_width), std::max(bank, -canal_depth));
 }
 
+/// Those inland that lie neither high nor steep.
 void Island::choose_blocks()
 {
     for (int j = -most_blocks; j < most_blocks; ++j)
         for (int i = -most_blocks; i < most_blocks; ++i) {
             const Vec2 middle = StreetGrid::to_world({(i + 0.5) * StreetGrid::block_u, (j + 0.5) * StreetGrid::block_v});
-            const double east = land(middle + Vec2(20, 0)) - land(middle - Vec2(20, 0)), north = land(middle + Vec2(0, 20)) - land(middle - Vec2(0, 20));
-            settled_.push_back(from_shore(middle) > 25 && land(middle) < 26 && std::hypot(east, north) / 40 < 0.13);
+            const double east = land(middle + Vec2(20, 0)) - land(middle - Vec2(20, 0));
+            const double north = land(middle + Vec2(0, 20)) - land(middle - Vec2(0, 20));
+            settled_.push_back(from_shore(middle) > 25 && land(middle) < highest_block && std::hypot(east, north) / 40 < steepest_block);
         }
 }
 
@@ -118,6 +121,11 @@ bool Island::is_settled(int i, int j) const
 {
     if (std::max(std::abs(i), std::abs(j)) >= most_blocks) return false;
     return settled_[std::size_t((j + most_blocks) * 2 * most_blocks + i + most_blocks)];
+}
+
+bool Island::is_in_town(const Vec2& uv) const
+{
+    return is_settled(int(std::floor(uv.x() / StreetGrid::block_u)), int(std::floor(uv.y() / StreetGrid::block_v)));
 }
 
 /// Streets run on all sides of the settled blocks.
@@ -128,10 +136,8 @@ bool Island::is_street(const Vec2& p) const
     const Vec2 off = (uv - uv.cwiseQuotient(block).array().round().matrix().cwiseProduct(block)).cwiseAbs();
     if (off.minCoeff() > half) return false;
     for (const double u : {-half, half})
-        for (const double v : {-half, half}) {
-            const Vec2 at = (uv + Vec2(u, v)).cwiseQuotient(block);
-            if (is_settled(int(std::floor(at.x())), int(std::floor(at.y())))) return true;
-        }
+        for (const double v : {-half, half})
+            if (is_in_town(uv + Vec2(u, v))) return true;
     return false;
 }
 
@@ -183,12 +189,6 @@ bool Island::has_ground(const Vec2& p) const
 {
     const int col = int(std::floor((p.x() - low_x) / cell)), row = int(std::floor((p.y() - low_y) / cell));
     return col >= 0 && row >= 0 && col < cells && row < cells && has_ground_[cell_slot(row, col)];
-}
-
-double Island::slope(const Vec2& p) const
-{
-    const Vec2 dx(3, 0), dy(0, 3);
-    return std::hypot(height(p + dx) - height(p - dx), height(p + dy) - height(p - dy)) / 6;
 }
 
 /// The sheet's cells on the streets, or all others.

@@ -48,7 +48,7 @@ public:
     double height(const Vec2& p) const;       ///< m; beyond the rim as the sea bed goes on
     bool has_ground(const Vec2& p) const;     ///< whether the sheet reaches here
     bool is_settled(int i, int j) const;      ///< whether block (i, j) is part of the town
-    double slope(const Vec2& p) const;        ///< rise per run, over 6 m
+    bool is_in_town(const Vec2& uv) const;    ///< whether a place in the streets' frame lies in a settled block
 
     void add_to(spawnfield::Scene& scene) const;  ///< ground, streets and sea
 

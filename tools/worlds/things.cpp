@@ -19,6 +19,13 @@ hand::Mesh profile_along_x(const std::vector<Vec2>& profile, double length)
     return hand::moved(hand::extruded(profile, -length / 2, length / 2), {Vec3::Zero(), rotation});
 }
 
+hand::Mesh profile_along_y(const std::vector<Vec2>& profile, double y0, double y1)
+{
+    Mat3 upright;  // (x, y, z) to (x, -z, y)
+    upright << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+    return hand::moved(hand::extruded(profile, -y1, -y0), {Vec3::Zero(), upright});
+}
+
 namespace {
 
 Mat3 turned(double angle, const Vec3& axis)

@@ -13,6 +13,9 @@ hand::Mesh ball();  ///< of radius 1, 80 triangles
 /// A profile in y and z, counterclockwise seen from +x, extruded along x.
 hand::Mesh profile_along_x(const std::vector<Eigen::Vector2d>& profile, double length);
 
+/// A profile in x and z, counterclockwise seen from -y, extruded from y0 to y1.
+hand::Mesh profile_along_y(const std::vector<Eigen::Vector2d>& profile, double y0, double y1);
+
 /// A building of blocks: what lies between neighbouring coordinates is filled or not. Closed, whatever is filled.
 struct BlockGrid {
     std::vector<double> x, y, z;                  ///< m, ascending
