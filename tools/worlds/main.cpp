@@ -15,6 +15,7 @@ const std::map<std::string, Make>& makers()
     static const std::map<std::string, Make> all = {
         {"benchmark-cubes", [](std::uint64_t) { return worlds::benchmark_cubes(); }},
         {"benchmark-balls", [](std::uint64_t) { return worlds::benchmark_balls(); }},
+        {"low-complexity", [](std::uint64_t seed) { return worlds::low_complexity(seed); }},
     };
     return all;
 }
