@@ -124,7 +124,7 @@ TEST_CASE("the low-complexity world is as high, as wide and as primitive as the 
 TEST_CASE("of the low-complexity world the thesis's share is valid, whatever the seed")
 {
     const std::uint64_t seed = GENERATE(1, 2);
-    const TestMap map = map_of(worlds::low_complexity(seed).scene, 0.5);
+    const TestMap map = map_of(worlds::low_complexity(seed).scene, 2.0);
     const VerdictCounts flat = thesis_counts(map, 2, 2.5, {});
     CHECK(share(flat, Verdict::Valid) == Approx(0.896).margin(0.01));
     CHECK(share(flat, Verdict::Submerged) == Approx(0.033).margin(0.01));
@@ -135,7 +135,7 @@ TEST_CASE("of the low-complexity world the thesis's share is valid, whatever the
 
 TEST_CASE("a raster that reaches 500 m leaves the low-complexity ground in its last row and column")
 {
-    const TestMap map = map_of(worlds::low_complexity().scene, 0.5);
+    const TestMap map = map_of(worlds::low_complexity().scene, 2.0);
     const auto poses = [&](double step) {
         const VerdictCounts counts = thesis_counts(map, 2, step, {});
         return std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
@@ -154,7 +154,7 @@ TEST_CASE("the low-complexity world is the same bytes for the same seed, and oth
 TEST_CASE("the low-complexity landmarks hold what they say")
 {
     const worlds::World world = worlds::low_complexity();
-    const TestMap map = map_of(world.scene, 0.5);
+    const TestMap map = map_of(world.scene, 2.0);
     const Bounds everywhere = world.scene.bounds(), fountain = where(world, "fountain");
     CHECK(count_in(world, everywhere, "fountain-", "") == 15);
     CHECK(count_in(world, fountain, "fountain-", "") == 15);

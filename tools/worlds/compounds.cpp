@@ -1,5 +1,6 @@
 #include "compounds.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -153,5 +154,21 @@ Compound fence(double length)
         out.push_back(box(z < 1 ? "lower-rail" : "upper-rail", {length, 0.05, 0.12}, {length / 2, 0, z}));
     return out;
 }
+
+Compound jetty(double length, double pile)
+{
+    constexpr double width = 2, thickness = 0.25, spacing = 4;  // m
+    Compound out = {box("deck", {length, width, thickness}, {-length / 2, 0, -thickness / 2})};
+    for (double x = 2 * spacing; x < length; x += spacing)
+        for (const double y : {-0.8, 0.8})
+            out.push_back(box("pile-" + std::to_string(out.size() - 1), {0.25, 0.25, pile}, {-x, y, -thickness - pile / 2}));
+    return out;
+}
+
+Compound hut() { return {block("wall", {4, 3, 2.6}, 0, 0), box("roof", {4.4, 3.4, 0.2}, {0, 0, 2.7})}; }
+
+Compound mast(double height) { return {upright_capsule("pole", 0.25, 0, height)}; }
+
+Compound border_stone() { return {block("stone", {0.1, 0.1, 1.2}, 0, 0)}; }
 
 }  // namespace worlds

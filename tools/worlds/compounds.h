@@ -21,7 +21,7 @@ struct HouseSize {
     double length, width, walls;  ///< m: along x, along y, height up to the eaves
 };
 
-/// All things reach so far into the ground, m: it may fall away under them.
+/// What stands in the ground reaches so far into it, m: it may fall away under it.
 inline constexpr double sunk = 1.2;
 
 Compound house_of_boxes(Random& random, const HouseSize& size);  ///< walls, a gabled roof along x, a chimney
@@ -37,5 +37,10 @@ Compound bench();                       ///< along x, its back at larger y
 Compound street_lamp();                 ///< its arm along x
 Compound car_of_boxes(Random& random);  ///< along x
 Compound fence(double length);          ///< along x from the origin, posts and two rails
+
+Compound jetty(double length, double pile);  ///< along -x from the origin, its deck's top at z = 0, on piles of this length
+Compound hut();                              ///< 2.8 m high
+Compound mast(double height);
+Compound border_stone();
 
 }  // namespace worlds

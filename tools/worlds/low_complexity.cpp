@@ -18,8 +18,8 @@ constexpr double lowest = 31, highest = 124;             // m: of all that is so
 
 /// What grows on a stretch of land.
 struct Growth {
-    int count;             ///< of plants; fewer where there is no room
-    double spacing;        ///< m between neighbours
+    int count;                ///< of plants; fewer where there is no room
+    double spacing;           ///< m between neighbours
     double conifers, bushes;  ///< shares; the others are broad trees
     std::function<bool(const Vec2&)> grows_at;
 };
@@ -37,17 +37,16 @@ private:
     Vec2 anywhere();
     void add_ground();
     void add_lake();
-    void add_jetty(const Vec2& shore, const Vec2& outwards);
     void add_border();
     void add_mast();
     void keep_paths();
     void add_fields();
     void add_hedge(const Vec2& from, const Vec2& to);
+    bool plant(const Disc& ground, double conifers, double bushes);
     void grow(const Growth& growth);
     void grow_all();
     void add_boulders();
     bool is_dense_forest(const Vec2& p) const;
-    bool is_thin_forest(const Vec2& p) const { return land_.unevenness(p) > 0.5; }
     void add_landmark(const char* name, const Vec2& centre, double side);
 
     World world_;
@@ -75,53 +74,37 @@ void Valley::add_ground()
     world_.scene.parts.back().name = "ground";
 }
 
+/// Its water, and a jetty on the town's side on piles that reach down to the lowest height of the world.
 void Valley::add_lake()
 {
+    constexpr double deck = ValleyLand::water + 0.5, deck_thickness = 0.25, length = 24;  // m
     const auto& [centre, radius] = land_.lake();
     const Pose pose = {{centre.x(), centre.y(), ValleyLand::water}, Mat3::Identity()};
     hand::add_mesh(world_.scene, Label::Water, hand::moved(hand::rectangle(2 * radius, 2 * radius), pose), {.kind = "plane"});
     world_.scene.parts.back().name = "lake";
-    const Vec2 outwards = (land_.town().centre - centre).normalized();
-    Vec2 shore = centre;
-    while (!land_.is_dry(shore, 0.15)) shore += 0.5 * outwards;
-    landing_ = shore;
-    add_jetty(shore, outwards);
-}
 
-/// A deck on piles that reach down to the lowest height of the world.
-void Valley::add_jetty(const Vec2& shore, const Vec2& outwards)
-{
-    constexpr double length = 24, width = 2, deck = ValleyLand::water + 0.5, thick = 0.25, spacing = 4;  // m; deck: top
+    const Vec2 outwards = (land_.town().centre - centre).normalized();
+    landing_ = centre;
+    while (!land_.is_dry(landing_, 0.15)) landing_ += 0.5 * outwards;
     const Mat3 rotation = rotation_from_rpy(0, 0, std::atan2(outwards.y(), outwards.x()));
-    const auto box = [&](const std::string& name, const Vec3& size, const Vec3& centre) {
-        return Element{name, {.kind = ShapeKind::Box, .size = size, .pose = {centre, Mat3::Identity()}}};
-    };
-    Compound jetty = {box("deck", {length, width, thick}, {-length / 2, 0, deck - thick / 2})};
-    const double pile = deck - thick - lowest;
-    for (double x = 2 * spacing; x < length; x += spacing)
-        for (const double y : {-0.8, 0.8})
-            jetty.push_back(box("pile-" + std::to_string(jetty.size() - 1), {0.25, 0.25, pile}, {-x, y, lowest + pile / 2}));
-    placer_.add("jetty", jetty, {{shore.x(), shore.y(), 0}, rotation});
+    placer_.add("jetty", jetty(length, deck - deck_thickness - lowest), {{landing_.x(), landing_.y(), deck}, rotation});
 }
 
 /// Stones in the corners: with them the scene spans 500 x 500 m.
 void Valley::add_border()
 {
-    constexpr double side = 0.1, height = 1.2;  // m
-    const Compound stone = {{"", {.kind = ShapeKind::Box, .size = {side, side, 2 * height}, .pose = {}}}};
-    for (const double y : {side / 2, world_side - side / 2})
-        for (const double x : {side / 2, world_side - side / 2}) placer_.add("border-stone", stone, {x, y}, 0);
+    constexpr double inside = 0.05;  // m: half of a stone
+    for (const double y : {inside, world_side - inside})
+        for (const double x : {inside, world_side - inside}) placer_.add("border", border_stone(), {x, y}, 0);
 }
 
 /// On the hill, up to the world's greatest height.
 void Valley::add_mast()
 {
-    constexpr double radius = 0.25, foot = 100;  // m
+    constexpr double foot = 100;  // m: within the hill
     const Vec2 top = land_.hill().centre;
-    const Compound hut = {{"hut", {.kind = ShapeKind::Box, .size = {4, 3, 5.6}, .pose = {{3.2, 0, 0}, Mat3::Identity()}}}};
-    const Compound pole = {{"pole", {.kind = ShapeKind::Capsule, .size = {radius, highest - foot - 2 * radius, 0}, .pose = {}}}};
-    placer_.add("mast-hut", hut, top, 0.3);
-    placer_.add("mast", pole, {{top.x(), top.y(), (highest + foot) / 2}, Mat3::Identity()});
+    placer_.add("mast", mast(highest - foot), {{top.x(), top.y(), foot}, Mat3::Identity()});
+    placer_.add("hut", hut(), top + Vec2(4, 1), 0.3);
     placer_.keep_clear({top, 9});
 }
 
@@ -140,17 +123,26 @@ void Valley::keep_paths()
         for (std::size_t i = 1; i < path.size(); ++i) placer_.keep_clear(path[i - 1], path[i], half_width);
 }
 
-/// A row of bushes and now and then a tree.
+/// A plant where there is room for it.
+bool Valley::plant(const Disc& ground, double conifers, double bushes)
+{
+    if (!land_.is_dry(ground.centre) || !placer_.is_clear(ground)) return false;
+    const double kind = random_.between(0, 1);
+    if (kind < conifers) placer_.add("tree", conifer(random_), ground.centre, 0);
+    else if (kind < conifers + bushes) placer_.add("bush", bush(random_), ground.centre, 0);
+    else placer_.add("tree", broad_tree(random_), ground.centre, 0);
+    placer_.keep_clear(ground);
+    return true;
+}
+
+/// A winding row of bushes with a tree now and then.
 void Valley::add_hedge(const Vec2& from, const Vec2& to)
 {
+    constexpr double bend = 16, bushes = 0.94;  // m; share
     const double length = (to - from).norm();
-    for (double at = 0; at < length; at += random_.between(1.2, 2.2)) {
+    for (double at = 0; at < length; at += random_.between(1.3, 2.1)) {
         const Vec2 straight = from + at / length * (to - from);
-        const Vec2 place = straight + 16 * Vec2(edge_.at(straight), edge_.at(-straight));
-        const bool is_tree = random_.chance(0.06);
-        const Compound plant = is_tree ? broad_tree(random_) : bush(random_);
-        if (!placer_.is_clear({place, 0.5})) continue;
-        placer_.add(is_tree ? "tree" : "bush", plant, place, 0);
+        plant({straight + bend * Vec2(edge_.at(straight), edge_.at(-straight)), 0.5}, 0, bushes);
     }
 }
 
@@ -162,8 +154,7 @@ void Valley::add_fields()
     add_hedge({left + 20, 410}, {right, 418});
     add_hedge({left, bottom}, {right, bottom + 10});
     for (double y = bottom + 20; y < 400; y += row)
-        for (double x = 300; x < right; x += row)
-            if (placer_.is_clear({{x, y}, 2})) placer_.add("tree", broad_tree(random_), Vec2(x, y), 0);
+        for (double x = 300; x < right; x += row) plant({{x, y}, 2}, 0, 0);
 }
 
 bool Valley::is_dense_forest(const Vec2& p) const
@@ -175,29 +166,25 @@ bool Valley::is_dense_forest(const Vec2& p) const
 void Valley::grow(const Growth& growth)
 {
     constexpr int draws = 60;  // for each plant
-    for (int i = 0, left = draws * growth.count; i < growth.count && left > 0; --left) {
+    int missing = growth.count;
+    for (int left = draws * growth.count; missing > 0 && left > 0; --left) {
         const Vec2 place = anywhere();
-        const Disc ground = {place, growth.spacing / 2};
-        if (!growth.grows_at(place) || !land_.is_dry(place) || !placer_.is_clear(ground)) continue;
-        const double kind = random_.between(0, 1);
-        const bool is_conifer = kind < growth.conifers, is_bush = !is_conifer && kind < growth.conifers + growth.bushes;
-        const Compound plant = is_conifer ? conifer(random_) : is_bush ? bush(random_) : broad_tree(random_);
-        placer_.add(is_bush ? "bush" : "tree", plant, place, 0);
-        placer_.keep_clear(ground);
-        ++i;
+        if (growth.grows_at(place) && plant({place, growth.spacing / 2}, growth.conifers, growth.bushes)) --missing;
     }
 }
 
 void Valley::grow_all()
 {
-    grow({2600, 2.5, 0.19, 0.04, [this](const Vec2& p) { return is_dense_forest(p); }});
-    grow({700, 4.5, 0.25, 0.15, [this](const Vec2& p) { return is_thin_forest(p); }});
-    const auto is_shore = [this](const Vec2& p) {
-        const double out = (p - land_.lake().centre).norm();
-        return out < land_.lake().radius + 30 && (p - landing_).norm() > 30;
+    const auto in_dense_forest = [this](const Vec2& p) { return is_dense_forest(p); };
+    const auto in_thin_forest = [this](const Vec2& p) { return land_.unevenness(p) > 0.5; };
+    const auto around_lake = [this](const Vec2& p) {
+        return (p - land_.lake().centre).norm() < land_.lake().radius + 30 && (p - landing_).norm() > 30;
     };
-    grow({160, 3, 0, 0.6, is_shore});
-    grow({120, 12, 0.1, 0.2, [](const Vec2&) { return true; }});
+    const auto everywhere = [](const Vec2&) { return true; };
+    grow({.count = 2600, .spacing = 2.5, .conifers = 0.19, .bushes = 0.04, .grows_at = in_dense_forest});
+    grow({.count = 700, .spacing = 4.5, .conifers = 0.25, .bushes = 0.15, .grows_at = in_thin_forest});
+    grow({.count = 160, .spacing = 3, .conifers = 0, .bushes = 0.6, .grows_at = around_lake});
+    grow({.count = 120, .spacing = 12, .conifers = 0.1, .bushes = 0.2, .grows_at = everywhere});
 }
 
 void Valley::add_boulders()

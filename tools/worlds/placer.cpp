@@ -25,7 +25,7 @@ void Placer::add(const std::string& kind, const Compound& compound, const Pose& 
         Shape shape = element.shape;
         shape.pose = pose * shape.pose;
         hand::add_shape(scene_, Label::Obstacle, shape);
-        scene_.parts.back().name = element.name.empty() ? thing : thing + "-" + element.name;
+        scene_.parts.back().name = thing + "-" + element.name;
     }
 }
 

@@ -105,10 +105,15 @@ void Town::add_back_houses(double turn)
 /// Fences on three sides of a plot, and a gap in one.
 void Town::add_garden(double turn, double u, double v)
 {
-    constexpr double half = 9;  // m
-    add("fence", fence(2 * half), turn, u - half, v + half, 0);
-    add("fence", fence(2 * half), turn, u + half, v - half, pi / 2);
-    add("fence", fence(2 * half - 5), turn, u - half, v - half, 0);
+    constexpr double half = 9, gap = 5;  // m
+    const auto add_fence = [&](const Vec2& from, double length, double yaw) {
+        add("fence", fence(length), turn, from.x(), from.y(), yaw);
+        const Vec2 to = from + length * Vec2(std::cos(yaw), std::sin(yaw));
+        placer_.keep_clear(turned(turn, from.x(), from.y()), turned(turn, to.x(), to.y()), 0.3);
+    };
+    add_fence({u - half, v + half}, 2 * half, 0);
+    add_fence({u + half, v - half}, 2 * half, pi / 2);
+    add_fence({u - half, v - half}, 2 * half - gap, 0);
 }
 
 void Town::add_garden_trees()
