@@ -155,9 +155,10 @@ Compound fence(double length)
     return out;
 }
 
-Compound jetty(double length, double pile)
+Compound jetty(double length, double depth)
 {
     constexpr double width = 2, thickness = 0.25, spacing = 4;  // m
+    const double pile = depth - thickness;
     Compound out = {box("deck", {length, width, thickness}, {-length / 2, 0, -thickness / 2})};
     for (double x = 2 * spacing; x < length; x += spacing)
         for (const double y : {-0.8, 0.8})

@@ -38,8 +38,8 @@ Compound street_lamp();                 ///< its arm along x
 Compound car_of_boxes(Random& random);  ///< along x
 Compound fence(double length);          ///< along x from the origin, posts and two rails
 
-Compound jetty(double length, double pile);  ///< along -x from the origin, its deck's top at z = 0, on piles of this length
-Compound hut();                              ///< 2.8 m high
+Compound jetty(double length, double depth);  ///< along -x from the origin, its deck's top at z = 0, its piles' feet at -depth
+Compound hut();                               ///< 2.8 m high
 Compound mast(double height);
 Compound border_stone();
 

@@ -47,14 +47,14 @@ private:
     void grow_all();
     void add_boulders();
     bool is_dense_forest(const Vec2& p) const;
-    void add_landmark(const char* name, const Vec2& centre, double side);
+    void add_landmark(const char* name, const Vec2& centre, int side);
 
     World world_;
     Random random_;
     const ValleyLand land_;
     const Waves edge_;  ///< of the forest
     Placer placer_;
-    TownFrame town_ = {land_.town().centre, 0.2};
+    const TownFrame town_ = {land_.town().centre, 0.2};
     Vec2 landing_ = Vec2::Zero();  ///< where the jetty begins
 };
 
@@ -77,7 +77,7 @@ void Valley::add_ground()
 /// Its water, and a jetty on the town's side on piles that reach down to the lowest height of the world.
 void Valley::add_lake()
 {
-    constexpr double deck = ValleyLand::water + 0.5, deck_thickness = 0.25, length = 24;  // m
+    constexpr double deck = ValleyLand::water + 0.5, length = 24;  // m
     const auto& [centre, radius] = land_.lake();
     const Pose pose = {{centre.x(), centre.y(), ValleyLand::water}, Mat3::Identity()};
     hand::add_mesh(world_.scene, Label::Water, hand::moved(hand::rectangle(2 * radius, 2 * radius), pose), {.kind = "plane"});
@@ -87,7 +87,7 @@ void Valley::add_lake()
     landing_ = centre;
     while (!land_.is_dry(landing_, 0.15)) landing_ += 0.5 * outwards;
     const Mat3 rotation = rotation_from_rpy(0, 0, std::atan2(outwards.y(), outwards.x()));
-    placer_.add("jetty", jetty(length, deck - deck_thickness - lowest), {{landing_.x(), landing_.y(), deck}, rotation});
+    placer_.add("jetty", jetty(length, deck - lowest), {{landing_.x(), landing_.y(), deck}, rotation});
 }
 
 /// Stones in the corners: with them the scene spans 500 x 500 m.
@@ -200,13 +200,13 @@ void Valley::add_boulders()
     }
 }
 
-/// A square on the map, as low as its ground and as high as what stands in it.
-void Valley::add_landmark(const char* name, const Vec2& centre, double side)
+/// A square on the map, `side` m across, as low as its ground and as high as what stands in it.
+void Valley::add_landmark(const char* name, const Vec2& centre, int side)
 {
-    const Vec2 low = centre - Vec2(side / 2, side / 2), high = centre + Vec2(side / 2, side / 2);
+    const Vec2 corner = centre - Vec2(side / 2.0, side / 2.0);
     Bounds where;
-    for (double y = low.y(); y <= high.y(); y += 1)
-        for (double x = low.x(); x <= high.x(); x += 1) where.extend({x, y, land_.height({x, y})});
+    for (int row = 0; row <= side; ++row)
+        for (int col = 0; col <= side; ++col) where.extend(placer_.on_ground(corner + Vec2(col, row)));
     const Bounds ground = where;
     for (const Primitive& primitive : world_.scene.primitives)
         if (const Bounds bounds = bounds_of(primitive.shape); bounds.meets(ground, 2))
