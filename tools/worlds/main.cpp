@@ -17,6 +17,7 @@ const std::map<std::string, Make>& makers()
         {"benchmark-balls", [](std::uint64_t) { return worlds::benchmark_balls(); }},
         {"complex", [](std::uint64_t seed) { return worlds::complex_district(seed); }},
         {"complex-deck", [](std::uint64_t seed) { return worlds::complex_district(seed, worlds::Bridge::DeckAlone); }},
+        {"low-complexity", [](std::uint64_t seed) { return worlds::low_complexity(seed); }},
     };
     return all;
 }

@@ -1,0 +1,94 @@
+#include "valley_land.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace worlds {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double plain_height = 50, town_height = 50.3, hill_height = 56;  // m
+constexpr double broad_height = 1.2, rough_height = 0.5;                  // m, of the waves up and down
+
+/// 1 in the middle of a disc, 0 on its rim, level at both.
+double bell(const Disc& disc, const Vec2& p)
+{
+    const double distance = std::min(1.0, (p - disc.centre).norm() / disc.radius);
+    return 0.5 + 0.5 * std::cos(pi * distance);
+}
+
+}  // namespace
+
+double smooth_step(double from, double to, double x)
+{
+    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+Waves::Waves(Random& random, double shortest, double longest)
+{
+    constexpr int count = 8;
+    for (int i = 0; i < count; ++i) {
+        const double per_metre = 2 * pi / random.between(shortest, longest);
+        const double direction = 2 * pi * (i + random.between(0, 1)) / count;
+        waves_.push_back({per_metre * Vec2(std::cos(direction), std::sin(direction)), random.between(0, 2 * pi)});
+    }
+}
+
+double Waves::at(const Vec2& p) const
+{
+    double sum = 0;
+    for (const auto& [turns, phase] : waves_) sum += std::sin(turns.dot(p) + phase);
+    return sum / double(waves_.size());
+}
+
+ValleyLand::ValleyLand(Random& random)
+    : broad_(random, 120, 260),
+      rough_(random, 18, 40),
+      bay_phase_(random.between(0, 2 * pi)),
+      cape_phase_(random.between(0, 2 * pi)),
+      lake_{{random.between(120, 130), random.between(112, 122)}, 63},
+      town_{{random.between(290, 300), random.between(205, 215)}, 85},
+      hill_{{random.between(460, 468), random.between(456, 464)}, 125}
+{
+}
+
+/// 0 in the middle of the lake, 1 at its shore, which has bays and capes.
+double ValleyLand::from_shore(const Vec2& p) const
+{
+    const Vec2 out = p - lake_.centre;
+    const double direction = std::atan2(out.y(), out.x());
+    const double shore = 0.8 + 0.12 * std::sin(2 * direction + bay_phase_) + 0.07 * std::sin(3 * direction + cape_phase_);
+    return out.norm() / (shore * lake_.radius);
+}
+
+double ValleyLand::unevenness(const Vec2& p) const
+{
+    const double east_of_town = smooth_step(370, 400, p.x() + 45 * broad_.at(p));
+    const double south = 1 - smooth_step(60, 100, p.y() + 45 * broad_.at(p));
+    return std::max(east_of_town, south * smooth_step(230, 270, p.x()));
+}
+
+/// The land without town and lake.
+double ValleyLand::plain(const Vec2& p) const
+{
+    return plain_height + broad_height * broad_.at(p) + rough_height * unevenness(p) * rough_.at(p) + hill_height * bell(hill_, p);
+}
+
+double ValleyLand::height(const Vec2& p) const
+{
+    const double built = 1 - smooth_step(town_.radius, town_.radius + 30, (p - town_.centre).norm());
+    const double land = plain(p) + built * (town_height + 0.004 * (p - town_.centre).x() - plain(p));
+    const double shore = from_shore(p);
+    if (shore <= 1) return water - (water - lake_bed) * (1 - shore * shore);
+    return water + (land - water) * (1 - std::exp(-2.5 * (shore - 1)));
+}
+
+double ValleyLand::slope(const Vec2& p) const
+{
+    const Vec2 dx(0.5, 0), dy(0, 0.5);
+    return std::atan(Vec2(height(p + dx) - height(p - dx), height(p + dy) - height(p - dy)).norm());
+}
+
+}  // namespace worlds
