@@ -126,8 +126,8 @@ TEST_CASE("an experiment's table has a row per step with mean and sample varianc
     const std::vector<Row> rows = rows_of(arena / "out/experiment.csv");
     const auto table = table_of(arena / "out/experiment.md");
     REQUIRE(table.size() == 3);
-    CHECK(table[0] == std::vector<std::string>{"step (m)", "checks", "valid", "collision", "submerged", "off_terrain", "aerial", "outside", "exact checks",
-                                               "mean time (s)", "variance (s2)"});
+    CHECK(table[0] == std::vector<std::string>{"step (m)", "checks", "valid", "unstable", "steep", "collision", "submerged", "off_terrain", "aerial",
+                                               "outside", "exact checks", "mean time (s)", "variance (s2)"});
     for (std::size_t step = 0; step < 2; ++step) {
         double sum = 0, squares = 0;
         for (std::size_t i = 4 * step; i < 4 * step + 4; ++i) sum += std::stod(rows[i].at("seconds"));
@@ -136,15 +136,15 @@ TEST_CASE("an experiment's table has a row per step with mean and sample varianc
         CHECK(cells[0] == rows[4 * step].at("step"));
         CHECK(cells[1] == rows[4 * step].at("poses"));
         CHECK(cells[2] == rows[4 * step].at("valid"));
-        CHECK(cells[8] == rows[4 * step].at("exact_checks"));
-        CHECK(std::stod(cells[9]) == Approx(sum / 4).epsilon(1e-4));
-        CHECK(std::stod(cells[10]) == Approx(squares / 3).epsilon(1e-4));
+        CHECK(cells[10] == rows[4 * step].at("exact_checks"));
+        CHECK(std::stod(cells[11]) == Approx(sum / 4).epsilon(1e-4));
+        CHECK(std::stod(cells[12]) == Approx(squares / 3).epsilon(1e-4));
     }
     const std::string text = bytes_of(arena / "out/experiment.md");
     CHECK_THAT(text, Contains("\nspawnfield experiment map --dims 2 --steps 1:2:1 --runs 4 -o out --threads 2 --robot "));
     CHECK_THAT(text, Contains(" core"));
     CHECK_THAT(text, Contains("; 2 threads\n"));
-    CHECK_THAT(text, Contains("- spawnfield " + spawnfield::version() + "\n"));
+    CHECK_THAT(text, Contains("- spawnfield " + spawnfield::version() + " on "));
     CHECK_THAT(text, Contains("hash " + spawnfield::read_map(arena / "map").hash));
     CHECK(arena("experiment map --dims 2 --steps 1 -o out" + husky).status == 0);
     CHECK(table_of(arena / "out/experiment.md")[1].back().empty());  // of one run

@@ -257,6 +257,9 @@ TEST_CASE("landmarks of the complex district hold what they say")
         CHECK(count_of(result, Verdict::Valid) > 0);
         const bool has_water = name == "fence_and_water" || name == "bridge" || name == "shore";
         CHECK((count_of(result, Verdict::Submerged) > 0.2 * double(result.poses.size())) == has_water);
+    }
+}
+
 TEST_CASE("the low-complexity world is as high, as wide and as primitive as the thesis's")
 {
     const worlds::World world = worlds::low_complexity();

@@ -1,29 +1,13 @@
 #include "report.h"
 
-#include <spawnfield/types.h>
-
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <fstream>
 #include <stdexcept>
-#include <thread>
 
 namespace bench {
 namespace {
 
 std::string hex(std::uint64_t hash) { return formatted("%016llx", static_cast<unsigned long long>(hash)); }
-
-/// What follows `key` on its line of a file under /proc, without the colon; empty if there is none.
-std::string proc_value(const char* file, const std::string& key)
-{
-    std::ifstream stream(file);
-    for (std::string line; std::getline(stream, line);) {
-        const std::size_t value = line.find_first_not_of(" \t:", key.size());
-        if (line.starts_with(key) && value != std::string::npos) return line.substr(value);
-    }
-    return {};
-}
 
 [[noreturn]] void fail_differing(const Row& row, std::uint64_t other, const std::string& when)
 {
@@ -57,16 +41,6 @@ void check_same(const std::vector<Row>& rows)
                 fail_differing(row, other.hash, "at " + std::to_string(other.threads));
 }
 
-std::string formatted(const char* format, ...)
-{
-    char text[1024];
-    va_list values;
-    va_start(values, format);
-    std::vsnprintf(text, sizeof text, format, values);
-    va_end(values);
-    return text;
-}
-
 std::string table_head()
 {
     return formatted("%-9s %-26s %7s %11s %10s %10s %10s %17s %7s %8s\n", "scene", "stage", "threads", "items", "ms", "median ms",
@@ -90,19 +64,11 @@ std::string csv(const std::vector<Row>& rows)
     return out;
 }
 
-std::string machine()
-{
-    const std::string model = proc_value("/proc/cpuinfo", "model name");
-    const unsigned cores = std::thread::hardware_concurrency();
-    return "spawnfield " + spawnfield::version() + " on " + (model.empty() ? "an unknown CPU" : model) + ", " +
-           std::to_string(cores) + (cores == 1 ? " core" : " cores");
-}
-
 void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5\n"; }
 
 std::uint64_t peak_memory_bytes()
 {
-    const std::string value = proc_value("/proc/self/status", "VmHWM");  // "123456 kB"
+    const std::string value = tools::proc_value("/proc/self/status", "VmHWM");  // "123456 kB"
     return value.empty() ? 0 : std::stoull(value) * 1024;
 }
 

@@ -1,11 +1,16 @@
 #pragma once
 
+#include "common/machine.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace bench {
+
+using tools::formatted;
+using tools::machine;
 
 /// What one run of a stage gave.
 struct Measurement {
@@ -34,18 +39,12 @@ Row row_of(const std::string& scene, const std::string& stage, int threads, cons
 /// How many times the time of `row` another takes for an item; medians.
 inline double times_slower(const Row& other, const Row& row) { return other.seconds_per_item() / row.seconds_per_item(); }
 
-/// printf into a string.
-std::string formatted(const char* format, ...) __attribute__((format(printf, 1, 2)));
-
 /// Throws std::runtime_error if a stage gave something else at one number of threads than at another.
 void check_same(const std::vector<Row>& rows);
 
 std::string table_head();
 std::string table_line(const Row& row);
 std::string csv(const std::vector<Row>& rows);
-
-/// "spawnfield 0.1.0 on <CPU>, 2 cores".
-std::string machine();
 
 /// Starts a new peak, where the kernel lets us; else the peak is that of the whole run.
 void reset_peak_memory();

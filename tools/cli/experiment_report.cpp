@@ -1,12 +1,11 @@
 #include "experiment_report.h"
 
 #include "cli.h"
+#include "common/machine.h"
 
 #include <cstdio>
-#include <fstream>
 #include <numeric>
 #include <span>
-#include <thread>
 
 namespace spawnfield::cli {
 namespace {
@@ -54,14 +53,6 @@ Runs runs_of_step(Runs all, std::size_t first)
     std::size_t end = first + 1;
     while (end < all.size() && all[end].step == all[first].step && all[end].step_z == all[first].step_z) ++end;
     return all.subspan(first, end - first);
-}
-
-std::string processor()
-{
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("model name") && line.find(": ") != std::string::npos) return line.substr(line.find(": ") + 2);
-    return "unknown processor";
 }
 
 std::string table_head(bool is_raster, bool is_3d)
@@ -118,8 +109,7 @@ std::string experiment_markdown(const Experiment& experiment)
     text += "- map " + experiment.map + ", hash " + experiment.map_hash + "\n";
     text += "- robot " + experiment.robot + "\n";
     text += "- " + (experiment.seed ? "seed " + std::to_string(*experiment.seed) + ", one more for each further run" : "no seed: rasters draw nothing") + "\n";
-    text += "- " + processor() + ", " + counted(std::thread::hardware_concurrency(), "core") + "; " + counted(experiment.threads, "thread") + "\n";
-    text += "- spawnfield " + version() + "\n\n";
+    text += "- " + tools::machine() + "; " + counted(experiment.threads, "thread") + "\n\n";
     text += repeated > 1 ? "Each row: means of " + counted(repeated, "run") + ", and the sample variance of their times. " : "Each row: one run. ";
     text += "Times are those of the query alone; the very first one also reads\nwhat it needs of the map.\n\n" + table_head(runs[0].step.has_value(), runs[0].step_z.has_value());
     for (std::size_t first = 0; first < runs.size();) {

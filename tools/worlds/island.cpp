@@ -23,12 +23,6 @@ constexpr double bed_slope = 0.056, bank_slope = 0.5, steepest_block = 0.13;  //
 constexpr double canal_depth = 2.5, canal_width = 30, canal_end = 80;
 constexpr double kerb = 0.2, roughness = 0.4;
 
-double smooth_step(double from, double to, double value)
-{
-    const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
-
 /// m from the canal's middle line; `uv` in the streets' frame.
 double canal_distance(const Vec2& uv)
 {
@@ -36,30 +30,29 @@ double canal_distance(const Vec2& uv)
     return std::hypot(uv.x() - middle, std::max(0.0, uv.y() - canal_end));
 }
 
-}  // namespace
-
-Waves::Waves(Random& random, double length)
+/// Of about one length (m), in all directions.
+Waves waves(Random& random, double length)
 {
     constexpr int count = 9;
+    Waves out;
     for (int i = 0; i < count; ++i) {
         const double direction = 2 * std::numbers::pi * (i + random.between(0, 1)) / count;
-        const double turns = 2 * std::numbers::pi / (length * random.between(0.75, 1.3));
-        waves_.push_back({turns * Vec2(std::cos(direction), std::sin(direction)), random.between(0, 2 * std::numbers::pi)});
+        const double wavelength = length * random.between(0.75, 1.3);
+        out.add(direction, wavelength, random.between(0, 2 * std::numbers::pi));
     }
+    return out;
 }
 
-double Waves::at(const Vec2& p) const
-{
-    double sum = 0;
-    for (const auto& [turns, phase] : waves_) sum += std::sin(turns.dot(p) + phase);
-    return sum / std::sqrt(0.5 * double(waves_.size()));
-}
+/// Mean 0, standard deviation 1.
+double swing(const Waves& waves, const Vec2& p) { return waves.at(p) / std::sqrt(0.5 * double(waves.count())); }
+
+}  // namespace
 
 Vec2 StreetGrid::to_world(const Vec2& uv) { return origin() + Eigen::Rotation2Dd(turn) * uv; }
 Vec2 StreetGrid::from_world(const Vec2& p) { return Eigen::Rotation2Dd(-turn) * (p - origin()); }
 
 Island::Island(Random& random)
-    : bays_(random, 330), coves_(random, 90), shoals_(random, 200), swell_(random, 260), knolls_(random, 80)
+    : bays_(waves(random, 330)), coves_(waves(random, 90)), shoals_(waves(random, 200)), swell_(waves(random, 260)), knolls_(waves(random, 80))
 {
     hills_ = {{{830, 800}, 36, 95}, {{600, 930}, 20, 80}, {{930, 520}, 14, 75}};
     for (Hill& hill : hills_) {
@@ -77,20 +70,20 @@ double Island::inland(const Vec2& p) const
 {
     const Vec2 d = (p - StreetGrid::origin()).cwiseAbs();
     const double radius = std::cbrt(std::pow(d.x(), 3) + std::pow(d.y(), 3));
-    return rim_radius - radius + 28 * std::clamp(bays_.at(p), -1.5, 1.5) + 5 * std::clamp(coves_.at(p), -2.0, 2.0);
+    return rim_radius - radius + 28 * std::clamp(swing(bays_, p), -1.5, 1.5) + 5 * std::clamp(swing(coves_, p), -2.0, 2.0);
 }
 
 /// m from the shore inwards: it keeps away from the rim, now more, now less.
 double Island::from_shore(const Vec2& p) const
 {
-    return inland(p) - shore_inland - 24 * std::clamp(shoals_.at(p), -1.6, 1.6);
+    return inland(p) - shore_inland - 24 * std::clamp(swing(shoals_, p), -1.6, 1.6);
 }
 
 /// m above the sea, far from shore and canal: low in the south-west, hills in the north-east.
 double Island::land(const Vec2& p) const
 {
     const double north_east = (p - StreetGrid::origin()).dot(Vec2(0.6, 0.8));
-    double height = 0.5 + 0.9 * swell_.at(p) + smooth_step(-80, 420, north_east) * (22 + 0.9 * knolls_.at(p));
+    double height = 0.5 + 0.9 * swing(swell_, p) + smooth_step(-80, 420, north_east) * (22 + 0.9 * swing(knolls_, p));
     for (const Hill& hill : hills_) height += hill.height * std::exp(-0.5 * (p - hill.top).squaredNorm() / (hill.spread * hill.spread));
     return height;
 }

@@ -1,25 +1,12 @@
 #pragma once
 
 #include "hand_scene.h"
+#include "landform.h"
 #include "random.h"
 
 namespace worlds {
 
 using Vec2 = Eigen::Vector2d;
-
-/// Sum of plane waves of about one length, in all directions. Its mean is 0, its standard deviation 1.
-class Waves {
-public:
-    Waves(Random& random, double length);  ///< m
-    double at(const Vec2& p) const;
-
-private:
-    struct Wave {
-        Vec2 turns;    ///< rad per m
-        double phase;  ///< rad
-    };
-    std::vector<Wave> waves_;
-};
 
 /// A grid of streets, turned against the axes. Block (i, j) lies between the middles of streets i and i + 1 (u = i block_u)
 /// and j and j + 1 (v = j block_v); u runs along the blocks' longer sides.

@@ -26,7 +26,7 @@ struct Growth {
 
 class Valley {
 public:
-    explicit Valley(std::uint64_t seed) : random_(seed), land_(random_), edge_(random_, 50, 140), placer_(land_, world_.scene)
+    explicit Valley(std::uint64_t seed) : random_(seed), land_(random_), edge_(waves_between(random_, 50, 140)), placer_(land_, world_.scene)
     {
         world_.scene.name = "low-complexity";
     }
@@ -142,7 +142,7 @@ void Valley::add_hedge(const Vec2& from, const Vec2& to)
     const double length = (to - from).norm();
     for (double at = 0; at < length; at += random_.between(1.3, 2.1)) {
         const Vec2 straight = from + at / length * (to - from);
-        plant({straight + bend * Vec2(edge_.at(straight), edge_.at(-straight)), 0.5}, 0, bushes);
+        plant({straight + bend * Vec2(swing(edge_, straight), swing(edge_, -straight)), 0.5}, 0, bushes);
     }
 }
 
@@ -159,7 +159,7 @@ void Valley::add_fields()
 
 bool Valley::is_dense_forest(const Vec2& p) const
 {
-    const double edge = 60 * edge_.at(p);
+    const double edge = 60 * swing(edge_, p);
     return p.x() < 178 + edge && p.y() > 238 + edge;
 }
 

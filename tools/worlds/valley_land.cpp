@@ -20,32 +20,23 @@ double bell(const Disc& disc, const Vec2& p)
 
 }  // namespace
 
-double smooth_step(double from, double to, double x)
-{
-    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
-
-Waves::Waves(Random& random, double shortest, double longest)
+Waves waves_between(Random& random, double shortest, double longest)
 {
     constexpr int count = 8;
+    Waves out;
     for (int i = 0; i < count; ++i) {
-        const double per_metre = 2 * pi / random.between(shortest, longest);
+        const double wavelength = random.between(shortest, longest);
         const double direction = 2 * pi * (i + random.between(0, 1)) / count;
-        waves_.push_back({per_metre * Vec2(std::cos(direction), std::sin(direction)), random.between(0, 2 * pi)});
+        out.add(direction, wavelength, random.between(0, 2 * pi));
     }
+    return out;
 }
 
-double Waves::at(const Vec2& p) const
-{
-    double sum = 0;
-    for (const auto& [turns, phase] : waves_) sum += std::sin(turns.dot(p) + phase);
-    return sum / double(waves_.size());
-}
+double swing(const Waves& waves, const Vec2& p) { return waves.at(p) / double(waves.count()); }
 
 ValleyLand::ValleyLand(Random& random)
-    : broad_(random, 120, 260),
-      rough_(random, 18, 40),
+    : broad_(waves_between(random, 120, 260)),
+      rough_(waves_between(random, 18, 40)),
       bay_phase_(random.between(0, 2 * pi)),
       cape_phase_(random.between(0, 2 * pi)),
       lake_{{random.between(120, 130), random.between(112, 122)}, 63},
@@ -65,15 +56,15 @@ double ValleyLand::from_shore(const Vec2& p) const
 
 double ValleyLand::unevenness(const Vec2& p) const
 {
-    const double east_of_town = smooth_step(370, 400, p.x() + 45 * broad_.at(p));
-    const double south = 1 - smooth_step(60, 100, p.y() + 45 * broad_.at(p));
+    const double east_of_town = smooth_step(370, 400, p.x() + 45 * swing(broad_, p));
+    const double south = 1 - smooth_step(60, 100, p.y() + 45 * swing(broad_, p));
     return std::max(east_of_town, south * smooth_step(230, 270, p.x()));
 }
 
 /// The land without town and lake.
 double ValleyLand::plain(const Vec2& p) const
 {
-    return plain_height + broad_height * broad_.at(p) + rough_height * unevenness(p) * rough_.at(p) + hill_height * bell(hill_, p);
+    return plain_height + broad_height * swing(broad_, p) + rough_height * unevenness(p) * swing(rough_, p) + hill_height * bell(hill_, p);
 }
 
 double ValleyLand::height(const Vec2& p) const

@@ -1,30 +1,17 @@
 #pragma once
 
+#include "landform.h"
 #include "random.h"
-
-#include <Eigen/Core>
-
-#include <vector>
 
 namespace worlds {
 
 using Vec2 = Eigen::Vector2d;
 
-/// A sum of plane waves: -1 .. 1, and around 0.
-class Waves {
-public:
-    /// Wavelengths between two limits, m.
-    Waves(Random& random, double shortest, double longest);
+/// Eight waves in all directions, of wavelengths between two limits, m.
+Waves waves_between(Random& random, double shortest, double longest);
 
-    double at(const Vec2& p) const;
-
-private:
-    struct Wave {
-        Vec2 turns;  ///< rad per m along x and y
-        double phase;
-    };
-    std::vector<Wave> waves_;
-};
+/// Of the waves' sum, -1 .. 1.
+double swing(const Waves& waves, const Vec2& p);
 
 /// A disc on the map.
 struct Disc {
@@ -57,8 +44,5 @@ private:
     double bay_phase_, cape_phase_;
     Disc lake_, town_, hill_;
 };
-
-/// 0 up to `from`, 1 from `to` on, smooth between them.
-double smooth_step(double from, double to, double x);
 
 }  // namespace worlds

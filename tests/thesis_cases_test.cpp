@@ -1,0 +1,158 @@
+#include "catch.h"
+#include "test_map.h"
+#include "worlds/bridge.h"
+#include "worlds/hand_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace spawnfield;
+
+// What went wrong in the thesis (Ropelato), each case of it: the right answers.
+
+namespace {
+
+void add_box(Scene& scene, const Vec3& low, const Vec3& high, Label label)
+{
+    hand::add_shape(scene, label, {ShapeKind::Box, high - low, {(low + high) / 2, Mat3::Identity()}});
+}
+
+/// Level ground at z = 0, 20 x 20 m around the origin.
+Scene open_ground()
+{
+    Scene scene;
+    hand::add_mesh(scene, Label::Terrain, hand::rectangle(20, 20), {.kind = "plane"});
+    return scene;
+}
+
+/// With the mask; --exhaustive has to give the same.
+RasterResult raster_of(const Scene& scene, RasterOptions options)
+{
+    const TestMap map = map_of(scene);
+    const CollisionChecker checker = checker_of(map, husky());
+    const RasterResult result = raster(map, checker, options);
+    options.exhaustive = true;
+    CHECK(raster(map, checker, options).counts == result.counts);
+    return result;
+}
+
+/// The verdict at a position of the raster; nothing if it has none there.
+std::optional<Verdict> verdict_at(const RasterResult& result, const Vec3& position)
+{
+    for (const RasterPose& pose : result.poses)
+        if ((Vec3(pose.x, pose.y, pose.z) - position).norm() < 1e-9) return pose.verdict;
+    return std::nullopt;
+}
+
+std::optional<Verdict> verdict_in_2d(const Scene& scene, double x, double y, double z, double max_slope = std::numeric_limits<double>::infinity())
+{
+    RasterOptions options;
+    options.bounds = {{x, y, -100}, {x, y, 100}};
+    options.offset = 0.1;
+    options.max_slope = max_slope;
+    return verdict_at(raster_of(scene, options), {x, y, z});
+}
+
+}  // namespace
+
+TEST_CASE("above a fence no step of a 3D raster is valid")
+{
+    Scene scene = open_ground();
+    add_box(scene, {-5, -0.02, 0}, {5, 0.02, 1}, Label::Obstacle);
+    RasterOptions options;
+    options.dims = 3;
+    options.step = 0.25;
+    options.max_height = 1.0;
+    options.bounds = {{-2, 0, 0}, {2, 0, 3}};
+    const RasterResult on_line = raster_of(scene, options);  // straight above it: its top is the ground
+    CHECK(on_line.counts[std::size_t(Verdict::Valid)] == 0);
+    CHECK(verdict_at(on_line, {0, 0, 0.5}) == Verdict::Collision);
+    CHECK(verdict_at(on_line, {0, 0, 1.25}) == Verdict::OffTerrain);
+    options.bounds = {{-2, 0.25, 0}, {2, 0.25, 0.75}};  // beside it, where the robot's side reaches over
+    CHECK(raster_of(scene, options).counts[std::size_t(Verdict::Valid)] == 0);
+    options.bounds = {{-2, 0.5, 0}, {2, 0.5, 0.75}};
+    CHECK(raster_of(scene, options).counts[std::size_t(Verdict::Valid)] == 17 * 3);  // clear of it
+}
+
+TEST_CASE("the path of a bridge is found under its frame, though all of it is one object")
+{
+    Scene scene = open_ground();
+    hand::Mesh deck = hand::box({12, 3, 0.4});
+    for (Vec3& v : deck.vertices) v.z() += 3;
+    hand::add_mesh(scene, Label::Terrain, deck);
+    for (const double side : {-1.4, 1.4}) {
+        hand::Mesh post = hand::box({0.3, 0.2, 2.2});
+        for (Vec3& v : post.vertices) v += Vec3(0, side, 4.2);
+        hand::add_piece(scene, post);
+    }
+    hand::Mesh beam = hand::box({0.3, 3, 0.3});
+    for (Vec3& v : beam.vertices) v.z() += 5.4;
+    hand::add_piece(scene, beam);
+    CHECK(verdict_in_2d(scene, 0, 0, 5.65) == Verdict::Valid);  // on the beam: it is terrain, and nothing is in the way
+    CHECK(verdict_in_2d(scene, 0, 0, 3.3) == Verdict::Valid);   // the path below
+    CHECK(verdict_in_2d(scene, 0, 0, 0.1) == Verdict::Valid);   // the ground under the bridge
+
+    const double limit = std::numbers::pi / 9;  // 20 degrees: what the robot would stand on is looked at
+    CHECK(verdict_in_2d(scene, 0, 0, 5.65, limit) == Verdict::Unstable);
+    CHECK(verdict_in_2d(scene, 0, 1.4, 5.65, limit) == Verdict::Unstable);
+    CHECK(verdict_in_2d(scene, 0, 0, 3.3, limit) == Verdict::Valid);
+    CHECK(verdict_in_2d(scene, 0, 0, 0.1, limit) == Verdict::Valid);
+}
+
+TEST_CASE("on the generated bridge frames and pillars are found out by their footing, the path is valid")
+{
+    const worlds::World world = worlds::complex_district();
+    const auto bridge = std::find_if(world.landmarks.begin(), world.landmarks.end(), [](const auto& landmark) { return landmark.name == "bridge"; });
+    REQUIRE(bridge != world.landmarks.end());
+    const TestMap map = map_of(world.scene, 0.25, bridge->where);
+    const CollisionChecker checker = checker_of(map, husky());
+    RasterOptions options;
+    options.step = 0.25;
+    options.bounds = bridge->where;
+    options.offset = 0.05;
+    const auto valid_ones = [&](double max_slope) {  // under the frames' beams and on them
+        options.max_slope = max_slope;
+        const RasterResult result = raster(map, checker, options);
+        std::size_t paths = 0, tops = 0;
+        for (std::size_t i = 0; i + 1 < result.poses.size(); ++i) {
+            const RasterPose &upper = result.poses[i], &lower = result.poses[i + 1];
+            if (upper.x != lower.x || upper.y != lower.y || std::abs(upper.z - lower.z - worlds::frame_top) > 1e-3) continue;
+            paths += lower.verdict == Verdict::Valid;
+            tops += upper.verdict == Verdict::Valid;
+        }
+        return std::pair{paths, tops};
+    };
+    const auto [paths, tops] = valid_ones(std::numeric_limits<double>::infinity());
+    CHECK(paths > 20);
+    CHECK(tops > 20);  // nothing collides on top of a frame
+    const auto [paths_with_footing, tops_with_footing] = valid_ones(std::numbers::pi / 9);
+    CHECK(paths_with_footing == paths);
+    CHECK(tops_with_footing == 0);
+}
+
+TEST_CASE("terrain between two steps of a 3D raster is found where steps snap onto it")
+{
+    Scene scene;
+    add_box(scene, {-10, -10, 0}, {10, 10, 1.3}, Label::Terrain);  // 1.2 m below the step above it, 1.3 m above the one below
+    RasterOptions options;
+    options.dims = 3;
+    options.step = 2.5;
+    options.max_height = 1.0;
+    options.bounds = {{-5, -5, 0}, {5, 5, 10}};
+    CHECK(raster_of(scene, options).counts[std::size_t(Verdict::Valid)] == 0);
+    options.snap = true;
+    CHECK(raster_of(scene, options).counts[std::size_t(Verdict::Valid)] == 25);
+}
+
+TEST_CASE("a wheel in a steep slope collides")
+{
+    Scene scene;
+    const double rise = std::tan(30 * std::numbers::pi / 180);
+    hand::add_mesh(scene, Label::Terrain, hand::relief(20, 20, [&](double x, double) { return rise * std::max(0.0, x); }), {.kind = "heightmap"});
+    CHECK(verdict_in_2d(scene, -1, 0, 0.1) == Verdict::Valid);
+    CHECK(verdict_in_2d(scene, -0.6, 0, 0.1) == Verdict::Valid);      // the front is 0.495 m ahead: just before the slope
+    CHECK(verdict_in_2d(scene, 0, 0, 0.1) == Verdict::Collision);     // 0.29 m deep in it
+    CHECK(verdict_in_2d(scene, 3, 0, 3 * rise + 0.1) == Verdict::Collision);
+    CHECK(verdict_in_2d(scene, -0.35, 0, 0.1) == Verdict::Valid);     // 0.145 m over the foot of the slope, which is 0.08 m high there
+}

@@ -1,0 +1,230 @@
+#include "experiments.h"
+
+#include "common/machine.h"
+#include "thesis.h"
+
+#include <spawnfield/thesis.h>
+
+#include <chrono>
+#include <map>
+#include <stdexcept>
+
+using namespace spawnfield;
+
+namespace experiments {
+namespace {
+
+double seconds_of(const std::function<void()>& work)
+{
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void add_counts(const VerdictCounts& counts, Run& run)
+{
+    std::array<std::uint64_t, thesis_class_count> sums{};
+    for (std::size_t i = 0; i < counts.size(); ++i) sums[std::size_t(thesis_class_of(Verdict(i)))] += counts[i];
+    run.valid = sums[std::size_t(ThesisClass::Valid)];
+    run.invalid = sums[std::size_t(ThesisClass::Invalid)];
+    run.aerial = sums[std::size_t(ThesisClass::Aerial)];
+}
+
+Run run_raster(const Environment& environment, const Robot& robot, const RasterOptions& options, Run run)
+{
+    const CollisionChecker checker(environment.map.geometry, robot);
+    RasterResult result;
+    run.seconds = seconds_of([&] { result = raster(environment.map, checker, options); });
+    run.environment = environment.name;
+    run.robot = robot.name;
+    run.mode = options.exhaustive ? Mode::Fcl : Mode::Mask;
+    run.step = options.step;
+    run.positions = std::uint64_t(result.grid.cols) * std::uint64_t(result.grid.rows) * std::uint64_t(options.dims == 3 ? result.grid.heights : 1);
+    run.exact_checks = result.exact_checks;
+    add_counts(result.counts, run);
+    return run;
+}
+
+void check_same(const std::vector<Run>& runs)
+{
+    for (const Run& run : runs)
+        if (run.valid != runs[0].valid || run.invalid != runs[0].invalid || run.aerial != runs[0].aerial || run.positions != runs[0].positions)
+            throw std::runtime_error(tools::formatted("test %d, %s, step %g: %s finds %llu valid of %llu, %s %llu of %llu", run.test, run.robot.c_str(), run.step,
+                                                      to_string(run.mode), (unsigned long long)run.valid, (unsigned long long)run.positions,
+                                                      to_string(runs[0].mode), (unsigned long long)runs[0].valid, (unsigned long long)runs[0].positions));
+}
+
+/// With the mask so many times, and with FCL at every position; all have to give the same counts.
+std::vector<Run> repeated(const Environment& environment, const Robot& robot, RasterOptions options, const Run& like, int mask_times, int fcl_times)
+{
+    std::vector<Run> runs;
+    for (int i = 0; i < mask_times + fcl_times; ++i) {
+        options.exhaustive = i >= mask_times;
+        runs.push_back(run_raster(environment, robot, options, like));
+        runs.back().repetition = options.exhaustive ? i - mask_times + 1 : i + 1;
+    }
+    check_same(runs);
+    return runs;
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& more)
+{
+    to.insert(to.end(), more.begin(), more.end());
+}
+
+RasterOptions benchmark_options(const Settings& settings, int heights)
+{
+    RasterOptions options;
+    options.threads = settings.threads;
+    options.dims = 3;
+    options.step = 1;
+    options.bounds = {{0, 0, 0}, {9, 9, double(heights - 1)}};
+    return options;
+}
+
+/// Limits of the thesis's rasters and searches. Its counts of test 4 and 6 at 1.5 m and more are those of a square: 1 m more in y.
+Bounds limits(int test, double step)
+{
+    if (test % 2 == 1) return {{0, 0, 31}, {500, 500, 124}};
+    return {{-128, -212, 0}, {1152, step > 1 ? 1068.0 : 1067.0, 80}};
+}
+
+RasterOptions raster_options(const Settings& settings, int test, double step)
+{
+    RasterOptions options;
+    options.threads = settings.threads;
+    options.dims = test <= 4 ? 3 : 2;
+    options.step = step;
+    options.offset = 1.0;
+    options.bounds = limits(test, step);
+    return options;
+}
+
+SearchOptions search_options(const Settings& settings, int test, bool with_distance, int seed)
+{
+    SearchOptions options;
+    options.threads = settings.threads;
+    options.bounds = limits(test, 1);
+    options.count = settings.quick ? 50 : 2000;
+    options.min_distance = with_distance ? 2.5 : 0;
+    options.max_failures = 100000;
+    options.seed = std::uint64_t(seed);
+    return options;
+}
+
+Run run_search(const Environment& environment, const Robot& robot, const SearchOptions& options, int test)
+{
+    const CollisionChecker checker(environment.map.geometry, robot);
+    SpawnList list;
+    Run run{.test = test, .environment = environment.name, .robot = robot.name, .step = options.min_distance, .repetition = int(options.seed)};
+    run.seconds = seconds_of([&] { list = search(environment.map, checker, options); });
+    run.exact_checks = list.exact_checks;
+    add_counts(list.counts, run);
+    run.positions = run.valid + run.invalid + run.aerial;
+    return run;
+}
+
+const Environment& environment_of(const Districts& districts, int test) { return test % 2 == 1 ? districts.low : districts.complex; }
+
+}  // namespace
+
+std::vector<Run> aerial_runs(const Settings& settings)
+{
+    std::vector<Run> runs;
+    for (const thesis::Aerial& figure : thesis::aerial()) {
+        const int heights = int(figure.positions / 100);
+        settings.tell(tools::formatted("test 1: %d positions", heights * 100));
+        const Environment empty = empty_environment(heights);
+        for (const char* const name : {"box", "hull"})
+            append(runs, repeated(empty, robot(settings, name), benchmark_options(settings, heights), {.test = 1}, settings.quick ? 2 : 10, 1));
+    }
+    return runs;
+}
+
+std::vector<Run> collision_runs(const Settings& settings, const Environment& cubes, const Environment& balls)
+{
+    std::vector<Run> runs;
+    for (const thesis::Collision& figure : thesis::collision()) {
+        settings.tell(std::string("test 2: ") + figure.robot + " against " + figure.obstacle);
+        const Environment& environment = figure.obstacle == std::string("cubes") ? cubes : balls;
+        RasterOptions options = benchmark_options(settings, int(environment.map.bounds.max.z()) + 1);
+        options.height_check = false;
+        const Run like{.test = 2, .obstacle = figure.obstacle};
+        append(runs, repeated(environment, robot(settings, figure.robot), options, like, settings.quick ? 2 : 10, settings.quick ? 1 : 3));
+        if (runs.back().invalid != runs.back().positions) throw std::runtime_error("test 2: a position without collision");
+    }
+    return runs;
+}
+
+std::vector<Run> raster_runs(const Settings& settings, const Districts& districts)
+{
+    std::vector<Run> runs;
+    for (int test = 3; test <= 6; ++test)
+        for (const thesis::Raster& figure : thesis::raster(test)) {
+            const double step = settings.quick ? 16 * figure.step : figure.step;
+            settings.tell(tools::formatted("test %d: step %g m", test, step));
+            for (const char* const name : {"box", "hull"})
+                append(runs, repeated(environment_of(districts, test), robot(settings, name), raster_options(settings, test, step), {.test = test},
+                                      settings.quick ? 2 : 5, 1));
+        }
+    return runs;
+}
+
+std::vector<Run> search_runs(const Settings& settings, const Districts& districts)
+{
+    std::vector<Run> runs;
+    const Robot box = robot(settings, "box");
+    for (const int test : {7, 8})
+        for (const bool with_distance : {true, false}) {
+            settings.tell(tools::formatted("test %d: %s distance check", test, with_distance ? "with" : "without"));
+            for (int seed = 1; seed <= (settings.quick ? 2 : 20); ++seed)
+                runs.push_back(run_search(environment_of(districts, test), box, search_options(settings, test, with_distance, seed), test));
+        }
+    return runs;
+}
+
+SpawnList first_search(const Settings& settings, const Districts& districts, int test)
+{
+    const Environment& environment = environment_of(districts, test);
+    return search(environment.map, CollisionChecker(environment.map.geometry, robot(settings, "box")), search_options(settings, test, true, 1));
+}
+
+std::vector<Milestone> milestones(const Settings& settings, const Districts& districts)
+{
+    std::vector<Milestone> out;
+    const Robot box = robot(settings, "box");
+    for (const int test : {7, 8})
+        for (const bool with_distance : {true, false})
+            for (int seed = 1; seed <= (settings.quick ? 1 : 5); ++seed) {
+                SearchOptions options = search_options(settings, test, with_distance, seed);
+                for (std::size_t part = 1, count = options.count; part <= 8; ++part) {
+                    options.count = count * part / 8;
+                    const Run run = run_search(environment_of(districts, test), box, options, test);
+                    out.push_back({run.environment, with_distance, seed, std::size_t(run.valid), run.seconds});
+                }
+            }
+    return out;
+}
+
+std::vector<ColumnFinds> column_finds(const Settings& settings, const Environment& low)
+{
+    settings.tell("2D beside 3D");
+    const CollisionChecker checker(low.map.geometry, robot(settings, "box"));
+    std::map<std::pair<double, double>, ColumnFinds> columns;
+    const auto look = [&](const RasterOptions& options, bool ColumnFinds::*found) {
+        for (const RasterPose& pose : raster(low.map, checker, options).poses)
+            columns.try_emplace({pose.y, pose.x}, ColumnFinds{pose.x, pose.y, false, false, false}).first->second.*found |= pose.verdict == Verdict::Valid;
+    };
+    RasterOptions options = raster_options(settings, 5, settings.quick ? 20 : 2.5);
+    look(options, &ColumnFinds::in_2d);
+    options.dims = 3;
+    look(options, &ColumnFinds::in_3d);
+    options.snap = true;
+    look(options, &ColumnFinds::in_3d_snapped);
+    std::vector<ColumnFinds> out;
+    for (const auto& [at, finds] : columns) out.push_back(finds);
+    return out;
+}
+
+}  // namespace experiments
