@@ -1,6 +1,8 @@
 #include "catch.h"
-#include "worlds/hand_scene.h"
+#include "geometry/tile.h"
 #include "test_map.h"
+#include "worlds/hand_scene.h"
+#include "worlds/world.h"
 
 #include <numbers>
 
@@ -158,4 +160,24 @@ TEST_CASE("against the occupancy tree a pose is free where no occupied voxel is"
     }
     CHECK(both_free > 500);
     CHECK(only_exact < both_free / 3);
+}
+
+TEST_CASE("what is found in a box of space is what the rectangle below it holds at these heights, in tall tiles too")
+{
+    const Geometry geometry(worlds::benchmark_balls(60).scene);
+    std::size_t found = 0;
+    Random random(7);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 low(random.between(-1, 9), random.between(-1, 9), random.between(-2, 60));
+        const Bounds space{low, low + Vec3(random.between(0, 2), random.between(0, 2), random.between(0, 3))};
+        std::vector<std::uint32_t> expected, visited;
+        geometry.impl().visit_in(space.min.x(), space.min.y(), space.max.x(), space.max.y(), [&](const Tile& tile, std::uint32_t element) {
+            const ElementBox& box = tile.boxes[element];
+            if (box.min[2] <= space.max.z() && box.max[2] >= space.min.z()) expected.push_back(tile.ids[element]);
+        });
+        geometry.impl().visit_in(space, [&](const Tile& tile, std::uint32_t element) { visited.push_back(tile.ids[element]); });
+        CHECK(visited == expected);
+        found += visited.size();
+    }
+    CHECK(found > 10000);
 }

@@ -1,9 +1,9 @@
 #include "catch.h"
 #include "free_space/bounds_tile.h"
 #include "free_space/footprint.h"
-#include "worlds/hand_scene.h"
 #include "slow.h"
 #include "test_map.h"
+#include "worlds/hand_scene.h"
 
 #include <spawnfield/free_space.h>
 

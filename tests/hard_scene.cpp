@@ -1,7 +1,7 @@
 #include "hard_scene.h"
 
-#include "worlds/hand_scene.h"
 #include "slow.h"
+#include "worlds/hand_scene.h"
 
 #include <algorithm>
 #include <cmath>

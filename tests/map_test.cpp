@@ -1,8 +1,8 @@
 #include "catch.h"
-#include "worlds/hand_scene.h"
+#include "geometry/tile.h"
 #include "temp_folder.h"
 #include "test_map.h"
-#include "geometry/tile.h"
+#include "worlds/hand_scene.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>

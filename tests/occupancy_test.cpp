@@ -1,8 +1,8 @@
 #include "catch.h"
-#include "worlds/hand_scene.h"
 #include "slow.h"
 #include "temp_folder.h"
 #include "test_map.h"
+#include "worlds/hand_scene.h"
 
 #include <spawnfield/error.h>
 

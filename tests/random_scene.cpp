@@ -1,7 +1,7 @@
 #include "random_scene.h"
 
-#include "worlds/hand_scene.h"
 #include "slow.h"
+#include "worlds/hand_scene.h"
 
 #include <Eigen/Geometry>
 

@@ -1,6 +1,6 @@
 #include "catch.h"
-#include "robot/hull.h"
 #include "mesh_text.h"
+#include "robot/hull.h"
 #include "shared_scenes.h"
 #include "temp_folder.h"
 

@@ -1,8 +1,8 @@
 #include "slow.h"
 
 #include "catch.h"
-#include "worlds/hand_scene.h"
 #include "random_scene.h"
+#include "worlds/hand_scene.h"
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 #include "catch.h"
 #include "compare.h"
-#include "worlds/hand_scene.h"
 #include "test_map.h"
+#include "worlds/hand_scene.h"
 
 #include "query/cell_proofs.h"
 #include "query/draw.h"

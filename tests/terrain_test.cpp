@@ -1,6 +1,6 @@
 #include "catch.h"
-#include "worlds/hand_scene.h"
 #include "test_map.h"
+#include "worlds/hand_scene.h"
 
 #include <spawnfield/error.h>
 

@@ -265,7 +265,31 @@ Tile::Tile(std::string_view bytes) : head(reinterpret_cast<const TileHead*>(byte
 void Geometry::Impl::make_states()
 {
     states_.clear();
-    for (const TileLevel& level : levels) states_.push_back(std::make_unique<std::atomic<std::uint8_t>[]>(level.tiles.size()));
+    runs_.clear();
+    for (const TileLevel& level : levels) {
+        states_.push_back(std::make_unique<std::atomic<std::uint8_t>[]>(level.tiles.size()));
+        runs_.push_back(std::make_unique<std::atomic<const HeightRun*>[]>(level.tiles.size()));
+    }
+}
+
+Geometry::Impl::~Impl()
+{
+    for (std::size_t l = 0; l < runs_.size(); ++l)
+        for (std::size_t t = 0; t < levels[l].tiles.size(); ++t) delete[] runs_[l][t].load(std::memory_order_relaxed);
+}
+
+const HeightRun* Geometry::Impl::make_height_runs(std::size_t level, std::size_t number, const Tile& tile) const
+{
+    auto made = std::make_unique<HeightRun[]>((tile.elements() + HeightRun::length - 1) / HeightRun::length);
+    for (std::uint32_t element = 0; element < tile.elements(); ++element) {
+        const ElementBox& box = tile.boxes[element];
+        HeightRun& run = made[element / HeightRun::length];
+        run.low = std::min(run.low, box.min[2]);
+        run.high = std::max(run.high, box.max[2]);
+    }
+    const HeightRun* there = nullptr;  // another thread may have been quicker
+    if (runs_[level][number].compare_exchange_strong(there, made.get(), std::memory_order_acq_rel, std::memory_order_acquire)) return made.release();
+    return there;
 }
 
 void Geometry::Impl::verify(std::string_view view, const TileEntry& entry) const

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -117,6 +118,14 @@ struct TileLevel {
     std::vector<TileEntry> tiles;  ///< row after row; row 0 is the smallest y
 };
 
+/// Heights of some elements of a tile that follow each other; in the scene's order they are mostly near each other.
+struct HeightRun {
+    static constexpr std::uint32_t length = 32;  ///< elements
+    float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
+
+    bool meets(const Interval& z) const { return low <= z.top && high >= z.bottom; }
+};
+
 struct Geometry::Impl {
     double x0 = 0, y0 = 0;  ///< corner that all levels share
     std::uint64_t elements = 0;
@@ -129,6 +138,9 @@ struct Geometry::Impl {
     std::string file;        ///< that they lie in, for messages; empty: in memory, and trusted
 
     Impl() = default;
+    Impl(Impl&&) = default;
+    Impl& operator=(Impl&&) = delete;
+    ~Impl();
     /// To be called when the levels are filled, before the first tile is opened.
     void make_states();
 
@@ -168,7 +180,7 @@ struct Geometry::Impl {
         const auto meets = [&](const ElementBox& box) {
             return box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y;
         };
-        visit_if(low_x, low_y, high_x, high_y, meets, visit);
+        visit_if(low_x, low_y, high_x, high_y, AnyHeight(), meets, visit);
     }
 
     /// The same for a closed box.
@@ -180,16 +192,18 @@ struct Geometry::Impl {
             return box.min[2] <= high.z() && box.max[2] >= low.z() && box.min[0] <= high.x() && box.max[0] >= low.x() &&
                    box.min[1] <= high.y() && box.max[1] >= low.y();
         };
-        visit_if(low.x(), low.y(), high.x(), high.y(), meets, visit);
+        visit_if(low.x(), low.y(), high.x(), high.y(), Interval{low.z(), high.z()}, meets, visit);
     }
 
     /// About how many elements there are in the tiles that a rectangle meets, by its share of their area.
     double elements_near(double low_x, double low_y, double high_x, double high_y) const;
 
 private:
-    /// Elements near the rectangle for which meets(box) holds, which is nowhere else.
-    template <class Meets, class Visit>
-    void visit_if(double low_x, double low_y, double high_x, double high_y, const Meets& meets, const Visit& visit) const
+    struct AnyHeight {};
+
+    /// Elements near the rectangle for which meets(box) holds, which is nowhere else, nor off these heights: an Interval or AnyHeight.
+    template <class Heights, class Meets, class Visit>
+    void visit_if(double low_x, double low_y, double high_x, double high_y, const Heights& heights, const Meets& meets, const Visit& visit) const
     {
         for (std::size_t l = 0; l < levels.size(); ++l) {
             const TileLevel& level = levels[l];
@@ -202,7 +216,13 @@ private:
                     const std::size_t t = std::size_t{row} * level.cols + col;
                     if (level.tiles[t].size == 0) continue;
                     const Tile tile = open(l, t);
-                    visit_tile(tile, low_x, low_y, high_x, high_y, meets, [&](std::uint32_t element) {
+                    const HeightRun* runs = nullptr;
+                    if constexpr (std::is_same_v<Heights, Interval>) runs = height_runs(l, t, tile);
+                    const auto may_meet = [&](std::uint32_t element) {
+                        if constexpr (std::is_same_v<Heights, Interval>) return runs == nullptr || runs[element / HeightRun::length].meets(heights);
+                        else return true;
+                    };
+                    visit_tile(tile, low_x, low_y, high_x, high_y, may_meet, meets, [&](std::uint32_t element) {
                         // In several tiles: the one that holds the lower left corner of what box and rectangle share tells.
                         const ElementBox& box = tile.boxes[element];
                         const Home home = tile.home(element);
@@ -213,14 +233,20 @@ private:
         }
     }
 
-    template <class Meets, class Visit>
-    static void visit_tile(const Tile& tile, double low_x, double low_y, double high_x, double high_y, const Meets& meets, const Visit& visit)
+    /// may_meet(element) speaks for the whole run that the element is in.
+    template <class MayMeet, class Meets, class Visit>
+    static void visit_tile(const Tile& tile, double low_x, double low_y, double high_x, double high_y, const MayMeet& may_meet, const Meets& meets,
+                           const Visit& visit)
     {
         const std::uint32_t col0 = tile.bin_col(low_x), col1 = tile.bin_col(high_x), row0 = tile.bin_row(low_y), row1 = tile.bin_row(high_y);
         // Most bins: all elements in their order, rather than bin by bin.
         if (2.0 * (col1 - col0 + 1) * (row1 - row0 + 1) > double(tile.head->bin_cols) * tile.head->bin_rows) {
-            for (std::uint32_t element = 0; element < tile.elements(); ++element)
-                if (meets(tile.boxes[element])) visit(element);
+            for (std::uint32_t first = 0; first < tile.elements(); first += HeightRun::length) {
+                if (!may_meet(first)) continue;
+                const std::uint32_t end = std::min(tile.elements(), first + HeightRun::length);
+                for (std::uint32_t element = first; element < end; ++element)
+                    if (meets(tile.boxes[element])) visit(element);
+            }
             return;
         }
         Visits& visits = visits_of_thread();
@@ -228,7 +254,7 @@ private:
         for (std::uint32_t row = row0; row <= row1; ++row)
             for (std::uint32_t col = col0; col <= col1; ++col)
                 for (const std::uint32_t element : tile.bin(col, row))
-                    if (meets(tile.boxes[element]) && visits.is_first(element)) visit(element);
+                    if (may_meet(element) && meets(tile.boxes[element]) && visits.is_first(element)) visit(element);
     }
 
     /// Which elements of a tile were visited: several bins hold the same one.
@@ -257,7 +283,18 @@ private:
 
     void verify(std::string_view view, const TileEntry& entry) const;
 
+    /// Of a tile with many elements, made when first asked for: a quarter of a byte for each; nullptr for others.
+    const HeightRun* height_runs(std::size_t level, std::size_t number, const Tile& tile) const
+    {
+        constexpr std::uint32_t many = 16 * HeightRun::length;
+        if (tile.elements() < many) return nullptr;
+        const HeightRun* const made = runs_[level][number].load(std::memory_order_acquire);
+        return made != nullptr ? made : make_height_runs(level, number, tile);
+    }
+    const HeightRun* make_height_runs(std::size_t level, std::size_t number, const Tile& tile) const;
+
     mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> states_;  ///< 1: checked
+    mutable std::vector<std::unique_ptr<std::atomic<const HeightRun*>[]>> runs_;  ///< owned
 };
 
 }  // namespace spawnfield

@@ -67,6 +67,6 @@ Image draw_picture(const Frame& frame, const Layout& layout, const Image& plot);
 /// White with a dark outline, pointing along yaw (from x to y, which is up); a dot if shorter than smallest_arrow.
 /// `length` is in units.
 void draw_arrow(Image& image, cv::Point2d centre, double yaw, double length, double unit);
-inline constexpr double smallest_arrow = 8;
+inline constexpr double smallest_arrow = 10;
 
 }  // namespace spawnfield

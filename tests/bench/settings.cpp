@@ -1,9 +1,9 @@
 #include "workbench.h"
 
-#include "hills.h"
-#include "worlds/lattice.h"
 #include "floors.h"
+#include "hills.h"
 #include "town.h"
+#include "worlds/lattice.h"
 
 using namespace spawnfield;
 using namespace worlds;

@@ -1,9 +1,9 @@
 #include "workbench.h"
 
 #include "../random_scene.h"
+#include "base/stopwatch.h"
 #include "digest.h"
 #include "world.h"
-#include "base/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>

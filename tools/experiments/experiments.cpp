@@ -164,9 +164,13 @@ std::vector<Run> raster_runs(const Settings& settings, const Districts& district
         for (const thesis::Raster& figure : thesis::raster(test)) {
             const double step = settings.quick ? 16 * figure.step : figure.step;
             settings.tell(tools::formatted("test %d: step %g m", test, step));
-            for (const char* const name : {"box", "hull"})
+            for (const char* const name : {"box", "hull"}) {
                 append(runs, repeated(environment_of(districts, test), robot(settings, name), raster_options(settings, test, step), {.test = test},
                                       settings.quick ? 2 : 5, 1));
+                if (!settings.quick && runs.back().positions != figure.positions)
+                    throw std::runtime_error(tools::formatted("test %d, step %g: %llu positions, needs %llu", test, step, (unsigned long long)runs.back().positions,
+                                                              (unsigned long long)figure.positions));
+            }
         }
     return runs;
 }

@@ -10,7 +10,7 @@ using namespace spawnfield;
 namespace experiments {
 namespace {
 
-constexpr int case_pixels = 640, map_pixels = 600;
+constexpr int case_pixels = 640, map_pixels = 560;
 constexpr double columns_across = 320;  // of the rasters behind the pictures
 
 struct Case {
@@ -25,9 +25,10 @@ Bounds region_of(const Environment& environment, const std::string& name)
     throw std::runtime_error("the environment " + environment.name + " has no landmark " + name);
 }
 
-RasterResult verdicts_in(const Settings& settings, const Environment& environment, const Bounds& bounds)
+RasterResult verdicts_in(const Settings& settings, const Environment& environment, const Bounds& bounds, double offset)
 {
     RasterOptions options;
+    options.offset = offset;
     options.threads = settings.threads;
     options.bounds = bounds;
     options.step = (bounds.max - bounds.min).head<2>().maxCoeff() / columns_across;
@@ -36,7 +37,7 @@ RasterResult verdicts_in(const Settings& settings, const Environment& environmen
 
 Picture draw_case(const Settings& settings, const Environment& environment, const Case& shown, const std::filesystem::path& folder)
 {
-    const RasterResult verdicts = verdicts_in(settings, environment, region_of(environment, shown.landmark));
+    const RasterResult verdicts = verdicts_in(settings, environment, region_of(environment, shown.landmark), 0.3);
     Picture picture{std::string("case_") + environment.name + "_" + shown.landmark + ".png", shown.title};
     std::replace(picture.file.begin(), picture.file.end(), '-', '_');
     write_heatmap(environment.map, read_terrain(environment.map), verdicts, {.pixels = case_pixels, .title = shown.title}, folder / picture.file);
@@ -70,7 +71,7 @@ std::vector<Picture> draw_spawns(const Settings& settings, const Districts& dist
         options.title = environment.name + ", " + std::to_string(options.spawns.size()) + " random spawns";
         Picture picture{"spawns_" + environment.name + ".png", options.title};
         std::replace(picture.file.begin(), picture.file.end(), '-', '_');
-        write_heatmap(environment.map, read_terrain(environment.map), verdicts_in(settings, environment, environment.map.bounds), options, folder / picture.file);
+        write_heatmap(environment.map, read_terrain(environment.map), verdicts_in(settings, environment, environment.map.bounds, 1.0), options, folder / picture.file);
         out.push_back(picture);
     }
     return out;

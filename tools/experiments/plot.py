@@ -19,6 +19,7 @@ from matplotlib.patches import Patch
 
 BLUE, ORANGE, GREEN, GREY, BLACK = "#0072B2", "#D55E00", "#009E73", "#BBBBBB", "#000000"
 ENVIRONMENTS = ("low-complexity", "complex")
+BREAK_EVEN = 1.8  # m, of the thesis
 
 
 def read(file):
@@ -52,11 +53,12 @@ def plot_steps(runs, thesis, folder):
                 axes[0][column].plot([p[1] for p in points], [p[2] for p in points], style, color=colour, label=f"{dims}, {label}")
                 axes[1][column].plot([p[0] for p in points], [p[2] for p in points], style, color=colour, label=f"{dims}, {label}")
         axes[0][column].set(xscale="log", yscale="log", xlabel="positions checked", title=environment)
+        axes[1][column].axvline(BREAK_EVEN, color=GREY, linestyle="-.", label="the thesis's break-even of 2D and 3D")
         axes[1][column].set(yscale="log", xlabel="step, m")
         for row in (0, 1):
             axes[row][column].grid(True, which="major", color="#DDDDDD")
             axes[row][column].set_ylabel("time, s")
-    axes[0][1].legend(fontsize=8)
+    axes[1][1].legend(fontsize=8, loc="center right")
     save(figure, folder, "time_against_steps")
 
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -90,10 +91,20 @@ using Ratios = std::map<int, std::vector<double>>;
 
 // ---- Sections ----
 
+/// What the maps say they were baked with: {assimp: "5.2.4", …}.
+std::string libraries(const Map& map)
+{
+    const std::string key = "libraries: ";
+    std::ifstream file(map.folder / "map.yaml");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with(key)) return line.substr(key.size());
+    return "not known";
+}
+
 std::string environments_section(const std::vector<const Environment*>& environments)
 {
-    std::string text = "## Environments\n\n| environment | extent, m | triangles | boxes, capsules, cylinders | seed | made | baked at | baked in | map read in |\n"
-                       "|---|---|---|---|---|---|---|---|---|\n";
+    std::string text = "## Environments\n\n| environment | extent, m | triangles | boxes, capsules, cylinders | seed | made | baked at | baked in | map read in | map's hash |\n"
+                       "|---|---|---|---|---|---|---|---|---|---|\n";
     for (const Environment* const environment : environments) {
         const Map& map = environment->map;
         std::uint64_t triangles = 0, primitives = 0;
@@ -102,9 +113,9 @@ std::string environments_section(const std::vector<const Environment*>& environm
             primitives += label.primitives;
         }
         const Vec3 size = map.bounds.max - map.bounds.min;
-        text += formatted("| %s | %.4g × %.4g × %.4g | %s | %s | %llu | %s | %g m | %s | %s |\n", environment->name.c_str(), size.x(), size.y(), size.z(),
+        text += formatted("| %s | %.4g × %.4g × %.4g | %s | %s | %llu | %s | %g m | %s | %s | %s |\n", environment->name.c_str(), size.x(), size.y(), size.z(),
                           grouped(triangles).c_str(), grouped(primitives).c_str(), Count(environment->seed), seconds_text(environment->make_seconds).c_str(),
-                          map.resolution, seconds_text(environment->bake_seconds).c_str(), seconds_text(environment->read_seconds).c_str());
+                          map.resolution, seconds_text(environment->bake_seconds).c_str(), seconds_text(environment->read_seconds).c_str(), map.hash.c_str());
     }
     return text + "\nThe originals are not public: these have their extents, content and statistics ([maps](../maps/README.md) shows them). Making and baking is\n"
                   "done once for a world; the times below are those of the queries, the mask's preparation with it, without reading map and robot.\n\n";
@@ -243,9 +254,9 @@ std::string plots_section(const Results& results, const std::string& pictures)
     text += formatted("At 2.5 m steps and up to 1 m above the ground, low-complexity. Of %s columns in which the 2D raster finds a place to stand, the 3D raster has a step\n"
                       "in reach above the ground in some alone: it misses %s of them (%s). With `--snap` it misses %s.\n\n",
                       grouped(in_2d).c_str(), grouped(missed).c_str(), percent(missed, in_2d).c_str(), grouped(missed_snapped).c_str());
-    text += image("columns_2d_3d.png", "2D beside 3D") + "\n## Special cases\n\nVerdicts of the box 0.1 m above the ground.\n\n";
+    text += image("columns_2d_3d.png", "2D beside 3D") + "\n## Special cases\n\nVerdicts of the box 0.3 m above the ground. What is orange beside an obstacle is too near to it for a robot that looks along x.\n\n";
     for (const Picture& picture : results.cases) text += image(picture.file, picture.title);
-    text += "\n## Random spawns\n\nThe first runs of tests 7 and 8.\n\n";
+    text += "\n## Random spawns\n\nThe first runs of tests 7 and 8, over the verdicts of the box 1 m above the ground.\n\n";
     for (const Picture& picture : results.spawns) text += image(picture.file, picture.title);
     return text;
 }
@@ -302,7 +313,9 @@ std::string report(const Settings& settings, const std::vector<const Environment
     std::string text = "# The thesis's eight experiments\n\nRopelato's thesis on feasible spawn locations in Unity, from which spawnfield grew, timed eight tests. They are run here with its\n"
                        "parameters; the robot is the Husky's base as a box (0.99 × 0.67 × 0.39 m), or a convex hull of 196 triangles of that size.\n\n";
     if (settings.quick) text += "**A quick run: coarse steps and maps, for counts and invariants. Its times say nothing.**\n\n";
-    text += "Made by `" + command + "` with " + tools::machine() + formatted(", in %.0f s with the making and baking of the environments.\n\n", results.total_seconds);
+    text += "Made by `" + command + "` with " + tools::machine() +
+            formatted(", in %.0f s with the making and baking of the environments;\nlibraries %s. Searches draw with the seeds 1 to 20.\n\n", results.total_seconds,
+                      libraries(environments.front()->map).c_str());
     return text + (settings.quick ? "" : ratios_section(ratios)) + environments_section(environments) + tests + plots_section(results, pictures);
 }
 

@@ -10,6 +10,7 @@ struct Raster {
     double step;  ///< m
     std::uint64_t checks, valid, invalid;
     double seconds;
+    std::uint64_t positions;  ///< that its limits and step give, limits included: what it did not round
 };
 
 struct Random {
