@@ -5,6 +5,8 @@
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
 
+#include <numeric>
+
 using namespace spawnfield;
 
 namespace {
@@ -284,8 +286,8 @@ TEST_CASE("snapped poses take the place of steps: one for two layers below it, n
     options.step_z = 0.2;
     options.bounds.max.z() = 0.8;
     CHECK(heights() == std::vector<double>{0.8, 0.65, 0.2 * 3, 0.2, 0});  // in place of 0.4, above the step that follows
-    options.offset = 0.4;  // where a step is, too: both stay
-    CHECK(heights() == std::vector<double>{0.8, 0.8, 0.2 * 3, 0.2, 0});
+    options.offset = 0.4;  // where a step is, too: one pose
+    CHECK(heights() == std::vector<double>{0.8, 0.2 * 3, 0.2, 0});
 }
 
 TEST_CASE("a floor that is at a step but for rounding replaces that one")
@@ -333,6 +335,29 @@ TEST_CASE("the poses of the 2D raster are among those of the 3D raster with snap
         CHECK(visited == listed);
     }
     CHECK((valid > 500 && other > 500));
+}
+
+TEST_CASE("with snap no place is asked twice, and a column runs down, also where offsets meet steps")
+{
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const TestMap map = map_of(random_scene(seed));
+        const CollisionChecker checker = checker_of(map, husky());
+        for (const auto& [step_z, offset] : {std::pair{0.5, 0.5}, {0.2, 1.0}, {0.1, 0.1}, {0.5, 0.0}}) {
+            RasterOptions options = snapped(1.3, step_z, offset);
+            options.bounds = {{-9, -9, -2}, {9, 9, 6}};  // level floors at whole steps
+            const RasterResult result = raster(map, checker, options);
+            std::uint64_t visited = 0, out_of_order = 0;
+            std::optional<RasterPose> last;
+            for_each_pose(result, true, [&](const RasterPose& pose) {
+                ++visited;
+                out_of_order += last && last->x == pose.x && last->y == pose.y && !(pose.z < last->z - 1e-9);
+                last = pose;
+            });
+            INFO("scene " << seed << ", step " << step_z << ", offset " << offset);
+            CHECK(out_of_order == 0);
+            CHECK(visited == std::accumulate(result.counts.begin(), result.counts.end(), std::uint64_t{0}));
+        }
+    }
 }
 
 TEST_CASE("snap refuses 2D, no height check, and offsets that would be aerial")

@@ -79,7 +79,8 @@ struct RasterOptions : QueryOptions {
     LayerChoice layers = {};     ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
     bool height_check = true;    ///< false (3D only): collisions alone, at every pose; max_slope is not asked for
     /// 3D with height check: each chosen layer within the bounds' z has its pose of the 2D raster, in place of the lowest
-    /// step at or above it (RasterGrid::step_above) if there is one. So no terrain between two steps is lost.
+    /// step at or above it (RasterGrid::step_above) if there is one, and of a step at its very place (to 1e-9 m). So no terrain
+    /// between two steps is lost.
     bool snap = false;
 };
 

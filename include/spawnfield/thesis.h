@@ -27,7 +27,7 @@ using ThesisCounts = std::array<std::uint64_t, thesis_class_count>;
 
 /// Writes the locations' files into a folder: a line "x, y, z" per pose in Unity's frame, numbers that read back to the same
 /// double. With `air` also Air_Locations.txt, of 3D rasters with the aerial poses that `raster` leaves out. Throws OutputError.
-ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air);
+ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air, const Progress& progress = {});
 
 /// Spawns are valid locations. No others are kept, so Invalid_Locations.txt is empty: thesis_stats tells how many there were.
 ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const SpawnList& list);

@@ -54,19 +54,23 @@ void check(const RasterOptions& options)
         throw ArgumentError("raster", "offset", options.offset, "0 .. max_height with snap: poses on their layers would be aerial");
 }
 
-/// Numbers of heights, from the top down, each once.
+/// Numbers of heights, each once.
 using Steps = std::vector<int>;
 
 bool contains(const Steps& steps, int k) { return std::find(steps.begin(), steps.end(), k) != steps.end(); }
 
-/// Those in whose place a column's snapped poses stand.
+/// Those in whose place a column's snapped poses stand, and those that stand at their very places.
 Steps replaced_steps(const RasterGrid& grid, double offset, std::span<const RasterPose> column)
 {
     Steps out;
+    const auto add = [&](int k) {
+        if (k < grid.heights && !contains(out, k)) out.push_back(k);
+    };
     for (const RasterPose& pose : column) {
         if (!pose.snapped) continue;
-        const int k = grid.step_above(pose.z - offset);
-        if (k < grid.heights && (out.empty() || out.back() != k)) out.push_back(k);
+        add(grid.step_above(pose.z - offset));
+        const int there = grid.step_above(pose.z);
+        if (there < grid.heights && grid.z_of(there) <= pose.z + touch_tolerance) add(there);
     }
     return out;
 }
@@ -269,7 +273,7 @@ void for_each_pose(const RasterResult& raster, bool aerial, const std::function<
             const Steps replaced = replaced_steps(grid, raster.offset, std::span(next, end));
             for (int k = grid.heights - 1; k >= 0; --k) {
                 const double z = grid.z_of(k);
-                while (next != end && (next->z > z || (next->snapped && next->z == z))) visit(*next++);
+                while (next != end && next->z > z) visit(*next++);
                 if (next != end && next->z == z) visit(*next++);
                 else if (!contains(replaced, k)) visit({x, y, z, -1, Verdict::Aerial});
             }

@@ -4,6 +4,7 @@
 #include <spawnfield/thesis.h>
 
 #include <array>
+#include <numeric>
 #include <optional>
 
 namespace spawnfield {
@@ -60,12 +61,16 @@ ThesisClass thesis_class_of(Verdict verdict)
     return ThesisClass::Invalid;
 }
 
-ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air)
+ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air, const Progress& progress)
 {
     std::array<std::optional<LocationFile>, thesis_class_count> files;
     for (std::size_t i = 0; i < thesis_class_count; ++i)
         if (air || ThesisClass(i) != ThesisClass::Aerial) files[i].emplace(folder / thesis_files[i]);
+    constexpr std::uint64_t often = 1 << 16;  // poses
+    const std::uint64_t all = air ? std::accumulate(raster.counts.begin(), raster.counts.end(), std::uint64_t{0}) : raster.poses.size();
+    std::uint64_t done = 0;
     for_each_pose(raster, air, [&](const RasterPose& pose) {
+        if (++done % often == 0 && progress) progress(double(done) / double(all));
         auto& file = files[std::size_t(thesis_class_of(pose.verdict))];
         if (file) file->add({pose.x, pose.y, pose.z});
     });

@@ -267,7 +267,10 @@ void write_output(const std::string& file, const std::function<void(const std::f
         return;
     }
     OutputFile out(file);
-    writer([&](std::string_view text) { out.write(text); });
+    writer([&](std::string_view text) {
+        if (was_interrupted()) throw Interrupted{};
+        out.write(text);
+    });
     out.flush();
     if (was_interrupted()) throw Interrupted{};
     then();

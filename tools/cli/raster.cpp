@@ -4,6 +4,8 @@
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
 
+#include <cmath>
+
 namespace spawnfield::cli {
 namespace {
 
@@ -49,6 +51,7 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     if (is_3d) add("Height check", options.height_check ? "yes" : "no");
     if (is_3d && options.height_check) add("Max height (m)", number(options.max_height));
     if (options.height_check) add("Max water depth (m)", number(options.max_water_depth));
+    if (options.height_check && std::isfinite(options.max_slope)) add("Max slope (rad)", number(options.max_slope));
     return out;
 }
 
@@ -71,7 +74,7 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     };
     if (folder)
         write_thesis(*folder, settings_of(args, *session, options, result.grid), result.counts, summary,
-                     [&](const auto& into) { return write_thesis_locations(into, result, args.write_aerial); }, draw);
+                     [&](const auto& into) { return write_thesis_locations(into, result, args.write_aerial, progress_bar(args, "writing")); }, draw);
     else if (args.out.empty() && !args.heatmap.empty()) draw();
     else write_output(args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink); }, draw);
     summary.lap("write");

@@ -19,7 +19,9 @@ struct SpawnArgs : QueryArgs {
 std::string shortfall(const SpawnOptions& options, const SpawnList& list, const std::string& command)
 {
     const std::string found = std::to_string(list.spawns.size()), of_count = found + " of " + std::to_string(options.count) + " spawns ";
-    const std::string advice = "a smaller --min-distance, " + std::string(command == "sample" ? "another --offset or a wider --region" : "more --max-failures or wider --bounds");
+    const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
+                               (std::isfinite(options.max_slope) ? "a larger --max-slope, " : "") +
+                               (command == "sample" ? "another --offset or a wider --region" : "more --max-failures or wider --bounds");
     if (list.is_full && list.spawns.empty()) return "no spawn fits: it is proven that no pose is valid; " + advice + " may give some";
     if (list.is_full) return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice + " may give more";
     if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
@@ -40,6 +42,7 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnO
     add("Yaw (rad)", options.random_yaw ? "random" : number(options.yaw));
     add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, command == "sample" ? 2 : 3));
     add("Max water depth (m)", number(options.max_water_depth));
+    if (std::isfinite(options.max_slope)) add("Max slope (rad)", number(options.max_slope));
     out.insert(out.end(), own.begin(), own.end());
     add("Spawns", std::to_string(list.spawns.size()));
     add("Draws", std::to_string(list.draws));

@@ -61,7 +61,11 @@ int main(int argc, char** argv)
     app.add_option("--threads", settings.threads, "0: all cores (default 0)")->check(CLI::Range(0, 1024));
     app.add_option("--command", command, "What the report says it was made by")->capture_default_str();
     app.footer("Example:\n  spawnfield_experiments --quick -o /tmp/experiments\ntools/experiments.sh runs it and draws the plots.");
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;  // as spawnfield: wrong usage
+    }
     settings.tell = [](const std::string& what) { std::cerr << what << std::endl; };
     try {
         run(settings, command);
