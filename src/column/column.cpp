@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace spawnfield {
 namespace {
@@ -93,15 +94,26 @@ private:
         for (const Hit& hit : intervals_) add(hit.z, hits.front(), hit.terrain, out);
     }
 
+    static bool is_same(const Span& l, const Span& r)
+    {
+        return l.bottom == r.bottom && l.top == r.top && l.part == r.part && l.terrain == r.terrain && l.sealed == r.sealed;
+    }
+
     void finish(std::size_t first_span, std::size_t first_water, Column& out)
     {
-        const std::span<Span> spans(out.spans.begin() + std::ptrdiff_t(first_span), out.spans.end());
-        if (spans.size() > 1)
-            std::sort(spans.begin(), spans.end(), [](const Span& l, const Span& r) {
+        const auto first = out.spans.begin() + std::ptrdiff_t(first_span);
+        if (out.spans.end() - first > 1) {
+            std::sort(first, out.spans.end(), [](const Span& l, const Span& r) {
                 if (l.top != r.top) return l.top > r.top;
-                return l.terrain != r.terrain ? l.terrain : l.part < r.part;
+                if (l.terrain != r.terrain) return l.terrain;
+                return std::tie(l.part, l.bottom, l.sealed) < std::tie(r.part, r.bottom, r.sealed);
             });
+            // A sheet's triangles share corners and edges.
+            out.spans.erase(std::unique(first, out.spans.end(), is_same), out.spans.end());
+        }
         std::sort(out.water.begin() + std::ptrdiff_t(first_water), out.water.end(), std::greater<>());
+        out.water.erase(std::unique(out.water.begin() + std::ptrdiff_t(first_water), out.water.end()), out.water.end());
+        const std::span<const Span> spans = std::span(out.spans).subspan(first_span);
         if (spans.size() == 1) {
             if (spans[0].terrain) out.layers.push_back(spans[0].top);
             return;
@@ -224,6 +236,15 @@ public:
         heads_[column] = std::uint32_t(next_.size() - 1);
         return hits_.emplace_back();
     }
+    /// Takes the column's last hit away again if the one before it is the same: a sheet's triangles share corners.
+    void drop_repeated(std::size_t column)
+    {
+        const std::uint32_t last = heads_[column], before = next_[last];
+        if (before == none || !is_same_sheet(hits_[last], hits_[before])) return;
+        heads_[column] = before;
+        next_.pop_back();
+        hits_.pop_back();
+    }
     /// In the order of their elements. Until the next call.
     std::span<const SurfaceHit> of(std::size_t column)
     {
@@ -237,6 +258,11 @@ public:
     }
 
 private:
+    static bool is_same_sheet(const SurfaceHit& l, const SurfaceHit& r)
+    {
+        return !l.filled && !r.filled && l.piece == r.piece && l.z.top == r.z.top && l.terrain == r.terrain && l.water == r.water && l.part == r.part;
+    }
+
     static constexpr std::uint32_t none = 0xffffffff;
     std::vector<std::uint32_t> heads_, next_;
     std::vector<SurfaceHit> hits_, sorted_;
@@ -260,8 +286,10 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
         const auto visit_columns = [&](auto seen) {
             for (int j = rows.first; j <= rows.last; ++j) {
                 seen.set_y(grid.y_of(grid.first_row + j));
-                for (int i = cols.first; i <= cols.last; ++i)
-                    seen.meet(grid.x_of(grid.first_col + i), [&]() -> SurfaceHit& { return hits.add(std::size_t(j) * std::size_t(grid.cols) + std::size_t(i)); });
+                for (int i = cols.first; i <= cols.last; ++i) {
+                    const std::size_t column = std::size_t(j) * std::size_t(grid.cols) + std::size_t(i);
+                    if (seen.meet(grid.x_of(grid.first_col + i), [&]() -> SurfaceHit& { return hits.add(column); })) hits.drop_repeated(column);
+                }
             }
         };
         if (tile.is_triangle(element)) visit_columns(SeenTriangle(tile, element));

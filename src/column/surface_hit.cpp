@@ -107,7 +107,7 @@ std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x, double y)
     if (!is_prepared_) prepare();
     SurfaceHit out = within_;
     out.crosses = out.filled && is_crossed(corners_, x, y);
-    if (out.crosses) out.crossing = height(x, y);
+    if (out.crosses) out.crossing = height_at_rim(x, y);
     const double longest = std::max({edges_[0].squared_length, edges_[1].squared_length, edges_[2].squared_length});
     // Thinner than the tolerance, its height over a point means nothing.
     const bool is_vertical = twice_area_ * twice_area_ <= squared_tolerance * longest;
@@ -118,7 +118,7 @@ std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x, double y)
         if (met) out.z = *met;
     } else {
         out.touches = !out.crosses && is_touched(corners_, twice_area_ > 0 ? 1 : -1, x, y);
-        if (out.touches) out.z.bottom = out.z.top = height(x, y);
+        if (out.touches) out.z.bottom = out.z.top = height_at_rim(x, y);
     }
     if (!out.crosses && !out.touches) return std::nullopt;
     return out;

@@ -47,7 +47,7 @@ public:
     /// Where the vertical line through (x, y) meets it: new_hit(), a SurfaceHit&, is written if it does. Sheets seen edge-on
     /// give nothing.
     template <class NewHit>
-    void meet(double x, const NewHit& new_hit)
+    bool meet(double x, const NewHit& new_hit)
     {
         // Well to the left of all edges, or to the right, or not: far from what rounding or a tolerance decides.
         double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -58,15 +58,17 @@ public:
             low = std::min(low, cross);
             high = std::max(high, cross);
         }
-        if (is_clear && low < 0 && high > 0) return;
+        if (is_clear && low < 0 && high > 0) return false;
         if (!is_clear || (low <= 0 && high >= 0)) {
-            if (const auto hit = hit_at_rim(x, y_)) new_hit() = *hit;
-            return;
+            const auto hit = hit_at_rim(x, y_);
+            if (hit) new_hit() = *hit;
+            return hit.has_value();
         }
         if (!is_prepared_) prepare();
         SurfaceHit& hit = new_hit();
         hit = within_;
         hit.crossing = hit.z.bottom = hit.z.top = height(x, y_);
+        return true;
     }
 
     std::optional<SurfaceHit> hit(double x, double y)
@@ -87,7 +89,13 @@ private:
 
     void prepare();
     std::optional<SurfaceHit> hit_at_rim(double x, double y);
-    /// Of its plane, within its own limits.
+    /// Of its plane, within its own limits; at a corner just the corner's, whichever triangle asks.
+    double height_at_rim(double x, double y) const
+    {
+        for (const Vec3& corner : corners_)
+            if (corner.x() == x && corner.y() == y) return std::max(corner.z(), low_);
+        return height(x, y);
+    }
     double height(double x, double y) const
     {
         const Vec3& a = corners_[0];
@@ -116,9 +124,11 @@ public:
 
     void set_y(double y) { y_ = y; }
     template <class NewHit>
-    void meet(double x, const NewHit& new_hit) const
+    bool meet(double x, const NewHit& new_hit) const
     {
-        if (const auto hit = hit_of(tile_, element_, x, y_)) new_hit() = *hit;
+        const auto hit = hit_of(tile_, element_, x, y_);
+        if (hit) new_hit() = *hit;
+        return hit.has_value();
     }
 
 private:

@@ -27,8 +27,8 @@ def read(file):
         return list(csv.DictReader(stream))
 
 
-def save(figure, folder, name):
-    figure.tight_layout()
+def save(figure, folder, name, room_below=0.0):
+    figure.tight_layout(rect=(0, room_below, 1, 1))
     figure.savefig(folder / f"{name}.png", dpi=100, metadata={"Software": None})
     figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
     plt.close(figure)
@@ -58,8 +58,8 @@ def plot_steps(runs, thesis, folder):
         for row in (0, 1):
             axes[row][column].grid(True, which="major", color="#DDDDDD")
             axes[row][column].set_ylabel("time, s")
-    axes[1][1].legend(fontsize=8, loc="center right")
-    save(figure, folder, "time_against_steps")
+    figure.legend(*axes[1][0].get_legend_handles_labels(), fontsize=8, loc="lower center", ncol=4, frameon=False)
+    save(figure, folder, "time_against_steps", room_below=0.06)
 
 
 def plot_milestones(milestones, thesis, folder):
@@ -96,10 +96,7 @@ def plot_columns(finds, folder):
     axes[0].set_ylabel("y, m")
     figure.legend(handles=[Patch(color=GREEN, label="a place to stand"), Patch(color=ORANGE, label="missed: 2D finds one"), Patch(color=GREY, label="none")],
                   loc="lower center", ncol=3, fontsize=9, frameon=False)
-    figure.tight_layout(rect=(0, 0.07, 1, 1))
-    figure.savefig(folder / "columns_2d_3d.png", dpi=100, metadata={"Software": None})
-    figure.savefig(folder / "columns_2d_3d.svg", metadata={"Date": None})
-    plt.close(figure)
+    save(figure, folder, "columns_2d_3d", room_below=0.07)
 
 
 def main():
