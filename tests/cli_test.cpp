@@ -187,6 +187,17 @@ TEST_CASE("info says of a house with a face missing that it is a shell")
     CHECK_THAT(run_program(folder, "info map").out, Contains(" m, 1 layer; voxels of "));
 }
 
+TEST_CASE("info lists the first 60 of many parts")
+{
+    const TempFolder folder;
+    std::string text = "format: spawnfield-scene/1\nname: many\nparts:\n";
+    for (int i = 1; i <= 63; ++i) text += "  - {name: part" + std::to_string(i) + ", label: terrain, sphere: 1}\n";
+    folder.write("scene.yaml", text);
+    const std::string told = run_program(folder, "info scene.yaml").out;
+    CHECK_THAT(told, Contains("\n  part60: sphere, terrain, 1 solid\n  … and 3 more (--json lists all)\n"));
+    CHECK(nlohmann::json::parse(run_program(folder, "info scene.yaml --json").out)["parts"].size() == 63);
+}
+
 TEST_CASE("check adds verdicts to the poses it is given, on standard output or into a file")
 {
     const Arena arena;

@@ -121,7 +121,10 @@ std::string scene_lines(const Json& scene)
     for (const auto& [label, counts] : scene["labels"].items())
         out += "  " + label + ": " + counted(counts["triangles"], "triangle") + ", " + counted(counts["primitives"], "primitive") + "\n";
     out += "parts\n";
-    for (const Json& part : scene["parts"]) out += part_line(part);
+    constexpr std::size_t most = 60;
+    const Json& parts = scene["parts"];
+    for (std::size_t i = 0; i < std::min(most, parts.size()); ++i) out += part_line(parts[i]);
+    if (parts.size() > most) out += "  … and " + std::to_string(parts.size() - most) + " more (--json lists all)\n";
     return out;
 }
 

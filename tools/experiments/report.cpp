@@ -42,6 +42,9 @@ std::string seconds_text(double seconds)
     return seconds < 1 ? formatted("%.3g ms", seconds * 1e3) : formatted("%.3g s", seconds);
 }
 
+/// As printed.
+std::string thesis_text(double seconds) { return seconds < 1 ? formatted("%.1f ms", seconds * 1e3) : formatted("%.1f s", seconds); }
+
 std::string times_text(double times) { return times >= 1000 ? formatted("%.0f ×", std::round(times / 100) * 100) : formatted("%.3g ×", times); }
 
 std::string grouped(std::uint64_t value)
@@ -130,7 +133,7 @@ std::string aerial_section(const std::vector<Run>& runs, Ratios& ratios)
             if (figure.positions != group.first.positions) continue;
             const double mean = mean_of(group.seconds);
             ratios[1].push_back(figure.seconds / mean);
-            text += formatted("| %s | %s | %s | %s | %.2g | %s |\n", grouped(figure.positions).c_str(), group.first.robot.c_str(), seconds_text(figure.seconds).c_str(),
+            text += formatted("| %s | %s | %s | %s | %.2g | %s |\n", grouped(figure.positions).c_str(), group.first.robot.c_str(), thesis_text(figure.seconds).c_str(),
                               seconds_text(mean).c_str(), variance_of(group.seconds), times_text(figure.seconds / mean).c_str());
         }
     return text + "\n";
@@ -165,7 +168,7 @@ std::string raster_line(const Group& group, const std::vector<Group>& groups, co
     for (const thesis::Raster& figure : figures)
         if (figure.step == run.step) {
             theirs = formatted("| %s | %s | %s | %s ", grouped(figure.checks).c_str(), grouped(figure.valid).c_str(), grouped(figure.invalid).c_str(),
-                               seconds_text(figure.seconds).c_str());
+                               thesis_text(figure.seconds).c_str());
             ratios.push_back(figure.seconds / mean);
             ratio = "**" + times_text(figure.seconds / mean) + "**";
         }
