@@ -2,6 +2,7 @@
 
 #include "cli.h"
 #include "common/machine.h"
+#include "common/statistics.h"
 
 #include <cstdio>
 #include <numeric>
@@ -23,28 +24,12 @@ void for_each_verdict(const Visit& visit)
 
 std::uint64_t poses_of(const ExperimentRun& run) { return std::accumulate(run.counts.begin(), run.counts.end(), std::uint64_t{0}); }
 
-template <class Value>
-double mean(Runs runs, const Value& value)
-{
-    double sum = 0;
-    for (const ExperimentRun& run : runs) sum += double(value(run));
-    return sum / double(runs.size());
-}
-
 /// As people read it; the CSV file has all digits.
 std::string six_digits(double value)
 {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value);
     return text;
-}
-
-double sample_variance(Runs runs)
-{
-    const double centre = mean(runs, [](const ExperimentRun& run) { return run.seconds; });
-    double sum = 0;
-    for (const ExperimentRun& run : runs) sum += (run.seconds - centre) * (run.seconds - centre);
-    return sum / double(runs.size() - 1);
 }
 
 /// Runs of the same step from `first` on.
@@ -78,11 +63,11 @@ std::string table_row(Runs runs)
     const auto cell = [&](const std::string& value) { text += "| " + value + " "; };
     if (runs[0].step) cell(number(*runs[0].step));
     if (runs[0].step_z) cell(number(*runs[0].step_z));
-    cell(number(mean(runs, poses_of)));
-    for_each_verdict([&](Verdict verdict) { cell(number(mean(runs, [&](const ExperimentRun& run) { return run.counts[std::size_t(verdict)]; }))); });
-    cell(number(mean(runs, [](const ExperimentRun& run) { return run.exact_checks; })));
-    cell(six_digits(mean(runs, [](const ExperimentRun& run) { return run.seconds; })));
-    cell(runs.size() > 1 ? six_digits(sample_variance(runs)) : "");
+    cell(number(tools::mean(runs, poses_of)));
+    for_each_verdict([&](Verdict verdict) { cell(number(tools::mean(runs, [&](const ExperimentRun& run) { return run.counts[std::size_t(verdict)]; }))); });
+    cell(number(tools::mean(runs, &ExperimentRun::exact_checks)));
+    cell(six_digits(tools::mean(runs, &ExperimentRun::seconds)));
+    cell(runs.size() > 1 ? six_digits(tools::sample_variance(runs, &ExperimentRun::seconds)) : "");
     return text + "|\n";
 }
 

@@ -1,26 +1,13 @@
 #include "spawn_args.h"
 
-#include <charconv>
+#include "common/seed.h"
 
 namespace spawnfield::cli {
-namespace {
-
-/// CLI11's own words for -1 are a range of 309 digits.
-std::string seed_complaint(const std::string& text)
-{
-    std::uint64_t seed = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-    if (error == std::errc{} && stop == text.data() + text.size()) return "";
-    return text + " is no whole number from 0 to " + std::to_string(std::numeric_limits<std::uint64_t>::max());
-}
-
-}  // namespace
-
 void add_draws(CLI::App& command, DrawArgs& args)
 {
     command.add_option("-n,--count", args.count, "Spawns wanted");
     command.add_option("--min-distance", args.min_distance, "Between positions, m (default 0)");
-    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)")->check(seed_complaint);
+    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)")->check(tools::seed_complaint);
 }
 
 void add_max_failures(CLI::App& command, DrawArgs& args)

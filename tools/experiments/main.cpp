@@ -1,23 +1,16 @@
 #include "report.h"
 
+#include <spawnfield/output_file.h>
+
 #include <CLI/CLI.hpp>
 
 #include <chrono>
-#include <fstream>
 #include <iostream>
-#include <stdexcept>
 
 using namespace spawnfield;
 using namespace experiments;
 
 namespace {
-
-void write(const std::filesystem::path& file, const std::string& text)
-{
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    if (!stream.flush()) throw std::runtime_error("cannot write " + file.string());
-}
 
 void run(const Settings& settings, const std::string& command)
 {
@@ -42,11 +35,11 @@ void run(const Settings& settings, const std::string& command)
     results.spawns = draw_spawns(settings, districts, pictures);
     results.total_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-    write(settings.folder / "runs.csv", runs_csv(results.runs));
-    write(settings.folder / "thesis.csv", thesis_csv());
-    write(settings.folder / "milestones.csv", milestones_csv(results.milestones));
-    write(settings.folder / "column_finds.csv", column_finds_csv(results.column_finds));
-    write(settings.folder / "experiments.md", report(settings, {&cubes, &balls, &districts.low, &districts.complex, &deck}, results, command, "experiments"));
+    write_file_atomically(settings.folder / "runs.csv", runs_csv(results.runs));
+    write_file_atomically(settings.folder / "thesis.csv", thesis_csv());
+    write_file_atomically(settings.folder / "milestones.csv", milestones_csv(results.milestones));
+    write_file_atomically(settings.folder / "column_finds.csv", column_finds_csv(results.column_finds));
+    write_file_atomically(settings.folder / "experiments.md", report(settings, {&cubes, &balls, &districts.low, &districts.complex, &deck}, results, command, "experiments"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "report.h"
 
 #include "common/machine.h"
+#include "common/statistics.h"
 #include "thesis.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 using namespace spawnfield;
 using tools::formatted;
+using tools::sample_variance;
 
 namespace experiments {
 namespace {
@@ -18,23 +20,6 @@ namespace {
 using Count = unsigned long long;
 
 // ---- Numbers ----
-
-double mean_of(const std::vector<double>& values)
-{
-    double sum = 0;
-    for (const double value : values) sum += value;
-    return sum / double(values.size());
-}
-
-/// Of a sample: n - 1.
-double variance_of(const std::vector<double>& values)
-{
-    if (values.size() < 2) return 0;
-    const double mean = mean_of(values);
-    double sum = 0;
-    for (const double value : values) sum += (value - mean) * (value - mean);
-    return sum / double(values.size() - 1);
-}
 
 std::string seconds_text(double seconds)
 {
@@ -131,10 +116,10 @@ std::string aerial_section(const std::vector<Run>& runs, Ratios& ratios)
     for (const Group& group : groups_of(runs, [](const Run& run) { return run.test == 1 && run.mode == Mode::Mask; }))
         for (const thesis::Aerial& figure : thesis::aerial()) {
             if (figure.positions != group.first.positions) continue;
-            const double mean = mean_of(group.seconds);
+            const double mean = tools::mean(group.seconds);
             ratios[1].push_back(figure.seconds / mean);
             text += formatted("| %s | %s | %s | %s | %.2g | %s |\n", grouped(figure.positions).c_str(), group.first.robot.c_str(), thesis_text(figure.seconds).c_str(),
-                              seconds_text(mean).c_str(), variance_of(group.seconds), times_text(figure.seconds / mean).c_str());
+                              seconds_text(mean).c_str(), sample_variance(group.seconds), times_text(figure.seconds / mean).c_str());
         }
     return text + "\n";
 }
@@ -150,11 +135,11 @@ std::string collision_section(const std::vector<Run>& runs, Ratios& ratios)
         for (const thesis::Collision& figure : thesis::collision()) {
             if (group.first.mode != Mode::Mask || figure.robot != group.first.robot || figure.obstacle != group.first.obstacle) continue;
             const Group& fcl = other_mode(groups, group);
-            const double scale = 1e6 / double(group.first.positions), mean = scale * mean_of(group.seconds), fcl_mean = scale * mean_of(fcl.seconds);
+            const double scale = 1e6 / double(group.first.positions), mean = scale * tools::mean(group.seconds), fcl_mean = scale * tools::mean(fcl.seconds);
             ratios[2].push_back(figure.ms_per_1000 / mean);
             text += formatted("| %s / %s | %.1f ms | %.3g ms | %.2g | %s | %.3g ms | %.2g | %s |\n", figure.robot, figure.obstacle, figure.ms_per_1000, mean,
-                              scale * scale * variance_of(group.seconds), times_text(figure.ms_per_1000 / mean).c_str(), fcl_mean,
-                              scale * scale * variance_of(fcl.seconds), times_text(figure.ms_per_1000 / fcl_mean).c_str());
+                              scale * scale * sample_variance(group.seconds), times_text(figure.ms_per_1000 / mean).c_str(), fcl_mean,
+                              scale * scale * sample_variance(fcl.seconds), times_text(figure.ms_per_1000 / fcl_mean).c_str());
         }
     return text + "\n";
 }
@@ -163,7 +148,7 @@ std::string collision_section(const std::vector<Run>& runs, Ratios& ratios)
 std::string raster_line(const Group& group, const std::vector<Group>& groups, const std::vector<thesis::Raster>& figures, std::vector<double>& ratios)
 {
     const Run& run = group.first;
-    const double mean = mean_of(group.seconds);
+    const double mean = tools::mean(group.seconds);
     std::string theirs = "| | | | ", ratio;
     for (const thesis::Raster& figure : figures)
         if (figure.step == run.step) {
@@ -174,8 +159,8 @@ std::string raster_line(const Group& group, const std::vector<Group>& groups, co
         }
     return formatted("| %g m | %s ", run.step, run.robot.c_str()) + theirs +
            formatted("| %s | %s | %s | %s | %.1g | %s | %s | %s |\n", grouped(run.positions).c_str(), grouped(run.valid).c_str(), grouped(run.invalid).c_str(),
-                     seconds_text(mean).c_str(), variance_of(group.seconds), percent(run.exact_checks, run.valid + run.invalid).c_str(), ratio.c_str(),
-                     seconds_text(mean_of(other_mode(groups, group).seconds)).c_str());
+                     seconds_text(mean).c_str(), sample_variance(group.seconds), percent(run.exact_checks, run.valid + run.invalid).c_str(), ratio.c_str(),
+                     seconds_text(tools::mean(other_mode(groups, group).seconds)).c_str());
 }
 
 std::string raster_section(int test, const std::vector<Run>& runs, Ratios& ratios)
@@ -206,10 +191,10 @@ std::string search_section(int test, const std::vector<Run>& runs, Ratios& ratio
         for (const std::size_t count : std::set{std::min<std::size_t>(5, group.seconds.size()), group.seconds.size()}) {
             const std::vector<double> seconds(group.seconds.begin(), group.seconds.begin() + std::ptrdiff_t(count));
             const bool with_distance = group.first.step > 0;
-            const double mean = mean_of(seconds);
+            const double mean = tools::mean(seconds);
             if (with_distance) ratios[test].push_back(figure.mean / mean);
             text += formatted("| %s | %zu | %s | %s | %s | %.2g | %s |\n", with_distance ? "2.5 m" : "none", seconds.size(), grouped(group.first.valid).c_str(),
-                              grouped(group.first.positions).c_str(), seconds_text(mean).c_str(), variance_of(seconds),
+                              grouped(group.first.positions).c_str(), seconds_text(mean).c_str(), sample_variance(seconds),
                               with_distance ? times_text(figure.mean / mean).c_str() : "");
         }
     return text + "\nFound and draws are those of the first run.\n\n";
@@ -235,7 +220,7 @@ std::string break_even_text(const std::vector<Run>& runs)
         std::vector<double> steps;
         for (const Group& three : groups_of(runs, [&](const Run& run) { return run.test == test && run.mode == Mode::Mask && run.robot == "box"; }))
             for (const Group& two : groups_of(runs, [&](const Run& run) { return run.test == test + 2 && run.mode == Mode::Mask && run.robot == "box"; }))
-                if (two.first.step == three.first.step && mean_of(three.seconds) <= mean_of(two.seconds)) steps.push_back(two.first.step);
+                if (two.first.step == three.first.step && tools::mean(three.seconds) <= tools::mean(two.seconds)) steps.push_back(two.first.step);
         text += std::string(test == 3 ? "low-complexity: " : "; complex: ") +
                 (steps.empty() ? "at no step asked for" : formatted("from %g m on", *std::min_element(steps.begin(), steps.end())));
     }

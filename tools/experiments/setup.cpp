@@ -1,10 +1,10 @@
 #include "setup.h"
 
+#include <spawnfield/output_file.h>
+
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <numbers>
-#include <stdexcept>
 
 using namespace spawnfield;
 
@@ -24,13 +24,6 @@ public:
 private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-void write(const std::filesystem::path& file, const std::string& text)
-{
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    if (!stream.flush()) throw std::runtime_error("cannot write " + file.string());
-}
 
 /// A superellipsoid (Barr, Superquadrics and Angle-Preserving Transformations, 1981) of the Husky's size as an OBJ file; its
 /// faces are of no account, as a robot's mesh is taken for its convex hull.
@@ -88,8 +81,8 @@ Robot robot(const Settings& settings, const std::string& name)
 {
     const std::filesystem::path folder = settings.folder / "robots";
     std::filesystem::create_directories(folder);
-    if (name == "hull") write(folder / "husky_body.obj", husky_body());
-    write(folder / (name + ".yaml"), "format: spawnfield-robot/1\nname: " + name + "\nparts:\n  - " +
+    if (name == "hull") write_file_atomically(folder / "husky_body.obj", husky_body());
+    write_file_atomically(folder / (name + ".yaml"), "format: spawnfield-robot/1\nname: " + name + "\nparts:\n  - " +
                                          (name == "hull" ? "mesh: husky_body.obj" : "{box: [0.99, 0.67, 0.39], xyz: [0, 0, 0.195]}") + "\n");
     return load_robot((folder / (name + ".yaml")).string());
 }

@@ -1,8 +1,8 @@
+#include "common/seed.h"
 #include "world.h"
 
 #include <CLI/CLI.hpp>
 
-#include <charconv>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -23,15 +23,6 @@ const std::map<std::string, Make>& makers()
     return all;
 }
 
-/// CLI11 wraps -1 round.
-std::string seed_complaint(const std::string& text)
-{
-    std::uint64_t seed = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-    if (error == std::errc{} && stop == text.data() + text.size()) return "";
-    return text + " is no whole number from 0 to " + std::to_string(std::numeric_limits<std::uint64_t>::max());
-}
-
 }  // namespace
 
 int main(int argc, char** argv)
@@ -44,7 +35,7 @@ int main(int argc, char** argv)
     for (const auto& [known, make] : makers()) names.push_back(known);
     app.add_option("world", name, "Which")->required()->check(CLI::IsMember(names));
     app.add_option("-o,--output", folder, "Folder, made where missing")->required();
-    app.add_option("--seed", seed, "The same seed gives the same bytes; the benchmark's worlds have none")->check(seed_complaint)->capture_default_str();
+    app.add_option("--seed", seed, "The same seed gives the same bytes; the benchmark's worlds have none")->check(tools::seed_complaint)->capture_default_str();
     app.footer("Example:\n  spawnfield_worlds benchmark-cubes -o /tmp/cubes\n"
                "  spawnfield bake /tmp/cubes/scene.yaml -o /tmp/cubes-map --allow-no-terrain");
     app.set_version_flag("--version", spawnfield::version());

@@ -39,7 +39,7 @@ World low_complexity(std::uint64_t seed = 1);
 
 /// Writes scene.yaml, meshes/<part>.obj for parts of triangles, and landmarks.csv (name,x0,y0,z0,x1,y1,z1) into a folder that
 /// is made where missing. Lengths are rounded to 0.01 mm. load_scene reads the world back.
-/// Throws std::runtime_error if something can't be written.
+/// Throws OutputError if a file can't be written.
 void write_world(const World& world, const std::filesystem::path& folder);
 
 }  // namespace worlds

@@ -1,8 +1,9 @@
 #include "world.h"
 
+#include <spawnfield/output_file.h>
+
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <vector>
@@ -47,13 +48,6 @@ std::string shape_text(const Shape& shape)
     case ShapeKind::Hull: break;
     }
     throw std::runtime_error("write_world: a scene has no hulls");
-}
-
-void write_file(const fs::path& file, const std::string& text)
-{
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    if (!stream.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 
 /// What stands in a scene for each of its parts.
@@ -117,7 +111,7 @@ private:
         const auto [found, is_new] = files_.try_emplace(obj_text(pieces, place), "meshes/" + part.name + ".obj");
         if (is_new) {
             fs::create_directories(folder_ / "meshes");
-            write_file(folder_ / found->second, found->first);
+            write_file_atomically(folder_ / found->second, found->first);
         }
         const bool is_sheet = part.solid_pieces == 0;
         return "mesh: " + found->second + pose_text({place, Mat3::Identity()}) + (is_sheet ? ", solid: false" : "");
@@ -169,8 +163,8 @@ std::string landmarks_text(const std::vector<Landmark>& landmarks)
 void write_world(const World& world, const fs::path& folder)
 {
     fs::create_directories(folder);
-    write_file(folder / "scene.yaml", Writer(world.scene, folder).scene_text());
-    if (!world.landmarks.empty()) write_file(folder / "landmarks.csv", landmarks_text(world.landmarks));
+    write_file_atomically(folder / "scene.yaml", Writer(world.scene, folder).scene_text());
+    if (!world.landmarks.empty()) write_file_atomically(folder / "landmarks.csv", landmarks_text(world.landmarks));
 }
 
 }  // namespace worlds

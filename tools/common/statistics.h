@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+
+namespace tools {
+
+/// Of value(item) over all items, at least one.
+template <class Items, class Value = std::identity>
+double mean(const Items& items, const Value& value = {})
+{
+    double sum = 0;
+    for (const auto& item : items) sum += double(std::invoke(value, item));
+    return sum / double(items.size());
+}
+
+/// With n - 1; 0 for fewer than two items.
+template <class Items, class Value = std::identity>
+double sample_variance(const Items& items, const Value& value = {})
+{
+    if (items.size() < 2) return 0;
+    const double centre = mean(items, value);
+    double sum = 0;
+    for (const auto& item : items) sum += (double(std::invoke(value, item)) - centre) * (double(std::invoke(value, item)) - centre);
+    return sum / double(items.size() - 1);
+}
+
+}  // namespace tools
