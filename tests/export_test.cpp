@@ -1,0 +1,230 @@
+#include "arena.h"
+#include "test_map.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/map_export.h>
+#include <spawnfield/output_file.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <regex>
+
+namespace fs = std::filesystem;
+using namespace spawnfield;
+
+namespace {
+
+/// A box of terrain with a deck of terrain above half of it, a block on the deck, a crate on the floor, a pool, and no terrain beyond x = 3.
+TestMap deck_map()
+{
+    const TempFolder folder;
+    const fs::path file = folder.write("scene.yaml", "format: spawnfield-scene/1\nname: deck\nparts:\n"
+                                                     "- {name: floor, label: terrain, box: [8, 6, 1], xyz: [-1, 0, -0.5]}\n"
+                                                     "- {name: deck, label: terrain, box: [3, 6, 0.2], xyz: [-3, 0, 2]}\n"
+                                                     "- {name: block, label: obstacle, box: [1, 1, 1], xyz: [-3.5, 1, 2.6]}\n"
+                                                     "- {name: crate, box: [0.5, 0.5, 0.5], xyz: [1, 2, 0.25]}\n"
+                                                     "- {name: pool, label: water, plane: [1, 2], xyz: [2, -2, 0.3]}\n"
+                                                     "- {name: post, label: obstacle, cylinder: {radius: 0.2, length: 2}, xyz: [4.5, 0, 1]}\n");
+    return map_of(load_scene(file));
+}
+
+const Robot small_box = load_robot("box:0.4,0.3,0.3@0,0,0.2");
+
+struct Nav2Map {
+    std::string image, mode;
+    double resolution, x0, y0, yaw, occupied_thresh, free_thresh;
+    int negate;
+    cv::Mat_<std::uint8_t> pixels;
+
+    /// As map_server decides: 100, 0 or -1, at a point of the ground.
+    int occupancy_at(double x, double y) const
+    {
+        const int col = int(std::floor((x - x0) / resolution)), from_below = int(std::floor((y - y0) / resolution));
+        const double shade = pixels(pixels.rows - 1 - from_below, col) / 255.0, occupied = negate ? shade : 1 - shade;
+        return occupied > occupied_thresh ? 100 : occupied < free_thresh ? 0 : -1;
+    }
+};
+
+Nav2Map read_nav2(const fs::path& yaml)
+{
+    const std::string text = bytes_of(yaml);
+    const auto value = [&](const std::string& key) {
+        std::smatch found;
+        REQUIRE(std::regex_search(text, found, std::regex("(^|\n)" + key + ": (.*)")));
+        return found[2].str();
+    };
+    Nav2Map map{value("image"), value("mode"), std::stod(value("resolution")), 0, 0, 0, std::stod(value("occupied_thresh")), std::stod(value("free_thresh")),
+                std::stoi(value("negate")), {}};
+    REQUIRE(std::sscanf(value("origin").c_str(), "[%lf, %lf, %lf]", &map.x0, &map.y0, &map.yaw) == 3);
+    map.pixels = cv::imread((yaml.parent_path() / map.image).string(), cv::IMREAD_UNCHANGED);
+    REQUIRE_FALSE(map.pixels.empty());
+    return map;
+}
+
+RasterOptions on_layer(LayerChoice layers, double offset = 0.1, double yaw = 0)
+{
+    RasterOptions options;
+    options.layers = layers;
+    options.offset = offset;
+    options.yaw = yaw;
+    return options;
+}
+
+/// The verdict at a point by the tests' own way through the column; nothing where there is no such layer.
+std::optional<Verdict> verdict_at(const Map& map, const CollisionChecker& checker, const RasterOptions& options, double x, double y)
+{
+    const Column column = column_at(map.geometry, x, y);
+    const int count = int(column.layers.size());
+    for (int layer = 0; layer < count; ++layer)
+        if (options.layers.includes(layer, count)) {
+            const Vec3 position(x, y, column.layers[std::size_t(layer)] + options.offset);
+            return judge(map, checker, column, {position, rotation_from_rpy(0, 0, options.yaw)}, options).verdict;
+        }
+    return std::nullopt;
+}
+
+}  // namespace
+
+TEST_CASE("an image of verdicts holds the verdict at each cell's centre, on the layer that was chosen")
+{
+    const TestMap map = deck_map();
+    const CollisionChecker checker = checker_of(map, small_box);
+    const LayerChoice layers = GENERATE(LayerChoice{LayerChoice::Kind::Top, 0}, LayerChoice{LayerChoice::Kind::Bottom, 0}, LayerChoice{LayerChoice::Kind::Index, 1});
+    const double cell = GENERATE(0.1, 0.23, 20.0);
+    const RasterOptions options = on_layer(layers, 0.15, 0.7);
+    const GridFrame frame = frame_around(map.bounds, cell);
+    const VerdictImage image = verdict_image(map, checker, frame, options);
+    REQUIRE(image.verdicts.size() == std::size_t(frame.rows) * std::size_t(frame.cols));
+    VerdictCounts counts{};
+    for (int row = 0; row < frame.rows; ++row)
+        for (int col = 0; col < frame.cols; ++col) {
+            const std::optional<Verdict> expected = verdict_at(map, checker, options, frame.x_of(col), frame.y_of(row));
+            CHECK(image.at(row, col) == (expected ? std::uint8_t(*expected) : VerdictImage::no_pose));
+            if (expected) ++counts[std::size_t(*expected)];
+        }
+    CHECK(image.counts == counts);
+    if (cell < 1 && layers.kind != LayerChoice::Kind::Index) {
+        for (const Verdict verdict : {Verdict::Valid, Verdict::Collision, Verdict::Submerged}) CHECK(counts[std::size_t(verdict)] > 0);
+    }
+}
+
+TEST_CASE("an image of verdicts is the same in strips far from the origin, and at any number of threads")
+{
+    const TempFolder folder;  // more rows than a strip has, at coordinates where steps are rounded
+    const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
+                                                                     "- {name: floor, label: terrain, box: [1, 7, 1], xyz: [500000.3, 4500000.1, 0]}\n"
+                                                                     "- {name: ball, sphere: 0.3, xyz: [500000.2, 4499999.7, 0.6]}\n")));
+    const CollisionChecker checker = checker_of(map, small_box);
+    RasterOptions options = on_layer({LayerChoice::Kind::Top, 0});
+    const GridFrame frame = frame_around(map.bounds, 0.01);
+    REQUIRE(frame.rows == 700);
+    options.threads = 1;
+    const VerdictImage one = verdict_image(map, checker, frame, options);
+    options.threads = 7;
+    CHECK(verdict_image(map, checker, frame, options).verdicts == one.verdicts);
+    CHECK(std::count(one.verdicts.begin(), one.verdicts.end(), VerdictImage::no_pose) == 0);  // rounding costs no row or column
+}
+
+TEST_CASE("a nav2 map says of each point what the verdict at its cell's centre says")
+{
+    const TestMap map = deck_map();
+    const CollisionChecker checker = checker_of(map, small_box);
+    const RasterOptions options = on_layer({LayerChoice::Kind::Top, 0});
+    const GridFrame frame = frame_around(map.bounds, 0.23);  // the last cells stick out of the bounds
+    const TempFolder folder;
+    write_nav2_map(verdict_image(map, checker, frame, options), folder / "deck.yaml", {"a deck\nimage: wrong.pgm"});
+    const Nav2Map read = read_nav2(folder / "deck.yaml");
+    CHECK(read.image == "deck.pgm");
+    CHECK(read.mode == "trinary");
+    CHECK(read.yaw == 0);
+    CHECK((read.pixels.rows == frame.rows && read.pixels.cols == frame.cols));
+    CHECK(read.resolution == frame.cell);
+    for (int row = 0; row < frame.rows; ++row)
+        for (int col = 0; col < frame.cols; ++col) {
+            const double x = frame.x_of(col), y = frame.y_of(row);
+            const std::optional<Verdict> verdict = verdict_at(map, checker, options, x, y);
+            const int expected = !verdict || *verdict == Verdict::Outside ? -1 : *verdict == Verdict::Valid ? 0 : 100;
+            CHECK(read.occupancy_at(x, y) == expected);
+        }
+    CHECK(read.occupancy_at(-3.5, 1) == 100);   // the block
+    CHECK(read.occupancy_at(-3.5, -1) == 0);    // the deck
+    CHECK(read.occupancy_at(2, -2) == 100);     // the pool
+    CHECK(read.occupancy_at(2, 2) == 0);        // the floor: x and y are not turned or mirrored
+    CHECK(read.occupancy_at(4.5, 0) == -1);     // the post, where there is no terrain
+}
+
+TEST_CASE("names of nav2 images that YAML would misread are quoted, and other endings are refused")
+{
+    const TempFolder folder;
+    const VerdictImage image{{0, 0, 1, 1, 1}, {std::uint8_t(Verdict::Valid)}, {}, 0};
+    write_nav2_map(image, folder / "a: b #1.yml");
+    CHECK_THAT(bytes_of(folder / "a: b #1.yml"), Contains("image: \"a: b #1.pgm\"\n"));
+    CHECK(bytes_of(folder / "a: b #1.pgm") == "P5\n1 1\n255\n\xfe");
+    CHECK_THROWS_AS(write_nav2_map(image, folder / "map.pgm"), ArgumentError);
+    CHECK(names_in(folder.path()).size() == 2);
+}
+
+TEST_CASE("files that are committed together appear all or none")
+{
+    const TempFolder folder;
+    folder.write("a", "old a");
+    {
+        OutputFile a(folder / "a"), b(folder / "b"), c(folder / "c");
+        for (OutputFile* file : {&a, &b, &c}) file->write("new");
+        fs::create_directories(folder / "c" / "in the way");
+        OutputFile* const all[] = {&a, &b, &c};
+        CHECK_THROWS_AS(OutputFile::commit_together(all), OutputError);
+    }
+    CHECK(bytes_of(folder / "a") == "old a");
+    CHECK(names_in(folder.path()) == std::set<std::string>{"a", "c"});
+    fs::remove_all(folder / "c");
+    OutputFile a(folder / "a"), c(folder / "c");
+    a.write("new a");
+    c.write("new c");
+    OutputFile* const both[] = {&a, &c};
+    OutputFile::commit_together(both);
+    CHECK(bytes_of(folder / "a") == "new a");
+    CHECK(bytes_of(folder / "c") == "new c");
+    CHECK(names_in(folder.path()) == std::set<std::string>{"a", "c"});
+}
+
+TEST_CASE("export --format nav2 writes the pair, the same bytes at any number of threads")
+{
+    const Arena arena;
+    REQUIRE(arena("export map --format nav2 --offset 0.2 --layers bottom -o one.yaml --threads 1 --summary s.json" + husky_option).status == 0);
+    REQUIRE(arena("export map --format nav2 --offset 0.2 --layers bottom -o two.yaml --threads 3" + husky_option).status == 0);
+    CHECK(bytes_of(arena / "one.pgm") == bytes_of(arena / "two.pgm"));
+    const Nav2Map map = read_nav2(arena / "one.yaml");
+    CHECK(map.image == "one.pgm");
+    CHECK(map.resolution == 0.2);
+    CHECK(map.occupancy_at(0, 3) == 0);
+    CHECK(map.occupancy_at(-6.5, -5) == 100);
+    CHECK_THAT(bytes_of(arena / "s.json"), Contains("\"command\": \"export\"") && Contains("map_hash"));
+    REQUIRE(arena("export map --format nav2 --resolution 0.5 -o coarse.yaml" + husky_option).status == 0);
+    CHECK(read_nav2(arena / "coarse.yaml").resolution == 0.5);
+}
+
+TEST_CASE("export says which option a format needs, takes or refuses, and writes nothing then")
+{
+    const Arena arena;
+    const std::set<std::string> before = arena.names();
+    const auto refused = [&](const std::string& arguments, const std::string& message) {
+        CAPTURE(arguments);
+        const ProgramRun run = arena("export map " + arguments);
+        CHECK(run.status == 2);
+        CHECK(run.out.empty());
+        CHECK(run.err == "spawnfield: " + message + "\n");
+        CHECK(arena.names() == before);
+    };
+    refused("--format nav2 -o a.yaml", "--format nav2 needs --robot");
+    refused("--format nav2" + husky_option, "--format nav2 needs --out");
+    refused("--format nav2 -o -" + husky_option, "--out is \"-\": --format nav2 cannot go to standard output, name a file");
+    refused("--format nav2 -o a.png" + husky_option, "the file's name is \"a.png\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
+    refused("--format nav2 --layers all -o a.yaml" + husky_option,
+            "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of nav2 has one value");
+    refused("--format nav2 --resolution 0 -o a.yaml" + husky_option, "--resolution is 0, needs > 0");
+    CHECK(arena("export map --format nav3 -o a.yaml" + husky_option).status == 2);
+    CHECK(arena("export nowhere --format nav2 -o a.yaml" + husky_option).status == 4);
+    CHECK(arena("export map --format nav2 -o none/a.yaml" + husky_option).status == 1);
+    CHECK(arena.names() == before);
+}

@@ -1,0 +1,77 @@
+#include "export.h"
+
+#include <spawnfield/map_export.h>
+
+namespace spawnfield::cli {
+namespace {
+
+std::vector<std::string> with(std::vector<std::string> names, const std::vector<std::string>& more)
+{
+    names.insert(names.end(), more.begin(), more.end());
+    return names;
+}
+
+RasterOptions raster_options(const ExportJob& job, const std::string& layers)
+{
+    const ExportArgs& args = job.args;
+    RasterOptions options;
+    fill(options, args, "export");
+    options.exact_time = &job.summary.exact_time;
+    options.offset = parse_finite("--offset", args.offset, "m");
+    options.yaw = parse_finite("--yaw", args.yaw, "rad");
+    options.layers = parse_layers(args.layers.empty() ? layers : args.layers);
+    tell_idle(args, job.command, {"--max-height"}, "the robot stands on each layer");
+    tell_if_no_layer(args, job.session.map, options.layers);
+    tell_if_in_ground(args, job.session.robot, options.offset);
+    return options;
+}
+
+/// One layer: a pixel has one value.
+RasterOptions image_options(const ExportJob& job)
+{
+    const RasterOptions options = raster_options(job, "top");
+    if (options.layers.kind == LayerChoice::Kind::All)
+        throw ArgumentError("--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of " + job.args.format + " has one value");
+    return options;
+}
+
+GridFrame image_frame(const ExportJob& job)
+{
+    const Map& map = job.session.map;
+    return frame_around(map.bounds, job.was_given("--resolution") ? parse_positive("--resolution", job.args.resolution) : map.resolution);
+}
+
+VerdictImage ask(const ExportJob& job, const RasterOptions& options, const GridFrame& frame)
+{
+    VerdictImage image = verdict_image(job.session.map, *job.session.checker, frame, options);
+    job.summary.lap("query");
+    job.summary.set_counts(image.counts);
+    job.summary.exact_checks = image.exact_checks;
+    return image;
+}
+
+void write_nav2(const ExportJob& job)
+{
+    const Session& session = job.session;
+    nav2_image_of(job.args.out);  // a wrong name is told before all work
+    const RasterOptions options = image_options(job);
+    const std::string layers = job.args.layers.empty() ? "top" : job.args.layers;
+    const VerdictImage image = ask(job, options, image_frame(job));
+    clear_progress_bar();
+    write_nav2_map(image, job.args.out,
+                   {"spawnfield " + version() + ": where the origin of " + session.robot.name + " can be, " + number(options.offset) + " m above layer " + layers + " of " +
+                        session.map.name + ", yaw " + number(options.yaw),
+                    "map " + session.map.hash});
+}
+
+}  // namespace
+
+std::vector<ExportFormat> map_formats()
+{
+    return {
+        {"nav2", "map_server's pair for ROS: -o FILE.yaml and FILE.pgm beside it, free where --robot can stand", {"--robot", "--out"},
+         with(asking_options(), {"--layers", "--resolution"}), write_nav2},
+    };
+}
+
+}  // namespace spawnfield::cli
