@@ -1,4 +1,5 @@
 #include "arena.h"
+#include "base/tiff.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>
@@ -7,6 +8,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include <iostream>
+#include <numbers>
 #include <regex>
 
 namespace fs = std::filesystem;
@@ -59,6 +62,95 @@ Nav2Map read_nav2(const fs::path& yaml)
     map.pixels = cv::imread((yaml.parent_path() / map.image).string(), cv::IMREAD_UNCHANGED);
     REQUIRE_FALSE(map.pixels.empty());
     return map;
+}
+
+/// A GeoTIFF as libtiff reads it.
+struct GeoTiff {
+    std::vector<HeightImage> bands;
+    std::vector<double> scale, tiepoint;
+    std::vector<std::uint16_t> keys;
+    std::string metadata, no_data;
+
+    /// The one with this description.
+    const HeightImage& band(const std::string& name) const
+    {
+        std::smatch found;
+        REQUIRE(std::regex_search(metadata, found, std::regex("sample=\"([0-9]+)\" role=\"description\">" + name + "<")));
+        return bands.at(std::stoul(found[1]));
+    }
+    bool has(const std::string& name) const { return metadata.find(">" + name + "<") != std::string::npos; }
+    /// Of a point of the ground, by scale and tiepoint.
+    float at(const std::string& name, double x, double y) const
+    {
+        const int col = int(std::floor((x - tiepoint[3]) / scale[0])), row = int(std::floor((tiepoint[4] - y) / scale[1]));
+        return band(name)(row, col);
+    }
+};
+
+template <class T>
+std::vector<T> tag_values(TIFF* tiff, std::uint32_t tag)
+{
+    std::uint32_t count = 0;  // libtiff passes it for all tags that it does not know
+    const T* values = nullptr;
+    REQUIRE(TIFFGetField(tiff, tag, &count, &values) == 1);
+    return {values, values + count};
+}
+
+std::string tag_text(TIFF* tiff, std::uint32_t tag)
+{
+    const auto bytes = tag_values<char>(tiff, tag);
+    return std::string(bytes.data());
+}
+
+GeoTiff read_geotiff(const fs::path& file)
+{
+    const Tiff tiff = open_tiff(file, "r");
+    REQUIRE(tiff);
+    std::uint32_t rows = 0, cols = 0, side = 0;
+    std::uint16_t bands = 0, bits = 0, format = 0;
+    TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &rows);
+    TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &cols);
+    TIFFGetField(tiff.get(), TIFFTAG_TILEWIDTH, &side);
+    TIFFGetField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, &bands);
+    TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits);
+    TIFFGetField(tiff.get(), TIFFTAG_SAMPLEFORMAT, &format);
+    REQUIRE((bits == 32 && format == SAMPLEFORMAT_IEEEFP));
+    GeoTiff out{{}, tag_values<double>(tiff.get(), 33550), tag_values<double>(tiff.get(), 33922), tag_values<std::uint16_t>(tiff.get(), 34735),
+                tag_text(tiff.get(), 42112), tag_text(tiff.get(), 42113)};
+    HeightImage tile(side, side);
+    for (std::uint16_t band = 0; band < bands; ++band) {
+        HeightImage& image = out.bands.emplace_back(rows, cols);
+        for (std::uint32_t top = 0; top < rows; top += side)
+            for (std::uint32_t left = 0; left < cols; left += side) {
+                REQUIRE(TIFFReadTile(tiff.get(), tile.data(), left, top, 0, band) > 0);
+                const auto height = std::min(side, rows - top), width = std::min(side, cols - left);
+                image.block(top, left, height, width) = tile.block(0, 0, height, width);
+            }
+    }
+    return out;
+}
+
+bool same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+bool same(const HeightImage& a, const HeightImage& b)
+{
+    return a.rows() == b.rows() && a.cols() == b.cols() && std::equal(a.data(), a.data() + a.size(), b.data(), [](float x, float y) { return same(x, y); });
+}
+
+/// The Python that has packages for reading our files back: SPAWNFIELD_PYTHON, or the system's; nothing if it has not this one.
+std::optional<std::string> python_with(const std::string& package)
+{
+    const char* const given = std::getenv("SPAWNFIELD_PYTHON");
+    const std::string python = given != nullptr ? given : "/usr/bin/python3";
+    if (std::system((python + " -c 'import " + package + "' > /dev/null 2>&1").c_str()) == 0) return python;
+    std::cout << "skipped: " << python << " has no " << package << " (SPAWNFIELD_PYTHON names one that has)\n";
+    return std::nullopt;
+}
+
+/// Runs a script with the file as its argument; it fails by an exception.
+bool python_accepts(const std::string& python, const TempFolder& folder, const std::string& script, const fs::path& file)
+{
+    const fs::path program = folder.write("script.py", script);
+    return std::system((python + " '" + program.string() + "' '" + file.string() + "'").c_str()) == 0;
 }
 
 RasterOptions on_layer(LayerChoice layers, double offset = 0.1, double yaw = 0)
@@ -204,6 +296,98 @@ TEST_CASE("export --format nav2 writes the pair, the same bytes at any number of
     CHECK(read_nav2(arena / "coarse.yaml").resolution == 0.5);
 }
 
+TEST_CASE("a GeoTIFF's bands hold what stands in the column at each cell's centre, read by libtiff")
+{
+    const TestMap map = deck_map();
+    const CollisionChecker checker = checker_of(map, small_box);
+    const RasterOptions options = on_layer({LayerChoice::Kind::Bottom, 0});
+    const GridFrame frame = frame_around(map.bounds, 0.031);  // more than a tile along x
+    REQUIRE((frame.cols > 256 && frame.rows < 256));
+    const VerdictImage verdicts = verdict_image(map, checker, frame, options);
+    const TempFolder folder;
+    GeoTiffOptions choice;
+    choice.layers = options.layers;
+    write_geotiff(map, frame, &verdicts, choice, folder / "deck.tif");
+    const GeoTiff read = read_geotiff(folder / "deck.tif");
+    CHECK(read.bands.size() == 8);
+    CHECK(read.no_data == "nan");
+    CHECK(read.scale == std::vector<double>{frame.cell, frame.cell, 0});
+    CHECK(read.tiepoint == std::vector<double>{0, 0, 0, frame.x0, frame.y0 + frame.rows * frame.cell, 0});
+    const auto has_key = [&](std::uint16_t key, std::uint16_t value) {
+        for (std::size_t k = 4; k < read.keys.size(); k += 4)
+            if (read.keys[k] == key) return read.keys[k + 3] == value;
+        return false;
+    };
+    CHECK((has_key(1024, 32767) && has_key(1025, 1) && has_key(3076, 9001)));
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame);
+    CHECK(same(read.band("elevation"), page_image(terrain, "height.0")));
+    CHECK(same(read.band("elevation_1"), page_image(terrain, "height.1")));
+    CHECK(same(read.band("water"), page_image(terrain, "water")));
+    CHECK(same(read.band("obstacle"), page_image(terrain, "obstacle")));
+    const HeightImage &counts = read.band("layers"), &codes = read.band("verdict");
+    for (int row = 0; row < frame.rows; ++row)
+        for (int col = 0; col < frame.cols; ++col) {
+            const Column column = column_at(map.geometry, frame.x_of(col), frame.y_of(row));
+            if (counts(row, col) != float(column.layers.size())) FAIL("layers at " << row << ", " << col);
+            const std::uint8_t verdict = verdicts.at(row, col);
+            const float expected = verdict == VerdictImage::no_pose ? NAN : float(verdict);
+            if (!same(codes(row, col), expected)) FAIL("verdict at " << row << ", " << col);
+        }
+    CHECK(read.at("elevation", -3, -1) == float(2.1));  // x and y are not turned or mirrored
+    CHECK(std::isnan(read.at("elevation", 4.5, 0)));
+    CHECK(read.at("layers", 4.5, 0) == 0);
+    CHECK(read.at("clearance", -3, -1) == Approx(1.9));     // under the deck
+    CHECK(std::isnan(read.at("clearance", 1, -1)));         // the open sky
+    CHECK(read.at("clearance", 1, 2) == 0);                 // the crate
+    CHECK(read.at("slope", -3, -1) == 0);
+    CHECK(read.at("verdict", 2, -2) == float(Verdict::Submerged));
+    choice.layers = {LayerChoice::Kind::Top, 0};
+    write_geotiff(map, frame, nullptr, choice, folder / "top.tif");
+    const GeoTiff top = read_geotiff(folder / "top.tif");
+    CHECK_FALSE(top.has("verdict"));
+    CHECK(std::isnan(top.at("clearance", -3, -1)));  // on the deck
+    CHECK(top.at("clearance", -3.5, 1) == 0);        // its block
+}
+
+TEST_CASE("a GeoTIFF tells a ramp's slope, also across the edge of a tile and at the rim")
+{
+    const TempFolder folder;
+    const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
+                                                                     "- {name: ramp, label: terrain, plane: [30, 30], rpy: [0, -0.3, 0]}\n")));
+    const GridFrame frame = frame_around(map.bounds, 0.1);
+    REQUIRE(frame.cols > 256);
+    write_geotiff(map, frame, nullptr, {}, folder / "ramp.tif");
+    const GeoTiff read = read_geotiff(folder / "ramp.tif");
+    const HeightImage& slope = read.band("slope");
+    for (int row = 0; row < frame.rows; ++row)
+        for (int col = 0; col < frame.cols; ++col)
+            if (!(std::abs(slope(row, col) - 0.3 * 180 / std::numbers::pi) < 0.01)) FAIL("slope " << slope(row, col) << " at " << row << ", " << col);
+}
+
+TEST_CASE("GDAL sees a GeoTIFF's bands, transform, units and no-data")
+{
+    const auto python = python_with("rasterio");
+    if (!python) return;
+    const Arena arena;
+    REQUIRE(arena("export map --format geotiff --offset 0.2 -o a.tif" + husky_option).status == 0);
+    CHECK(python_accepts(*python, arena, R"(
+import math, sys
+import rasterio
+with rasterio.open(sys.argv[1]) as d:
+    assert d.descriptions == ('elevation', 'elevation_1', 'layers', 'clearance', 'slope', 'water', 'obstacle', 'verdict'), d.descriptions
+    assert d.units[0] == 'm' and d.units[4] == 'degrees', d.units
+    assert math.isnan(d.nodata)
+    assert all(t == 'float32' for t in d.dtypes)
+    assert d.transform.almost_equals(rasterio.Affine(0.2, 0, -10.1, 0, -0.2, -10.1 + 0.2 * d.height)), d.transform
+    assert d.tags()['AREA_OR_POINT'] == 'Area' and d.tags()['MAP'] == 'training'
+    assert d.crs is not None and not d.crs.is_geographic
+    row, col = d.index(-6.5, -5)
+    assert d.read(8)[row, col] == 4
+    row, col = d.index(0, 3)
+    assert d.read(8)[row, col] == 7 and abs(d.read(1)[row, col] + 0.05) < 1e-6
+)", arena / "a.tif"));
+}
+
 TEST_CASE("export says which option a format needs, takes or refuses, and writes nothing then")
 {
     const Arena arena;
@@ -223,8 +407,13 @@ TEST_CASE("export says which option a format needs, takes or refuses, and writes
     refused("--format nav2 --layers all -o a.yaml" + husky_option,
             "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of nav2 has one value");
     refused("--format nav2 --resolution 0 -o a.yaml" + husky_option, "--resolution is 0, needs > 0");
+    refused("--format geotiff --offset 0.2 -o a.tif", "--offset needs --robot");
+    refused("--format geotiff --layers all -o a.tif",
+            "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of geotiff has one value");
     CHECK(arena("export map --format nav3 -o a.yaml" + husky_option).status == 2);
     CHECK(arena("export nowhere --format nav2 -o a.yaml" + husky_option).status == 4);
     CHECK(arena("export map --format nav2 -o none/a.yaml" + husky_option).status == 1);
+    CHECK(arena("export map --format geotiff -o none/a.tif").status == 1);
+    CHECK(arena("export map --format geotiff -o /dev/full").status == 1);
     CHECK(arena.names() == before);
 }

@@ -37,4 +37,26 @@ std::filesystem::path nav2_image_of(const std::filesystem::path& yaml);
 /// Source: map_server's documentation of its map format (wiki.ros.org/map_server).
 void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml, const std::vector<std::string>& comment = {});
 
+struct GeoTiffOptions {
+    LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< whose clearance and slope are told: one
+    int threads = 0;
+    Progress progress = {};
+};
+
+/// Bands of float32 over a frame's cells, at their centres; no-data is NaN. In this order, by their descriptions:
+///
+/// elevation, elevation_1, …   layers of the column from the top down, m; as many as the highest stack of the frame has
+/// layers                      how many the column has; 0 where there is no terrain
+/// clearance                   from the chosen layer up to the next solid, m; 0 where something stands on it; no-data under the open sky
+/// slope                       of the chosen layer, degrees; by its neighbours' heights, so a layer's edge is steep
+/// water                       highest water surface, m
+/// obstacle                    highest obstacle that stands above elevation, or where there is no terrain, m
+/// verdict                     with `verdicts` (of the same frame) only: the number of the Verdict
+///
+/// A local metric frame: pixels are areas, upper left corner first, x right, y up. Tiles deflated with predictor 3; BigTIFF
+/// where it might pass 4 GB. O(elements + cells), in rows of tiles. Throws ArgumentError for LayerChoice All, OutputError.
+/// Sources: OGC GeoTIFF 1.1 (19-008r4); GDAL's GeoTIFF driver for GDAL_METADATA and GDAL_NODATA.
+void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* verdicts, const GeoTiffOptions& options,
+                   const std::filesystem::path& file);
+
 }  // namespace spawnfield

@@ -16,6 +16,8 @@ public:
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();
 
+    /// For what writes by name instead of write(), before flush() or commit().
+    const std::filesystem::path& path() const { return written_; }
     void write(std::string_view bytes);  ///< throws OutputError
     void flush();                        ///< so that only the renaming can still fail; throws OutputError
     void commit();                       ///< throws OutputError

@@ -26,12 +26,17 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
     return options;
 }
 
+void check_one_layer(const ExportJob& job, const LayerChoice& layers)
+{
+    if (layers.kind == LayerChoice::Kind::All)
+        throw ArgumentError("--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of " + job.args.format + " has one value");
+}
+
 /// One layer: a pixel has one value.
 RasterOptions image_options(const ExportJob& job)
 {
     const RasterOptions options = raster_options(job, "top");
-    if (options.layers.kind == LayerChoice::Kind::All)
-        throw ArgumentError("--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of " + job.args.format + " has one value");
+    check_one_layer(job, options.layers);
     return options;
 }
 
@@ -64,6 +69,28 @@ void write_nav2(const ExportJob& job)
                     "map " + session.map.hash});
 }
 
+/// Of a picture that needs no robot.
+LayerChoice image_layers(const ExportJob& job)
+{
+    const LayerChoice layers = parse_layers(job.args.layers.empty() ? "top" : job.args.layers);
+    check_one_layer(job, layers);
+    tell_if_no_layer(job.args, job.session.map, layers);
+    return layers;
+}
+
+void write_geotiff(const ExportJob& job)
+{
+    GeoTiffOptions options;
+    const GridFrame frame = image_frame(job);
+    std::optional<VerdictImage> verdicts;
+    if (job.has_robot()) verdicts = ask(job, image_options(job), frame);
+    options.layers = image_layers(job);
+    options.threads = job.args.threads;
+    options.progress = progress_bar(job.args, "writing");
+    spawnfield::write_geotiff(job.session.map, frame, verdicts ? &*verdicts : nullptr, options, job.args.out);
+    clear_progress_bar();
+}
+
 }  // namespace
 
 std::vector<ExportFormat> map_formats()
@@ -71,6 +98,8 @@ std::vector<ExportFormat> map_formats()
     return {
         {"nav2", "map_server's pair for ROS: -o FILE.yaml and FILE.pgm beside it, free where --robot can stand", {"--robot", "--out"},
          with(asking_options(), {"--layers", "--resolution"}), write_nav2},
+        {"geotiff", "bands of elevation, layers, clearance, slope, water, obstacle, and the verdict of --robot if there is one", {"--out"},
+         with(asking_options(), {"--robot", "--layers", "--resolution"}), write_geotiff},
     };
 }
 
