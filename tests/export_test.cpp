@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include <iostream>
+#include <map>
 #include <numbers>
 #include <regex>
 
@@ -388,6 +389,61 @@ with rasterio.open(sys.argv[1]) as d:
 )", arena / "a.tif"));
 }
 
+TEST_CASE("a PLY has the raster's poses as points, to the bit, coloured as in heat maps")
+{
+    const TempFolder folder;  // far off: float would be half a metre wrong
+    const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
+                                                                     "- {name: floor, label: terrain, box: [5, 3, 1], xyz: [500000.3, 4500000.1, 0.001]}\n"
+                                                                     "- {name: ball, sphere: 0.6, xyz: [500000.2, 4499999.7, 0.6]}\n")));
+    const CollisionChecker checker = checker_of(map, small_box);
+    RasterOptions options = on_layer({});
+    options.step = 0.1;
+    const RasterResult result = raster(map, checker, options);
+    std::string bytes;
+    write_ply(result, {"two\nlines"}, [&](std::string_view piece) { bytes += piece; });
+    const std::size_t body = bytes.find("end_header\n") + 11;
+    CHECK(bytes.substr(0, body) == "ply\nformat binary_little_endian 1.0\ncomment two lines\n"
+                                   "comment verdict: 0 outside, 1 aerial, 2 off_terrain, 3 submerged, 4 collision, 5 steep, 6 unstable, 7 valid\n"
+                                   "element vertex " + std::to_string(result.poses.size()) + "\nproperty double x\nproperty double y\nproperty double z\n"
+                                   "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar verdict\nend_header\n");
+    constexpr std::size_t point = 3 * sizeof(double) + 4;
+    REQUIRE(bytes.size() == body + point * result.poses.size());
+    REQUIRE((result.counts[std::size_t(Verdict::Valid)] > 100 && result.counts[std::size_t(Verdict::Collision)] > 100));
+    const std::map<Verdict, std::string> colours{{Verdict::Valid, std::string("\x00\x9e\x73", 3)}, {Verdict::Collision, std::string("\xd5\x5e\x00", 3)},
+                                                 {Verdict::OffTerrain, "\xcc\x79\xa7"}, {Verdict::Outside, "\x99\x99\x99"}};
+    std::size_t wrong = 0;
+    for (std::size_t p = 0; p < result.poses.size(); ++p) {
+        const RasterPose& pose = result.poses[p];
+        const char* const at = bytes.data() + body + p * point;
+        std::array<double, 3> place;
+        std::memcpy(place.data(), at, sizeof place);
+        wrong += place != std::array{pose.x, pose.y, pose.z} || std::string(at + sizeof place, 3) != colours.at(pose.verdict) || Verdict(at[27]) != pose.verdict;
+    }
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("export --format ply writes to a file or to standard output, the same bytes at any number of threads")
+{
+    const Arena arena;
+    const std::string command = "export map --format ply --step 0.5 --offset 0.5" + husky_option;
+    const ProgramRun printed = arena(command + "--threads 1 -q");
+    CHECK(printed.status == 0);
+    REQUIRE(arena(command + "--threads 3 -o a.ply").status == 0);
+    CHECK(bytes_of(arena / "a.ply") == printed.out);
+    const ProgramRun csv = arena("raster map --dims 2 --step 0.5 --offset 0.5 -q" + husky_option);
+    CHECK_THAT(printed.out, Contains("element vertex " + std::to_string(std::count(csv.out.begin(), csv.out.end(), '\n') - 1) + "\n"));
+    const auto python = python_with("plyfile");
+    if (!python) return;
+    CHECK(python_accepts(*python, arena, R"(
+import sys
+from plyfile import PlyData
+v = PlyData.read(sys.argv[1])['vertex']
+valid = [p for p in v if p['verdict'] == 7]
+assert len(valid) > 500 and all((p['red'], p['green'], p['blue']) == (0, 0x9e, 0x73) for p in valid)
+assert any(abs(p['z'] - 0.45) < 1e-12 for p in valid)
+)", arena / "a.ply"));
+}
+
 TEST_CASE("export says which option a format needs, takes or refuses, and writes nothing then")
 {
     const Arena arena;
@@ -407,6 +463,9 @@ TEST_CASE("export says which option a format needs, takes or refuses, and writes
     refused("--format nav2 --layers all -o a.yaml" + husky_option,
             "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of nav2 has one value");
     refused("--format nav2 --resolution 0 -o a.yaml" + husky_option, "--resolution is 0, needs > 0");
+    refused("--format ply" + husky_option, "--format ply needs --step");
+    refused("--format ply --step 0" + husky_option, "--step is 0, needs > 0");
+    refused("--format nav2 --step 1 -o a.yaml" + husky_option, "--step is not for --format nav2; it is for ply");
     refused("--format geotiff --offset 0.2 -o a.tif", "--offset needs --robot");
     refused("--format geotiff --layers all -o a.tif",
             "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of geotiff has one value");

@@ -59,4 +59,9 @@ struct GeoTiffOptions {
 void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* verdicts, const GeoTiffOptions& options,
                    const std::filesystem::path& file);
 
+/// A raster's poses as points of a binary little-endian PLY, in their order, told to `sink` in pieces: x, y, z as double (m),
+/// red, green, blue of the verdict as in heat maps, and its number as uchar `verdict`. Each line of `comment` is one of the header,
+/// and one tells the numbers. Source: Turk, The PLY Polygon File Format, 1994.
+void write_ply(const RasterResult& raster, const std::vector<std::string>& comment, const std::function<void(std::string_view)>& sink);
+
 }  // namespace spawnfield

@@ -2,6 +2,7 @@
 #include "base/parallel.h"
 #include "base/tiff.h"
 #include "column/columns.h"
+#include "export/words.h"
 #include "picture/relief.h"
 
 #include <spawnfield/error.h>
@@ -176,11 +177,7 @@ std::string metadata(const Map& map, const std::vector<Band>& bands, const Layer
     add("MAP", "", map.name);
     add("MAP_HASH", "", map.hash);
     add("LAYER", "", layer_text(layers));
-    if (has_verdicts) {
-        std::string codes;
-        for (std::size_t v = 0; v < verdict_count; ++v) codes += (v ? ", " : "") + std::to_string(v) + " " + to_string(Verdict(v));
-        add("VERDICTS", "", codes);
-    }
+    if (has_verdicts) add("VERDICTS", "", verdict_numbers());
     for (std::size_t b = 0; b < bands.size(); ++b) {
         const std::string sample = " sample=\"" + std::to_string(b) + "\" role=\"";
         add("DESCRIPTION", sample + "description\"", bands[b].name);

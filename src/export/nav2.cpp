@@ -1,12 +1,11 @@
 #include "base/number.h"
+#include "export/words.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/map_export.h>
 #include <spawnfield/output_file.h>
 
 #include <yaml-cpp/yaml.h>
-
-#include <algorithm>
 
 namespace spawnfield {
 namespace {
@@ -30,10 +29,7 @@ std::string pgm_bytes(const VerdictImage& image)
 std::string yaml_text(const GridFrame& frame, const std::string& image, const std::vector<std::string>& comment)
 {
     std::string text;
-    for (std::string line : comment) {
-        std::replace_if(line.begin(), line.end(), [](unsigned char c) { return c < ' '; }, ' ');
-        text += "# " + line + "\n";
-    }
+    for (const std::string& line : comment) text += "# " + one_line(line) + "\n";
     YAML::Emitter name;
     name << image;
     text += std::string("image: ") + name.c_str() + "\nmode: trinary\nresolution: " + number(frame.cell) + "\norigin: [" + number(frame.x0) + ", " +

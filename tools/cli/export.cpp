@@ -91,11 +91,13 @@ void add_export(CLI::App& app, Run& run)
     add_query(command, *args);
     command.get_option("--robot")->required(false);
     command.add_option("--format", args->format, "One of the formats below")->required()->check(CLI::IsMember(format_names()));
-    command.add_option("--out,-o", args->out, "File to write");
-    command.add_option("--layers,--layer", args->layers, "Layers that count: top, bottom, or N from the top (0 first)");
+    command.add_option("--out,-o", args->out, "File to write (default: standard output, where the format can)");
+    command.add_option("--layers,--layer", args->layers, "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
+    command.add_option("--step", args->step, "Between columns, m");
+    command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
     command.footer(help());
     command.callback([=, &command, &run] { run = [=, &command] { return run_export(*args, command); }; });
 }

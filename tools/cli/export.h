@@ -6,8 +6,8 @@ namespace spawnfield::cli {
 
 /// Options of `export`; which of them a format takes its row of the table says.
 struct ExportArgs : QueryArgs {
-    std::string format, out, layers;
-    double resolution = 0, offset = 0.1, yaw = 0;
+    std::string format, out, layers, bounds;
+    double resolution = 0, step = 0, offset = 0.1, yaw = 0;
 };
 
 /// What a format's writer gets.

@@ -26,6 +26,14 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
     return options;
 }
 
+/// What was asked, for people who find the file.
+std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& options, const std::string& layers)
+{
+    const Session& session = job.session;
+    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): where the origin of " + session.robot.name + " can be, " +
+            number(options.offset) + " m above its layer (" + (job.args.layers.empty() ? layers : job.args.layers) + "), yaw " + number(options.yaw) + " rad"};
+}
+
 void check_one_layer(const ExportJob& job, const LayerChoice& layers)
 {
     if (layers.kind == LayerChoice::Kind::All)
@@ -57,16 +65,11 @@ VerdictImage ask(const ExportJob& job, const RasterOptions& options, const GridF
 
 void write_nav2(const ExportJob& job)
 {
-    const Session& session = job.session;
     nav2_image_of(job.args.out);  // a wrong name is told before all work
     const RasterOptions options = image_options(job);
-    const std::string layers = job.args.layers.empty() ? "top" : job.args.layers;
     const VerdictImage image = ask(job, options, image_frame(job));
     clear_progress_bar();
-    write_nav2_map(image, job.args.out,
-                   {"spawnfield " + version() + ": where the origin of " + session.robot.name + " can be, " + number(options.offset) + " m above layer " + layers + " of " +
-                        session.map.name + ", yaw " + number(options.yaw),
-                    "map " + session.map.hash});
+    write_nav2_map(image, job.args.out, comment_of(job, options, "top"));
 }
 
 /// Of a picture that needs no robot.
@@ -91,6 +94,19 @@ void write_geotiff(const ExportJob& job)
     clear_progress_bar();
 }
 
+void write_ply(const ExportJob& job)
+{
+    RasterOptions options = raster_options(job, "all");
+    options.step = parse_positive("--step", job.args.step);
+    if (!job.args.bounds.empty()) options.bounds = parse_bounds("--bounds", job.args.bounds, true);
+    tell_if_off_map(job.args, job.session.map, "--bounds", options.bounds);
+    const RasterResult result = raster(job.session.map, *job.session.checker, options);
+    job.summary.lap("query");
+    job.summary.set_counts(result.counts);
+    job.summary.exact_checks = result.exact_checks;
+    write_output(job.args.out, [&](const auto& sink) { spawnfield::write_ply(result, comment_of(job, options, "all"), sink); });
+}
+
 }  // namespace
 
 std::vector<ExportFormat> map_formats()
@@ -100,6 +116,8 @@ std::vector<ExportFormat> map_formats()
          with(asking_options(), {"--layers", "--resolution"}), write_nav2},
         {"geotiff", "bands of elevation, layers, clearance, slope, water, obstacle, and the verdict of --robot if there is one", {"--out"},
          with(asking_options(), {"--robot", "--layers", "--resolution"}), write_geotiff},
+        {"ply", "points where --robot was asked to stand, every --step metres, coloured by verdict", {"--robot", "--step"},
+         with(asking_options(), {"--layers", "--bounds"}), write_ply},
     };
 }
 
