@@ -11,9 +11,8 @@
 #include <fstream>
 
 namespace spawnfield {
-namespace {
 
-GreyImage read_grey(const std::filesystem::path& file)
+GreyImage read_grey_image(const std::filesystem::path& file)
 {
     if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
     std::ifstream stream(file, std::ios::binary);
@@ -28,8 +27,6 @@ GreyImage read_grey(const std::filesystem::path& file)
     return image;
 }
 
-}  // namespace
-
 HeightmapOptions read_heightmap_options(const YamlMap& map)
 {
     map.only({"file", "size", "z"});
@@ -41,7 +38,7 @@ HeightmapOptions read_heightmap_options(const YamlMap& map)
 
 Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptions& options)
 {
-    GreyImage image = read_grey(file);
+    GreyImage image = read_grey_image(file);
     const bool is_float = image.largest == 0;
     if (is_float && options.z) throw FileError(file.string(), "is a float image, which is metres already; heightmap.z must go");
     if (!is_float && !options.z) throw FileError(file.string(), "is an integer image; heightmap.z is missing (heights of 0 and of the largest value)");

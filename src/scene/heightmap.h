@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/grey_image.h"
 #include "scene/yaml_map.h"
 
 #include <spawnfield/scene.h>
@@ -19,6 +20,9 @@ struct Heightmap {
 };
 
 HeightmapOptions read_heightmap_options(const YamlMap& map);
+
+/// A PNG or TIFF of at least 2 x 2 pixels, one channel. Throws FileError.
+GreyImage read_grey_image(const std::filesystem::path& file);
 
 /// An 8- or 16-bit grey image, or a float one, which is metres already. At least 2 x 2 pixels. Throws FileError.
 Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptions& options);

@@ -1,4 +1,4 @@
-#include "cli.h"
+#include "scene_args.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/map.h>
@@ -16,9 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-struct InfoArgs : CommonArgs {
-    std::string what, up;
-    double scale = 1;
+struct InfoArgs : CommonArgs, SceneArgs {
+    std::string what;
     std::vector<std::string> package_paths;
     bool json = false, verify = false;
 };
@@ -44,6 +43,8 @@ Json scene_json(const Scene& scene)
 {
     Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.bounds())}};
     out.update(json_of(scene.count_labels(), scene.parts));
+    for (const NameRule& rule : scene.rules)
+        out["rules"].push_back({{"what", rule.what}, {"label", to_string(rule.label)}, {"collisions", rule.count}});
     out["notices"] = scene.notices;
     return out;
 }
@@ -120,6 +121,10 @@ std::string scene_lines(const Json& scene)
     std::string out = "labels\n";
     for (const auto& [label, counts] : scene["labels"].items())
         out += "  " + label + ": " + counted(counts["triangles"], "triangle") + ", " + counted(counts["primitives"], "primitive") + "\n";
+    if (scene.contains("rules")) out += "labels come from --label, then from the first rule that matches\n";
+    if (scene.contains("rules"))
+        for (const Json& rule : scene["rules"])
+            out += "  " + rule["what"].get<std::string>() + " is " + rule["label"].get<std::string>() + ": " + counted(rule["collisions"], "collision") + "\n";
     out += "parts\n";
     constexpr std::size_t most = 60;
     const Json& parts = scene["parts"];
@@ -168,24 +173,21 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     const Progress listen = progress_bar(args, "info");
     Summary summary("info", args);
     Json out;
-    if (fs::is_directory(args.what)) {
-        refuse(command, {"--up", "--scale"}, "is for a bare mesh; " + args.what + " is a folder");
-        refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is a folder");
+    if (fs::is_directory(args.what) && !fs::exists(fs::path(args.what) / "model.config")) {
+        refuse(command, scene_option_names, "is for a scene; " + args.what + " is a map's folder");
+        refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is a map's folder");
         if (args.verify) verify_map(args.what);
         const Map map = read_map(args.what);
         summary.map_hash = map.hash;
         out = map_json(map, args.verify);
     } else if (is_robot(args.what)) {
-        refuse(command, {"--up", "--scale"}, "is for a bare mesh; " + args.what + " is a robot");
+        refuse(command, scene_option_names, "is for a scene; " + args.what + " is a robot");
         refuse(command, {"--verify"}, "is for a map; " + args.what + " is a robot");
         out = robot_json(load_robot(args.what, {{args.package_paths.begin(), args.package_paths.end()}}));
     } else {
         refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is none");
         refuse(command, {"--verify"}, "is for a map folder; " + args.what + " is none");
-        SceneOptions options;
-        options.up = args.up.empty() ? char{0} : args.up[0];
-        options.scale = parse_positive("--scale", args.scale);
-        const Scene scene = load_scene(args.what, options);
+        const Scene scene = load_scene(args.what, scene_options(args));
         for (const std::string& text : scene.notices) notice(args, text);
         out = scene_json(scene);
     }
@@ -209,11 +211,10 @@ void add_info(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<InfoArgs>();
     CLI::App& command = *app.add_subcommand("info", "What a map, a scene or a robot holds");
-    command.add_option("what", args->what, "Map folder, scene file, robot.yaml, .urdf or box:LX,LY,LZ")->required();
+    command.add_option("what", args->what, "Map folder, scene file or model folder, robot.yaml, .urdf or box:LX,LY,LZ")->required();
     command.add_flag("--json", args->json, "As JSON");
     command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
-    command.add_option("--up", args->up, "Up axis of a bare mesh: y or z")->check(CLI::IsMember({"y", "z"}));
-    command.add_option("--scale", args->scale, "Metres per unit of a bare mesh");
+    add_scene_options(command, *args);
     command.add_option("--package-path", args->package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
     add_common(command, *args);
     command.footer("Example:\n  spawnfield info maps/training/scene.yaml");
