@@ -3,6 +3,7 @@
 #include <spawnfield/shape.h>
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace spawnfield {
@@ -41,6 +42,13 @@ struct LabelCount {
 };
 using LabelCounts = std::array<LabelCount, 3>;  ///< of Terrain, Obstacle, Water
 
+/// Where a scene lies in the coordinates of a survey, such as those of a UTM zone: x of the survey = x + x_of_scene / unit.
+struct GeoOrigin {
+    double x = 0, y = 0;  ///< survey coordinates of the scene's 0, 0, in units
+    double unit = 1;      ///< m
+    std::string crs;      ///< "EPSG:32611", or the survey's own words; empty: unknown
+};
+
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// The world: triangles and primitives, labelled, in metres, z up. Everything of one part stands together, in the
@@ -54,6 +62,7 @@ struct Scene {
     std::vector<std::uint32_t> triangle_pieces; ///< one for each triangle
     std::vector<Piece> pieces;
     std::vector<Primitive> primitives;
+    std::optional<GeoOrigin> origin;   ///< from the first elevation model that tells where it lies
     std::vector<std::string> notices;  ///< defaults that mattered while reading; for the user to see
 
     Bounds bounds() const;
@@ -71,11 +80,14 @@ struct SceneOptions {
     std::vector<LabelRule> labels = {};  ///< come before the file's own rules; the first match wins
     char up = 0;                         ///< 'y' or 'z' for a bare mesh; 0: what the format says, else z
     double scale = 1.0;                  ///< m per unit of a bare mesh, > 0
+    std::string heightmap = {};          ///< of a bare elevation model: keys as under `heightmap:`, "size: [513, 513], z: [0, 75]"
 };
 
-/// Reads a scene.yaml (format spawnfield-scene/1), an OctoMap (.bt, .ot) or any mesh that assimp reads.
+/// Reads a scene.yaml (format spawnfield-scene/1), an OctoMap (.bt, .ot), an elevation model (GeoTIFF, ESRI ASCII grid, PNG, raw) or any
+/// mesh that assimp reads.
 ///
-/// A bare mesh or OctoMap is one part named after the file; without label rules all of it is terrain, with a notice.
+/// A bare mesh or OctoMap is one part named after the file; without label rules all of it is terrain, with a notice. So is an elevation
+/// model: terrain whose middle lies at 0, 0, with the heights of the file; Scene::origin tells where that is.
 /// Throws FileError with file, part, key, value and limit. Format: DESIGN.md, formats/scene.md.
 Scene load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 

@@ -9,7 +9,7 @@ namespace spawnfield::cli {
 namespace {
 
 struct BakeArgs : CommonArgs {
-    std::string scene, out, bounds, up;
+    std::string scene, out, bounds, up, heightmap;
     double resolution = 0, occupancy_resolution = 0, scale = 1;
     std::vector<std::string> labels;
     bool allow_no_terrain = false;
@@ -38,6 +38,7 @@ int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
     for (const std::string& label : args.labels) scene_options.labels.push_back(parse_label(label));
     scene_options.up = args.up.empty() ? char{0} : args.up[0];
     scene_options.scale = parse_positive("--scale", args.scale);
+    scene_options.heightmap = args.heightmap;
     BakeOptions options;
     if (resolution_given) options.resolution = parse_positive("--resolution", args.resolution);
     if (occupancy_given) options.occupancy_resolution = parse_positive("--occupancy-resolution", args.occupancy_resolution);
@@ -65,13 +66,14 @@ void add_bake(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<BakeArgs>();
     CLI::App& command = *app.add_subcommand("bake", "Make a map from a scene");
-    command.add_option("scene", args->scene, "scene.yaml, a mesh (any format assimp reads) or an OctoMap (.bt)")->required();
+    command.add_option("scene", args->scene, "scene.yaml, a mesh (any format assimp reads), an OctoMap (.bt) or an elevation model (.tif, .asc, .png, .raw)")->required();
     command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")->required();
     auto* resolution = command.add_option("--resolution", args->resolution, "Side of a terrain cell, m (default 0.1)");
     auto* occupancy = command.add_option("--occupancy-resolution", args->occupancy_resolution, "Side of a voxel, m (default 2.5 cells)");
     command.add_option("--bounds", args->bounds, "x0,y0,z0,x1,y1,z1 in m (default: the scene's)");
     command.add_option("--up", args->up, "Up axis of a bare mesh: y or z (default: what the format says, else z)")->check(CLI::IsMember({"y", "z"}));
     command.add_option("--scale", args->scale, "Metres per unit of a bare mesh (default 1)");
+    command.add_option("--heightmap", args->heightmap, "Keys of a bare elevation model as in scene.yaml: 'size: [513, 513], z: [0, 75]'");
     command.add_option("--label", args->labels, "'GLOB=LABEL': label of the nodes, materials or parts whose name matches (repeatable; first match wins)");
     command.add_flag("--allow-no-terrain", args->allow_no_terrain, "Bake a scene in which nothing is terrain");
     add_common(command, *args);

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 struct InfoArgs : CommonArgs {
-    std::string what, up;
+    std::string what, up, heightmap;
     double scale = 1;
     std::vector<std::string> package_paths;
     bool json = false, verify = false;
@@ -26,6 +26,8 @@ struct InfoArgs : CommonArgs {
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json json_of(const Bounds& bounds) { return {{"min", json_of(bounds.min)}, {"max", json_of(bounds.max)}}; }
+
+Json json_of(const GeoOrigin& origin) { return {{"x", origin.x}, {"y", origin.y}, {"unit", origin.unit}, {"crs", origin.crs}}; }
 
 Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
 {
@@ -44,6 +46,7 @@ Json scene_json(const Scene& scene)
 {
     Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.bounds())}};
     out.update(json_of(scene.count_labels(), scene.parts));
+    if (scene.origin) out["origin"] = json_of(*scene.origin);
     out["notices"] = scene.notices;
     return out;
 }
@@ -53,6 +56,7 @@ Json map_json(const Map& map, bool verified)
     Json out = {{"kind", "map"}, {"name", map.name}, {"bounds", json_of(map.bounds)}, {"resolution", map.resolution},
                 {"occupancy_resolution", map.occupancy_resolution}, {"layers", map.layers},
                 {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
+    if (map.origin) out["origin"] = json_of(*map.origin);
     if (verified) out["verified"] = true;
     out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
     for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
@@ -100,6 +104,16 @@ std::string extent_lines(const Json& bounds)
     return out.str();
 }
 
+/// In full, as millions of metres are usual.
+std::string origin_line(const Json& out)
+{
+    if (!out.contains("origin")) return "";
+    const Json& origin = out["origin"];
+    const std::string crs = origin["crs"];
+    return "  0, 0 is x " + number(origin["x"]) + ", y " + number(origin["y"]) + (crs.empty() ? "" : " of " + crs) +
+           (origin["unit"] == 1.0 ? "" : ", in units of " + number(origin["unit"]) + " m") + "\n";
+}
+
 /// Says what is filled and what is a shell, as nothing surprises more.
 std::string part_line(const Json& part)
 {
@@ -133,7 +147,7 @@ std::string map_lines(const Json& map)
     std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() + ", hash " +
                       map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
     out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") + "; voxels of " +
-           map["occupancy_resolution"].dump() + " m\n";
+           map["occupancy_resolution"].dump() + " m\n" + origin_line(map);
     out += scene_lines(map) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
@@ -170,6 +184,7 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     Json out;
     if (fs::is_directory(args.what)) {
         refuse(command, {"--up", "--scale"}, "is for a bare mesh; " + args.what + " is a folder");
+        refuse(command, {"--heightmap"}, "is for a bare elevation model; " + args.what + " is a folder");
         refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is a folder");
         if (args.verify) verify_map(args.what);
         const Map map = read_map(args.what);
@@ -177,6 +192,7 @@ int run_info(const InfoArgs& args, const CLI::App& command)
         out = map_json(map, args.verify);
     } else if (is_robot(args.what)) {
         refuse(command, {"--up", "--scale"}, "is for a bare mesh; " + args.what + " is a robot");
+        refuse(command, {"--heightmap"}, "is for a bare elevation model; " + args.what + " is a robot");
         refuse(command, {"--verify"}, "is for a map; " + args.what + " is a robot");
         out = robot_json(load_robot(args.what, {{args.package_paths.begin(), args.package_paths.end()}}));
     } else {
@@ -185,6 +201,7 @@ int run_info(const InfoArgs& args, const CLI::App& command)
         SceneOptions options;
         options.up = args.up.empty() ? char{0} : args.up[0];
         options.scale = parse_positive("--scale", args.scale);
+        options.heightmap = args.heightmap;
         const Scene scene = load_scene(args.what, options);
         for (const std::string& text : scene.notices) notice(args, text);
         out = scene_json(scene);
@@ -195,7 +212,7 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     const std::string text = args.json          ? out.dump(2) + "\n"
                              : kind == "map"    ? map_lines(out)
                              : kind == "robot"  ? robot_lines(out)
-                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + scene_lines(out);
+                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + origin_line(out) + scene_lines(out);
     write_output("", [&](const auto& sink) { sink(text); });
     summary.lap("write");
     summary.extra = {args.what};
@@ -214,6 +231,7 @@ void add_info(CLI::App& app, Run& run)
     command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
     command.add_option("--up", args->up, "Up axis of a bare mesh: y or z")->check(CLI::IsMember({"y", "z"}));
     command.add_option("--scale", args->scale, "Metres per unit of a bare mesh");
+    command.add_option("--heightmap", args->heightmap, "Keys of a bare elevation model as in scene.yaml: 'size: [513, 513], z: [0, 75]'");
     command.add_option("--package-path", args->package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
     add_common(command, *args);
     command.footer("Example:\n  spawnfield info maps/training/scene.yaml");
