@@ -128,14 +128,19 @@ FileMesh ellipsoid_mesh(const Vec3& radii, int rings, int around)
 /// (gazebo::common::ImageHeightmap, HeightmapShape); between pixels, `sampling` - 1 samples are interpolated bilinearly.
 Heightmap gazebo_heights(const fs::path& file, const CollisionGeometry& geometry)
 {
-    const GreyImage image = read_grey_image(file);
+    std::vector<std::string> ignored;
+    const GreyImage image = read_height_file(file, {}, false, ignored).image;
+    if (image.rows < 2 || image.cols < 2) throw FileError(file.string(), "has " + std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels, needs at least 2 x 2");
     if (image.largest == 0) throw FileError(file.string(), "has float pixels: a <heightmap> needs an image of 8 or 16 bits; bake the elevation model itself");
     const double brightest = *std::max_element(image.pixels.begin(), image.pixels.end());
     const double scale = brightest > 0 ? geometry.size.z() / brightest : 0;
     const int s = int(geometry.sampling);
     const std::uint64_t wanted = (std::uint64_t(image.rows - 1) * s + 1) * (std::uint64_t(image.cols - 1) * s + 1);
-    if (wanted > max_pixels) throw FileError(file.string(), "has " + std::to_string(wanted) + " samples with <sampling> " + std::to_string(s) + ", needs at most " + std::to_string(max_pixels));
-    Heightmap map{{geometry.size.x(), geometry.size.y()}, (image.rows - 1) * s + 1, (image.cols - 1) * s + 1, {}};
+    if (wanted > max_heights) throw FileError(file.string(), "has " + std::to_string(wanted) + " samples with <sampling> " + std::to_string(s) + ", needs at most " + std::to_string(max_heights));
+    Heightmap map;
+    map.size = {geometry.size.x(), geometry.size.y()};
+    map.rows = (image.rows - 1) * s + 1;
+    map.cols = (image.cols - 1) * s + 1;
     map.heights.reserve(wanted);
     const auto pixel = [&](int row, int col) { return image.pixels[std::size_t(std::min(row, image.rows - 1)) * image.cols + std::min(col, image.cols - 1)]; };
     for (int row = 0; row < map.rows; ++row)

@@ -1,3 +1,4 @@
+#include "base/input_file.h"
 #include "scene/bodies.h"
 #include "scene/elements.h"
 #include "scene/heightmap.h"
@@ -195,7 +196,9 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
         const HeightmapOptions heightmap = read_heightmap_options(map.map("heightmap"));
         const bool up = map.one_of("sides", {"both", "up"}, "both") == "up";
         in_part(map.map("heightmap"), "file", [&](const auto& path) {
-            append_heightmap(scene, part, read_heightmap(file.folder / path, heightmap), map.pose(), up);
+            const Heightmap found = read_heightmap(file.folder / path, heightmap);
+            append_heightmap(scene, part, found, map.pose(), up);
+            place_scene(scene, found, map.pose(), map.file() + ": " + map.place());
         });
     } else if (kind == "octomap") {
         in_part(map, "octomap", [&](const auto& path) { append_octomap(scene, part, file.folder / path, map.pose()); });
@@ -226,6 +229,33 @@ Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
     }
     if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
     tell_idle_rules(file, options.labels, common.names, scene);
+    return scene;
+}
+
+bool is_elevation_model(const fs::path& file, const std::string& extension, const SceneOptions& options)
+{
+    if (!options.heightmap.empty() || extension == ".asc" || extension == ".tif" || extension == ".tiff" || extension == ".png") return true;
+    if (extension == ".raw" && read_file(file).find('\0') != std::string::npos)  // else text: a mesh that assimp reads
+        throw FileError(file.string(), "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
+    return false;
+}
+
+Scene read_elevation_model(const fs::path& file, const SceneOptions& options)
+{
+    if (options.up != 0 || options.scale != 1.0)
+        throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() + " is an elevation model, in metres and z up");
+    Scene scene;
+    scene.name = file.stem().string();
+    Label label = Label::Terrain;
+    for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
+        if (matches(rule->pattern, scene.name)) label = rule->label;
+    const std::uint32_t part = add_part(scene, scene.name, "heightmap", label);
+    if (label != Label::Ignore) {
+        const Heightmap found = read_heightmap(file, parse_heightmap_options(options.heightmap));
+        append_heightmap(scene, part, found, {}, false);
+        place_scene(scene, found, {}, file.string());
+    }
+    tell_idle_rules(file, options.labels, {scene.name}, scene);
     return scene;
 }
 
@@ -312,7 +342,12 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     if ((yaml || sdf) && (options.up != 0 || options.scale != 1.0))
         throw ArgumentError("load_scene", "up and scale are for a bare mesh; " +
                                               (sdf ? "Gazebo takes a world as it is" : "give them in " + file.string() + " (keys up, scale)"));
-    Scene scene = yaml ? read_scene_yaml(file, options) : sdf ? read_sdf_scene(file, options) : read_bare_file(file, extension, options);
+    if ((yaml || sdf) && !options.heightmap.empty())
+        throw ArgumentError("load_scene", "--heightmap is for an elevation model by itself" + (yaml ? "; give the keys in " + file.string() + " (heightmap)" : std::string()));
+    Scene scene = yaml                                           ? read_scene_yaml(file, options)
+                  : sdf                                          ? read_sdf_scene(file, options)
+                  : is_elevation_model(file, extension, options) ? read_elevation_model(file, options)
+                                                                 : read_bare_file(file, extension, options);
     if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored, missing or without collision");
     const Remedies remedies = yaml  ? Remedies{"scale of its part:", "up of its part"}
                               : sdf ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}

@@ -26,6 +26,8 @@ Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json json_of(const Bounds& bounds) { return {{"min", json_of(bounds.min)}, {"max", json_of(bounds.max)}}; }
 
+Json json_of(const GeoOrigin& origin) { return {{"x", origin.x}, {"y", origin.y}, {"unit", origin.unit}, {"crs", origin.crs}}; }
+
 Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
 {
     Json out;
@@ -45,6 +47,7 @@ Json scene_json(const Scene& scene)
     out.update(json_of(scene.count_labels(), scene.parts));
     for (const NameRule& rule : scene.rules)
         out["rules"].push_back({{"what", rule.what}, {"label", to_string(rule.label)}, {"collisions", rule.count}});
+    if (scene.origin) out["origin"] = json_of(*scene.origin);
     out["notices"] = scene.notices;
     return out;
 }
@@ -54,6 +57,7 @@ Json map_json(const Map& map, bool verified)
     Json out = {{"kind", "map"}, {"name", map.name}, {"bounds", json_of(map.bounds)}, {"resolution", map.resolution},
                 {"occupancy_resolution", map.occupancy_resolution}, {"layers", map.layers},
                 {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
+    if (map.origin) out["origin"] = json_of(*map.origin);
     if (verified) out["verified"] = true;
     out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
     for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
@@ -101,6 +105,16 @@ std::string extent_lines(const Json& bounds)
     return out.str();
 }
 
+/// In full, as millions of metres are usual.
+std::string origin_line(const Json& out)
+{
+    if (!out.contains("origin")) return "";
+    const Json& origin = out["origin"];
+    const std::string crs = origin["crs"];
+    return "  0, 0 is x " + number(origin["x"]) + ", y " + number(origin["y"]) + (crs.empty() ? "" : " of " + crs) +
+           (origin["unit"] == 1.0 ? "" : ", in units of " + number(origin["unit"]) + " m") + "\n";
+}
+
 /// Says what is filled and what is a shell, as nothing surprises more.
 std::string part_line(const Json& part)
 {
@@ -138,7 +152,7 @@ std::string map_lines(const Json& map)
     std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() + ", hash " +
                       map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
     out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") + "; voxels of " +
-           map["occupancy_resolution"].dump() + " m\n";
+           map["occupancy_resolution"].dump() + " m\n" + origin_line(map);
     out += scene_lines(map) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
@@ -197,7 +211,7 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     const std::string text = args.json          ? out.dump(2) + "\n"
                              : kind == "map"    ? map_lines(out)
                              : kind == "robot"  ? robot_lines(out)
-                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + scene_lines(out);
+                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + origin_line(out) + scene_lines(out);
     write_output("", [&](const auto& sink) { sink(text); });
     summary.lap("write");
     summary.extra = {args.what};
