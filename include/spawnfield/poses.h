@@ -23,6 +23,13 @@ PoseTable read_poses(const std::filesystem::path& file);
 /// Poses as sample and search write them (x, y, z, yaw; roll and pitch are left aside).
 std::vector<Spawn> spawns_of(const PoseTable& table);
 
+/// The texts of a column, one for each pose, without quotes; empty if there is no such column.
+std::vector<std::string> column_of(const PoseTable& table, const std::string& name);
+
+/// What a column `verdict` says of each pose, as `check` and `raster` write it; empty if there is none. Throws FileError, with the
+/// name of the file that the table was read from.
+std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::path& file);
+
 /// The table's columns that are named as some that verdicts_csv adds: those take their place.
 std::vector<std::string> replaced_columns(const PoseTable& table);
 
