@@ -96,6 +96,7 @@ void add_export(CLI::App& app, Run& run)
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
+    command.add_option("--poses,-p", args->poses, "CSV file of poses, as sample and check write them");
     command.add_option("--step", args->step, "Between columns, m");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
     command.footer(help());
