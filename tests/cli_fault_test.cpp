@@ -136,7 +136,7 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {experiment + "--search -n 5 --bounds 0,0,1,1", "spawnfield: --bounds has 4 numbers, needs 6: x0,y0,z0,x1,y1,z1"},
         {experiment + "--search -n 5 --max-failures 0", "spawnfield: --max-failures is 0, needs >= 1"},
         {"experiment map --dims 2 --steps 1" + husky, "--out is required" + hint},
-        {"frob map", "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap, experiment"},
+        {"frob map", "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap, export, experiment"},
         {sample + "-n 5 --seed -1", "--seed: -1 is no whole number from 0 to 18446744073709551615" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);

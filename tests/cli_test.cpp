@@ -13,7 +13,7 @@ using spawnfield::read_poses;
 namespace {
 
 const std::string &scene = training_scene, &husky = husky_option;
-const std::vector<std::string> commands = {"bake", "info", "check", "raster", "search", "sample", "heatmap", "experiment"};
+const std::vector<std::string> commands = {"bake", "info", "check", "raster", "search", "sample", "heatmap", "export", "experiment"};
 
 std::size_t lines(const std::string& text) { return std::size_t(std::count(text.begin(), text.end(), '\n')); }
 

@@ -76,6 +76,47 @@ void OutputFile::commit()
     stream_.close();
 }
 
+void OutputFile::keep_old()
+{
+    std::error_code error;
+    if (target_.empty() || !fs::exists(target_, error)) return;
+    const fs::path old = target_.string() + ".old-" + std::to_string(getpid());
+    fs::remove(old, error);
+    fs::create_hard_link(target_, old, error);  // so that there is a file of this name at all times
+    if (error) fs::copy_file(target_, old, error);  // file systems without links
+    if (error) fail(error.message());
+    old_ = old;
+}
+
+void OutputFile::put_old_back() noexcept
+{
+    std::error_code ignored;
+    if (old_.empty() && !target_.empty()) fs::remove(target_, ignored);
+    else if (!old_.empty()) fs::rename(old_, target_, ignored);
+    old_.clear();
+}
+
+void OutputFile::forget_old() noexcept
+{
+    std::error_code ignored;
+    if (!old_.empty()) fs::remove(old_, ignored);
+    old_.clear();
+}
+
+void OutputFile::commit_together(std::span<OutputFile* const> files)
+{
+    for (OutputFile* const file : files) file->flush();
+    std::size_t done = 0;
+    try {
+        for (OutputFile* const file : files) file->keep_old();
+        for (; done < files.size(); ++done) files[done]->commit();
+    } catch (...) {
+        for (std::size_t f = 0; f < files.size(); ++f) f < done ? files[f]->put_old_back() : files[f]->forget_old();
+        throw;
+    }
+    for (OutputFile* const file : files) file->forget_old();
+}
+
 void OutputFile::fail(const std::string& reason) const
 {
     throw OutputError(file_.string(), "cannot be written: " + reason);

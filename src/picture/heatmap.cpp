@@ -1,3 +1,4 @@
+#include "picture/palette.h"
 #include "picture/relief.h"
 
 #include <spawnfield/error.h>
@@ -16,13 +17,7 @@ constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
 // ---------------------------------------------------------------- colours and words
 
-Colour colour_of(Verdict verdict)
-{
-    static const std::array<Colour, verdict_count> okabe_ito{
-        rgb(0x999999), rgb(0xf0e442), rgb(0xcc79a7), rgb(0x0072b2),
-        rgb(0xd55e00), rgb(0xe69f00), rgb(0x56b4e9), rgb(0x009e73)};
-    return okabe_ito[static_cast<std::size_t>(verdict)];
-}
+Colour colour_of(Verdict verdict) { return rgb(verdict_palette[static_cast<std::size_t>(verdict)]); }
 
 const Colour no_pose = rgb(0xe6e6e6), not_valid = rgb(0x9a9a9a), beyond = rgb(0xffffff);
 

@@ -3,6 +3,7 @@
 #include "scene/heightmap.h"
 #include "scene/mesh.h"
 #include "scene/octomap_part.h"
+#include "scene/plausibility.h"
 #include "scene/sdf_world.h"
 #include "scene/yaml_map.h"
 
@@ -313,6 +314,10 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
                                               (sdf ? "Gazebo takes a world as it is" : "give them in " + file.string() + " (keys up, scale)"));
     Scene scene = yaml ? read_scene_yaml(file, options) : sdf ? read_sdf_scene(file, options) : read_bare_file(file, extension, options);
     if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored, missing or without collision");
+    const Remedies remedies = yaml  ? Remedies{"scale of its part:", "up of its part"}
+                              : sdf ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}
+                                    : Remedies{"--scale", "--up y or z"};
+    for (std::string& doubt : doubts_about(scene, file.string(), remedies)) scene.notices.push_back(std::move(doubt));
     return scene;
 }
 

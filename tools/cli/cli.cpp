@@ -206,6 +206,10 @@ PoseTable open_poses(const CommonArgs& args, const std::string& file)
 std::unique_ptr<Session> open_session(const QueryArgs& args)
 {
     auto session = std::make_unique<Session>();
+    if (args.robot.empty()) {
+        session->map = read_map(args.map);
+        return session;
+    }
     session->robot = load_robot(args.robot, {{args.package_paths.begin(), args.package_paths.end()}});
     for (const std::string& text : session->robot.notices) notice(args, text);
     session->map = read_map(args.map);

@@ -118,7 +118,7 @@ struct Session {
 /// Poses of a CSV file; tells what is odd about it.
 PoseTable open_poses(const CommonArgs& args, const std::string& file);
 
-/// Heap-held: the checker keeps references into it.
+/// Heap-held: the checker keeps references into it. Without --robot, where a command allows that, the map alone.
 std::unique_ptr<Session> open_session(const QueryArgs& args);
 void fill(QueryOptions& options, const QueryArgs& args, const std::string& label);
 
@@ -142,6 +142,7 @@ void add_raster(CLI::App& app, Run& run);
 void add_search(CLI::App& app, Run& run);
 void add_sample(CLI::App& app, Run& run);
 void add_heatmap(CLI::App& app, Run& run);
+void add_export(CLI::App& app, Run& run);
 void add_experiment(CLI::App& app, const std::string& command_line, Run& run);
 
 }  // namespace spawnfield::cli

@@ -41,7 +41,7 @@ Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
 
 Json scene_json(const Scene& scene)
 {
-    Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.bounds())}};
+    Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds)}};
     out.update(json_of(scene.count_labels(), scene.parts));
     for (const NameRule& rule : scene.rules)
         out["rules"].push_back({{"what", rule.what}, {"label", to_string(rule.label)}, {"collisions", rule.count}});

@@ -85,6 +85,7 @@ int main(int argc, char** argv)
     add_search(app, run);
     add_sample(app, run);
     add_heatmap(app, run);
+    add_export(app, run);
     add_experiment(app, command_line(argc, argv), run);
     const std::vector<std::string> names = command_names(app);
     if (has_unknown_command(names, argc, argv))

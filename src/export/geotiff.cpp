@@ -1,0 +1,283 @@
+#include "base/deflate.h"
+#include "base/parallel.h"
+#include "base/tiff.h"
+#include "column/columns.h"
+#include "export/words.h"
+#include "picture/relief.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/map_export.h>
+#include <spawnfield/output_file.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace spawnfield {
+namespace {
+
+constexpr float no_data = std::numeric_limits<float>::quiet_NaN();
+constexpr int side = TerrainMap::tile;
+constexpr std::size_t tile_cells = std::size_t(side) * side;
+
+// ---------------------------------------------------------------- bands
+
+struct Band {
+    std::string name, unit;
+};
+
+std::vector<Band> bands_of(int layers, bool has_verdicts)
+{
+    std::vector<Band> bands{{"elevation", "m"}};
+    for (int layer = 1; layer < layers; ++layer) bands.push_back({"elevation_" + std::to_string(layer), "m"});
+    bands.insert(bands.end(), {{"layers", ""}, {"clearance", "m"}, {"slope", "degrees"}, {"water", "m"}, {"obstacle", "m"}});
+    if (has_verdicts) bands.push_back({"verdict", ""});
+    return bands;
+}
+
+/// Layers are counted anew: finer cells may see more of them than the map's own.
+struct Tiles {
+    const GridFrame& frame;
+    int rows, cols;
+
+    explicit Tiles(const GridFrame& f) : frame(f), rows((f.rows + side - 1) / side), cols((f.cols + side - 1) / side) {}
+
+    /// visit(row, col, column) for the cells of a tile and a border around it, as far as the frame goes; row and col
+    /// count within the tile, row 0 being the largest y.
+    template <class Visit>
+    void visit_cells(const Geometry& geometry, std::size_t tile, int border, const Visit& visit) const
+    {
+        constexpr int part = 64;  // whose columns stay in a core's cache
+        const int top = int(tile) / cols * side, left = int(tile) % cols * side;
+        const int row0 = std::max(0, top - border), row1 = std::min(frame.rows, top + side + border);
+        const int col0 = std::max(0, left - border), col1 = std::min(frame.cols, left + side + border);
+        for (int row = row0; row < row1; row += part)
+            for (int col = col0; col < col1; col += part) {
+                const int part_rows = std::min(part, row1 - row), part_cols = std::min(part, col1 - col);
+                const Columns centres(geometry, {frame.x0, frame.y0, frame.cell, col, frame.rows - row - part_rows, part_cols, part_rows, 0.5});
+                for (int j = 0; j < part_rows; ++j)
+                    for (int i = 0; i < part_cols; ++i) visit(row + part_rows - 1 - j - top, col + i - left, centres.at(i, j));
+            }
+    }
+};
+
+int most_layers(const Map& map, const GridFrame& frame, int threads)
+{
+    const Tiles tiles(frame);
+    std::vector<int> most(std::size_t(tiles.rows) * std::size_t(tiles.cols), 0);
+    parallel_for(most.size(), threads, {}, [&](std::size_t t) {
+        tiles.visit_cells(map.geometry, t, 0, [&](int, int, const ColumnView& column) { most[t] = std::max(most[t], int(column.layers.size())); });
+    });
+    return *std::max_element(most.begin(), most.end());
+}
+
+/// From a layer up to what begins above it; NaN if nothing does.
+float clearance(const ColumnView& column, double height)
+{
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Span& span : column.spans)
+        if (span.top > height + layer_tolerance) lowest = std::min(lowest, std::max(span.bottom, height));
+    return std::isfinite(lowest) ? float(lowest - height) : no_data;
+}
+
+class TileBands {
+public:
+    TileBands(const Map& map, const Tiles& tiles, const VerdictImage* verdicts, const LayerChoice& layers, int layer_bands)
+        : map_(map), tiles_(tiles), verdicts_(verdicts), layers_(layers), layer_bands_(std::size_t(layer_bands))
+    {
+    }
+
+    /// A tile's bands as deflated streams.
+    std::vector<std::string> streams(std::size_t tile) const
+    {
+        constexpr int border = 1;
+        HeightImage chosen = HeightImage::Constant(side + 2 * border, side + 2 * border, no_data);
+        std::vector<std::vector<float>> bands(layer_bands_ + 5 + (verdicts_ != nullptr), std::vector<float>(tile_cells, no_data));
+        tiles_.visit_cells(map_.geometry, tile, border, [&](int row, int col, const ColumnView& column) {
+            const bool inside = row >= 0 && row < side && col >= 0 && col < side;
+            const int layer = chosen_layer(int(column.layers.size()));
+            if (layer >= 0) chosen(row + border, col + border) = float(column.layers[std::size_t(layer)]);
+            if (inside) add_cell(bands, std::size_t(row) * side + std::size_t(col), column, layer);
+        });
+        add_slopes(bands[layer_bands_ + 2], chosen, border);
+        if (verdicts_ != nullptr) add_verdicts(bands.back(), tile);
+        std::vector<std::string> out;
+        for (const std::vector<float>& band : bands) out.push_back(deflate_floats(band, side));
+        return out;
+    }
+
+private:
+    int chosen_layer(int count) const
+    {
+        for (int layer = 0; layer < count; ++layer)
+            if (layers_.includes(layer, count)) return layer;
+        return -1;
+    }
+
+    void add_cell(std::vector<std::vector<float>>& bands, std::size_t cell, const ColumnView& column, int layer) const
+    {
+        for (std::size_t l = 0; l < column.layers.size(); ++l) bands[l][cell] = float(column.layers[l]);
+        bands[layer_bands_][cell] = float(column.layers.size());
+        if (layer >= 0) bands[layer_bands_ + 1][cell] = clearance(column, column.layers[std::size_t(layer)]);
+        if (!column.water.empty()) bands[layer_bands_ + 3][cell] = float(column.water.front());
+        if (!column.spans.empty() && (column.layers.empty() || column.spans.front().top > column.layers.front()))
+            bands[layer_bands_ + 4][cell] = float(column.spans.front().top);
+    }
+
+    void add_slopes(std::vector<float>& band, const HeightImage& heights, int border) const
+    {
+        for (int row = 0; row < side; ++row)
+            for (int col = 0; col < side; ++col) {
+                const double rise = gradient(heights, row + border, col + border, tiles_.frame.cell).norm();
+                band[std::size_t(row) * side + std::size_t(col)] = float(std::atan(rise) * 180 / std::numbers::pi);
+            }
+    }
+
+    void add_verdicts(std::vector<float>& band, std::size_t tile) const
+    {
+        const int top = int(tile) / tiles_.cols * side, left = int(tile) % tiles_.cols * side;
+        for (int row = 0; row < std::min(side, tiles_.frame.rows - top); ++row)
+            for (int col = 0; col < std::min(side, tiles_.frame.cols - left); ++col) {
+                const std::uint8_t verdict = verdicts_->at(top + row, left + col);
+                if (verdict != VerdictImage::no_pose) band[std::size_t(row) * side + std::size_t(col)] = float(verdict);
+            }
+    }
+
+    const Map& map_;
+    const Tiles& tiles_;
+    const VerdictImage* verdicts_;
+    const LayerChoice& layers_;
+    const std::size_t layer_bands_;
+};
+
+// ---------------------------------------------------------------- tags
+
+constexpr std::uint32_t pixel_scale_tag = 33550, tiepoint_tag = 33922, geo_keys_tag = 34735, geo_text_tag = 34737, gdal_metadata_tag = 42112,
+                        gdal_no_data_tag = 42113;
+
+std::string escaped(const std::string& text)
+{
+    std::string out;
+    for (const char c : text) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+    return out;
+}
+
+std::string layer_text(const LayerChoice& layers)
+{
+    return layers.kind == LayerChoice::Kind::Top ? "top" : layers.kind == LayerChoice::Kind::Bottom ? "bottom" : std::to_string(layers.index);
+}
+
+std::string metadata(const Map& map, const std::vector<Band>& bands, const LayerChoice& layers, bool has_verdicts)
+{
+    std::string text = "<GDALMetadata>\n";
+    const auto add = [&](const std::string& name, const std::string& attributes, const std::string& value) {
+        text += "  <Item name=\"" + name + "\"" + attributes + ">" + escaped(value) + "</Item>\n";
+    };
+    add("MAP", "", map.name);
+    add("MAP_HASH", "", map.hash);
+    add("LAYER", "", layer_text(layers));
+    if (has_verdicts) add("VERDICTS", "", verdict_numbers());
+    for (std::size_t b = 0; b < bands.size(); ++b) {
+        const std::string sample = " sample=\"" + std::to_string(b) + "\" role=\"";
+        add("DESCRIPTION", sample + "description\"", bands[b].name);
+        if (!bands[b].unit.empty()) add("UNITTYPE", sample + "unittype\"", bands[b].unit);
+    }
+    return text + "</GDALMetadata>\n";
+}
+
+void know_geo_tags(TIFF* tiff)
+{
+    static const TIFFFieldInfo fields[] = {
+        {pixel_scale_tag, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, true, true, const_cast<char*>("ModelPixelScaleTag")},
+        {tiepoint_tag, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, true, true, const_cast<char*>("ModelTiepointTag")},
+        {geo_keys_tag, -1, -1, TIFF_SHORT, FIELD_CUSTOM, true, true, const_cast<char*>("GeoKeyDirectoryTag")},
+        {geo_text_tag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, true, false, const_cast<char*>("GeoAsciiParamsTag")},
+        {gdal_metadata_tag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, true, false, const_cast<char*>("GDAL_METADATA")},
+        {gdal_no_data_tag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, true, false, const_cast<char*>("GDAL_NODATA")}};
+    TIFFMergeFieldInfo(tiff, fields, std::size(fields));
+}
+
+/// A frame of the scene's own, in metres, that lies nowhere on Earth.
+void set_geo_tags(TIFF* tiff, const GridFrame& frame)
+{
+    const double scale[] = {frame.cell, frame.cell, 0};
+    const double tiepoint[] = {0, 0, 0, frame.x0, frame.y0 + frame.rows * frame.cell, 0};  // the upper left corner
+    static const std::string citation = "spawnfield scene, m, x right, y up|";
+    const std::uint16_t user_defined = 32767, pixel_is_area = 1, metre = 9001, length = std::uint16_t(citation.size());
+    const std::uint16_t keys[] = {1, 1, 0, 4,                        // version, revision, number of keys; then key, place, count, value
+                                  1024, 0, 1, user_defined,          // GTModelType
+                                  1025, 0, 1, pixel_is_area,         // GTRasterType
+                                  1026, geo_text_tag, length, 0,     // GTCitation
+                                  3076, 0, 1, metre};                // ProjLinearUnits
+    TIFFSetField(tiff, pixel_scale_tag, int(std::size(scale)), scale);
+    TIFFSetField(tiff, tiepoint_tag, int(std::size(tiepoint)), tiepoint);
+    TIFFSetField(tiff, geo_keys_tag, int(std::size(keys)), keys);
+    TIFFSetField(tiff, geo_text_tag, citation.c_str());
+    TIFFSetField(tiff, gdal_no_data_tag, "nan");
+}
+
+void set_tags(TIFF* tiff, const GridFrame& frame, std::size_t bands)
+{
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, frame.cols);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, frame.rows);
+    TIFFSetField(tiff, TIFFTAG_TILEWIDTH, side);
+    TIFFSetField(tiff, TIFFTAG_TILELENGTH, side);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, int(bands));
+    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+    TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+    TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_FLOATINGPOINT);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_SEPARATE);
+    const std::vector<std::uint16_t> kinds(bands - 1, EXTRASAMPLE_UNSPECIFIED);
+    TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, int(kinds.size()), kinds.data());
+}
+
+/// Row of tiles after row of tiles. Returns false if one cannot be written.
+bool write_tiles(TIFF* tiff, const TileBands& source, const Tiles& tiles, std::size_t bands, const GeoTiffOptions& options)
+{
+    const std::size_t count = std::size_t(tiles.rows) * std::size_t(tiles.cols);
+    for (int row = 0; row < tiles.rows; ++row) {
+        std::vector<std::vector<std::string>> streams(std::size_t(tiles.cols));
+        Progress progress;
+        if (options.progress) progress = [&](double share) { options.progress((row + share) / tiles.rows); };
+        parallel_for(streams.size(), options.threads, progress, [&](std::size_t col) { streams[col] = source.streams(std::size_t(row) * streams.size() + col); });
+        for (std::size_t band = 0; band < bands; ++band)
+            for (std::size_t col = 0; col < streams.size(); ++col) {
+                std::string& bytes = streams[col][band];
+                const auto number = std::uint32_t(band * count + std::size_t(row) * streams.size() + col);
+                if (TIFFWriteRawTile(tiff, number, bytes.data(), tmsize_t(bytes.size())) != tmsize_t(bytes.size())) return false;
+            }
+    }
+    return true;
+}
+
+}  // namespace
+
+void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* verdicts, const GeoTiffOptions& options,
+                   const std::filesystem::path& file)
+{
+    if (options.layers.kind == LayerChoice::Kind::All)
+        throw ArgumentError("write_geotiff", "layers is all, needs top, bottom or a number: a cell has one clearance");
+    if (verdicts != nullptr && (verdicts->frame.rows != frame.rows || verdicts->frame.cols != frame.cols))
+        throw ArgumentError("write_geotiff", "verdicts are of another frame, needs the same rows and columns");
+    const int layers = std::max(1, most_layers(map, frame, options.threads));
+    const std::vector<Band> bands = bands_of(layers, verdicts != nullptr);
+    const Tiles tiles(frame);
+    const double most_bytes = double(tiles.rows) * tiles.cols * double(bands.size()) * (sizeof(float) * tile_cells + 1000);
+    OutputFile out(file);
+    Tiff tiff = open_tiff(out.path(), most_bytes < 4e9 ? "w" : "w8");
+    const auto failed = [&] { return OutputError(file.string(), "cannot be written; is there space, and is it a file?"); };
+    if (!tiff) throw failed();
+    know_geo_tags(tiff.get());
+    set_tags(tiff.get(), frame, bands.size());
+    set_geo_tags(tiff.get(), frame);
+    TIFFSetField(tiff.get(), gdal_metadata_tag, metadata(map, bands, options.layers, verdicts != nullptr).c_str());
+    if (!write_tiles(tiff.get(), TileBands(map, tiles, verdicts, options.layers, layers), tiles, bands.size(), options) || TIFFFlush(tiff.get()) != 1)
+        throw failed();
+    tiff.reset();
+    out.commit();
+}
+
+}  // namespace spawnfield

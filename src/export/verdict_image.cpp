@@ -1,0 +1,51 @@
+#include <spawnfield/error.h>
+#include <spawnfield/map_export.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+constexpr int strip_rows = 256;
+
+/// The centres of rows first .. last of a frame, which count from the top, as a raster.
+RasterOptions strip_options(const GridFrame& frame, int first, int last, const RasterOptions& options)
+{
+    RasterOptions out = options;
+    out.dims = 2;
+    out.step = frame.cell;
+    const double beyond = frame.cell / 4;  // no centre is lost to rounding
+    out.bounds = {Vec3(frame.x_of(0), frame.y_of(last), 0), Vec3(frame.x_of(frame.cols - 1) + beyond, frame.y_of(first) + beyond, 0)};
+    if (options.progress)
+        out.progress = [=, &frame](double share) { options.progress((first + share * (last - first + 1)) / frame.rows); };
+    return out;
+}
+
+void add_strip(VerdictImage& image, int last, const RasterResult& strip)
+{
+    for (const RasterPose& pose : strip.poses) {
+        const int col = int(std::round((pose.x - strip.grid.x0) / strip.grid.step));
+        const int row = last - int(std::round((pose.y - strip.grid.y0) / strip.grid.step));
+        image.verdicts[std::size_t(row) * std::size_t(image.frame.cols) + std::size_t(col)] = std::uint8_t(pose.verdict);
+    }
+    for (std::size_t verdict = 0; verdict < verdict_count; ++verdict) image.counts[verdict] += strip.counts[verdict];
+    image.exact_checks += strip.exact_checks;
+}
+
+}  // namespace
+
+VerdictImage verdict_image(const Map& map, const CollisionChecker& checker, const GridFrame& frame, const RasterOptions& options)
+{
+    if (options.layers.kind == LayerChoice::Kind::All)
+        throw ArgumentError("verdict_image", "layers is all, needs top, bottom or a number: a cell has one verdict");
+    VerdictImage image{frame, {}, {}, 0};
+    image.verdicts.assign(std::size_t(frame.rows) * std::size_t(frame.cols), VerdictImage::no_pose);
+    for (int first = 0; first < frame.rows; first += strip_rows) {
+        const int last = std::min(first + strip_rows, frame.rows) - 1;
+        add_strip(image, last, raster(map, checker, strip_options(frame, first, last, options)));
+    }
+    return image;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,478 @@
+#include "arena.h"
+#include "base/tiff.h"
+#include "test_map.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/map_export.h>
+#include <spawnfield/output_file.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <iostream>
+#include <map>
+#include <numbers>
+#include <regex>
+
+namespace fs = std::filesystem;
+using namespace spawnfield;
+
+namespace {
+
+/// A box of terrain with a deck of terrain above half of it, a block on the deck, a crate on the floor, a pool, and no terrain beyond x = 3.
+TestMap deck_map()
+{
+    const TempFolder folder;
+    const fs::path file = folder.write("scene.yaml", "format: spawnfield-scene/1\nname: deck\nparts:\n"
+                                                     "- {name: floor, label: terrain, box: [8, 6, 1], xyz: [-1, 0, -0.5]}\n"
+                                                     "- {name: deck, label: terrain, box: [3, 6, 0.2], xyz: [-3, 0, 2]}\n"
+                                                     "- {name: block, label: obstacle, box: [1, 1, 1], xyz: [-3.5, 1, 2.6]}\n"
+                                                     "- {name: crate, box: [0.5, 0.5, 0.5], xyz: [1, 2, 0.25]}\n"
+                                                     "- {name: pool, label: water, plane: [1, 2], xyz: [2, -2, 0.3]}\n"
+                                                     "- {name: post, label: obstacle, cylinder: {radius: 0.2, length: 2}, xyz: [4.5, 0, 1]}\n");
+    return map_of(load_scene(file));
+}
+
+const Robot small_box = load_robot("box:0.4,0.3,0.3@0,0,0.2");
+
+struct Nav2Map {
+    std::string image, mode;
+    double resolution, x0, y0, yaw, occupied_thresh, free_thresh;
+    int negate;
+    cv::Mat_<std::uint8_t> pixels;
+
+    /// As map_server decides: 100, 0 or -1, at a point of the ground.
+    int occupancy_at(double x, double y) const
+    {
+        const int col = int(std::floor((x - x0) / resolution)), from_below = int(std::floor((y - y0) / resolution));
+        const double shade = pixels(pixels.rows - 1 - from_below, col) / 255.0, occupied = negate ? shade : 1 - shade;
+        return occupied > occupied_thresh ? 100 : occupied < free_thresh ? 0 : -1;
+    }
+};
+
+Nav2Map read_nav2(const fs::path& yaml)
+{
+    const std::string text = bytes_of(yaml);
+    const auto value = [&](const std::string& key) {
+        std::smatch found;
+        REQUIRE(std::regex_search(text, found, std::regex("(^|\n)" + key + ": (.*)")));
+        return found[2].str();
+    };
+    Nav2Map map{value("image"), value("mode"), std::stod(value("resolution")), 0, 0, 0, std::stod(value("occupied_thresh")), std::stod(value("free_thresh")),
+                std::stoi(value("negate")), {}};
+    REQUIRE(std::sscanf(value("origin").c_str(), "[%lf, %lf, %lf]", &map.x0, &map.y0, &map.yaw) == 3);
+    map.pixels = cv::imread((yaml.parent_path() / map.image).string(), cv::IMREAD_UNCHANGED);
+    REQUIRE_FALSE(map.pixels.empty());
+    return map;
+}
+
+/// A GeoTIFF as libtiff reads it.
+struct GeoTiff {
+    std::vector<HeightImage> bands;
+    std::vector<double> scale, tiepoint;
+    std::vector<std::uint16_t> keys;
+    std::string metadata, no_data;
+
+    /// The one with this description.
+    const HeightImage& band(const std::string& name) const
+    {
+        std::smatch found;
+        REQUIRE(std::regex_search(metadata, found, std::regex("sample=\"([0-9]+)\" role=\"description\">" + name + "<")));
+        return bands.at(std::stoul(found[1]));
+    }
+    bool has(const std::string& name) const { return metadata.find(">" + name + "<") != std::string::npos; }
+    /// Of a point of the ground, by scale and tiepoint.
+    float at(const std::string& name, double x, double y) const
+    {
+        const int col = int(std::floor((x - tiepoint[3]) / scale[0])), row = int(std::floor((tiepoint[4] - y) / scale[1]));
+        return band(name)(row, col);
+    }
+};
+
+template <class T>
+std::vector<T> tag_values(TIFF* tiff, std::uint32_t tag)
+{
+    std::uint32_t count = 0;  // libtiff passes it for all tags that it does not know
+    const T* values = nullptr;
+    REQUIRE(TIFFGetField(tiff, tag, &count, &values) == 1);
+    return {values, values + count};
+}
+
+std::string tag_text(TIFF* tiff, std::uint32_t tag)
+{
+    const auto bytes = tag_values<char>(tiff, tag);
+    return std::string(bytes.data());
+}
+
+GeoTiff read_geotiff(const fs::path& file)
+{
+    const Tiff tiff = open_tiff(file, "r");
+    REQUIRE(tiff);
+    std::uint32_t rows = 0, cols = 0, side = 0;
+    std::uint16_t bands = 0, bits = 0, format = 0;
+    TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &rows);
+    TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &cols);
+    TIFFGetField(tiff.get(), TIFFTAG_TILEWIDTH, &side);
+    TIFFGetField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, &bands);
+    TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits);
+    TIFFGetField(tiff.get(), TIFFTAG_SAMPLEFORMAT, &format);
+    REQUIRE((bits == 32 && format == SAMPLEFORMAT_IEEEFP));
+    GeoTiff out{{}, tag_values<double>(tiff.get(), 33550), tag_values<double>(tiff.get(), 33922), tag_values<std::uint16_t>(tiff.get(), 34735),
+                tag_text(tiff.get(), 42112), tag_text(tiff.get(), 42113)};
+    HeightImage tile(side, side);
+    for (std::uint16_t band = 0; band < bands; ++band) {
+        HeightImage& image = out.bands.emplace_back(rows, cols);
+        for (std::uint32_t top = 0; top < rows; top += side)
+            for (std::uint32_t left = 0; left < cols; left += side) {
+                REQUIRE(TIFFReadTile(tiff.get(), tile.data(), left, top, 0, band) > 0);
+                const auto height = std::min(side, rows - top), width = std::min(side, cols - left);
+                image.block(top, left, height, width) = tile.block(0, 0, height, width);
+            }
+    }
+    return out;
+}
+
+bool same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+bool same(const HeightImage& a, const HeightImage& b)
+{
+    return a.rows() == b.rows() && a.cols() == b.cols() && std::equal(a.data(), a.data() + a.size(), b.data(), [](float x, float y) { return same(x, y); });
+}
+
+/// The Python that has packages for reading our files back: SPAWNFIELD_PYTHON, or the system's; nothing if it has not this one.
+std::optional<std::string> python_with(const std::string& package)
+{
+    const char* const given = std::getenv("SPAWNFIELD_PYTHON");
+    const std::string python = given != nullptr ? given : "/usr/bin/python3";
+    if (std::system((python + " -c 'import " + package + "' > /dev/null 2>&1").c_str()) == 0) return python;
+    std::cout << "skipped: " << python << " has no " << package << " (SPAWNFIELD_PYTHON names one that has)\n";
+    return std::nullopt;
+}
+
+/// Runs a script with the file as its argument; it fails by an exception.
+bool python_accepts(const std::string& python, const TempFolder& folder, const std::string& script, const fs::path& file)
+{
+    const fs::path program = folder.write("script.py", script);
+    return std::system((python + " '" + program.string() + "' '" + file.string() + "'").c_str()) == 0;
+}
+
+RasterOptions on_layer(LayerChoice layers, double offset = 0.1, double yaw = 0)
+{
+    RasterOptions options;
+    options.layers = layers;
+    options.offset = offset;
+    options.yaw = yaw;
+    return options;
+}
+
+/// The verdict at a point by the tests' own way through the column; nothing where there is no such layer.
+std::optional<Verdict> verdict_at(const Map& map, const CollisionChecker& checker, const RasterOptions& options, double x, double y)
+{
+    const Column column = column_at(map.geometry, x, y);
+    const int count = int(column.layers.size());
+    for (int layer = 0; layer < count; ++layer)
+        if (options.layers.includes(layer, count)) {
+            const Vec3 position(x, y, column.layers[std::size_t(layer)] + options.offset);
+            return judge(map, checker, column, {position, rotation_from_rpy(0, 0, options.yaw)}, options).verdict;
+        }
+    return std::nullopt;
+}
+
+}  // namespace
+
+TEST_CASE("an image of verdicts holds the verdict at each cell's centre, on the layer that was chosen")
+{
+    const TestMap map = deck_map();
+    const CollisionChecker checker = checker_of(map, small_box);
+    const LayerChoice layers = GENERATE(LayerChoice{LayerChoice::Kind::Top, 0}, LayerChoice{LayerChoice::Kind::Bottom, 0}, LayerChoice{LayerChoice::Kind::Index, 1});
+    const double cell = GENERATE(0.1, 0.23, 20.0);
+    const RasterOptions options = on_layer(layers, 0.15, 0.7);
+    const GridFrame frame = frame_around(map.bounds, cell);
+    const VerdictImage image = verdict_image(map, checker, frame, options);
+    REQUIRE(image.verdicts.size() == std::size_t(frame.rows) * std::size_t(frame.cols));
+    VerdictCounts counts{};
+    for (int row = 0; row < frame.rows; ++row)
+        for (int col = 0; col < frame.cols; ++col) {
+            const std::optional<Verdict> expected = verdict_at(map, checker, options, frame.x_of(col), frame.y_of(row));
+            CHECK(image.at(row, col) == (expected ? std::uint8_t(*expected) : VerdictImage::no_pose));
+            if (expected) ++counts[std::size_t(*expected)];
+        }
+    CHECK(image.counts == counts);
+    if (cell < 1 && layers.kind != LayerChoice::Kind::Index) {
+        for (const Verdict verdict : {Verdict::Valid, Verdict::Collision, Verdict::Submerged}) CHECK(counts[std::size_t(verdict)] > 0);
+    }
+}
+
+TEST_CASE("an image of verdicts is the same in strips far from the origin, and at any number of threads")
+{
+    const TempFolder folder;  // more rows than a strip has, at coordinates where steps are rounded
+    const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
+                                                                     "- {name: floor, label: terrain, box: [1, 7, 1], xyz: [500000.3, 4500000.1, 0]}\n"
+                                                                     "- {name: ball, sphere: 0.3, xyz: [500000.2, 4499999.7, 0.6]}\n")));
+    const CollisionChecker checker = checker_of(map, small_box);
+    RasterOptions options = on_layer({LayerChoice::Kind::Top, 0});
+    const GridFrame frame = frame_around(map.bounds, 0.01);
+    REQUIRE(frame.rows == 700);
+    options.threads = 1;
+    const VerdictImage one = verdict_image(map, checker, frame, options);
+    options.threads = 7;
+    CHECK(verdict_image(map, checker, frame, options).verdicts == one.verdicts);
+    CHECK(std::count(one.verdicts.begin(), one.verdicts.end(), VerdictImage::no_pose) == 0);  // rounding costs no row or column
+}
+
+TEST_CASE("a nav2 map says of each point what the verdict at its cell's centre says")
+{
+    const TestMap map = deck_map();
+    const CollisionChecker checker = checker_of(map, small_box);
+    const RasterOptions options = on_layer({LayerChoice::Kind::Top, 0});
+    const GridFrame frame = frame_around(map.bounds, 0.23);  // the last cells stick out of the bounds
+    const TempFolder folder;
+    write_nav2_map(verdict_image(map, checker, frame, options), folder / "deck.yaml", {"a deck\nimage: wrong.pgm"});
+    const Nav2Map read = read_nav2(folder / "deck.yaml");
+    CHECK(read.image == "deck.pgm");
+    CHECK(read.mode == "trinary");
+    CHECK(read.yaw == 0);
+    CHECK((read.pixels.rows == frame.rows && read.pixels.cols == frame.cols));
+    CHECK(read.resolution == frame.cell);
+    for (int row = 0; row < frame.rows; ++row)
+        for (int col = 0; col < frame.cols; ++col) {
+            const double x = frame.x_of(col), y = frame.y_of(row);
+            const std::optional<Verdict> verdict = verdict_at(map, checker, options, x, y);
+            const int expected = !verdict || *verdict == Verdict::Outside ? -1 : *verdict == Verdict::Valid ? 0 : 100;
+            CHECK(read.occupancy_at(x, y) == expected);
+        }
+    CHECK(read.occupancy_at(-3.5, 1) == 100);   // the block
+    CHECK(read.occupancy_at(-3.5, -1) == 0);    // the deck
+    CHECK(read.occupancy_at(2, -2) == 100);     // the pool
+    CHECK(read.occupancy_at(2, 2) == 0);        // the floor: x and y are not turned or mirrored
+    CHECK(read.occupancy_at(4.5, 0) == -1);     // the post, where there is no terrain
+}
+
+TEST_CASE("names of nav2 images that YAML would misread are quoted, and other endings are refused")
+{
+    const TempFolder folder;
+    const VerdictImage image{{0, 0, 1, 1, 1}, {std::uint8_t(Verdict::Valid)}, {}, 0};
+    write_nav2_map(image, folder / "a: b #1.yml");
+    CHECK_THAT(bytes_of(folder / "a: b #1.yml"), Contains("image: \"a: b #1.pgm\"\n"));
+    CHECK(bytes_of(folder / "a: b #1.pgm") == "P5\n1 1\n255\n\xfe");
+    CHECK_THROWS_AS(write_nav2_map(image, folder / "map.pgm"), ArgumentError);
+    CHECK(names_in(folder.path()).size() == 2);
+}
+
+TEST_CASE("files that are committed together appear all or none")
+{
+    const TempFolder folder;
+    folder.write("a", "old a");
+    {
+        OutputFile a(folder / "a"), b(folder / "b"), c(folder / "c");
+        for (OutputFile* file : {&a, &b, &c}) file->write("new");
+        fs::create_directories(folder / "c" / "in the way");
+        OutputFile* const all[] = {&a, &b, &c};
+        CHECK_THROWS_AS(OutputFile::commit_together(all), OutputError);
+    }
+    CHECK(bytes_of(folder / "a") == "old a");
+    CHECK(names_in(folder.path()) == std::set<std::string>{"a", "c"});
+    fs::remove_all(folder / "c");
+    OutputFile a(folder / "a"), c(folder / "c");
+    a.write("new a");
+    c.write("new c");
+    OutputFile* const both[] = {&a, &c};
+    OutputFile::commit_together(both);
+    CHECK(bytes_of(folder / "a") == "new a");
+    CHECK(bytes_of(folder / "c") == "new c");
+    CHECK(names_in(folder.path()) == std::set<std::string>{"a", "c"});
+}
+
+TEST_CASE("export --format nav2 writes the pair, the same bytes at any number of threads")
+{
+    const Arena arena;
+    REQUIRE(arena("export map --format nav2 --offset 0.2 --layers bottom -o one.yaml --threads 1 --summary s.json" + husky_option).status == 0);
+    REQUIRE(arena("export map --format nav2 --offset 0.2 --layers bottom -o two.yaml --threads 3" + husky_option).status == 0);
+    CHECK(bytes_of(arena / "one.pgm") == bytes_of(arena / "two.pgm"));
+    const Nav2Map map = read_nav2(arena / "one.yaml");
+    CHECK(map.image == "one.pgm");
+    CHECK(map.resolution == 0.2);
+    CHECK(map.occupancy_at(0, 3) == 0);
+    CHECK(map.occupancy_at(-6.5, -5) == 100);
+    CHECK_THAT(bytes_of(arena / "s.json"), Contains("\"command\": \"export\"") && Contains("map_hash"));
+    REQUIRE(arena("export map --format nav2 --resolution 0.5 -o coarse.yaml" + husky_option).status == 0);
+    CHECK(read_nav2(arena / "coarse.yaml").resolution == 0.5);
+}
+
+TEST_CASE("a GeoTIFF's bands hold what stands in the column at each cell's centre, read by libtiff")
+{
+    const TestMap map = deck_map();
+    const CollisionChecker checker = checker_of(map, small_box);
+    const RasterOptions options = on_layer({LayerChoice::Kind::Bottom, 0});
+    const GridFrame frame = frame_around(map.bounds, 0.031);  // more than a tile along x
+    REQUIRE((frame.cols > 256 && frame.rows < 256));
+    const VerdictImage verdicts = verdict_image(map, checker, frame, options);
+    const TempFolder folder;
+    GeoTiffOptions choice;
+    choice.layers = options.layers;
+    write_geotiff(map, frame, &verdicts, choice, folder / "deck.tif");
+    const GeoTiff read = read_geotiff(folder / "deck.tif");
+    CHECK(read.bands.size() == 8);
+    CHECK(read.no_data == "nan");
+    CHECK(read.scale == std::vector<double>{frame.cell, frame.cell, 0});
+    CHECK(read.tiepoint == std::vector<double>{0, 0, 0, frame.x0, frame.y0 + frame.rows * frame.cell, 0});
+    const auto has_key = [&](std::uint16_t key, std::uint16_t value) {
+        for (std::size_t k = 4; k < read.keys.size(); k += 4)
+            if (read.keys[k] == key) return read.keys[k + 3] == value;
+        return false;
+    };
+    CHECK((has_key(1024, 32767) && has_key(1025, 1) && has_key(3076, 9001)));
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame);
+    CHECK(same(read.band("elevation"), page_image(terrain, "height.0")));
+    CHECK(same(read.band("elevation_1"), page_image(terrain, "height.1")));
+    CHECK(same(read.band("water"), page_image(terrain, "water")));
+    CHECK(same(read.band("obstacle"), page_image(terrain, "obstacle")));
+    const HeightImage &counts = read.band("layers"), &codes = read.band("verdict");
+    for (int row = 0; row < frame.rows; ++row)
+        for (int col = 0; col < frame.cols; ++col) {
+            const Column column = column_at(map.geometry, frame.x_of(col), frame.y_of(row));
+            if (counts(row, col) != float(column.layers.size())) FAIL("layers at " << row << ", " << col);
+            const std::uint8_t verdict = verdicts.at(row, col);
+            const float expected = verdict == VerdictImage::no_pose ? NAN : float(verdict);
+            if (!same(codes(row, col), expected)) FAIL("verdict at " << row << ", " << col);
+        }
+    CHECK(read.at("elevation", -3, -1) == float(2.1));  // x and y are not turned or mirrored
+    CHECK(std::isnan(read.at("elevation", 4.5, 0)));
+    CHECK(read.at("layers", 4.5, 0) == 0);
+    CHECK(read.at("clearance", -3, -1) == Approx(1.9));     // under the deck
+    CHECK(std::isnan(read.at("clearance", 1, -1)));         // the open sky
+    CHECK(read.at("clearance", 1, 2) == 0);                 // the crate
+    CHECK(read.at("slope", -3, -1) == 0);
+    CHECK(read.at("verdict", 2, -2) == float(Verdict::Submerged));
+    choice.layers = {LayerChoice::Kind::Top, 0};
+    write_geotiff(map, frame, nullptr, choice, folder / "top.tif");
+    const GeoTiff top = read_geotiff(folder / "top.tif");
+    CHECK_FALSE(top.has("verdict"));
+    CHECK(std::isnan(top.at("clearance", -3, -1)));  // on the deck
+    CHECK(top.at("clearance", -3.5, 1) == 0);        // its block
+}
+
+TEST_CASE("a GeoTIFF tells a ramp's slope, also across the edge of a tile and at the rim")
+{
+    const TempFolder folder;
+    const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
+                                                                     "- {name: ramp, label: terrain, plane: [30, 30], rpy: [0, -0.3, 0]}\n")));
+    const GridFrame frame = frame_around(map.bounds, 0.1);
+    REQUIRE(frame.cols > 256);
+    write_geotiff(map, frame, nullptr, {}, folder / "ramp.tif");
+    const GeoTiff read = read_geotiff(folder / "ramp.tif");
+    const HeightImage& slope = read.band("slope");
+    for (int row = 0; row < frame.rows; ++row)
+        for (int col = 0; col < frame.cols; ++col)
+            if (!(std::abs(slope(row, col) - 0.3 * 180 / std::numbers::pi) < 0.01)) FAIL("slope " << slope(row, col) << " at " << row << ", " << col);
+}
+
+TEST_CASE("GDAL sees a GeoTIFF's bands, transform, units and no-data")
+{
+    const auto python = python_with("rasterio");
+    if (!python) return;
+    const Arena arena;
+    REQUIRE(arena("export map --format geotiff --offset 0.2 -o a.tif" + husky_option).status == 0);
+    CHECK(python_accepts(*python, arena, R"(
+import math, sys
+import rasterio
+with rasterio.open(sys.argv[1]) as d:
+    assert d.descriptions == ('elevation', 'elevation_1', 'layers', 'clearance', 'slope', 'water', 'obstacle', 'verdict'), d.descriptions
+    assert d.units[0] == 'm' and d.units[4] == 'degrees', d.units
+    assert math.isnan(d.nodata)
+    assert all(t == 'float32' for t in d.dtypes)
+    assert d.transform.almost_equals(rasterio.Affine(0.2, 0, -10.1, 0, -0.2, -10.1 + 0.2 * d.height)), d.transform
+    assert d.tags()['AREA_OR_POINT'] == 'Area' and d.tags()['MAP'] == 'training'
+    assert d.crs is not None and not d.crs.is_geographic
+    row, col = d.index(-6.5, -5)
+    assert d.read(8)[row, col] == 4
+    row, col = d.index(0, 3)
+    assert d.read(8)[row, col] == 7 and abs(d.read(1)[row, col] + 0.05) < 1e-6
+)", arena / "a.tif"));
+}
+
+TEST_CASE("a PLY has the raster's poses as points, to the bit, coloured as in heat maps")
+{
+    const TempFolder folder;  // far off: float would be half a metre wrong
+    const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
+                                                                     "- {name: floor, label: terrain, box: [5, 3, 1], xyz: [500000.3, 4500000.1, 0.001]}\n"
+                                                                     "- {name: ball, sphere: 0.6, xyz: [500000.2, 4499999.7, 0.6]}\n")));
+    const CollisionChecker checker = checker_of(map, small_box);
+    RasterOptions options = on_layer({});
+    options.step = 0.1;
+    const RasterResult result = raster(map, checker, options);
+    std::string bytes;
+    write_ply(result, {"two\nlines"}, [&](std::string_view piece) { bytes += piece; });
+    const std::size_t body = bytes.find("end_header\n") + 11;
+    CHECK(bytes.substr(0, body) == "ply\nformat binary_little_endian 1.0\ncomment two lines\n"
+                                   "comment verdict: 0 outside, 1 aerial, 2 off_terrain, 3 submerged, 4 collision, 5 steep, 6 unstable, 7 valid\n"
+                                   "element vertex " + std::to_string(result.poses.size()) + "\nproperty double x\nproperty double y\nproperty double z\n"
+                                   "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar verdict\nend_header\n");
+    constexpr std::size_t point = 3 * sizeof(double) + 4;
+    REQUIRE(bytes.size() == body + point * result.poses.size());
+    REQUIRE((result.counts[std::size_t(Verdict::Valid)] > 100 && result.counts[std::size_t(Verdict::Collision)] > 100));
+    const std::map<Verdict, std::string> colours{{Verdict::Valid, std::string("\x00\x9e\x73", 3)}, {Verdict::Collision, std::string("\xd5\x5e\x00", 3)},
+                                                 {Verdict::OffTerrain, "\xcc\x79\xa7"}, {Verdict::Outside, "\x99\x99\x99"}};
+    std::size_t wrong = 0;
+    for (std::size_t p = 0; p < result.poses.size(); ++p) {
+        const RasterPose& pose = result.poses[p];
+        const char* const at = bytes.data() + body + p * point;
+        std::array<double, 3> place;
+        std::memcpy(place.data(), at, sizeof place);
+        wrong += place != std::array{pose.x, pose.y, pose.z} || std::string(at + sizeof place, 3) != colours.at(pose.verdict) || Verdict(at[27]) != pose.verdict;
+    }
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("export --format ply writes to a file or to standard output, the same bytes at any number of threads")
+{
+    const Arena arena;
+    const std::string command = "export map --format ply --step 0.5 --offset 0.5" + husky_option;
+    const ProgramRun printed = arena(command + "--threads 1 -q");
+    CHECK(printed.status == 0);
+    REQUIRE(arena(command + "--threads 3 -o a.ply").status == 0);
+    CHECK(bytes_of(arena / "a.ply") == printed.out);
+    const ProgramRun csv = arena("raster map --dims 2 --step 0.5 --offset 0.5 -q" + husky_option);
+    CHECK_THAT(printed.out, Contains("element vertex " + std::to_string(std::count(csv.out.begin(), csv.out.end(), '\n') - 1) + "\n"));
+    const auto python = python_with("plyfile");
+    if (!python) return;
+    CHECK(python_accepts(*python, arena, R"(
+import sys
+from plyfile import PlyData
+v = PlyData.read(sys.argv[1])['vertex']
+valid = [p for p in v if p['verdict'] == 7]
+assert len(valid) > 500 and all((p['red'], p['green'], p['blue']) == (0, 0x9e, 0x73) for p in valid)
+assert any(abs(p['z'] - 0.45) < 1e-12 for p in valid)
+)", arena / "a.ply"));
+}
+
+TEST_CASE("export says which option a format needs, takes or refuses, and writes nothing then")
+{
+    const Arena arena;
+    const std::set<std::string> before = arena.names();
+    const auto refused = [&](const std::string& arguments, const std::string& message) {
+        CAPTURE(arguments);
+        const ProgramRun run = arena("export map " + arguments);
+        CHECK(run.status == 2);
+        CHECK(run.out.empty());
+        CHECK(run.err == "spawnfield: " + message + "\n");
+        CHECK(arena.names() == before);
+    };
+    refused("--format nav2 -o a.yaml", "--format nav2 needs --robot");
+    refused("--format nav2" + husky_option, "--format nav2 needs --out");
+    refused("--format nav2 -o -" + husky_option, "--out is \"-\": --format nav2 cannot go to standard output, name a file");
+    refused("--format nav2 -o a.png" + husky_option, "the file's name is \"a.png\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
+    refused("--format nav2 --layers all -o a.yaml" + husky_option,
+            "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of nav2 has one value");
+    refused("--format nav2 --resolution 0 -o a.yaml" + husky_option, "--resolution is 0, needs > 0");
+    refused("--format ply" + husky_option, "--format ply needs --step");
+    refused("--format ply --step 0" + husky_option, "--step is 0, needs > 0");
+    refused("--format nav2 --step 1 -o a.yaml" + husky_option, "--step is not for --format nav2; it is for ply");
+    refused("--format geotiff --offset 0.2 -o a.tif", "--offset needs --robot");
+    refused("--format geotiff --layers all -o a.tif",
+            "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of geotiff has one value");
+    CHECK(arena("export map --format nav3 -o a.yaml" + husky_option).status == 2);
+    CHECK(arena("export nowhere --format nav2 -o a.yaml" + husky_option).status == 4);
+    CHECK(arena("export map --format nav2 -o none/a.yaml" + husky_option).status == 1);
+    CHECK(arena("export map --format geotiff -o none/a.tif").status == 1);
+    CHECK(arena("export map --format geotiff -o /dev/full").status == 1);
+    CHECK(arena.names() == before);
+}

@@ -1,0 +1,105 @@
+#include "export.h"
+
+#include <algorithm>
+
+namespace spawnfield::cli {
+namespace {
+
+/// All formats, in the order in which --help tells them.
+const std::vector<ExportFormat>& formats()
+{
+    static const std::vector<ExportFormat> table = map_formats();
+    return table;
+}
+
+std::vector<std::string> format_names()
+{
+    std::vector<std::string> names;
+    for (const ExportFormat& format : formats()) names.push_back(format.name);
+    return names;
+}
+
+const ExportFormat& format_of(const std::string& name)
+{
+    return *std::find_if(formats().begin(), formats().end(), [&](const ExportFormat& format) { return format.name == name; });
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
+
+bool uses(const ExportFormat& format, const std::string& option) { return contains(format.needs, option) || contains(format.takes, option); }
+
+/// "glb, ply": those that an option is for.
+std::string users_of(const std::string& option)
+{
+    std::string names;
+    for (const ExportFormat& format : formats())
+        if (uses(format, option)) names += (names.empty() ? "" : ", ") + std::string(format.name);
+    return names;
+}
+
+/// Options that are there for all formats, or help.
+const std::vector<std::string> general{"map", "--format", "--out", "--threads", "--quiet", "--summary", "--help"};
+
+void check_options(const ExportArgs& args, const CLI::App& command)
+{
+    const ExportFormat& format = format_of(args.format);
+    for (const std::string& option : format.needs)
+        if (command.count(option) == 0) throw ArgumentError("--format " + args.format + " needs " + option);
+    if (contains(format.needs, "--out") && args.out == "-") throw ArgumentError("--out is \"-\": --format " + args.format + " cannot go to standard output, name a file");
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || contains(general, name) || uses(format, name)) continue;
+        throw ArgumentError(name + " is not for --format " + args.format + "; it is for " + users_of(name));
+    }
+    if (args.robot.empty()) refuse(command, asking_options(), "needs --robot");
+}
+
+int run_export(const ExportArgs& args, const CLI::App& command)
+{
+    check_options(args, command);
+    Summary summary("export", args);
+    const auto session = open_session(args);
+    summary.lap("load");
+    format_of(args.format).write({args, command, *session, summary});
+    summary.lap("write");
+    summary.map_hash = session->map.hash;
+    if (!args.out.empty() && args.out != "-") summary.extra.push_back(args.out);
+    summary.finish();
+    return done;
+}
+
+std::string help()
+{
+    std::string text = "Formats (docs/exports.md tells of their pixels, frames and colours):\n";
+    for (const ExportFormat& format : formats()) text += "  " + std::string(format.name) + std::string(10 - std::string(format.name).size(), ' ') + format.about + "\n";
+    return text + "Example:\n  spawnfield export /tmp/training --format nav2 --robot box:0.99,0.67,0.39 -o /tmp/training_nav2.yaml";
+}
+
+}  // namespace
+
+const std::vector<std::string>& asking_options()
+{
+    static const std::vector<std::string> options{"--package-path", "--max-height", "--max-water-depth", "--max-slope",
+                                                  "--collision",    "--exhaustive", "--offset",          "--yaw"};
+    return options;
+}
+
+void add_export(CLI::App& app, Run& run)
+{
+    auto args = std::make_shared<ExportArgs>();
+    CLI::App& command = *app.add_subcommand("export", "A map in a file of another program");
+    add_query(command, *args);
+    command.get_option("--robot")->required(false);
+    command.add_option("--format", args->format, "One of the formats below")->required()->check(CLI::IsMember(format_names()));
+    command.add_option("--out,-o", args->out, "File to write (default: standard output, where the format can)");
+    command.add_option("--layers,--layer", args->layers, "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
+    command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
+    command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
+    command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
+    command.add_option("--step", args->step, "Between columns, m");
+    command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
+    command.footer(help());
+    command.callback([=, &command, &run] { run = [=, &command] { return run_export(*args, command); }; });
+}
+
+}  // namespace spawnfield::cli

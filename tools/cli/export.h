@@ -1,0 +1,39 @@
+#pragma once
+
+#include "cli.h"
+
+namespace spawnfield::cli {
+
+/// Options of `export`; which of them a format takes its row of the table says.
+struct ExportArgs : QueryArgs {
+    std::string format, out, layers, bounds;
+    double resolution = 0, step = 0, offset = 0.1, yaw = 0;
+};
+
+/// What a format's writer gets.
+struct ExportJob {
+    const ExportArgs& args;
+    const CLI::App& command;
+    const Session& session;  ///< the map alone if no --robot was given
+    Summary& summary;        ///< lap("load") is done; what comes after the last lap goes to "write"
+
+    bool has_robot() const { return session.checker != nullptr; }
+    bool was_given(const std::string& option) const { return command.count(option) > 0; }
+};
+
+/// A row of the table of formats.
+struct ExportFormat {
+    const char* name;
+    const char* about;                ///< one line for --help
+    std::vector<std::string> needs;   ///< options that it cannot do without; --out where it does not go to standard output
+    std::vector<std::string> takes;   ///< further options that say something to it; others are refused
+    void (*write)(const ExportJob&);
+};
+
+/// Options of what asks where --robot can stand; without it they are refused.
+const std::vector<std::string>& asking_options();
+
+/// Formats that are made of a whole map.
+std::vector<ExportFormat> map_formats();
+
+}  // namespace spawnfield::cli

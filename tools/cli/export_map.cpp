@@ -1,0 +1,124 @@
+#include "export.h"
+
+#include <spawnfield/map_export.h>
+
+namespace spawnfield::cli {
+namespace {
+
+std::vector<std::string> with(std::vector<std::string> names, const std::vector<std::string>& more)
+{
+    names.insert(names.end(), more.begin(), more.end());
+    return names;
+}
+
+RasterOptions raster_options(const ExportJob& job, const std::string& layers)
+{
+    const ExportArgs& args = job.args;
+    RasterOptions options;
+    fill(options, args, "export");
+    options.exact_time = &job.summary.exact_time;
+    options.offset = parse_finite("--offset", args.offset, "m");
+    options.yaw = parse_finite("--yaw", args.yaw, "rad");
+    options.layers = parse_layers(args.layers.empty() ? layers : args.layers);
+    tell_idle(args, job.command, {"--max-height"}, "the robot stands on each layer");
+    tell_if_no_layer(args, job.session.map, options.layers);
+    tell_if_in_ground(args, job.session.robot, options.offset);
+    return options;
+}
+
+/// What was asked, for people who find the file.
+std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& options, const std::string& layers)
+{
+    const Session& session = job.session;
+    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): where the origin of " + session.robot.name + " can be, " +
+            number(options.offset) + " m above its layer (" + (job.args.layers.empty() ? layers : job.args.layers) + "), yaw " + number(options.yaw) + " rad"};
+}
+
+void check_one_layer(const ExportJob& job, const LayerChoice& layers)
+{
+    if (layers.kind == LayerChoice::Kind::All)
+        throw ArgumentError("--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of " + job.args.format + " has one value");
+}
+
+/// One layer: a pixel has one value.
+RasterOptions image_options(const ExportJob& job)
+{
+    const RasterOptions options = raster_options(job, "top");
+    check_one_layer(job, options.layers);
+    return options;
+}
+
+GridFrame image_frame(const ExportJob& job)
+{
+    const Map& map = job.session.map;
+    return frame_around(map.bounds, job.was_given("--resolution") ? parse_positive("--resolution", job.args.resolution) : map.resolution);
+}
+
+VerdictImage ask(const ExportJob& job, const RasterOptions& options, const GridFrame& frame)
+{
+    VerdictImage image = verdict_image(job.session.map, *job.session.checker, frame, options);
+    job.summary.lap("query");
+    job.summary.set_counts(image.counts);
+    job.summary.exact_checks = image.exact_checks;
+    return image;
+}
+
+void write_nav2(const ExportJob& job)
+{
+    nav2_image_of(job.args.out);  // a wrong name is told before all work
+    const RasterOptions options = image_options(job);
+    const VerdictImage image = ask(job, options, image_frame(job));
+    clear_progress_bar();
+    write_nav2_map(image, job.args.out, comment_of(job, options, "top"));
+}
+
+/// Of a picture that needs no robot.
+LayerChoice image_layers(const ExportJob& job)
+{
+    const LayerChoice layers = parse_layers(job.args.layers.empty() ? "top" : job.args.layers);
+    check_one_layer(job, layers);
+    tell_if_no_layer(job.args, job.session.map, layers);
+    return layers;
+}
+
+void write_geotiff(const ExportJob& job)
+{
+    GeoTiffOptions options;
+    const GridFrame frame = image_frame(job);
+    std::optional<VerdictImage> verdicts;
+    if (job.has_robot()) verdicts = ask(job, image_options(job), frame);
+    options.layers = image_layers(job);
+    options.threads = job.args.threads;
+    options.progress = progress_bar(job.args, "writing");
+    spawnfield::write_geotiff(job.session.map, frame, verdicts ? &*verdicts : nullptr, options, job.args.out);
+    clear_progress_bar();
+}
+
+void write_ply(const ExportJob& job)
+{
+    RasterOptions options = raster_options(job, "all");
+    options.step = parse_positive("--step", job.args.step);
+    if (!job.args.bounds.empty()) options.bounds = parse_bounds("--bounds", job.args.bounds, true);
+    tell_if_off_map(job.args, job.session.map, "--bounds", options.bounds);
+    const RasterResult result = raster(job.session.map, *job.session.checker, options);
+    job.summary.lap("query");
+    job.summary.set_counts(result.counts);
+    job.summary.exact_checks = result.exact_checks;
+    write_output(job.args.out, [&](const auto& sink) { spawnfield::write_ply(result, comment_of(job, options, "all"), sink); });
+}
+
+}  // namespace
+
+std::vector<ExportFormat> map_formats()
+{
+    return {
+        {"nav2", "map_server's pair for ROS: -o FILE.yaml and FILE.pgm beside it, free where --robot can stand", {"--robot", "--out"},
+         with(asking_options(), {"--layers", "--resolution"}), write_nav2},
+        {"geotiff", "bands of elevation, layers, clearance, slope, water, obstacle, and the verdict of --robot if there is one", {"--out"},
+         with(asking_options(), {"--robot", "--layers", "--resolution"}), write_geotiff},
+        {"ply", "points where --robot was asked to stand, every --step metres, coloured by verdict", {"--robot", "--step"},
+         with(asking_options(), {"--layers", "--bounds"}), write_ply},
+    };
+}
+
+}  // namespace spawnfield::cli
