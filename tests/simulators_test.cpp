@@ -154,7 +154,9 @@ TEST_CASE("a world's file keeps all that it has, and gets the robots")
     const std::vector<RobotStart> robots = random_robots(5);
     const fs::path urdf = folder.write("cart.urdf", urdf_text);
     const std::string text = sdf_world(robots, {.uri = urdf.string(), .world_text = world_text, .world_file = "yard.world"});
-    CHECK_THAT(text, Contains("<!-- </world> in a comment -->"));
+    const std::size_t end = world_text.rfind("  </world>");
+    CHECK(text.starts_with(world_text.substr(0, end) + "    <include>\n      <uri>"));  // the rest stays as it is, to the letter
+    CHECK(text.ends_with("</include>\n" + world_text.substr(end)));
     folder.write("yard.sdf", text);
     const sdf::Root root = sdf_root(folder / "yard.sdf");
     const sdf::World& world = *root.WorldByIndex(0);
@@ -163,6 +165,30 @@ TEST_CASE("a world's file keeps all that it has, and gets the robots")
     CHECK(world.ModelByName("wall") != nullptr);
     CHECK(world.ModelCount() == 6);
     check_models(world, robots);
+}
+
+TEST_CASE("robots get into the right world, however its file is written")
+{
+    const TempFolder folder;
+    const std::vector<RobotStart> robots = random_robots(2);
+    folder.write("cart/model.config", "<model><name>cart</name><sdf version=\"1.6\">model.sdf</sdf></model>");
+    folder.write("cart/model.sdf", "<sdf version=\"1.6\"><model name=\"cart\"><link name=\"base\"/></model></sdf>");
+    const std::string plugin = "<plugin name='p' filename='f'><world>not this one</world><text><![CDATA[</world>]]></text></plugin>";
+    for (const std::string& text : {std::string("<sdf version='1.6'><world name='a'/></sdf>"), "<sdf version='1.6'><world name='a'>" + plugin + "</world></sdf>",
+                                    "<sdf version='1.6'><world name='a > b' >" + plugin + "<!--</world>--></world\n></sdf>\n<!-- <world> -->",
+                                    std::string("<sdf version='1.6'><world name='a>'/></sdf>")}) {
+        INFO(text);
+        folder.write("new.sdf", sdf_world(robots, {.uri = "model://cart", .world_text = text}));
+        const sdf::Root root = sdf_root(folder / "new.sdf", folder.path());
+        CHECK(root.WorldByIndex(0)->ModelCount() == 2);
+        check_models(*root.WorldByIndex(0), robots);
+    }
+    const std::string two = "<sdf version='1.6'>\n  <world name='a'>\n  </world>\n  <world name='b'>\n  </world>\n</sdf>\n";
+    const std::string in_first = sdf_world(robots, {.uri = "model://cart", .world_name = "a", .world_text = two});
+    CHECK(in_first.find("cart_2") < in_first.find("<world name='b'>"));
+    CHECK(in_first.ends_with("  </world>\n  <world name='b'>\n  </world>\n</sdf>\n"));
+    const std::string in_second = sdf_world(robots, {.uri = "model://cart", .world_name = "b", .world_text = two});
+    CHECK(in_second.find("cart_1") > in_second.find("<world name='b'>"));
 }
 
 TEST_CASE("a file that is no world, or whose names are taken, is refused with its name and line")
@@ -294,10 +320,13 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
     CHECK(idle.status == 0);
     CHECK_THAT(idle.err, Contains("notice: --tiles has no effect: --format csv does not ask for it"));
     CHECK_THAT(idle.err, Contains("notice: --topic has no effect"));
+    const ProgramRun thesis = arena(query + "--format thesis --name 'a{i}' -o thesis");
+    CHECK(thesis.status == 0);
+    CHECK_THAT(thesis.err, Contains("notice: --name has no effect: --format thesis does not ask for it"));
     const ProgramRun away = arena(query + "--format sdf --robot-uri model://a --world yard.world -o deep/new.sdf");
     CHECK(away.status != 0);  // no such folder
     CHECK_THAT(away.err, Contains("relative to it will be looked for beside the new file"));
     const ProgramRun beside = arena(query + "--quiet --format sdf --robot-uri model://a --world yard.world -o new.sdf");
     CHECK(beside.status == 0);
-    CHECK(arena.names() == std::set<std::string>{"map", "yard.world", "isaac", "new.sdf"});
+    CHECK(arena.names() == std::set<std::string>{"map", "yard.world", "isaac", "thesis", "new.sdf"});
 }

@@ -77,7 +77,7 @@ std::vector<std::string> numbered_names(const std::string& option, const std::st
         if (number.size() < parts.digits) number.insert(0, parts.digits - number.size(), '0');
         names.push_back(parts.before + number + parts.after);
     }
-    check_names(option, names);
+    check_names(option, std::span(names).first(std::min<std::size_t>(names.size(), 1)));  // the others differ by their numbers
     return names;
 }
 

@@ -388,7 +388,15 @@ std::string robots_csv(std::span<const RobotStart> robots)
     return text;
 }
 
-std::string spawns_csv(const SpawnList& list) { return robots_csv(robot_starts(list)); }
+std::string spawns_csv(const SpawnList& list)
+{
+    std::string text = "x,y,z,roll,pitch,yaw\n";
+    for (const Spawn& spawn : list.spawns) {
+        append_numbers(text, {spawn.position.x(), spawn.position.y(), spawn.position.z(), 0, 0, spawn.yaw});
+        text += '\n';
+    }
+    return text;
+}
 
 std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SampleOptions& options)
 {

@@ -22,7 +22,8 @@ struct OptionUse {
     std::vector<std::string> formats;
 };
 
-const std::vector<OptionUse> option_uses = {{"--namespace", {"ros", "json"}},
+const std::vector<OptionUse> option_uses = {{"--name", pose_formats},
+                                            {"--namespace", {"ros", "json"}},
                                             {"--robot-file", {"ros", "sdf"}},
                                             {"--robot-uri", {"sdf"}},
                                             {"--topic", {"ros"}},
@@ -38,12 +39,6 @@ const std::vector<OptionUse> option_uses = {{"--namespace", {"ros", "json"}},
 bool is_for(const OptionUse& use, const std::string& format)
 {
     return std::any_of(use.formats.begin(), use.formats.end(), [&](const std::string& start) { return format.starts_with(start); });
-}
-
-void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format)
-{
-    for (const OptionUse& use : option_uses)
-        if (!is_for(use, format)) tell_idle(common, command, {use.option}, "--format " + format + " does not ask for it");
 }
 
 TileGrid parse_tiles(const std::string& text)
@@ -89,6 +84,12 @@ std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map
 }
 
 }  // namespace
+
+void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format)
+{
+    for (const OptionUse& use : option_uses)
+        if (!is_for(use, format)) tell_idle(common, command, {use.option}, "--format " + format + " does not ask for it");
+}
 
 void add_simulator_options(CLI::App& command, SimulatorArgs& args)
 {
@@ -225,6 +226,17 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     write_file_atomically(into / "isaaclab.json", about.dump(2) + "\n");
     if (was_interrupted()) throw Interrupted{};
     folder_->commit();
+}
+
+void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, const std::string& poses,
+                  SimulatorOutput::Target target, const Session& session)
+{
+    const PoseTable table = open_poses(common, poses);
+    target.count = table.poses.size();
+    const SimulatorOutput output(common, command, args, std::move(target));
+    std::vector<RobotStart> robots = robot_starts(table);
+    output.give_names(robots, column_of(table, "name"));
+    output.write(robots, session.map, [&] { return poses_json(robots, session.map, session.robot); });
 }
 
 }  // namespace spawnfield::cli

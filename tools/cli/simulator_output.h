@@ -21,6 +21,9 @@ struct SimulatorArgs {
 };
 void add_simulator_options(CLI::App& command, SimulatorArgs& args);
 
+/// A notice for each of these options that was given and says nothing to the format.
+void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format);
+
 /// Robots as a file or folder in one of `pose_formats`. All that can be wrong with the options is told when it is made, before
 /// all work.
 class SimulatorOutput {
@@ -32,6 +35,9 @@ public:
     };
     /// Throws ArgumentError, FileError; OutputError where a folder may not be replaced. Tells of options without effect.
     SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target);
+
+    /// Whether robots have names in it: all but a csv without --name.
+    bool has_names() const { return !is("csv") || !args_.name.empty(); }
 
     /// Names and namespaces for the robots; their `own` names, if they have any, count where --name was not given.
     void give_names(std::vector<RobotStart>& robots, const std::vector<std::string>& own = {}) const;
@@ -58,5 +64,10 @@ private:
     TileGrid tiles_;
     std::unique_ptr<OutputFolder> folder_;
 };
+
+/// Poses of a CSV file, as they are, in one of `pose_formats`: what `export MAP --poses FILE` does. Names are those of --name, else
+/// of the file's column `name`, else robot_{i}. `target.count` is not asked for. Throws as SimulatorOutput and read_poses do.
+void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, const std::string& poses,
+                  SimulatorOutput::Target target, const Session& session);
 
 }  // namespace spawnfield::cli

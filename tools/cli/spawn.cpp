@@ -54,8 +54,9 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnO
 }
 
 template <class Options>
-void write(const SimulatorOutput& output, const Session& session, const Options& options, const SpawnList& list)
+void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& session, const Options& options, const SpawnList& list)
 {
+    if (!output.has_names()) return write_output(args.out, [&](const auto& sink) { sink(spawns_csv(list)); });
     std::vector<RobotStart> robots = robot_starts(list);
     output.give_names(robots);
     output.write(robots, session.map, [&] { return spawns_json(robots, list, session.map, session.robot, options); });
@@ -85,6 +86,7 @@ int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Opti
     options.random_yaw = !parse_yaw(args.yaw, options.yaw);
     options.exact_time = &summary.exact_time;
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
+    if (folder) tell_idle_options(args, app, args.format);
     std::optional<SimulatorOutput> output;
     if (!folder) output.emplace(args, app, args.simulator, SimulatorOutput::Target{args.format, args.out, args.robot, options.count});
     const auto session = open_session(args);
@@ -96,7 +98,7 @@ int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Opti
     if (folder)
         write_thesis(*folder, settings_of(args, *session, options, list, command, own), list.counts, summary,
                      [&](const auto& into) { return write_thesis_locations(into, list); });
-    else write(*output, *session, options, list);
+    else write(args, *output, *session, options, list);
     return finish(summary, args, *session, options, list, command);
 }
 
