@@ -1,8 +1,8 @@
 #include "robot/urdf.h"
 
 #include "base/number.h"
-#include "robot/hull.h"
-#include "scene/mesh.h"
+#include "robot/joints.h"
+#include "robot/mesh_parts.h"
 
 #include <spawnfield/error.h>
 
@@ -42,6 +42,27 @@ private:
     std::string first_;
 };
 
+Joint joint_of(const urdf::Joint& joint)
+{
+    using Motion = Joint::Motion;
+    Joint out;
+    out.name = joint.name;
+    switch (joint.type) {
+    case urdf::Joint::REVOLUTE: out.motion = Motion::Turning, out.type = "revolute"; break;
+    case urdf::Joint::CONTINUOUS: out.motion = Motion::Turning, out.type = "continuous"; break;
+    case urdf::Joint::PRISMATIC: out.motion = Motion::Sliding, out.type = "prismatic"; break;
+    case urdf::Joint::FLOATING: out.motion = Motion::Other, out.type = "floating"; break;
+    case urdf::Joint::PLANAR: out.motion = Motion::Other, out.type = "planar"; break;
+    default: out.type = "fixed"; break;
+    }
+    if (joint.limits && joint.type != urdf::Joint::CONTINUOUS) {
+        out.lower = joint.limits->lower;
+        out.upper = joint.limits->upper;
+    }
+    if (joint.mimic) out.mimic = Joint::Mimic{joint.mimic->joint_name, joint.mimic->multiplier, joint.mimic->offset};
+    return out;
+}
+
 class UrdfReader {
 public:
     UrdfReader(std::filesystem::path file, const RobotOptions& options) : file_(std::move(file)), options_(options) {}
@@ -53,12 +74,17 @@ public:
             throw FileError(file_.string(), "does not exist; is the path right?");
         std::stringstream text;
         text << stream.rdbuf();
+        if (text.str().find("<xacro:") != std::string::npos)
+            throw FileError(file_.string(), "holds xacro macros; expand them first: xacro " + file_.filename().string() + " > robot.urdf");
         UrdfdomErrors errors;
         const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text.str());
         // urdfdom goes on with a link that it could not read to its end, and that would make the robot smaller.
         if (!errors.first().empty()) throw FileError(file_.string(), "is no valid URDF: " + errors.first());
         if (!model || !model->getRoot()) throw FileError(file_.string(), "is no valid URDF");
         robot_.name = model->getName();
+        std::vector<Joint> joints;
+        for (const auto& entry : model->joints_) joints.push_back(joint_of(*entry.second));
+        positions_ = joint_positions(file_.string(), joints, options_.joints, robot_.notices);
         add_link(*model->getRoot(), {});
         if (robot_.parts.empty()) throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
         return std::move(robot_);
@@ -74,8 +100,17 @@ private:
         for (const auto& joint : link.child_joints) {
             for (const auto& child : link.child_links)
                 if (child->name == joint->child_link_name)
-                    add_link(*child, robot_from_link * pose_of(joint->parent_to_joint_origin_transform));
+                    add_link(*child, robot_from_link * pose_of(joint->parent_to_joint_origin_transform) * motion_of(link, *joint));
         }
+    }
+
+    Pose motion_of(const urdf::Link& link, const urdf::Joint& joint) const
+    {
+        const auto value = positions_.find(joint.name);
+        if (value == positions_.end() || value->second == 0) return {};
+        const Vec3 axis(joint.axis.x, joint.axis.y, joint.axis.z);
+        if (!(axis.norm() > 1e-6)) fail(link, "joint \"" + joint.name + "\" has an <axis> of no length");
+        return joint_motion(joint_of(joint).motion, axis.normalized(), value->second);
     }
 
     void add_collision(const urdf::Link& link, const urdf::Geometry& geometry, const Pose& pose)
@@ -97,21 +132,20 @@ private:
             part.shape.size = {cylinder.radius, cylinder.length, 0};
             require_positive(link, "<cylinder>", std::min(cylinder.radius, cylinder.length));
         } else {
-            part = mesh_part(link, static_cast<const urdf::Mesh&>(geometry), pose);
+            add_mesh(link, static_cast<const urdf::Mesh&>(geometry), pose);
+            return;
         }
+        part.name = link.name;
         robot_.parts.push_back(std::move(part));
     }
 
-    RobotPart mesh_part(const urdf::Link& link, const urdf::Mesh& mesh, const Pose& pose) const
+    void add_mesh(const urdf::Link& link, const urdf::Mesh& mesh, const Pose& pose)
     {
         const std::filesystem::path file = resolve(link, mesh.filename);
         const Vec3 scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
-        std::vector<Vec3> points;
         try {
             // As Gazebo takes COLLADA: its <unit> counts, its <up_axis> does not.
-            for (const FileMesh::Node& node : read_mesh(file).nodes)
-                for (const Vec3& vertex : node.vertices) points.push_back(pose.rotation * vertex.cwiseProduct(scale) + pose.position);
-            return convex_hull(points);
+            append_mesh(robot_, {link.name, file, placed(read_mesh(file).nodes, scale, pose)}, options_.mesh_parts);
         } catch (const std::domain_error& error) {
             fail(link, "<mesh> cannot be used: " + file.string() + ": its convex hull has no volume: " + error.what());
         } catch (const FileError& error) {
@@ -147,6 +181,7 @@ private:
     const std::filesystem::path file_;
     const RobotOptions& options_;
     Robot robot_;
+    std::map<std::string, double> positions_;  ///< of joints
 };
 
 }  // namespace
