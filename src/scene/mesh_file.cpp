@@ -5,6 +5,7 @@
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
+#include <assimp/metadata.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <Eigen/LU>
@@ -57,6 +58,22 @@ std::string collada_up_axis(const std::filesystem::path& file)
     std::string axis = head.substr(start + tag.size(), end - start - tag.size());
     std::erase_if(axis, [](unsigned char c) { return std::isspace(c); });
     return axis;
+}
+
+/// FBX tells its unit (cm for each, 1 where it tells none) and its up axis as metadata, which assimp 5.2 hands over as they are.
+/// Source: Autodesk, FBX SDK, FbxSystemUnit and FbxAxisSystem.
+Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
+{
+    double centimetres = 1;
+    std::int32_t up = 1;
+    if (scene.mMetaData != nullptr) {
+        scene.mMetaData->Get("UnitScaleFactor", centimetres);
+        scene.mMetaData->Get("UpAxis", up);
+    }
+    mesh.up = up == 0 ? 'x' : up == 2 ? 'z' : 'y';
+    Mat4 metres = Mat4::Identity();
+    metres.topLeftCorner<3, 3>() *= centimetres / 100;
+    return metres;
 }
 
 /// Faces of one node with its vertices welded: equal coordinates, as the file gives them, are one vertex.
@@ -138,7 +155,9 @@ FileMesh read_mesh(const std::filesystem::path& file)
         const std::string up = collada_up_axis(file);
         mesh.up = up == "Z_UP" ? 'z' : up == "X_UP" ? 'x' : 'y';
     }
-    collect(*scene, *scene->mRootNode, Mat4::Identity(), file.string(), mesh);
+    if (extension == ".3ds") mesh.up = 'y';  // z up in the file; assimp turns it
+    const Mat4 metres = extension == ".fbx" ? take_fbx_frame(*scene, mesh) : Mat4::Identity();
+    collect(*scene, *scene->mRootNode, metres, file.string(), mesh);
     if (mesh.nodes.empty()) throw FileError(file.string(), "has no triangles, needs at least one");
     return mesh;
 }
