@@ -1,6 +1,7 @@
 #include "arena.h"
 #include "base/tiff.h"
 #include "hard_scene.h"
+#include "picture/relief.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>
@@ -29,7 +30,7 @@ TestMap deck_map()
                                                      "- {name: floor, label: terrain, box: [8, 6, 1], xyz: [-1, 0, -0.5]}\n"
                                                      "- {name: deck, label: terrain, box: [3, 6, 0.2], xyz: [-3, 0, 2]}\n"
                                                      "- {name: block, label: obstacle, box: [1, 1, 1], xyz: [-3.5, 1, 2.6]}\n"
-                                                     "- {name: crate, box: [0.5, 0.5, 0.5], xyz: [1, 2, 0.25]}\n"
+                                                     "- {name: crate, box: [0.5, 0.5, 0.5], xyz: [1, 2, 0.2]}\n"
                                                      "- {name: pool, label: water, plane: [1, 2], xyz: [2, -2, 0.3]}\n"
                                                      "- {name: post, label: obstacle, cylinder: {radius: 0.2, length: 2}, xyz: [4.5, 0, 1]}\n");
     return map_of(load_scene(file));
@@ -399,19 +400,33 @@ TEST_CASE("a GeoTIFF's bands hold what stands in the column at each cell's centr
     CHECK(top.at("clearance", -3.5, 1) == 0);        // its block
 }
 
-TEST_CASE("a GeoTIFF tells a ramp's slope, also across the edge of a tile and at the rim")
+TEST_CASE("a GeoTIFF tells a ramp's slope, also at the rim")
 {
     const TempFolder folder;
     const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
-                                                                     "- {name: ramp, label: terrain, plane: [30, 30], rpy: [0, -0.3, 0]}\n")));
-    const GridFrame frame = frame_around(map.bounds, 0.1);
-    REQUIRE(frame.cols > 256);
-    write_geotiff(map, frame, nullptr, {}, folder / "ramp.tif");
+                                                                     "- {name: ramp, label: terrain, plane: [3, 3], rpy: [0.2, -0.3, 0]}\n")));
+    write_geotiff(map, frame_around({Vec3(-1, -1, 0), Vec3(1, 1, 0)}, 0.1), nullptr, {}, folder / "ramp.tif");
     const GeoTiff read = read_geotiff(folder / "ramp.tif");
-    const HeightImage& slope = read.band("slope");
+    const double expected = std::acos(rotation_from_rpy(0.2, -0.3, 0)(2, 2)) * 180 / std::numbers::pi;
+    for (const float slope : read.band("slope").reshaped()) CHECK(slope == Approx(expected).epsilon(1e-4));
+}
+
+TEST_CASE("a GeoTIFF's slopes see the neighbours beyond the edge of a tile")
+{
+    const TestMap map = deck_map();
+    const TempFolder folder;
+    const GridFrame frame = frame_around(map.bounds, 3.5 / 256);  // the deck ends where the second tile begins
+    write_geotiff(map, frame, nullptr, {}, folder / "deck.tif");
+    const HeightImage slopes = read_geotiff(folder / "deck.tif").band("slope"), heights = page_image(rasterize_terrain(map.geometry, frame), "height.0");
+    std::size_t wrong = 0;
     for (int row = 0; row < frame.rows; ++row)
-        for (int col = 0; col < frame.cols; ++col)
-            if (!(std::abs(slope(row, col) - 0.3 * 180 / std::numbers::pi) < 0.01)) FAIL("slope " << slope(row, col) << " at " << row << ", " << col);
+        for (int col = 0; col < frame.cols; ++col) {
+            const double slope = std::atan(gradient(heights, row, col, frame.cell).norm()) * 180 / std::numbers::pi;
+            wrong += !(std::isnan(slope) ? std::isnan(slopes(row, col)) : std::abs(slope - slopes(row, col)) < 1e-4);
+        }
+    CHECK(wrong == 0);
+    const int row = frame.rows / 4;
+    CHECK((slopes(row, 254) == 0 && slopes(row, 255) > 80 && slopes(row, 256) > 80 && slopes(row, 257) == 0));
 }
 
 TEST_CASE("GDAL sees a GeoTIFF's bands, transform, units and no-data")

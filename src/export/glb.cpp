@@ -110,11 +110,12 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Triangles of one material with equal corners welded.
+/// Triangles of one material with equal corners welded; without those that float32 leaves no area.
 class Surface {
 public:
     void add(const Point& a, const Point& b, const Point& c)
     {
+        if (a == b || b == c || c == a) return;
         for (const Point& corner : {a, b, c}) indices_.push_back(number_of(corner));
     }
     bool empty() const { return indices_.empty(); }
