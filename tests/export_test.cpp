@@ -2,6 +2,7 @@
 #include "base/tiff.h"
 #include "hard_scene.h"
 #include "picture/relief.h"
+#include "shared_scenes.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>
@@ -429,6 +430,20 @@ TEST_CASE("a GeoTIFF's slopes see the neighbours beyond the edge of a tile")
     CHECK((slopes(row, 254) == 0 && slopes(row, 255) > 80 && slopes(row, 256) > 80 && slopes(row, 257) == 0));
 }
 
+TEST_CASE("export --format geotiff writes the same bytes at any number of threads")
+{
+    const Arena arena;
+    const std::string command = "export map --format geotiff --resolution 0.05" + husky_option;  // 2 x 2 tiles
+    REQUIRE(arena(command + "--threads 1 -o one.tif").status == 0);
+    REQUIRE(arena(command + "--threads 3 -o two.tif").status == 0);
+    CHECK(bytes_of(arena / "one.tif") == bytes_of(arena / "two.tif"));
+    const GeoTiff read = read_geotiff(arena / "one.tif");
+    CHECK(read.at("verdict", 0, 3) == float(Verdict::Valid));
+    CHECK(read.at("verdict", -6.5, -5) == float(Verdict::Collision));
+    CHECK(read.at("verdict", 7, -7) == float(Verdict::Submerged));
+    CHECK(read.at("water", 7, -7) == float(1.45));
+}
+
 TEST_CASE("GDAL sees a GeoTIFF's bands, transform, units and no-data")
 {
     const auto python = python_with("rasterio");
@@ -609,6 +624,28 @@ TEST_CASE("a map that is baked from a GLB gives nearly all the same verdicts")
     for (std::size_t c = 0; c < before.verdicts.size(); ++c) other += before.verdicts[c] != after.verdicts[c];
     CHECK(other < before.verdicts.size() / 200);  // round solids are polygons, and numbers are float32
     CHECK(glb_bytes(map, {}, 1) == glb_bytes(map, {}, 5));
+}
+
+TEST_CASE("real scenes are the same after a GLB")
+{
+    const auto scenes = shared_scenes();
+    if (!scenes) return;
+    for (const char* const name : {"inspection", "kaykit_town", "nasty", "lunar_pit", "octomap"}) {
+        CAPTURE(name);
+        const TestMap map = map_of(load_scene(*scenes / name / "scene.yaml"), 0.5);
+        const TempFolder folder;
+        const Scene read = load_glb(folder, glb_bytes(map));
+        const LabelCounts before = map.scene.count_labels(), after = read.count_labels();
+        for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water}) {
+            const auto& [triangles, primitives] = before[std::size_t(label)];  // boxes all of them
+            const double expected = double(triangles + 12 * primitives);
+            CHECK(double(after[std::size_t(label)].triangles) <= expected);
+            CHECK(double(after[std::size_t(label)].triangles) >= 0.999 * expected);  // some have no area in float32
+            CHECK(after[std::size_t(label)].primitives == 0);
+        }
+        const Bounds from = map.scene.bounds(), to = read.bounds();
+        CHECK(std::max((from.min - to.min).cwiseAbs().maxCoeff(), (from.max - to.max).cwiseAbs().maxCoeff()) < 1e-4);
+    }
 }
 
 TEST_CASE("export --format glb draws poses of a CSV file and says what is wrong with it")

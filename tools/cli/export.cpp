@@ -5,7 +5,7 @@
 namespace spawnfield::cli {
 namespace {
 
-/// All formats, in the order in which --help tells them.
+/// All formats, in the order in which --help tells them: further tables are to be appended here.
 const std::vector<ExportFormat>& formats()
 {
     static const std::vector<ExportFormat> table = map_formats();
@@ -70,8 +70,13 @@ int run_export(const ExportArgs& args, const CLI::App& command)
 
 std::string help()
 {
+    std::size_t width = 0;
+    for (const std::string& name : format_names()) width = std::max(width, name.size());
     std::string text = "Formats (docs/exports.md tells of their pixels, frames and colours):\n";
-    for (const ExportFormat& format : formats()) text += "  " + std::string(format.name) + std::string(10 - std::string(format.name).size(), ' ') + format.about + "\n";
+    for (const ExportFormat& format : formats()) {
+        const std::string name = format.name;
+        text += "  " + name + std::string(width - name.size() + 2, ' ') + format.about + "\n";
+    }
     return text + "Example:\n  spawnfield export /tmp/training --format nav2 --robot box:0.99,0.67,0.39 -o /tmp/training_nav2.yaml";
 }
 
