@@ -242,11 +242,12 @@ bool write_tiles(TIFF* tiff, const TileBands& source, const Tiles& tiles, std::s
         std::vector<std::vector<std::string>> streams(std::size_t(tiles.cols));
         Progress progress;
         if (options.progress) progress = [&](double share) { options.progress((row + share) / tiles.rows); };
-        parallel_for(streams.size(), options.threads, progress, [&](std::size_t col) { streams[col] = source.streams(std::size_t(row) * streams.size() + col); });
+        const std::size_t first = std::size_t(row) * streams.size();
+        parallel_for(streams.size(), options.threads, progress, [&](std::size_t col) { streams[col] = source.streams(first + col); });
         for (std::size_t band = 0; band < bands; ++band)
             for (std::size_t col = 0; col < streams.size(); ++col) {
                 std::string& bytes = streams[col][band];
-                const auto number = std::uint32_t(band * count + std::size_t(row) * streams.size() + col);
+                const auto number = std::uint32_t(band * count + first + col);
                 if (TIFFWriteRawTile(tiff, number, bytes.data(), tmsize_t(bytes.size())) != tmsize_t(bytes.size())) return false;
             }
     }

@@ -60,7 +60,8 @@ Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
                 const Home home = tile.home(element);
                 const std::uint64_t id = tile.ids[element];
                 if (home.col == 0 || home.row == 0) continue;  // another tile has it too, and that one tells
-                if (id >= impl.elements || tile.is_triangle(element) != (id < triangles)) throw FileError(impl.file, "contradicts itself; bake the map again");
+                if (id >= impl.elements || tile.is_triangle(element) != (id < triangles))
+                    throw FileError(impl.file, "contradicts itself; bake the map again");
                 if (tile.is_triangle(element)) {
                     CornersOfTriangle& to = out.triangles[id];
                     const auto corners = tile.corners(element);
@@ -79,7 +80,8 @@ Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
 /// Round solids are many triangles each.
 int sides_for(const Elements& elements)
 {
-    const auto round = std::count_if(elements.primitives.begin(), elements.primitives.end(), [](const Primitive& p) { return p.shape.kind != ShapeKind::Box; });
+    const auto round = std::count_if(elements.primitives.begin(), elements.primitives.end(),
+                                     [](const Primitive& p) { return p.shape.kind != ShapeKind::Box; });
     return round > 20000 ? 8 : round > 2000 ? 16 : 32;
 }
 
@@ -150,9 +152,9 @@ public:
         const auto known = std::find(material_names_.begin(), material_names_.end(), name);
         if (known != material_names_.end()) return std::size_t(known - material_names_.begin());
         material_names_.push_back(name);
+        const Json light{linear(colour >> 16), linear(colour >> 8 & 255), linear(colour & 255), alpha};
         Json json{{"name", name},
-                  {"pbrMetallicRoughness",
-                   {{"baseColorFactor", {linear(colour >> 16), linear(colour >> 8 & 255), linear(colour & 255), alpha}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+                  {"pbrMetallicRoughness", {{"baseColorFactor", light}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
                   {"doubleSided", true}};
         if (alpha < 1) json["alphaMode"] = "BLEND";
         return materials_.add(json);
@@ -185,7 +187,8 @@ public:
         const std::uint64_t data = points_.size() + indices_.size();  // multiples of 4 both
         const std::uint64_t total = 12 + 8 + json.size() + (data > 0 ? 8 + data : 0);
         if (total > 0xffffffff)
-            throw OutputError(map.name + " as GLB", "would have " + std::to_string(total) + " bytes, the format holds at most 4294967295; leave parts out of the scene");
+            throw OutputError(map.name + " as GLB", "would have " + std::to_string(total) +
+                                                        " bytes, the format holds at most 4294967295; leave parts out of the scene");
         const auto word = [](std::uint64_t value) {
             const auto typed = std::uint32_t(value);
             return std::string(reinterpret_cast<const char*>(&typed), sizeof typed);
@@ -217,8 +220,8 @@ private:
         if (meshes_.size() > 0) {
             json = {{{"buffer", 0}, {"byteLength", points_.size()}, {"byteStride", sizeof(Point)}, {"target", 34962}},
                     {{"buffer", 0}, {"byteOffset", points_.size()}, {"byteLength", indices_.size()}, {"target", 34963}}};
-            text += ",\"materials\":" + materials_.take() + ",\"meshes\":" + meshes_.take() + ",\"accessors\":" + accessors_.take() + ",\"bufferViews\":" + text_of(json) +
-                    ",\"buffers\":[{\"byteLength\":" + std::to_string(points_.size() + indices_.size()) + "}]";
+            text += ",\"materials\":" + materials_.take() + ",\"meshes\":" + meshes_.take() + ",\"accessors\":" + accessors_.take();
+            text += ",\"bufferViews\":" + text_of(json) + ",\"buffers\":[{\"byteLength\":" + std::to_string(points_.size() + indices_.size()) + "}]";
         }
         return text + "}";
     }
@@ -292,9 +295,10 @@ std::optional<std::size_t> add_part(GlbFile& file, const Elements& elements, con
 Surface marker_surface(const Robot* robot)
 {
     Surface out;
-    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) { out.add(rounded(a, Vec3::Zero()), rounded(b, Vec3::Zero()), rounded(c, Vec3::Zero())); };
+    const Vec3 origin = Vec3::Zero();
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) { out.add(rounded(a, origin), rounded(b, origin), rounded(c, origin)); };
     if (robot == nullptr) {
-        tessellate_cone(Vec3::Zero(), Vec3::UnitX(), 0.25, 16, add);
+        tessellate_cone(origin, Vec3::UnitX(), 0.25, 16, add);
         return out;
     }
     for (const RobotPart& part : robot->parts) tessellate(part, 32, add);
@@ -350,7 +354,8 @@ void check(const GlbMarkers& markers)
 {
     const std::size_t poses = markers.poses.size();
     const auto fits = [&](const char* name, std::size_t size) {
-        if (size != 0 && size != poses) throw ArgumentError("write_glb", name, double(size), "one for each of the " + std::to_string(poses) + " poses, or none");
+        if (size != 0 && size != poses)
+            throw ArgumentError("write_glb", name, double(size), "one for each of the " + std::to_string(poses) + " poses, or none");
     };
     fits("markers.verdicts", markers.verdicts.size());
     fits("markers.names", markers.names.size());
@@ -369,7 +374,8 @@ void write_glb(const Map& map, const GlbMarkers& markers, const std::function<vo
     {
         const Elements elements = elements_of(map.geometry, origin, threads);
         const int sides = sides_for(elements);
-        const std::vector<Range> triangles = ranges_by_part(elements.triangles, parts.size()), primitives = ranges_by_part(elements.primitives, parts.size());
+        const std::vector<Range> triangles = ranges_by_part(elements.triangles, parts.size());
+        const std::vector<Range> primitives = ranges_by_part(elements.primitives, parts.size());
         for (std::size_t part = 0; part < parts.size(); ++part) {
             const auto node = add_part(file, elements, triangles[part], primitives[part], parts[part].name, origin, sides);
             if (node) children.push_back(*node);

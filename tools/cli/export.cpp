@@ -45,7 +45,8 @@ void check_options(const ExportArgs& args, const CLI::App& command)
     const ExportFormat& format = format_of(args.format);
     for (const std::string& option : format.needs)
         if (command.count(option) == 0) throw ArgumentError("--format " + args.format + " needs " + option);
-    if (contains(format.needs, "--out") && args.out == "-") throw ArgumentError("--out is \"-\": --format " + args.format + " cannot go to standard output, name a file");
+    if (contains(format.needs, "--out") && args.out == "-") 
+        throw ArgumentError("--out is \"-\": --format " + args.format + " cannot go to standard output, name a file");
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         if (option->count() == 0 || contains(general, name) || uses(format, name)) continue;
@@ -97,7 +98,8 @@ void add_export(CLI::App& app, Run& run)
     command.get_option("--robot")->required(false);
     command.add_option("--format", args->format, "One of the formats below")->required()->check(CLI::IsMember(format_names()));
     command.add_option("--out,-o", args->out, "File to write (default: standard output, where the format can)");
-    command.add_option("--layers,--layer", args->layers, "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
+    command.add_option("--layers,--layer", args->layers,
+                       "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");

@@ -30,8 +30,9 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
 std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& options, const std::string& layers)
 {
     const Session& session = job.session;
-    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): where the origin of " + session.robot.name + " can be, " +
-            number(options.offset) + " m above its layer (" + (job.args.layers.empty() ? layers : job.args.layers) + "), yaw " + number(options.yaw) + " rad"};
+    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): where the origin of " + session.robot.name +
+            " can be, " + number(options.offset) + " m above its layer (" + (job.args.layers.empty() ? layers : job.args.layers) + "), yaw " +
+            number(options.yaw) + " rad"};
 }
 
 void check_one_layer(const ExportJob& job, const LayerChoice& layers)
@@ -86,8 +87,13 @@ void write_geotiff(const ExportJob& job)
     GeoTiffOptions options;
     const GridFrame frame = image_frame(job);
     std::optional<VerdictImage> verdicts;
-    if (job.has_robot()) verdicts = ask(job, image_options(job), frame);
-    options.layers = image_layers(job);
+    if (job.has_robot()) {
+        const RasterOptions asked = image_options(job);
+        verdicts = ask(job, asked, frame);
+        options.layers = asked.layers;
+    } else {
+        options.layers = image_layers(job);
+    }
     options.threads = job.args.threads;
     options.progress = progress_bar(job.args, "writing");
     spawnfield::write_geotiff(job.session.map, frame, verdicts ? &*verdicts : nullptr, options, job.args.out);
