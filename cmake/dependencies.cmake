@@ -7,6 +7,8 @@ find_package(assimp REQUIRED)
 find_package(OpenCV REQUIRED COMPONENTS core imgproc)
 find_package(CLI11 REQUIRED)
 find_package(yaml-cpp REQUIRED)
+find_package(tinyxml2 REQUIRED)
+find_package(sdformat12 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
@@ -20,6 +22,6 @@ pkg_check_modules(deflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 
 set(SPAWNFIELD_PRIVATE_LIBRARIES
-  fcl PkgConfig::ccd octomap octomath assimp::assimp opencv_core opencv_imgproc yaml-cpp
+  fcl PkgConfig::ccd octomap octomath assimp::assimp opencv_core opencv_imgproc yaml-cpp tinyxml2::tinyxml2 sdformat12::sdformat12
   nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate
   Threads::Threads)

@@ -242,7 +242,7 @@ TEST_CASE("a long raster comes in pieces of whole lines")
     CHECK(most < (1 << 20) + 100);
 }
 
-TEST_CASE("spawns as JSON have quaternions of unit length, their settings and the map they hold in")
+TEST_CASE("spawns as JSON have quaternions of unit length, names, their settings and the map they hold in")
 {
     SpawnList list;
     list.spawns = {{{1, 2, 3}, 0.5}};
@@ -251,28 +251,71 @@ TEST_CASE("spawns as JSON have quaternions of unit length, their settings and th
     Map map;
     map.name = "arena";
     map.hash = "0123456789abcdef";
+    map.bounds = {Vec3(-1, -2, -3), Vec3(4, 5, 6)};
     Robot robot;
     robot.name = "rover";
-    SpawnOptions options;
+    SampleOptions options;
     options.count = 4;
     options.min_distance = 0.25;
     options.seed = 42;
     options.random_yaw = true;
-    const auto json = nlohmann::json::parse(spawns_json(list, map, robot, options, "sample"));
+    options.offset = 0.2;
+    options.layers = {LayerChoice::Kind::Index, 1};
+    const std::vector<RobotStart> robots = robot_starts(list, {"rover_1"}, {"fleet/rover_1"});
+    const auto json = nlohmann::json::parse(spawns_json(robots, list, map, robot, options));
     CHECK(json["map"]["hash"] == "0123456789abcdef");
     CHECK(json["robot"] == "rover");
     CHECK(json["command"] == "sample");
-    CHECK(json["settings"]["count"] == 4);
-    CHECK(json["settings"]["min_distance"] == 0.25);
-    CHECK(json["settings"]["seed"] == 42);
-    CHECK(json["settings"]["yaw"] == "random");
+    CHECK(json["version"] == version());
+    const auto& settings = json["settings"];
+    CHECK(settings["count"] == 4);
+    CHECK(settings["min_distance"] == 0.25);
+    CHECK(settings["seed"] == 42);
+    CHECK(settings["yaw"] == "random");
+    CHECK(settings["offset"] == 0.2);
+    CHECK(settings["layers"] == 1);
+    CHECK(settings["bounds"] == std::vector<double>{-1, -2, 4, 5});
+    CHECK_FALSE((settings.contains("max_slope") || settings.contains("max_water_depth") || settings.contains("max_height")));
     CHECK(json["counts"]["valid"] == 1);
     CHECK(json["full"] == false);
     CHECK(json["undecided_area"] == 2.5);
-    const auto searched = nlohmann::json::parse(spawns_json(list, map, robot, options, "search"));
-    CHECK_FALSE((searched.contains("full") || searched.contains("undecided_area")));
+    CHECK(json["quaternion_order"] == "xyzw");
     REQUIRE(json["poses"].size() == 1);
-    CHECK(json["poses"][0]["position"] == std::vector<double>{1, 2, 3});
-    const auto q = json["poses"][0]["quaternion"].get<std::vector<double>>();
+    const auto& pose = json["poses"][0];
+    CHECK(pose["name"] == "rover_1");
+    CHECK(pose["namespace"] == "fleet/rover_1");
+    CHECK(pose["position"] == std::vector<double>{1, 2, 3});
+    const auto q = pose["quaternion"].get<std::vector<double>>();
     CHECK(Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix().isApprox(rotation_from_rpy(0, 0, 0.5), 1e-14));
+
+    SearchOptions search;
+    search.max_height = 0.5;
+    search.max_slope = 0.3;
+    search.bounds = {Vec3(0, 0, 0), Vec3(1, 1, 1)};
+    const auto searched = nlohmann::json::parse(spawns_json(robots, list, map, robot, search));
+    CHECK(searched["command"] == "search");
+    CHECK(searched["settings"]["max_height"] == 0.5);
+    CHECK(searched["settings"]["max_slope"] == 0.3);
+    CHECK(searched["settings"]["max_failures"] == 100000);
+    CHECK(searched["settings"]["bounds"] == std::vector<double>{0, 0, 0, 1, 1, 1});
+    CHECK_FALSE((searched.contains("full") || searched.contains("undecided_area")));
+
+    const auto given = nlohmann::json::parse(poses_json(robot_starts(list), map, robot));
+    CHECK(given["command"] == "export");
+    CHECK(given["map"]["hash"] == "0123456789abcdef");
+    CHECK_FALSE((given.contains("settings") || given.contains("counts") || given["poses"][0].contains("name")));
+}
+
+TEST_CASE("names of a table are carried on, and its poses keep roll and pitch")
+{
+    const PoseTable table = read("name,x,y,z,roll,pitch,yaw\n\"a, b\",1,2,3,0.1,-0.2,0.3\nc,4,5,6,0,0,3\n");
+    CHECK(column_of(table, "name") == std::vector<std::string>{"a, b", "c"});
+    CHECK(column_of(table, "label").empty());
+    const std::vector<RobotStart> robots = robot_starts(table, column_of(table, "name"));
+    CHECK(robots[0].rpy.roll == Approx(0.1).epsilon(1e-15));
+    CHECK(robots[0].rpy.pitch == Approx(-0.2).epsilon(1e-15));
+    CHECK(robots[0].rpy.yaw == Approx(0.3).epsilon(1e-15));
+    const PoseTable again = read(robots_csv(robots));
+    CHECK(column_of(again, "name") == column_of(table, "name"));
+    for (std::size_t i = 0; i < 2; ++i) CHECK(again.poses[i].rotation.isApprox(table.poses[i].rotation, 1e-15));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <spawnfield/query.h>
+#include <spawnfield/simulators.h>
 
 #include <filesystem>
 #include <string>
@@ -23,8 +24,12 @@ PoseTable read_poses(const std::filesystem::path& file);
 /// Poses as sample and search write them (x, y, z, yaw; roll and pitch are left aside).
 std::vector<Spawn> spawns_of(const PoseTable& table);
 
-/// The texts of a column, one for each pose, without quotes; empty if there is no such column.
+/// Fields of the column of this name, row by row, without quotes; none if the table has no such column.
 std::vector<std::string> column_of(const PoseTable& table, const std::string& name);
+
+/// Robots at the poses of a list or table, with names and namespaces of the same number, or without.
+std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names = {}, const std::vector<std::string>& name_spaces = {});
+std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names = {}, const std::vector<std::string>& name_spaces = {});
 
 /// What a column `verdict` says of each pose, as `check` and `raster` write it; empty if there is none. Throws FileError, with the
 /// name of the file that the table was read from.
@@ -43,8 +48,15 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
 /// x,y,z,roll,pitch,yaw.
 std::string spawns_csv(const SpawnList& list);
 
-/// Poses with quaternions (x, y, z, w) and what they were made from; of a sample also whether it is full.
-std::string spawns_json(const SpawnList& list, const Map& map, const Robot& robot, const SpawnOptions& options,
-                        const std::string& command);
+/// The same, after a column `name` if the robots have names.
+std::string robots_csv(std::span<const RobotStart> robots);
+
+/// Poses with names and quaternions (x, y, z, w), and what they were made from and with: settings, counts; of a sample also
+/// whether it is full. `robots` are the list's spawns.
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SampleOptions& options);
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SearchOptions& options);
+
+/// The same of poses that come from somewhere else: without settings and counts.
+std::string poses_json(std::span<const RobotStart> robots, const Map& map, const Robot& robot);
 
 }  // namespace spawnfield

@@ -207,6 +207,79 @@ void append_row(std::string& text, const RasterPose& pose, double yaw)
     text += '\n';
 }
 
+using Json = nlohmann::ordered_json;
+
+Json bounds_json(const Bounds& bounds, int axes)
+{
+    Json out = Json::array();
+    for (const Vec3& corner : {bounds.min, bounds.max})
+        for (int axis = 0; axis < axes; ++axis) out.push_back(corner[axis]);
+    return out;
+}
+
+Json layers_json(const LayerChoice& layers)
+{
+    switch (layers.kind) {
+    case LayerChoice::Kind::Top: return "top";
+    case LayerChoice::Kind::Bottom: return "bottom";
+    case LayerChoice::Kind::Index: return layers.index;
+    case LayerChoice::Kind::All: break;
+    }
+    return "all";
+}
+
+/// What both commands have; a limit that there is not is left out.
+Json settings_json(const SpawnOptions& options, const Map& map, int axes)
+{
+    Json out = {{"count", options.count}, {"min_distance", options.min_distance}, {"seed", options.seed}};
+    out["yaw"] = options.random_yaw ? Json("random") : Json(options.yaw);
+    out["bounds"] = bounds_json(options.bounds.is_empty() ? map.bounds : options.bounds, axes);
+    if (std::isfinite(options.max_water_depth)) out["max_water_depth"] = options.max_water_depth;
+    if (std::isfinite(options.max_slope)) out["max_slope"] = options.max_slope;
+    return out;
+}
+
+Json json_head(const std::string& command, const Map& map, const Robot& robot, Json settings)
+{
+    Json out;
+    out["format"] = "spawnfield-spawns/1";
+    out["version"] = version();
+    out["command"] = command;
+    out["map"] = {{"name", map.name}, {"hash", map.hash}};
+    out["robot"] = robot.name;
+    if (!settings.is_null()) out["settings"] = std::move(settings);
+    out["frame"] = "metres, radians, x forward, y left, z up (REP-103)";
+    out["quaternion_order"] = "xyzw";
+    return out;
+}
+
+Json pose_json(const RobotStart& robot)
+{
+    Json out;
+    if (!robot.name.empty()) out["name"] = robot.name;
+    if (!robot.name_space.empty()) out["namespace"] = robot.name_space;
+    const Vec3& p = robot.position;
+    const Eigen::Quaterniond q = quaternion_from(robot.rpy);
+    out["position"] = {p.x(), p.y(), p.z()};
+    out["quaternion"] = {q.x(), q.y(), q.z(), q.w()};
+    out["rpy"] = {robot.rpy.roll, robot.rpy.pitch, robot.rpy.yaw};
+    return out;
+}
+
+std::string finished(Json out, const std::optional<VerdictCounts>& counts, std::span<const RobotStart> robots)
+{
+    for (std::size_t verdict = 0; counts && verdict < verdict_count; ++verdict) out["counts"][to_string(Verdict(verdict))] = (*counts)[verdict];
+    out["poses"] = Json::array();
+    for (const RobotStart& robot : robots) out["poses"].push_back(pose_json(robot));
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // a name may be no UTF-8
+}
+
+void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& names, const std::vector<std::string>& name_spaces)
+{
+    for (std::size_t i = 0; i < names.size(); ++i) robots.at(i).name = names[i];
+    for (std::size_t i = 0; i < name_spaces.size(); ++i) robots.at(i).name_space = name_spaces[i];
+}
+
 }  // namespace
 
 PoseTable read_poses(const std::filesystem::path& file)
@@ -287,6 +360,34 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
     sink(text);
 }
 
+std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names, const std::vector<std::string>& name_spaces)
+{
+    std::vector<RobotStart> out;
+    for (const Spawn& spawn : list.spawns) out.push_back({{}, {}, spawn.position, {0, 0, spawn.yaw}});
+    name_all(out, names, name_spaces);
+    return out;
+}
+
+std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names, const std::vector<std::string>& name_spaces)
+{
+    std::vector<RobotStart> out;
+    for (const Pose& pose : table.poses) out.push_back({{}, {}, pose.position, rpy_from(pose.rotation)});
+    name_all(out, names, name_spaces);
+    return out;
+}
+
+std::string robots_csv(std::span<const RobotStart> robots)
+{
+    const bool named = !robots.empty() && !robots[0].name.empty();
+    std::string text = named ? "name,x,y,z,roll,pitch,yaw\n" : "x,y,z,roll,pitch,yaw\n";
+    for (const RobotStart& robot : robots) {
+        if (named) text += quoted_if_needed(robot.name) + ',';
+        append_numbers(text, {robot.position.x(), robot.position.y(), robot.position.z(), robot.rpy.roll, robot.rpy.pitch, robot.rpy.yaw});
+        text += '\n';
+    }
+    return text;
+}
+
 std::string spawns_csv(const SpawnList& list)
 {
     std::string text = "x,y,z,roll,pitch,yaw\n";
@@ -297,33 +398,28 @@ std::string spawns_csv(const SpawnList& list)
     return text;
 }
 
-std::string spawns_json(const SpawnList& list, const Map& map, const Robot& robot, const SpawnOptions& options,
-                        const std::string& command)
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SampleOptions& options)
 {
-    nlohmann::ordered_json out;
-    out["format"] = "spawnfield-spawns/1";
-    out["command"] = command;
-    out["map"] = {{"name", map.name}, {"hash", map.hash}};
-    out["robot"] = robot.name;
-    out["settings"] = {{"count", options.count}, {"min_distance", options.min_distance}, {"seed", options.seed},
-                       {"yaw", options.random_yaw ? nlohmann::ordered_json("random") : nlohmann::ordered_json(options.yaw)}};
-    if (std::isfinite(options.max_slope)) out["settings"]["max_slope"] = options.max_slope;
-    out["frame"] = "metres, radians, x forward, y left, z up (REP-103)";
-    out["quaternion_order"] = "xyzw";
-    if (command == "sample") {
-        out["full"] = list.is_full;
-        out["undecided_area"] = list.undecided_area;
-    }
-    for (std::size_t verdict = 0; verdict < verdict_count; ++verdict)
-        out["counts"][to_string(Verdict(verdict))] = list.counts[verdict];
-    out["poses"] = nlohmann::ordered_json::array();
-    for (const Spawn& spawn : list.spawns) {
-        const Vec3& p = spawn.position;
-        out["poses"].push_back({{"position", {p.x(), p.y(), p.z()}},
-                                {"quaternion", {0.0, 0.0, std::sin(spawn.yaw / 2), std::cos(spawn.yaw / 2)}},
-                                {"rpy", {0.0, 0.0, spawn.yaw}}});
-    }
-    return out.dump(2) + "\n";
+    Json settings = settings_json(options, map, 2);
+    settings["offset"] = options.offset;
+    settings["layers"] = layers_json(options.layers);
+    Json out = json_head("sample", map, robot, std::move(settings));
+    out["full"] = list.is_full;
+    out["undecided_area"] = list.undecided_area;
+    return finished(std::move(out), list.counts, robots);
+}
+
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SearchOptions& options)
+{
+    Json settings = settings_json(options, map, 3);
+    settings["max_height"] = options.max_height;
+    settings["max_failures"] = options.max_failures;
+    return finished(json_head("search", map, robot, std::move(settings)), list.counts, robots);
+}
+
+std::string poses_json(std::span<const RobotStart> robots, const Map& map, const Robot& robot)
+{
+    return finished(json_head("export", map, robot, {}), std::nullopt, robots);
 }
 
 }  // namespace spawnfield

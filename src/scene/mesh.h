@@ -21,7 +21,7 @@ struct MeshOptions {
     enum class Solid { Auto, Yes, No };
     Pose pose;                  ///< scene_from_part
     Vec3 scale = Vec3::Ones();  ///< on the file's own axes, after the file's own unit
-    char up = 0;                ///< 'y', 'z'; 0: what the format says, else z
+    char up = 0;                ///< 'x', 'y', 'z'; 0: what the format says, else z
     Solid solid = Solid::Auto;
     bool sides_up = false;
     std::vector<FaceRule> rules;
@@ -58,8 +58,12 @@ private:
     std::map<std::filesystem::path, Entry> files_;
 };
 
-/// y up to z up: (x, y, z) becomes (x, -z, y).
-inline Vec3 turned_up(const Vec3& point, char up) { return up == 'y' ? Vec3(point.x(), -point.z(), point.y()) : point; }
+/// y up to z up: (x, y, z) becomes (x, -z, y); x up (with -y to the right), by way of y up: (-y, -z, x).
+inline Vec3 turned_up(const Vec3& point, char up)
+{
+    if (up == 'x') return {-point.y(), -point.z(), point.x()};
+    return up == 'y' ? Vec3(point.x(), -point.z(), point.y()) : point;
+}
 
 /// What label rules can match in a mesh.
 struct MeshNames {

@@ -133,15 +133,12 @@ FileMesh read_mesh(const std::filesystem::path& file)
 
     FileMesh mesh;
     for (unsigned m = 0; m < scene->mNumMaterials; ++m) mesh.materials.push_back(scene->mMaterials[m]->GetName().C_Str());
-    Mat4 axes = Mat4::Identity();
     if (extension == ".gltf" || extension == ".glb") mesh.up = 'y';
     if (extension == ".dae") {
         const std::string up = collada_up_axis(file);
-        mesh.up = up == "Z_UP" ? 'z' : 'y';
-        // X_UP (x up, -y right) becomes y up by a quarter turn about z.
-        if (up == "X_UP") axes.topLeftCorner<2, 2>() << 0, -1, 1, 0;
+        mesh.up = up == "Z_UP" ? 'z' : up == "X_UP" ? 'x' : 'y';
     }
-    collect(*scene, *scene->mRootNode, axes, file.string(), mesh);
+    collect(*scene, *scene->mRootNode, Mat4::Identity(), file.string(), mesh);
     if (mesh.nodes.empty()) throw FileError(file.string(), "has no triangles, needs at least one");
     return mesh;
 }

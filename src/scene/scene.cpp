@@ -1,7 +1,11 @@
+#include "base/input_file.h"
+#include "scene/bodies.h"
 #include "scene/elements.h"
 #include "scene/heightmap.h"
 #include "scene/mesh.h"
 #include "scene/octomap_part.h"
+#include "scene/plausibility.h"
+#include "scene/sdf_world.h"
 #include "scene/yaml_map.h"
 
 #include <spawnfield/error.h>
@@ -13,6 +17,8 @@
 #include <set>
 
 namespace spawnfield {
+
+namespace fs = std::filesystem;
 
 Bounds Scene::bounds() const
 {
@@ -95,7 +101,7 @@ void tell_idle_rules(const YamlMap& part, const std::vector<FaceRule>& rules, co
     }
 }
 
-void tell_idle_rules(const std::filesystem::path& file, const std::vector<LabelRule>& rules, const Names& names, Scene& scene)
+void tell_idle_rules(const fs::path& file, const std::vector<LabelRule>& rules, const Names& names, Scene& scene)
 {
     constexpr std::size_t most = 8;
     std::string some;
@@ -142,7 +148,7 @@ void add_names(const Names& more, Names& names)
 
 /// What the parts of a scene.yaml have in common.
 struct SceneFile {
-    std::filesystem::path folder;
+    fs::path folder;
     const SceneOptions& options;
     MeshFiles meshes;
     Names names;  ///< that label rules of the options can match
@@ -190,7 +196,9 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
         const HeightmapOptions heightmap = read_heightmap_options(map.map("heightmap"));
         const bool up = map.one_of("sides", {"both", "up"}, "both") == "up";
         in_part(map.map("heightmap"), "file", [&](const auto& path) {
-            append_heightmap(scene, part, read_heightmap(file.folder / path, heightmap), map.pose(), up);
+            const Heightmap found = read_heightmap(file.folder / path, heightmap);
+            append_heightmap(scene, part, found, map.pose(), up);
+            place_scene(scene, found, map.pose(), map.file() + ": " + map.place());
         });
     } else if (kind == "octomap") {
         in_part(map, "octomap", [&](const auto& path) { append_octomap(scene, part, file.folder / path, map.pose()); });
@@ -200,7 +208,7 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
     }
 }
 
-Scene read_scene_yaml(const std::filesystem::path& file, const SceneOptions& options)
+Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
 {
     const YamlMap root = read_yaml(file, "spawnfield-scene/1");
     root.only({"format", "name", "parts"});
@@ -224,9 +232,36 @@ Scene read_scene_yaml(const std::filesystem::path& file, const SceneOptions& opt
     return scene;
 }
 
+bool is_elevation_model(const fs::path& file, const std::string& extension, const SceneOptions& options)
+{
+    if (!options.heightmap.empty() || extension == ".asc" || extension == ".tif" || extension == ".tiff" || extension == ".png") return true;
+    if (extension == ".raw" && read_file(file).find('\0') != std::string::npos)  // else text: a mesh that assimp reads
+        throw FileError(file.string(), "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
+    return false;
+}
+
+Scene read_elevation_model(const fs::path& file, const SceneOptions& options)
+{
+    if (options.up != 0 || options.scale != 1.0)
+        throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() + " is an elevation model, in metres and z up");
+    Scene scene;
+    scene.name = file.stem().string();
+    Label label = Label::Terrain;
+    for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
+        if (matches(rule->pattern, scene.name)) label = rule->label;
+    const std::uint32_t part = add_part(scene, scene.name, "heightmap", label);
+    if (label != Label::Ignore) {
+        const Heightmap found = read_heightmap(file, parse_heightmap_options(options.heightmap));
+        append_heightmap(scene, part, found, {}, false);
+        place_scene(scene, found, {}, file.string());
+    }
+    tell_idle_rules(file, options.labels, {scene.name}, scene);
+    return scene;
+}
+
 bool is_octomap(const std::string& extension) { return extension == ".bt" || extension == ".ot"; }
 
-Scene read_bare_file(const std::filesystem::path& file, const std::string& extension, const SceneOptions& options)
+Scene read_bare_file(const fs::path& file, const std::string& extension, const SceneOptions& options)
 {
     Scene scene;
     scene.name = file.stem().string();
@@ -257,7 +292,35 @@ Scene read_bare_file(const std::filesystem::path& file, const std::string& exten
     return scene;
 }
 
-std::string lower_extension(const std::filesystem::path& file)
+void tell_some(const fs::path& file, const Names& names, const std::string& what, Scene& scene)
+{
+    constexpr std::size_t most = 5;
+    if (names.empty()) return;
+    std::string some;
+    for (std::size_t i = 0; i < std::min(most, names.size()); ++i) some += (i > 0 ? ", " : "") + names[i];
+    scene.notices.push_back(file.string() + ": " + std::to_string(names.size()) + " " + what + ": " + some + (names.size() > most ? ", …" : ""));
+}
+
+Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
+{
+    ModelPaths paths(options.model_paths, file);
+    SdfWorld world = read_sdf_world(file, paths);
+    Scene scene;
+    scene.name = world.name.empty() || world.name == "default" ? file.stem().string() : world.name;
+    scene.notices = std::move(world.notices);
+    append_bodies(scene, file, std::move(world.bodies), paths, options, std::move(world.missing));
+    tell_some(file, world.bare_models, world.bare_models.size() == 1 ? "model has no collision and is not there for a robot" : "models have no collision and are not there for a robot", scene);
+    if (world.actor_count > 0) scene.notices.push_back(file.string() + ": <actor>: " + std::to_string(world.actor_count) + " left out, as they move");
+    if (world.road_count > 0) scene.notices.push_back(file.string() + ": <road>: " + std::to_string(world.road_count) + " left out, as they are only seen");
+    Names guessed;
+    for (const fs::path& folder : paths.guessed()) guessed.push_back(folder.string());
+    tell_some(file, guessed, guessed.size() == 1 ? "folder of models was found above the file (--model-path names others)" : "folders of models were found above the file (--model-path names others)", scene);
+    if (world.model_count == 0)
+        throw FileError(file.string(), "has no models, so nothing to stand on; what is spawned into it at run time has to be in the file");
+    return scene;
+}
+
+std::string lower_extension(const fs::path& file)
 {
     std::string extension = file.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -266,18 +329,30 @@ std::string lower_extension(const std::filesystem::path& file)
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& file, const SceneOptions& options)
+fs::path scene_file_of(const fs::path& scene) { return fs::is_directory(scene) ? sdf_file_of(scene) : scene; }
+
+Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
 {
     if (!(options.scale > 0) || !std::isfinite(options.scale))
         throw ArgumentError("load_scene", "scale", options.scale, "> 0 m per unit");
-    if (!std::filesystem::is_regular_file(file))
-        throw FileError(file.string(), std::filesystem::exists(file) ? "is no file" : "does not exist; is the path right?");
+    const fs::path file = scene_file_of(scene_path);
+    if (!fs::is_regular_file(file)) throw FileError(file.string(), fs::exists(file) ? "is no file" : "does not exist; is the path right?");
     const std::string extension = lower_extension(file);
-    const bool yaml = extension == ".yaml" || extension == ".yml";
-    if (yaml && (options.up != 0 || options.scale != 1.0))
-        throw ArgumentError("load_scene", "up and scale are for a bare mesh; give them in " + file.string() + " (keys up, scale)");
-    Scene scene = yaml ? read_scene_yaml(file, options) : read_bare_file(file, extension, options);
-    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored");
+    const bool yaml = extension == ".yaml" || extension == ".yml", sdf = extension == ".sdf" || extension == ".world";
+    if ((yaml || sdf) && (options.up != 0 || options.scale != 1.0))
+        throw ArgumentError("load_scene", "up and scale are for a bare mesh; " +
+                                              (sdf ? "Gazebo takes a world as it is" : "give them in " + file.string() + " (keys up, scale)"));
+    if ((yaml || sdf) && !options.heightmap.empty())
+        throw ArgumentError("load_scene", "--heightmap is for an elevation model by itself" + (yaml ? "; give the keys in " + file.string() + " (heightmap)" : std::string()));
+    Scene scene = yaml                                           ? read_scene_yaml(file, options)
+                  : sdf                                          ? read_sdf_scene(file, options)
+                  : is_elevation_model(file, extension, options) ? read_elevation_model(file, options)
+                                                                 : read_bare_file(file, extension, options);
+    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored, missing or without collision");
+    const Remedies remedies = yaml  ? Remedies{"scale of its part:", "up of its part"}
+                              : sdf ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}
+                                    : Remedies{"--scale", "--up y or z"};
+    for (std::string& doubt : doubts_about(scene, file.string(), remedies)) scene.notices.push_back(std::move(doubt));
     return scene;
 }
 

@@ -1,4 +1,4 @@
-#include "cli.h"
+#include "scene_args.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/map.h>
@@ -16,9 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-struct InfoArgs : CommonArgs {
-    std::string what, up;
-    double scale = 1;
+struct InfoArgs : CommonArgs, SceneArgs {
+    std::string what;
     std::vector<std::string> package_paths;
     bool json = false, verify = false;
 };
@@ -26,6 +25,8 @@ struct InfoArgs : CommonArgs {
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json json_of(const Bounds& bounds) { return {{"min", json_of(bounds.min)}, {"max", json_of(bounds.max)}}; }
+
+Json json_of(const GeoOrigin& origin) { return {{"x", origin.x}, {"y", origin.y}, {"unit", origin.unit}, {"crs", origin.crs}}; }
 
 Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
 {
@@ -42,8 +43,11 @@ Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
 
 Json scene_json(const Scene& scene)
 {
-    Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.bounds())}};
+    Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds)}};
     out.update(json_of(scene.count_labels(), scene.parts));
+    for (const NameRule& rule : scene.rules)
+        out["rules"].push_back({{"what", rule.what}, {"label", to_string(rule.label)}, {"collisions", rule.count}});
+    if (scene.origin) out["origin"] = json_of(*scene.origin);
     out["notices"] = scene.notices;
     return out;
 }
@@ -53,6 +57,7 @@ Json map_json(const Map& map, bool verified)
     Json out = {{"kind", "map"}, {"name", map.name}, {"bounds", json_of(map.bounds)}, {"resolution", map.resolution},
                 {"occupancy_resolution", map.occupancy_resolution}, {"layers", map.layers},
                 {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
+    if (map.origin) out["origin"] = json_of(*map.origin);
     if (verified) out["verified"] = true;
     out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
     for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
@@ -100,6 +105,16 @@ std::string extent_lines(const Json& bounds)
     return out.str();
 }
 
+/// In full, as millions of metres are usual.
+std::string origin_line(const Json& out)
+{
+    if (!out.contains("origin")) return "";
+    const Json& origin = out["origin"];
+    const std::string crs = origin["crs"];
+    return "  0, 0 is x " + number(origin["x"]) + ", y " + number(origin["y"]) + (crs.empty() ? "" : " of " + crs) +
+           (origin["unit"] == 1.0 ? "" : ", in units of " + number(origin["unit"]) + " m") + "\n";
+}
+
 /// Says what is filled and what is a shell, as nothing surprises more.
 std::string part_line(const Json& part)
 {
@@ -120,6 +135,10 @@ std::string scene_lines(const Json& scene)
     std::string out = "labels\n";
     for (const auto& [label, counts] : scene["labels"].items())
         out += "  " + label + ": " + counted(counts["triangles"], "triangle") + ", " + counted(counts["primitives"], "primitive") + "\n";
+    if (scene.contains("rules")) out += "labels come from --label, then from the first rule that matches\n";
+    if (scene.contains("rules"))
+        for (const Json& rule : scene["rules"])
+            out += "  " + rule["what"].get<std::string>() + " is " + rule["label"].get<std::string>() + ": " + counted(rule["collisions"], "collision") + "\n";
     out += "parts\n";
     constexpr std::size_t most = 60;
     const Json& parts = scene["parts"];
@@ -133,7 +152,7 @@ std::string map_lines(const Json& map)
     std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() + ", hash " +
                       map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
     out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") + "; voxels of " +
-           map["occupancy_resolution"].dump() + " m\n";
+           map["occupancy_resolution"].dump() + " m\n" + origin_line(map);
     out += scene_lines(map) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
@@ -168,24 +187,21 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     const Progress listen = progress_bar(args, "info");
     Summary summary("info", args);
     Json out;
-    if (fs::is_directory(args.what)) {
-        refuse(command, {"--up", "--scale"}, "is for a bare mesh; " + args.what + " is a folder");
-        refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is a folder");
+    if (fs::is_directory(args.what) && !fs::exists(fs::path(args.what) / "model.config")) {
+        refuse(command, scene_option_names, "is for a scene; " + args.what + " is a map's folder");
+        refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is a map's folder");
         if (args.verify) verify_map(args.what);
         const Map map = read_map(args.what);
         summary.map_hash = map.hash;
         out = map_json(map, args.verify);
     } else if (is_robot(args.what)) {
-        refuse(command, {"--up", "--scale"}, "is for a bare mesh; " + args.what + " is a robot");
+        refuse(command, scene_option_names, "is for a scene; " + args.what + " is a robot");
         refuse(command, {"--verify"}, "is for a map; " + args.what + " is a robot");
         out = robot_json(load_robot(args.what, {{args.package_paths.begin(), args.package_paths.end()}}));
     } else {
         refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is none");
         refuse(command, {"--verify"}, "is for a map folder; " + args.what + " is none");
-        SceneOptions options;
-        options.up = args.up.empty() ? char{0} : args.up[0];
-        options.scale = parse_positive("--scale", args.scale);
-        const Scene scene = load_scene(args.what, options);
+        const Scene scene = load_scene(args.what, scene_options(args));
         for (const std::string& text : scene.notices) notice(args, text);
         out = scene_json(scene);
     }
@@ -195,7 +211,7 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     const std::string text = args.json          ? out.dump(2) + "\n"
                              : kind == "map"    ? map_lines(out)
                              : kind == "robot"  ? robot_lines(out)
-                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + scene_lines(out);
+                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + origin_line(out) + scene_lines(out);
     write_output("", [&](const auto& sink) { sink(text); });
     summary.lap("write");
     summary.extra = {args.what};
@@ -209,11 +225,10 @@ void add_info(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<InfoArgs>();
     CLI::App& command = *app.add_subcommand("info", "What a map, a scene or a robot holds");
-    command.add_option("what", args->what, "Map folder, scene file, robot.yaml, .urdf or box:LX,LY,LZ")->required();
+    command.add_option("what", args->what, "Map folder, scene file or model folder, robot.yaml, .urdf or box:LX,LY,LZ")->required();
     command.add_flag("--json", args->json, "As JSON");
     command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
-    command.add_option("--up", args->up, "Up axis of a bare mesh: y or z")->check(CLI::IsMember({"y", "z"}));
-    command.add_option("--scale", args->scale, "Metres per unit of a bare mesh");
+    add_scene_options(command, *args);
     command.add_option("--package-path", args->package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
     add_common(command, *args);
     command.footer("Example:\n  spawnfield info maps/training/scene.yaml");

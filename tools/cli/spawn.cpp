@@ -1,3 +1,4 @@
+#include "simulator_output.h"
 #include "spawn_args.h"
 #include "thesis_output.h"
 
@@ -10,6 +11,7 @@ namespace {
 
 struct SpawnArgs : QueryArgs {
     DrawArgs draws;
+    SimulatorArgs simulator;
     double offset = 0.1;
     std::string bounds, region, layers = "all", yaw = "0", format = "csv", out;
 
@@ -51,11 +53,13 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnO
     return out;
 }
 
-void write(const SpawnArgs& args, const Session& session, const SpawnOptions& options, const SpawnList& list, const std::string& command)
+template <class Options>
+void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& session, const Options& options, const SpawnList& list)
 {
-    write_output(args.out, [&](const auto& sink) {
-        sink(args.format == "json" ? spawns_json(list, session.map, session.robot, options, command) : spawns_csv(list));
-    });
+    if (!output.has_names()) return write_output(args.out, [&](const auto& sink) { sink(spawns_csv(list)); });
+    std::vector<RobotStart> robots = robot_starts(list);
+    output.give_names(robots);
+    output.write(robots, session.map, [&] { return spawns_json(robots, list, session.map, session.robot, options); });
 }
 
 int finish(Summary& summary, const SpawnArgs& args, const Session& session, const SpawnOptions& options, const SpawnList& list,
@@ -77,11 +81,14 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
 /// Both commands, once their options are known: `own` are the settings that the other has not.
 template <class Options>
 int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Options&), Summary& summary, const SpawnArgs& args,
-              Options options, const std::string& command, const Settings& own, const std::function<void(const Session&)>& tell)
+              const CLI::App& app, Options options, const std::string& command, const Settings& own, const std::function<void(const Session&)>& tell)
 {
     options.random_yaw = !parse_yaw(args.yaw, options.yaw);
     options.exact_time = &summary.exact_time;
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
+    if (folder) tell_idle_options(args, app, args.format);
+    std::optional<SimulatorOutput> output;
+    if (!folder) output.emplace(args, app, args.simulator, SimulatorOutput::Target{args.format, args.out, args.robot, options.count});
     const auto session = open_session(args);
     tell(*session);
     summary.lap("load");
@@ -91,16 +98,16 @@ int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Opti
     if (folder)
         write_thesis(*folder, settings_of(args, *session, options, list, command, own), list.counts, summary,
                      [&](const auto& into) { return write_thesis_locations(into, list); });
-    else write(args, *session, options, list, command);
+    else write(args, *output, *session, options, list);
     return finish(summary, args, *session, options, list, command);
 }
 
-int run_search(const SpawnArgs& args)
+int run_search(const SpawnArgs& args, const CLI::App& command)
 {
     Summary summary("search", args);
     const SearchOptions options = search_options(args, args.draws, args.bounds, "search");
     const Settings own = {{"Max failures", std::to_string(options.max_failures)}, {"Max height (m)", number(options.max_height)}};
-    return run_spawn(search, summary, args, options, "search", own,
+    return run_spawn(search, summary, args, command, options, "search", own,
                      [&](const Session& session) { tell_if_off_map(args, session.map, "--bounds", options.bounds); });
 }
 
@@ -114,7 +121,7 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
     options.layers = parse_layers(args.layers);
     tell_idle(args, command, {"--max-height"}, "samples stand on their layers");
     const Settings own = {{"Offset (m)", number(options.offset)}, {"Layers", args.layers}};
-    return run_spawn(sample, summary, args, options, "sample", own, [&](const Session& session) {
+    return run_spawn(sample, summary, args, command, options, "sample", own, [&](const Session& session) {
         tell_if_off_map(args, session.map, "--region", options.bounds);
         tell_if_no_layer(args, session.map, options.layers);
         tell_if_in_ground(args, session.robot, options.offset);
@@ -127,9 +134,12 @@ void add_spawn_options(CLI::App& command, SpawnArgs& args)
     add_draws(command, args.draws);
     command.get_option("--count")->required();
     command.add_option("--yaw", args.yaw, "rad, or random (default 0)");
-    command.add_option("--format", args.format, "csv, json, or thesis: a folder of Valid_Locations.txt and the like in Unity's frame (default csv)")
-        ->check(CLI::IsMember({"csv", "json", "thesis"}));
+    std::vector<std::string> formats = pose_formats;
+    formats.push_back("thesis");
+    command.add_option("--format", args.format, "csv, json; a file for a simulator; or thesis: a folder of Valid_Locations.txt and the like (default csv)")
+        ->check(CLI::IsMember(formats));
     command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
+    add_simulator_options(command, args.simulator);
 }
 
 }  // namespace
@@ -142,7 +152,7 @@ void add_search(CLI::App& app, Run& run)
     add_max_failures(command, args->draws);
     command.add_option("--bounds", args->bounds, "Box of the draws: x0,y0,z0,x1,y1,z1 in m (default: the map's)");
     command.footer("Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 --max-failures 10000");
-    command.callback([=, &run] { run = [=] { return run_search(*args); }; });
+    command.callback([=, &command, &run] { run = [=, &command] { return run_search(*args, command); }; });
 }
 
 void add_sample(CLI::App& app, Run& run)

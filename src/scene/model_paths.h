@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace spawnfield {
+
+/// Where the URIs of SDF and URDF files lead: model://, package://, file://, Fuel's https://, and relative paths.
+class ModelPaths {
+public:
+    using Path = std::filesystem::path;
+
+    /// Looks into the given folders first, then into those of GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH,
+    /// then into the folders above `file` and the `models` folders in them.
+    ModelPaths(const std::vector<Path>& given, const Path& file);
+
+    /// What the URI names, seen from a file in `folder`: a file or a folder that exists, or nothing.
+    Path find(const std::string& uri, const Path& folder);
+
+    /// Folders above the file's own in which something was found: nobody named them.
+    const std::set<Path>& guessed() const { return guessed_; }
+
+private:
+    std::vector<Path> named_, above_;
+    std::set<Path> guessed_;
+};
+
+/// The SDF file of a model folder: what its model.config names with the highest version, or else its only .sdf. Throws FileError.
+std::filesystem::path sdf_file_of(const std::filesystem::path& folder);
+
+}  // namespace spawnfield

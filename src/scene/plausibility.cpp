@@ -1,0 +1,50 @@
+#include "scene/plausibility.h"
+
+#include "base/number.h"
+#include "scene/elements.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+std::string metres(double value) { return number(value < 10 ? std::round(value * 1000) / 1000 : std::round(value)); }
+
+/// Area of all faces as seen along x, y and z, m2.
+Vec3 seen_areas(const Scene& scene)
+{
+    Vec3 sum = Vec3::Zero();
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+        const auto [a, b, c] = corners_of(scene, t);
+        sum += (b - a).cross(c - a).cwiseAbs() / 2;
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::vector<std::string> doubts_about(const Scene& scene, const std::string& file, const Remedies& remedies)
+{
+    constexpr double large = 20000, small = 0.5;  // m across: no simulated world is larger, no robot's world smaller
+    std::vector<std::string> out;
+    const Bounds bounds = scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds;
+    const Vec3 size = bounds.max - bounds.min;
+    const double across = size.head<2>().maxCoeff();
+    if (across > large || across < small) {
+        const bool is_large = across > large;
+        out.push_back(file + ": is " + metres(size.x()) + " x " + metres(size.y()) + " x " + metres(size.z()) + " m, which is " +
+                      (is_large ? "large: is it in millimetres? " : "small: is it in other units than metres? ") + remedies.scale +
+                      (is_large ? " 0.001 makes it metres" : " 1000 makes it a thousand times larger"));
+    }
+    const Vec3 seen = seen_areas(scene);
+    const double sideways = seen.head<2>().maxCoeff(), other = seen.head<2>().minCoeff();
+    // Towers show as much along x as along y; what lies on its side shows most along one of them.
+    if (sideways > 2 * seen.z() && sideways > 2 * other)
+        out.push_back(file + ": most of its faces look along " + (seen.y() > seen.x() ? "y" : "x") + ", few up: does it lie on its side? " + remedies.up +
+                      " says which axis is up");
+    return out;
+}
+
+}  // namespace spawnfield

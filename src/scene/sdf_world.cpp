@@ -1,0 +1,314 @@
+#include "scene/sdf_world.h"
+
+#include "base/number.h"
+
+#include <spawnfield/error.h>
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <sstream>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+using Xml = tinyxml2::XMLElement;
+
+std::string trimmed(const std::string& text)
+{
+    const auto space = " \t\r\n";
+    const std::size_t start = text.find_first_not_of(space);
+    return start == std::string::npos ? "" : text.substr(start, text.find_last_not_of(space) - start + 1);
+}
+
+std::string text_of(const Xml& parent, const char* name)
+{
+    const Xml* const child = parent.FirstChildElement(name);
+    return child != nullptr && child->GetText() != nullptr ? trimmed(child->GetText()) : "";
+}
+
+std::string line_of(const Xml& element) { return "line " + std::to_string(element.GetLineNum()) + ": "; }
+
+template <class Visit>
+void for_each_child(const Xml& parent, const char* name, const Visit& visit)
+{
+    for (const Xml* child = parent.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name)) visit(*child);
+}
+
+template <class Visit>
+void for_each_element(const Xml& element, const Visit& visit)
+{
+    visit(element);
+    for_each_child(element, nullptr, [&](const Xml& child) { for_each_element(child, visit); });
+}
+
+/// x y z roll pitch yaw. Nothing where the pose is none of six plain numbers, or hangs on something.
+std::optional<Pose> plain_pose(const Xml& pose)
+{
+    for (const tinyxml2::XMLAttribute* attribute = pose.FirstAttribute(); attribute != nullptr; attribute = attribute->Next())
+        if (*attribute->Value() != '\0') return {};
+    std::istringstream words(pose.GetText() != nullptr ? pose.GetText() : "");
+    std::vector<double> values;
+    for (std::string word; words >> word;) {
+        double value = 0;
+        if (!parse_number(word, value) || !std::isfinite(value)) return {};
+        values.push_back(value);
+    }
+    if (values.size() != 6) return {};
+    return Pose{{values[0], values[1], values[2]}, rotation_from_rpy(values[3], values[4], values[5])};
+}
+
+/// A <include> of which the place is plain.
+bool is_plain(const Xml& include)
+{
+    if (include.FirstAttribute() != nullptr) return false;
+    bool plain = true;
+    for_each_child(include, nullptr, [&](const Xml& child) {
+        const std::string name = child.Name();
+        plain = plain && (name == "uri" || name == "name" || name == "static" || name == "plugin" || (name == "pose" && plain_pose(child)));
+    });
+    return plain;
+}
+
+/// Whether something in the world may hang on the frame of a model that another line includes.
+bool hangs_on_frames(const Xml& world)
+{
+    bool found = world.FirstChildElement("frame") != nullptr || world.FirstChildElement("joint") != nullptr;
+    for_each_element(world, [&](const Xml& element) {
+        for (const char* const name : {"relative_to", "attached_to", "frame"}) {
+            const char* const value = element.Attribute(name);
+            found = found || (value != nullptr && *value != '\0');
+        }
+    });
+    return found;
+}
+
+class WorldReader {
+public:
+    WorldReader(fs::path file, ModelPaths& paths) : file_(std::move(file)), paths_(paths) {}
+
+    SdfWorld read()
+    {
+        const auto document = checked(file_);
+        visit_includes(file_, *document);
+        Xml* const world = document->RootElement()->FirstChildElement("world");
+        if (world == nullptr) {
+            read_lone_model();
+        } else {
+            refuse_population(*world);
+            tell_state(*world);
+            for_each_child(*world, "actor", [&](const Xml&) { ++out_.actor_count; });
+            for_each_child(*world, "road", [&](const Xml&) { ++out_.road_count; });
+            const std::vector<const Xml*> includes = plain_includes(*world);
+            append(read_sdf_file(file_, paths_, text_without(*document, *world, includes)));
+            for (const Xml* const include : includes) append_include(*include);
+        }
+        for (const auto& [uri, place] : missing_)
+            out_.missing.push_back(place.first + ": <include> <uri> " + uri + " is found nowhere" +
+                                   (place.second > 1 ? " (" + std::to_string(place.second) + " includes)" : "") + ": it is left out");
+        return std::move(out_);
+    }
+
+private:
+    using Document = std::unique_ptr<tinyxml2::XMLDocument>;
+
+    /// A file that is XML and says that it is SDF.
+    static Document checked(const fs::path& file)
+    {
+        auto document = std::make_unique<tinyxml2::XMLDocument>();
+        const auto refuse = [&](int line, const std::string& what) {
+            throw FileError(file.string(), (line > 0 ? "line " + std::to_string(line) + ": " : "") + what);
+        };
+        const tinyxml2::XMLError error = document->LoadFile(file.c_str());
+        if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED || error == tinyxml2::XML_ERROR_FILE_READ_ERROR)
+            refuse(0, "cannot be read");
+        if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT || (error == tinyxml2::XML_SUCCESS && document->RootElement() == nullptr))
+            refuse(0, "is empty, needs an <sdf> element");
+        if (error != tinyxml2::XML_SUCCESS) {
+            std::string name = document->ErrorName();
+            std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return c == '_' ? ' ' : char(std::tolower(c)); });
+            refuse(document->ErrorLineNum(), "is no valid XML (" + name + "): is a tag left open or misspelt?");
+        }
+        const Xml& root = *document->RootElement();
+        const std::string name = root.Name();
+        if (name == "robot") refuse(root.GetLineNum(), "<robot> is URDF; give the file the ending .urdf");
+        if (name != "sdf" && name != "gazebo") refuse(root.GetLineNum(), "<" + name + "> stands where <sdf version=\"…\"> needs to");
+        if (root.Attribute("version") == nullptr) refuse(root.GetLineNum(), "<" + name + "> has no version, needs such as version=\"1.6\"");
+        return document;
+    }
+
+    fs::path file_of(const std::string& uri, const fs::path& folder)
+    {
+        const fs::path found = paths_.find(uri, folder);
+        return found.empty() || !fs::is_directory(found) ? found : sdf_file_of(found);
+    }
+
+    /// Each file that is included, once; what leads to itself is refused, what leads nowhere is kept in mind.
+    void visit_includes(const fs::path& file, const tinyxml2::XMLDocument& document)
+    {
+        stack_.push_back(fs::weakly_canonical(file));
+        for_each_element(*document.RootElement(), [&](const Xml& include) {
+            if (std::string(include.Name()) != "include") return;
+            const std::string place = file.string() + ": " + line_of(include);
+            const std::string uri = text_of(include, "uri");
+            if (uri.empty()) throw FileError(place + "<include>", "has no <uri>, needs the model that it includes");
+            const fs::path found = file_of(uri, file.parent_path());
+            if (found.empty()) {
+                ++missing_.try_emplace(uri, place.substr(0, place.size() - 2), std::size_t{0}).first->second.second;
+                return;
+            }
+            const fs::path canonical = fs::weakly_canonical(found);
+            const auto again = std::find(stack_.begin(), stack_.end(), canonical);
+            if (again != stack_.end()) {
+                std::string chain;
+                for (auto link = again; link != stack_.end(); ++link) chain += link->string() + " includes ";
+                throw FileError(place + "<include> <uri> " + uri, "leads back to itself: " + chain + canonical.string());
+            }
+            if (!visited_.insert(canonical).second || found.extension() == ".urdf") return;
+            visit_includes(found, *checked(found));
+        });
+        stack_.pop_back();
+    }
+
+    void read_lone_model()
+    {
+        const SdfContent content = read_sdf_file(file_, paths_);
+        if (content.is_plain_model) return append_placed(content, content.pose, content.name);
+        // What a placement frame or relative_to says is told by a world that includes it.
+        append(read_sdf_file(file_, paths_, "<sdf version='1.9'><world name='" + content.name + "'><include><uri>" +
+                                                fs::absolute(file_).string() + "</uri></include></world></sdf>"));
+    }
+
+    /// Includes at places of their own, of models that are plain too.
+    std::vector<const Xml*> plain_includes(const Xml& world)
+    {
+        std::vector<const Xml*> out;
+        if (hangs_on_frames(world)) return out;
+        for_each_child(world, "include", [&](const Xml& include) {
+            if (!is_plain(include)) return;
+            const fs::path file = file_of(text_of(include, "uri"), file_.parent_path());
+            if (!file.empty() && model_in(file).is_plain_model) out.push_back(&include);
+        });
+        return out;
+    }
+
+    const SdfContent& model_in(const fs::path& file)
+    {
+        const auto known = models_.find(file);
+        if (known != models_.end()) return known->second;
+        SdfContent& model = models_[file] = read_sdf_file(file, paths_);
+        out_.notices.insert(out_.notices.end(), model.complaints.begin(), model.complaints.end());
+        return model;
+    }
+
+    /// The document's text without the includes, and without what has no say in where things stand.
+    std::string text_without(tinyxml2::XMLDocument& document, Xml& world, const std::vector<const Xml*>& includes) const
+    {
+        tinyxml2::XMLDocument rest;
+        document.DeepCopy(&rest);
+        Xml* const copy = rest.RootElement()->FirstChildElement("world");
+        std::vector<Xml*> gone;
+        Xml* twin = copy->FirstChildElement();
+        for (const Xml* child = world.FirstChildElement(); child != nullptr; child = child->NextSiblingElement(), twin = twin->NextSiblingElement()) {
+            const std::string name = child->Name();
+            const bool idle = name == "actor" || name == "road" || name == "state" || name == "gui" || name == "plugin" || name == "light";
+            const bool lost = name == "include" && missing_.contains(text_of(*child, "uri"));
+            if (idle || lost || std::find(includes.begin(), includes.end(), child) != includes.end()) gone.push_back(twin);
+        }
+        for (Xml* const element : gone) copy->DeleteChild(element);
+        tinyxml2::XMLPrinter printer;
+        rest.Print(&printer);
+        return printer.CStr();
+    }
+
+    void append_include(const Xml& include)
+    {
+        const SdfContent& model = model_in(file_of(text_of(include, "uri"), file_.parent_path()));
+        const Xml* const pose = include.FirstChildElement("pose");
+        const std::string name = text_of(include, "name");
+        append_placed(model, pose != nullptr ? *plain_pose(*pose) : model.pose, name.empty() ? model.name : name, include.GetLineNum());
+    }
+
+    void append_placed(const SdfContent& model, const Pose& world_from_model, const std::string& name, int line = 0)
+    {
+        if (out_.name.empty()) out_.name = name;
+        ++out_.model_count;
+        if (!names_.insert(name).second) {
+            out_.missing.push_back(file_.string() + ": line " + std::to_string(line) + ": <include> is a second model of the name \"" + name +
+                                   "\": it is left out, as libsdformat does; give it a <name> of its own");
+            return;
+        }
+        if (model.bodies.empty()) out_.bare_models.push_back(name);
+        for (CollisionBody body : model.bodies) {
+            body.names[0] = name;
+            body.pose = world_from_model * body.pose;
+            out_.bodies.push_back(std::move(body));
+        }
+        if (line == 0) out_.notices.insert(out_.notices.end(), model.complaints.begin(), model.complaints.end());
+    }
+
+    void append(SdfContent content)
+    {
+        out_.name = content.name;
+        out_.model_count += content.model_count;
+        for (CollisionBody& body : content.bodies) {
+            names_.insert(body.names[0]);
+            out_.bodies.push_back(std::move(body));
+        }
+        for (std::string& name : content.bare_models) out_.bare_models.push_back(std::move(name));
+        for (std::string& complaint : content.complaints) out_.notices.push_back(std::move(complaint));
+    }
+
+    void refuse_population(const Xml& world) const
+    {
+        const Xml* const population = world.FirstChildElement("population");
+        if (population == nullptr) return;
+        const char* const name = population->Attribute("name");
+        throw FileError(file_.string(), line_of(*population) + "<population> \"" + (name != nullptr ? name : "") +
+                                            "\" is not expanded here: Gazebo places its models anew at each start; write them out as <include>s, or take it away");
+    }
+
+    /// Gazebo classic starts from <state>; libsdformat and new Gazebo do not.
+    void tell_state(const Xml& world)
+    {
+        const Xml* const state = world.FirstChildElement("state");
+        if (state == nullptr) return;
+        std::string first;
+        std::size_t count = 0;
+        for_each_child(*state, "model", [&](const Xml& saved) {
+            const Xml* const there = saved.FirstChildElement("pose");
+            const std::optional<Pose> then = there != nullptr ? plain_pose(*there) : std::nullopt;
+            const std::string name = saved.Attribute("name") != nullptr ? saved.Attribute("name") : "";
+            for_each_child(world, "model", [&](const Xml& model) {
+                const Xml* const here = model.FirstChildElement("pose");
+                const std::optional<Pose> now = here != nullptr ? plain_pose(*here) : Pose{};
+                const bool is_same = model.Attribute("name") == nullptr || model.Attribute("name") != name || !then || !now;
+                if (is_same || (then->position - now->position).norm() < 1e-3) return;
+                if (count++ == 0)
+                    first = "\"" + name + "\" would be at " + number(then->position.x()) + ", " + number(then->position.y()) + ", " + number(then->position.z());
+            });
+        });
+        if (count > 0)
+            out_.notices.push_back(file_.string() + ": " + line_of(*state) + "<state> is left aside, as new Gazebo does: in it " + first +
+                                   (count > 1 ? ", and " + std::to_string(count - 1) + " more models elsewhere" : "") + " (Gazebo classic starts from it)");
+    }
+
+    const fs::path file_;
+    ModelPaths& paths_;
+    SdfWorld out_;
+    std::vector<fs::path> stack_;
+    std::set<fs::path> visited_;
+    std::set<std::string> names_;
+    std::map<fs::path, SdfContent> models_;
+    std::map<std::string, std::pair<std::string, std::size_t>> missing_;  ///< by URI: where first, how often
+};
+
+}  // namespace
+
+SdfWorld read_sdf_world(const fs::path& file, ModelPaths& paths) { return WorldReader(file, paths).read(); }
+
+}  // namespace spawnfield

@@ -1,0 +1,451 @@
+#include "catch.h"
+#include "mesh_text.h"
+#include "sdf_world.h"
+#include "shared_scenes.h"
+#include "temp_folder.h"
+
+#include "base/png.h"
+
+#include <spawnfield/column.h>
+#include <spawnfield/error.h>
+#include <spawnfield/geometry.h>
+#include <spawnfield/scene.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+
+using namespace spawnfield;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string world_of(const std::string& content) { return "<?xml version='1.0'?>\n<sdf version='1.9'><world name='test'>\n" + content + "\n</world></sdf>\n"; }
+
+std::string collision(const std::string& geometry, const std::string& name = "c", const std::string& pose = "")
+{
+    return "<collision name='" + name + "'>" + pose + "<geometry>" + geometry + "</geometry></collision>";
+}
+
+std::string model_of(const std::string& name, const std::string& geometry, const std::string& pose = "")
+{
+    return "<model name='" + name + "'>" + pose + "<static>true</static><link name='l'>" + collision(geometry) + "</link></model>";
+}
+
+const std::string unit_box = "<box><size>1 1 1</size></box>";
+const std::string ground = "<model name='ground_plane'><static>1</static><link name='l'>" + collision("<plane><normal>0 0 1</normal><size>40 40</size></plane>") + "</link></model>";
+
+/// A folder of models of one box each, `names` by their side lengths.
+void write_model(const TempFolder& folder, const std::string& name, const std::string& content)
+{
+    folder.write("models/" + name + "/model.config", "<model><name>" + name + "</name><sdf version='1.4'>old.sdf</sdf><sdf version='1.6'>model.sdf</sdf></model>");
+    folder.write("models/" + name + "/model.sdf", "<sdf version='1.6'>" + content + "</sdf>");
+}
+
+Scene load_world(const TempFolder& folder, const std::string& content, const SceneOptions& options = {})
+{
+    return load_scene(folder.write("worlds/test.world", world_of(content)), options);
+}
+
+/// Middle of the part's box.
+std::map<std::string, Vec3> places(const Scene& scene)
+{
+    std::map<std::string, Bounds> boxes;
+    for (const Primitive& primitive : scene.primitives) {
+        const Bounds box = bounds_of(primitive.shape);
+        boxes[scene.parts[primitive.part].name].extend(box.min);
+        boxes[scene.parts[primitive.part].name].extend(box.max);
+    }
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+        for (const std::uint32_t corner : scene.triangles[t]) boxes[scene.parts[scene.pieces[scene.triangle_pieces[t]].part].name].extend(scene.vertices[corner]);
+    std::map<std::string, Vec3> out;
+    for (const auto& [name, box] : boxes) out[name] = (box.min + box.max) / 2;
+    return out;
+}
+
+void check_place(const Scene& scene, const std::string& part, const Vec3& expected)
+{
+    const auto all = places(scene);
+    CAPTURE(part);
+    REQUIRE(all.contains(part));
+    const Vec3 found = all.at(part);
+    CAPTURE(found.transpose(), expected.transpose());
+    CHECK((found - expected).norm() < 1e-9);
+}
+
+std::string refusal(const fs::path& file, const SceneOptions& options = {})
+{
+    try {
+        load_scene(file, options);
+    } catch (const FileError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string refusal_of(const TempFolder& folder, const std::string& content, const SceneOptions& options = {})
+{
+    return refusal(folder.write("worlds/test.world", world_of(content)), options);
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+bool has_notice(const Scene& scene, const std::string& part)
+{
+    return std::any_of(scene.notices.begin(), scene.notices.end(), [&](const std::string& text) { return has(text, part); });
+}
+
+/// Vertical solids at (x, y), from all parts.
+std::vector<double> layers_at(const Scene& scene, double x, double y) { return column_at(Geometry(scene), x, y).layers; }
+
+class Variable {
+public:
+    Variable(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+    ~Variable() { unsetenv(name_); }
+
+private:
+    const char* name_;
+};
+
+}  // namespace
+
+TEST_CASE("collisions stand where frames, nested models, includes and placement frames put them")
+{
+    const TempFolder folder;
+    write_model(folder, "cart", "<model name='cart'><pose>5 0 0 0 0 0</pose><link name='body'><pose>0 0 1 0 0 0</pose>" +
+                                    collision(unit_box, "c", "<pose>0.5 0 0 0 0 0</pose>") + "</link></model>");
+    folder.write("models/tug/model.config", "<model><name>tug</name><sdf version='1.8'>tug.sdf</sdf></model>");
+    folder.write("models/tug/tug.sdf", "<sdf version='1.8'><model name='tug' placement_frame='hook'><link name='body'>" + collision(unit_box) +
+                                           "</link><frame name='hook'><pose>2 0 0 0 0 0</pose></frame></model></sdf>");
+    write_model(folder, "train", "<model name='train'><include><uri>model://cart</uri><name>first</name><pose>1 0 0 0 0 1.5707963267948966</pose></include>"
+                                 "<include><uri>model://cart</uri><name>second</name></include></model>");
+    const std::string plain = "<include><uri>model://cart</uri></include>"
+                              "<include><uri>model://cart</uri><name>turned</name><pose>10 20 0 0 0 1.5707963267948966</pose></include>"
+                              "<include><uri>model://train</uri><pose>0 -30 0 0 0 3.141592653589793</pose></include>"
+                              "<include><uri>model://tug</uri><pose>0 50 0 0 0 0</pose></include>" +
+                              model_of("inline", unit_box, "<pose>-7 0 2 0 0 0</pose>");
+    const std::string framed = plain + "<frame name='dock'><pose>100 0 0 0 0 0</pose></frame>"
+                                       "<include><uri>model://cart</uri><name>docked</name><pose relative_to='dock'>0 1 0 0 0 0</pose></include>"
+                                       "<include><uri>model://tug</uri><name>hooked</name><placement_frame>body</placement_frame><pose>0 60 0 0 0 0</pose></include>" +
+                                       "<model name='beside'><pose relative_to='turned'>0 0 3 0 0 0</pose><link name='l'>" + collision(unit_box) + "</link></model>";
+    for (const std::string& content : {plain, framed}) {  // without frames the includes are read once each, with them by libsdformat alone
+        const Scene scene = load_world(folder, content);
+        CAPTURE(scene.notices);
+        check_place(scene, "cart::body::c", {5.5, 0, 1});
+        check_place(scene, "turned::body::c", {10, 20.5, 1});
+        check_place(scene, "train::first::body::c", {-1, -30.5, 1});
+        check_place(scene, "train::second::body::c", {-5.5, -30, 1});
+        check_place(scene, "tug::body::c", {-2, 50, 0});
+        check_place(scene, "inline::l::c", {-7, 0, 2});
+        CHECK(scene.parts.size() == (content == plain ? 6 : 9));
+    }
+    const Scene scene = load_world(folder, framed);
+    check_place(scene, "docked::body::c", {100.5, 1, 1});
+    check_place(scene, "hooked::body::c", {0, 60, 0});
+    check_place(scene, "beside::l::c", {10, 20, 3});
+    // A model by itself stands where its own pose puts it, as where it is included without one.
+    check_place(load_scene(folder / "models/cart"), "cart::body::c", {5.5, 0, 1});
+    check_place(load_scene(folder / "models/tug/tug.sdf"), "tug::body::c", {-2, 0, 0});
+}
+
+TEST_CASE("every geometry of SDF has its size")
+{
+    const TempFolder folder;
+    folder.write("worlds/wedge.obj", "o big\nv 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+                                     "o small\nv 10 0 0\nv 11 0 0\nv 10 1 0\nv 10 0 1\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n");
+    const Scene scene = load_world(
+        folder, ground + model_of("sphere", "<sphere><radius>2</radius></sphere>", "<pose>0 0 10 0 0 0</pose>") +
+                    model_of("cylinder", "<cylinder><radius>1</radius><length>3</length></cylinder>", "<pose>0 0 20 0 0 0</pose>") +
+                    model_of("capsule", "<capsule><radius>1</radius><length>3</length></capsule>", "<pose>0 0 30 0 0 0</pose>") +
+                    model_of("ellipsoid", "<ellipsoid><radii>3 2 1</radii></ellipsoid>", "<pose>0 0 40 0 0 0</pose>") +
+                    model_of("mesh", "<mesh><uri>wedge.obj</uri><scale>2 1 0.5</scale></mesh>", "<pose>0 0 50 0 0 0</pose>") +
+                    model_of("part", "<mesh><uri>wedge.obj</uri><submesh><name>small</name></submesh></mesh>", "<pose>0 0 60 0 0 0</pose>") +
+                    model_of("centred", "<mesh><uri>wedge.obj</uri><submesh><name>small</name><center>1</center></submesh></mesh>", "<pose>0 0 70 0 0 0</pose>"),
+        {.labels = {{"*", Label::Terrain}}});
+    CAPTURE(scene.notices);
+    std::map<std::string, Bounds> boxes;
+    for (const Primitive& primitive : scene.primitives) boxes[scene.parts[primitive.part].name] = bounds_of(primitive.shape);
+    CHECK((boxes["sphere::l::c"].max - Vec3(2, 2, 12)).norm() < 1e-12);
+    CHECK((boxes["cylinder::l::c"].max - Vec3(1, 1, 21.5)).norm() < 1e-12);
+    CHECK((boxes["capsule::l::c"].max - Vec3(1, 1, 32.5)).norm() < 1e-12);
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+        for (const std::uint32_t corner : scene.triangles[t]) boxes[scene.parts[scene.pieces[scene.triangle_pieces[t]].part].name].extend(scene.vertices[corner]);
+    CHECK((boxes["mesh::l::c"].max - Vec3(22, 2, 51)).norm() < 1e-6);
+    CHECK((boxes["part::l::c"].min - Vec3(10, 0, 60)).norm() < 1e-6);
+    CHECK((boxes["centred::l::c"].min - Vec3(-0.5, -0.5, 69.5)).norm() < 1e-6);
+    // The mesh lies around the ellipsoid, nowhere by more than it says.
+    const Vec3 radii(3, 2, 1);
+    double most = 0;
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        if (scene.parts[scene.pieces[scene.triangle_pieces[t]].part].name != "ellipsoid::l::c") continue;
+        std::array<Vec3, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 from_middle = scene.vertices[scene.triangles[t][k]] - Vec3(0, 0, 40);
+            corners[k] = from_middle.cwiseQuotient(radii);
+            most = std::max(most, (from_middle - from_middle / corners[k].norm()).norm());
+        }
+        // In the frame in which it is a unit sphere, no face may come closer than 1 to the middle.
+        const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+        CHECK(std::abs(normal.dot(corners[0])) >= 1 - 1e-12);
+    }
+    CHECK(most > 0);
+    CHECK(has_notice(scene, "1 ellipsoid is a mesh around it, at most 0.0033 m larger"));
+    CHECK(most <= 0.0033);
+    CHECK(scene.pieces.size() >= 6);
+}
+
+TEST_CASE("a polyline is extruded from its pose upwards, an outline within another is a hole")
+{
+    const TempFolder folder;
+    const std::string outer = "<polyline><point>0 0</point><point>10 0</point><point>10 10</point><point>5 5</point><point>0 10</point><point>0 0</point><height>2</height></polyline>";
+    const std::string hole = "<polyline><point>1 1</point><point>3 1</point><point>3 3</point><point>1 3</point><height>2</height></polyline>";
+    const std::string island = "<polyline><point>1.5 1.5</point><point>2.5 1.5</point><point>2.5 2.5</point><point>1.5 2.5</point><height>2</height></polyline>";
+    const Scene scene = load_world(folder, model_of("terrain", outer + hole + island, "<pose>0 0 1 0 0 0</pose>"));
+    REQUIRE(scene.parts.size() == 1);
+    CHECK(scene.parts[0].open_edges == 0);
+    CHECK(scene.parts[0].solid_pieces == 2);
+    const auto is_filled = [](double x, double y) {
+        const bool in_outer = x > 0 && x < 10 && y > 0 && y < 10 && y < 5 + std::abs(x - 5);
+        const bool in_hole = x > 1 && x < 3 && y > 1 && y < 3, on_island = x > 1.5 && x < 2.5 && y > 1.5 && y < 2.5;
+        return in_outer && (!in_hole || on_island);
+    };
+    int filled = 0;
+    for (double x = -0.95; x < 11; x += 0.31)
+        for (double y = -0.97; y < 11; y += 0.29) {
+            const std::vector<double> layers = layers_at(scene, x, y);
+            CAPTURE(x, y);
+            if (std::abs(y - 5 - std::abs(x - 5)) < 1e-9) continue;  // on the rim
+            REQUIRE(layers.size() == (is_filled(x, y) ? 1 : 0));
+            if (layers.empty()) continue;
+            CHECK(std::abs(layers[0] - 3) < 1e-9);
+            ++filled;
+        }
+    CHECK(filled > 500);
+    CHECK(has(refusal_of(folder, model_of("a", "<polyline><point>0 0</point><point>2 2</point><point>2 0</point><point>0 2</point><height>1</height></polyline>")),
+              "\"a::l::c\": <polyline>: its outline crosses itself near (0, 0)"));
+    CHECK(has(refusal_of(folder, model_of("a", "<polyline><point>0 0</point><point>2 2</point><height>1</height></polyline>")), "outline 1 has 2 points, needs 3 or more"));
+}
+
+TEST_CASE("a plane is infinite: it goes on beyond the bounds, whatever its drawn size")
+{
+    const TempFolder folder;
+    const std::string small_plane = model_of("p", "<plane><normal>0 0 1</normal><size>2 2</size></plane>", "<pose>0 0 0.25 0 0 0</pose>");
+    const Scene scene = load_world(folder, small_plane + model_of("far", unit_box, "<pose>100 -50 0 0 0 0</pose>"));
+    CHECK((scene.map_bounds.min - Vec3(-1, -50.5, -0.5)).norm() < 1e-9);
+    CHECK((scene.map_bounds.max - Vec3(100.5, 1, 0.5)).norm() < 1e-9);
+    for (const auto& [x, y] : {std::pair{0.1, 0.2}, std::pair{90.0, -49.0}, std::pair{-50.9, 50.9}}) {
+        const auto layers = layers_at(scene, x, y);
+        REQUIRE(layers.size() == 1);
+        CHECK(std::abs(layers[0] - 0.25) < 1e-9);
+    }
+    CHECK(layers_at(scene, -51.1, 0).empty());
+    // Bounds that are given are those of the cut.
+    const Scene given = load_world(folder, small_plane, {.bounds = {Vec3(200, 200, 0), Vec3(210, 220, 5)}});
+    CHECK(layers_at(given, 205, 210).size() == 1);
+    CHECK(given.map_bounds.min.x() == 200);
+    // A ramp: normal (-1, 0, 1) rises with x.
+    const Scene ramp = load_world(folder, model_of("p", "<plane><normal>-1 0 1</normal><size>20 20</size></plane>"));
+    const auto at = layers_at(ramp, 4, 3);
+    REQUIRE(at.size() == 1);
+    CHECK(std::abs(at[0] - 4) < 1e-9);
+}
+
+TEST_CASE("a heightmap's brightest pixel is its size high, and sampling interpolates between pixels")
+{
+    const TempFolder folder;
+    const std::vector<std::uint16_t> pixels = {0, 1000, 2000, 3000, 20000, 5000, 6000, 7000, 8000};
+    folder.write("worlds/x", "");
+    write_grey_png(folder / "worlds/relief.png", 3, 3, pixels.data());
+    const auto heights = [&](int sampling) {
+        return load_world(folder, model_of("h", "<heightmap><uri>relief.png</uri><size>20 10 40</size><pos>100 0 -5</pos><sampling>" + std::to_string(sampling) + "</sampling></heightmap>"));
+    };
+    for (const int sampling : {1, 2, 4}) {
+        const Scene scene = heights(sampling);
+        CAPTURE(sampling);
+        CHECK(scene.triangles.size() == std::size_t(2 * 2 * sampling * 2 * sampling));
+        CHECK(std::abs(layers_at(scene, 100, 0)[0] - (40 - 5)) < 1e-9);
+        CHECK(std::abs(layers_at(scene, 90, 5)[0] - -5) < 1e-9);
+        CHECK(std::abs(layers_at(scene, 110, -5)[0] - (16 - 5)) < 1e-9);
+        CHECK(std::abs(layers_at(scene, 95, 5)[0] - (1 - 5)) < 1e-9);
+    }
+    // Between pixels bilinear: in the middle of a cell the mean of its four pixels.
+    CHECK(std::abs(layers_at(heights(2), 95, 2.5)[0] - ((0 + 1000 + 3000 + 20000) / 4.0 / 20000 * 40 - 5)) < 1e-9);
+}
+
+TEST_CASE("COLLADA in SDF has its unit, but keeps its axes")
+{
+    const TempFolder folder;
+    const auto write = [&](const std::string& up) {
+        folder.write("worlds/slab.dae", mesh_text::dae({{.mesh = mesh_text::box(Vec3(0, 0, 0), Vec3(400, 200, 100))}}, {.up = up, .unit = 0.01}));
+        return load_world(folder, model_of("m", "<mesh><uri>slab.dae</uri></mesh>"));
+    };
+    for (const char* const up : {"X_UP", "Y_UP", "Z_UP", ""}) {
+        CAPTURE(up);
+        CHECK((write(up).bounds().max - Vec3(4, 2, 1)).norm() < 1e-6);
+    }
+}
+
+TEST_CASE("what is ground is found by rules, and --label comes first")
+{
+    const TempFolder folder;
+    const std::string world = ground + model_of("warehouse_GroundB_01", unit_box) + model_of("Sidewalk_7", unit_box) + model_of("background_wall", unit_box) +
+                              "<model name='house'><static>1</static><link name='l'>" + collision(unit_box, "floor_1") + collision(unit_box, "wall") + "</link></model>";
+    const auto labels = [](const Scene& scene) {
+        std::map<std::string, std::string> out;
+        for (const Part& part : scene.parts) out[part.name] = to_string(part.label);
+        return out;
+    };
+    const Scene scene = load_world(folder, world);
+    const std::map<std::string, std::string> expected = {{"ground_plane::l::c", "terrain"}, {"warehouse_GroundB_01::l::c", "terrain"}, {"Sidewalk_7::l::c", "terrain"},
+                                                         {"background_wall::l::c", "obstacle"}, {"house::l::floor_1", "terrain"}, {"house::l::wall", "obstacle"}};
+    CHECK(labels(scene) == expected);
+    std::map<std::string, std::size_t> counts;
+    for (const NameRule& rule : scene.rules) counts[rule.what] = rule.count;
+    CHECK(counts["plane"] == 1);
+    CHECK(counts["name ground*"] == 1);
+    CHECK(counts["name floor*"] == 1);
+    CHECK(counts["all else"] == 2);
+
+    const Scene told = load_world(folder, world, {.labels = {{"house", Label::Water}, {"sidewalk_7::*", Label::Ignore}, {"wall", Label::Terrain}, {"nothing*", Label::Terrain}}});
+    auto changed = labels(told);
+    CHECK(changed["house::l::wall"] == "water");  // the first rule that matches
+    CHECK(changed["house::l::floor_1"] == "water");
+    CHECK(changed["Sidewalk_7::l::c"] == "ignore");
+    CHECK(changed["ground_plane::l::c"] == "terrain");
+    CHECK(has_notice(told, "label \"nothing*\" matches no model, link, collision, node or material"));
+
+    const Scene unnamed = load_world(folder, model_of("rock", unit_box));
+    CHECK(labels(unnamed)["rock::l::c"] == "terrain");
+    CHECK(has_notice(unnamed, "so everything is terrain"));
+}
+
+TEST_CASE("what is missing is told by its name, and refused where the caller is strict")
+{
+    const TempFolder folder;
+    const std::string world = ground + "<include><uri>model://nowhere</uri></include><include><uri>model://nowhere</uri><name>again</name></include>" +
+                              model_of("statue", "<mesh><uri>model://statue/lost.dae</uri></mesh>") + "<model name='ghost'><static>1</static><link name='l'/></model>"
+                              "<actor name='walker'><skin><filename>walk.dae</filename></skin></actor><road name='r'><width>2</width><point>0 0 0</point><point>1 0 0</point></road>";
+    const Scene scene = load_world(folder, world);
+    CAPTURE(scene.notices);
+    CHECK(has_notice(scene, "test.world: line 3: <include> <uri> model://nowhere is found nowhere (2 includes): it is left out"));
+    CHECK(has_notice(scene, "\"statue::l::c\": model://statue/lost.dae is found nowhere: it is left out"));
+    CHECK(has_notice(scene, "1 model has no collision and is not there for a robot: ghost"));
+    CHECK(has_notice(scene, "<actor>: 1 left out"));
+    CHECK(has_notice(scene, "<road>: 1 left out"));
+    CHECK(scene.parts.size() == 1);
+    const std::string strict = refusal_of(folder, world, {.strict = true});
+    CHECK(has(strict, "model://nowhere"));
+    CHECK(has(strict, "--strict does not allow it"));
+}
+
+TEST_CASE("models are found by --model-path, Gazebo's variables and above the file")
+{
+    const TempFolder folder, elsewhere;
+    elsewhere.write("lib/crate/model.sdf", "<sdf version='1.6'><model name='crate'><link name='l'>" + collision("<mesh><uri>model://crate/meshes/crate.obj</uri></mesh>") + "</link></model></sdf>");
+    elsewhere.write("lib/crate/meshes/crate.obj", mesh_text::obj(mesh_text::box(Vec3(0, 0, 0), Vec3(1, 1, 1))));
+    const std::string world = ground + "<include><uri>model://crate</uri></include>";
+    CHECK(load_world(folder, world).parts.size() == 1);
+    CHECK(load_world(folder, world, {.model_paths = {elsewhere / "lib"}}).parts.size() == 2);
+    for (const char* const variable : {"GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "IGN_GAZEBO_RESOURCE_PATH"}) {
+        const Variable set(variable, "/nonexistent:" + (elsewhere / "lib").string());
+        CHECK(load_world(folder, world).parts.size() == 2);
+    }
+    const fs::path inside = elsewhere.write("worlds/test.world", world_of(world));
+    CHECK(load_scene(inside).parts.size() == 1);
+    fs::rename(elsewhere / "lib", elsewhere / "models");
+    const Scene found = load_scene(inside);
+    CHECK(found.parts.size() == 2);
+    CHECK(has_notice(found, "folder of models was found above the file"));
+}
+
+TEST_CASE("faulty worlds are refused with file, line and element")
+{
+    const TempFolder folder;
+    const auto expect = [&](const std::string& content, const std::vector<std::string>& words) {
+        const std::string message = refusal_of(folder, content);
+        CAPTURE(content, message);
+        CHECK(has(message, "test.world"));
+        for (const std::string& word : words) CHECK(has(message, word));
+    };
+    expect("<model name='a'><link></model>", {"line 3", "is no valid XML"});
+    expect(ground + "<include><name>x</name></include>", {"line 3: <include>: has no <uri>"});
+    expect(model_of("a", "<box><size>1 x 1</size></box>"), {"line 3", "size"});
+    expect(model_of("a", "<box><size>1 -1 1</size></box>"), {"\"a::l::c\": <box> <size> is -1, needs > 0"});
+    expect(model_of("a", "<sphere><radius>0</radius></sphere>"), {"<sphere> <radius> is 0, needs > 0"});
+    expect(model_of("a", "<box><size>1 1e12 1</size></box>"), {"<box> <size> is 1e+12, needs > 0 and at most 1000 km"});
+    expect(model_of("a", "<plane><normal>0 0 0</normal></plane>"), {"<plane> <normal> is (0, 0, 0), needs a direction"});
+    expect(model_of("a", unit_box, "<pose relative_to='nobody'>0 0 0 0 0 0</pose>"), {"nobody"});
+    expect(model_of("a", unit_box, "<pose>0 0 0 0 0</pose>"), {"line 3", "pose"});
+    expect(model_of("a", unit_box, "<pose>inf 0 0 0 0 0</pose>"), {"a"});
+    expect("<population name='crowd'><model_count>3</model_count></population>", {"line 3: <population> \"crowd\" is not expanded here"});
+    expect("", {"has no models"});
+    CHECK(has(refusal(folder.write("bare.world", "hello")), "is no valid XML"));
+    CHECK(has(refusal(folder.write("empty.world", "")), "is empty"));
+    CHECK(has(refusal(folder.write("other.sdf", "<mujoco/>")), "line 1: <mujoco> stands where"));
+    CHECK(has(refusal(folder.write("noversion.sdf", "<sdf><world name='w'/></sdf>")), "line 1: <sdf> has no version"));
+    CHECK(has(refusal(folder.write("two.sdf", "<sdf version='1.9'><world name='a'/><world name='b'/></sdf>")), "has 2 worlds, needs one"));
+    CHECK(has(refusal(folder / "models"), "does not exist"));
+    fs::create_directories(folder / "hollow");
+    CHECK(has(refusal(folder / "hollow"), "is a folder without model.config"));
+}
+
+TEST_CASE("models that include each other in a circle are refused, with the circle")
+{
+    const TempFolder folder;
+    write_model(folder, "hen", "<model name='hen'><include><uri>model://egg</uri></include></model>");
+    write_model(folder, "egg", "<model name='egg'>\n<include><uri>model://hen</uri></include></model>");
+    const std::string message = refusal_of(folder, ground + "<include><uri>model://hen</uri></include>");
+    CAPTURE(message);
+    CHECK(has(message, "egg/model.sdf: line 2: <include> <uri> model://hen"));
+    CHECK(has(message, "leads back to itself"));
+    CHECK(has(message, "hen/model.sdf includes "));
+}
+
+TEST_CASE("the real worlds hold what an independent reader finds in them")
+{
+    const auto folder = shared_scenes();
+    if (!folder) return;
+    for (const auto& [world, models, parts] : {std::tuple{"city/worlds/simple_city.world", "city/models", 939}, std::tuple{"warehouse/worlds/small_warehouse.world", "warehouse/models", 26}}) {
+        CAPTURE(world);
+        const Scene scene = load_scene(*folder / world);
+        CHECK(scene.parts.size() == std::size_t(parts));
+        const TempFolder temp;
+        const Scene other = load_scene(scene_of_world(temp, *folder / world, *folder / models));
+        CHECK(other.primitives.size() == scene.primitives.size());
+        // The other reader's planes are as large as drawn, its pavements' lids fans.
+        const auto sorted_middles = [](const Scene& of) {
+            std::vector<std::array<double, 3>> out;
+            for (const Primitive& p : of.primitives) out.push_back({p.shape.pose.position.x(), p.shape.pose.position.y(), p.shape.pose.position.z()});
+            for (std::size_t t = 0; t < of.triangles.size(); ++t) {
+                const std::string& kind = of.parts[of.pieces[of.triangle_pieces[t]].part].kind, &name = of.parts[of.pieces[of.triangle_pieces[t]].part].name;
+                if (kind == "plane" || kind == "polyline") continue;
+                Vec3 middle = Vec3::Zero();
+                for (const std::uint32_t corner : of.triangles[t]) middle += of.vertices[corner] / 3;
+                (void)name;
+                out.push_back({middle.x(), middle.y(), middle.z()});
+            }
+            std::sort(out.begin(), out.end());
+            return out;
+        };
+        const auto here = sorted_middles(scene), there = sorted_middles(other);
+        std::size_t matched = 0;
+        for (const auto& middle : here) {
+            auto near = std::lower_bound(there.begin(), there.end(), std::array{middle[0] - 1e-6, -1e9, -1e9});
+            for (; near != there.end() && (*near)[0] <= middle[0] + 1e-6; ++near)
+                if (std::abs((*near)[1] - middle[1]) < 1e-6 && std::abs((*near)[2] - middle[2]) < 1e-6) {
+                    ++matched;
+                    break;
+                }
+        }
+        CHECK(matched == here.size());
+        CHECK(there.size() >= here.size());
+        const Bounds a = scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds, b = other.bounds();
+        CHECK((a.min - b.min).norm() < 1e-6);
+        CHECK((a.max - b.max).norm() < 1e-6);
+    }
+}

@@ -1,0 +1,332 @@
+#include "arena.h"
+#include "worlds/random.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/poses.h>
+#include <spawnfield/simulators.h>
+
+#include <nlohmann/json.hpp>
+#include <sdf/sdf.hh>
+
+#include <numbers>
+
+using namespace spawnfield;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string urdf_text = R"(<robot name="cart"><link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><origin xyz="0 0 0.1"/><geometry><box size="0.6 0.4 0.2"/></geometry></collision></link></robot>)";
+
+const std::string world_text = R"(<?xml version="1.0"?>
+<!-- </world> in a comment -->
+<sdf version="1.6">
+  <world name="yard">
+    <gravity>0 0 -1.62</gravity>
+    <model name="wall"><static>true</static><link name="link"><collision name="c"><geometry><box><size>1 2 3</size></box></geometry></collision></link></model>
+  </world>
+</sdf>
+)";
+
+std::vector<RobotStart> random_robots(std::size_t count)
+{
+    constexpr double pi = std::numbers::pi;
+    const std::vector<std::string> names = numbered_names("--name", "cart_{i}", count);
+    Random random{4};
+    std::vector<RobotStart> out;
+    for (const std::string& name : names)
+        out.push_back({name, name, {random.between(-90, 90), random.between(-90, 90), random.between(-9, 9)},
+                       {random.between(-pi, pi), random.between(-pi / 2, pi / 2), random.between(-pi, pi)}});
+    return out;
+}
+
+/// The one world of a file, by libsdformat.
+sdf::Root sdf_root(const fs::path& file, const fs::path& models = {})
+{
+    sdf::ParserConfig config;
+    config.SetFindCallback([=](const std::string& uri) {
+        constexpr std::string_view scheme = "model://";
+        return uri.starts_with(scheme) ? (models / uri.substr(scheme.size())).string() : std::string();
+    });
+    sdf::Root root;
+    for (const sdf::Error& error : root.Load(file.string(), config)) FAIL(error.Message());
+    REQUIRE(root.WorldCount() == 1);
+    return root;
+}
+
+void check_models(const sdf::World& world, const std::vector<RobotStart>& robots)
+{
+    for (const RobotStart& robot : robots) {
+        const sdf::Model* const model = world.ModelByName(robot.name);
+        REQUIRE(model != nullptr);
+        const auto& pose = model->RawPose();
+        CHECK((Vec3(pose.X(), pose.Y(), pose.Z()) - robot.position).norm() <= 1e-9);
+        const Eigen::Quaterniond q(pose.Rot().W(), pose.Rot().X(), pose.Rot().Y(), pose.Rot().Z());
+        CHECK((q.toRotationMatrix() - rotation_from(robot.rpy)).cwiseAbs().maxCoeff() <= 1e-9);
+    }
+}
+
+std::string message_of(const std::function<void()>& act)
+{
+    try {
+        act();
+    } catch (const ArgumentError& error) {
+        return error.message();
+    } catch (const FileError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("names have the robot's number, from 1 on, as the pattern tells")
+{
+    CHECK(numbered_names("--name", "husky_{i}", 3) == std::vector<std::string>{"husky_1", "husky_2", "husky_3"});
+    CHECK(numbered_names("--name", "{i:03}_husky", 2) == std::vector<std::string>{"001_husky", "002_husky"});
+    CHECK(numbered_names("--name", "r{i:01}", 11).back() == "r11");  // more digits than asked for
+    CHECK(numbered_names("--name", "alone", 1) == std::vector<std::string>{"alone"});
+    CHECK(numbered_names("--name", "alone", 0).empty());
+    CHECK(numbered_names("--name", "r{i}", 120).size() == 120);
+}
+
+TEST_CASE("bad patterns and names are refused, and the message names them")
+{
+    const auto refused = [](const std::string& pattern, std::size_t count) {
+        return message_of([&] { numbered_names("--name", pattern, count); });
+    };
+    CHECK(refused("husky", 2) == "--name \"husky\" gives all 2 robots one name, needs {i} or {i:03}");
+    for (const char* const pattern : {"r{", "r}", "r}{", "r{}", "r{j}", "r{i:3}", "r{i:00}", "r{i:012}", "r{i:0x}", "r{i", "r{i:03d}"})
+        CHECK_THAT(refused(pattern, 2), Contains("has braces that are no {i} or {i:03}"));
+    CHECK_THAT(refused("r{i}{i}", 2), Contains("has braces twice"));
+    CHECK_THAT(refused("", 1), Contains("is empty"));
+    CHECK_THAT(refused("a\n{i}", 1), Contains("control character"));
+    const std::vector<std::string> twice = {"a", "b", "a"};
+    CHECK(message_of([&] { check_names("column name:", twice); }) == "column name: \"a\" is the name of two robots, needs one each");
+}
+
+TEST_CASE("names for ROS and SDF keep their rules")
+{
+    const auto ros = [](const std::string& name, int version) {
+        const std::vector<std::string> names = {name};
+        return message_of([&] { check_ros_names("--namespace", names, version); });
+    };
+    for (const char* const name : {"a", "a_1", "fleet/a1", "/fleet/a", "A"})
+        for (const int version : {1, 2}) CHECK(ros(name, version).empty());
+    for (const char* const name : {"", "/", "a-1", "a b", "a.b", "1a", "a/", "a//b", "ä"})
+        for (const int version : {1, 2}) CHECK_FALSE(ros(name, version).empty());
+    CHECK(ros("_a", 2).empty());
+    CHECK_FALSE(ros("_a", 1).empty());
+    CHECK(ros("a/1b", 1).empty());
+    CHECK_FALSE(ros("a/1b", 2).empty());
+    CHECK_FALSE(ros("a__b", 2).empty());
+    CHECK_THAT(ros("a-1", 2), Contains("--namespace \"a-1\" has \"-\""));
+    const auto model = [](const std::string& name) {
+        const std::vector<std::string> names = {name};
+        return message_of([&] { check_model_names("--name", names); });
+    };
+    for (const char* const name : {"a", "a-1", "1.b", "fleet/a", "__a"}) CHECK(model(name).empty());
+    for (const char* const name : {"a::b", "a b", "__a__", "a<b", "a'b"}) CHECK_FALSE(model(name).empty());
+}
+
+TEST_CASE("libsdformat reads a new world's robots at their poses, of a URDF and of a model")
+{
+    const TempFolder folder;
+    const std::vector<RobotStart> robots = random_robots(40);
+    const fs::path urdf = folder.write("my robots/cart & co.urdf", urdf_text);
+    folder.write("new.sdf", sdf_world(robots, {.uri = urdf.string(), .world_name = "a \"new\" one"}));
+    const sdf::Root of_urdf = sdf_root(folder / "new.sdf");
+    CHECK(of_urdf.WorldByIndex(0)->Name() == "a \"new\" one");
+    CHECK(of_urdf.WorldByIndex(0)->ModelCount() == robots.size());
+    check_models(*of_urdf.WorldByIndex(0), robots);
+
+    folder.write("models/cart/model.config", "<model><name>cart</name><sdf version=\"1.6\">model.sdf</sdf></model>");
+    folder.write("models/cart/model.sdf", "<sdf version=\"1.6\"><model name=\"cart\"><pose>9 9 9 0 0 0</pose><link name=\"base\"/></model></sdf>");
+    folder.write("model.sdf", sdf_world(robots, {.uri = "model://cart"}));
+    const sdf::Root of_model = sdf_root(folder / "model.sdf", folder / "models");
+    CHECK(of_model.WorldByIndex(0)->Name() == "spawns");
+    check_models(*of_model.WorldByIndex(0), robots);  // its own pose does not count
+}
+
+TEST_CASE("a world's file keeps all that it has, and gets the robots")
+{
+    const TempFolder folder;
+    const std::vector<RobotStart> robots = random_robots(5);
+    const fs::path urdf = folder.write("cart.urdf", urdf_text);
+    const std::string text = sdf_world(robots, {.uri = urdf.string(), .world_text = world_text, .world_file = "yard.world"});
+    const std::size_t end = world_text.rfind("  </world>");
+    CHECK(text.starts_with(world_text.substr(0, end) + "    <include>\n      <uri>"));  // the rest stays as it is, to the letter
+    CHECK(text.ends_with("</include>\n" + world_text.substr(end)));
+    folder.write("yard.sdf", text);
+    const sdf::Root root = sdf_root(folder / "yard.sdf");
+    const sdf::World& world = *root.WorldByIndex(0);
+    CHECK(world.Name() == "yard");
+    CHECK(world.Gravity().Z() == -1.62);
+    CHECK(world.ModelByName("wall") != nullptr);
+    CHECK(world.ModelCount() == 6);
+    check_models(world, robots);
+}
+
+TEST_CASE("robots get into the right world, however its file is written")
+{
+    const TempFolder folder;
+    const std::vector<RobotStart> robots = random_robots(2);
+    folder.write("cart/model.config", "<model><name>cart</name><sdf version=\"1.6\">model.sdf</sdf></model>");
+    folder.write("cart/model.sdf", "<sdf version=\"1.6\"><model name=\"cart\"><link name=\"base\"/></model></sdf>");
+    const std::string plugin = "<plugin name='p' filename='f'><world>not this one</world><text><![CDATA[</world>]]></text></plugin>";
+    for (const std::string& text : {std::string("<sdf version='1.6'><world name='a'/></sdf>"), "<sdf version='1.6'><world name='a'>" + plugin + "</world></sdf>",
+                                    "<sdf version='1.6'><world name='a > b' >" + plugin + "<!--</world>--></world\n></sdf>\n<!-- <world> -->",
+                                    std::string("<sdf version='1.6'><world name='a>'/></sdf>")}) {
+        INFO(text);
+        folder.write("new.sdf", sdf_world(robots, {.uri = "model://cart", .world_text = text}));
+        const sdf::Root root = sdf_root(folder / "new.sdf", folder.path());
+        CHECK(root.WorldByIndex(0)->ModelCount() == 2);
+        check_models(*root.WorldByIndex(0), robots);
+    }
+    const std::string two = "<sdf version='1.6'>\n  <world name='a'>\n  </world>\n  <world name='b'>\n  </world>\n</sdf>\n";
+    const std::string in_first = sdf_world(robots, {.uri = "model://cart", .world_name = "a", .world_text = two});
+    CHECK(in_first.find("cart_2") < in_first.find("<world name='b'>"));
+    CHECK(in_first.ends_with("  </world>\n  <world name='b'>\n  </world>\n</sdf>\n"));
+    const std::string in_second = sdf_world(robots, {.uri = "model://cart", .world_name = "b", .world_text = two});
+    CHECK(in_second.find("cart_1") > in_second.find("<world name='b'>"));
+}
+
+TEST_CASE("a file that is no world, or whose names are taken, is refused with its name and line")
+{
+    const std::vector<RobotStart> robots = random_robots(1);
+    const auto refused = [&](const std::string& text, const std::string& name = "") {
+        return message_of([&] { sdf_world(robots, {.uri = "model://cart", .world_name = name, .world_text = text, .world_file = "a.world"}); });
+    };
+    CHECK_THAT(refused("<sdf version='1.6'>\n<world>\n</sdf>"), Contains("a.world: line 2: is no valid XML"));
+    CHECK(refused("<robot name='a'/>") == "a.world: has no <sdf> as its outermost element, needs an SDF world");
+    CHECK(refused("<sdf version='1.6'><model name='a'/></sdf>") == "a.world: <sdf> has no <world>, needs one");
+    CHECK_THAT(refused("<sdf><world name='a'/><world name='b'/></sdf>"), Contains("has several worlds, \"a\", \"b\""));
+    CHECK(refused("<sdf><world name='a'/><world name='b'/></sdf>", "b").empty());
+    CHECK_THAT(refused(world_text, "c"), Contains("has no world \"c\", only \"yard\""));
+    CHECK(refused("<sdf>\n<world name='a'>\n<model name='cart_1'/></world></sdf>") == "a.world: line 2: <world> has a \"cart_1\" already; give the robots other names");
+    CHECK_THAT(refused("<sdf><world name='a'><include><name>cart_1</name><uri>model://x</uri></include></world></sdf>"), Contains("has a \"cart_1\" already"));
+    CHECK_FALSE(message_of([&] { sdf_world(robots, {}); }).empty());
+    for (std::size_t size = 1; size < world_text.size(); ++size)  // cut anywhere, it is refused or whole
+        if (const std::string message = refused(world_text.substr(0, size)); message.empty()) CHECK(size >= world_text.find("</sdf>") + 6);
+}
+
+TEST_CASE("launch files need something to spawn that is a URDF or SDF")
+{
+    const std::vector<RobotStart> robots = random_robots(1);
+    for (const auto writer : {ros1_launch, ros2_launch_py, ros2_launch_xml}) {
+        CHECK_THAT(message_of([&] { writer(robots, {}); }), Contains("neither a file nor a topic"));
+        CHECK_THAT(message_of([&] { writer(robots, {.file = "a.urdf.xacro"}); }), Contains("is a template"));
+    }
+    CHECK_THAT(message_of([&] { ros2_launch_py(robots, {.file = "$(find a)/b.urdf"}); }), Contains("is for launch files in XML"));
+    CHECK_THAT(ros2_launch_xml(robots, {.file = "$(find-pkg-share a)/b.urdf"}), Contains("-file $(find-pkg-share a)/b.urdf "));
+}
+
+TEST_CASE("each tile of the terrain has its patches, an empty one is named")
+{
+    const std::vector<Vec3> points = {{0.5, 0.4, 1}, {-3, 7, 2}, {1.5, 0.4, 3}};
+    const TileGrid grid{.rows = 2, .cols = 1, .bounds = {Vec3(0, 0, 0), Vec3(2, 1, 0)}};
+    const TerrainPatches patches = terrain_patches(points, grid);
+    CHECK(patches.patches_per_tile == 2);  // what lies outside belongs to the nearest tile
+    CHECK(patches.flat_patches.size() == 128 + 2 * 1 * 2 * 3 * 4);
+    CHECK(message_of([&] { terrain_patches(points, {.rows = 2, .cols = 2, .bounds = grid.bounds}); }) ==
+          "tile 1,1 (row, column, from 0) has no spawn, needs one in each: more spawns, or fewer tiles");
+    CHECK_FALSE(message_of([&] { terrain_patches(points, {.rows = 0}); }).empty());
+    CHECK(terrain_patches({}, grid).patches_per_tile == 0);
+}
+
+TEST_CASE("sample and search write the robots of their CSV file in every format")
+{
+    const Arena arena;
+    arena.write("cart.urdf", urdf_text);
+    for (const std::string command : {"sample", "search"}) {
+        const std::string query = command + " map -n 7 --min-distance 1 --yaw random --robot cart.urdf --name 'cart_{i:02}' ";
+        REQUIRE(arena(query + "-o spawns.csv").status == 0);
+        const PoseTable table = read_poses(arena / "spawns.csv");
+        const std::vector<RobotStart> robots = robot_starts(table, column_of(table, "name"), column_of(table, "name"));
+        REQUIRE(robots.size() == 7);
+        CHECK(robots[6].name == "cart_07");
+        const auto output = [&](const std::string& arguments) {
+            const ProgramRun run = arena(query + "--quiet --format " + arguments);
+            CHECK(run.status == 0);
+            CHECK(run.err.empty());
+            return run.out;
+        };
+        const std::string urdf = fs::canonical(arena.path()) / "cart.urdf";
+        CHECK(output("ros1-launch") == ros1_launch(robots, {.file = urdf}));
+        CHECK(output("ros1-launch --topic description") == ros1_launch(robots, {.topic = "description"}));
+        CHECK(output("ros2-launch-py --world-name yard") == ros2_launch_py(robots, {.file = urdf, .world = "yard"}));
+        CHECK(output("ros2-launch-xml --topic robot_description") == ros2_launch_xml(robots, {.topic = "robot_description"}));
+        CHECK(output("sdf") == sdf_world(robots, {.uri = urdf}));
+        CHECK(output("sdf --robot-uri model://cart --world-name yard") == sdf_world(robots, {.uri = "model://cart", .world_name = "yard"}));
+        CHECK(output("mujoco --joint-qpos 0.5,-1") == mujoco_keyframes(robots, {.joints = {0.5, -1}}));
+        CHECK(output("mujoco --keys together") == mujoco_keyframes(robots, {.together = true}));
+        CHECK(output("carla --blueprint walker.a") == carla_json(robots, "walker.a"));
+        CHECK(output("carla-ros") == carla_objects_json(robots, "vehicle.tesla.model3"));
+        CHECK(output("unity") == unity_csv(robots, Frame::Unity));
+        CHECK(output("unity --unity-axes gltf") == unity_csv(robots, Frame::UnityGltf));
+        CHECK(output("unreal") == unreal_csv(robots));
+        output("isaaclab --quaternion xyzw -o isaac");
+        CHECK(names_in(arena / "isaac") == std::set<std::string>{"root_pose.npy", "flat_patches.npy", "terrain_origins.npy", "isaaclab.json"});
+        CHECK(bytes_of(arena / "isaac/root_pose.npy") == root_poses_npy(robots, QuaternionOrder::Xyzw));
+        CHECK(nlohmann::json::parse(bytes_of(arena / "isaac/isaaclab.json"))["root_pose.npy"]["columns"] == "x y z qx qy qz qw");
+        const auto json = nlohmann::json::parse(output("json --namespace 'fleet/{i}'"));
+        CHECK(json["poses"][6]["name"] == "cart_07");
+        CHECK(json["poses"][6]["namespace"] == "fleet/7");
+        CHECK(json["poses"][6]["rpy"][2] == robots[6].rpy.yaw);
+    }
+}
+
+TEST_CASE("patches lie on the ground below the spawns")
+{
+    const Arena arena;
+    CHECK(arena("sample map -n 20 --offset 0.3 --robot box:0.3,0.3,0.3 --layers top --region 3,-9,9,9 --format isaaclab -o isaac").status == 0);
+    const std::string bytes = bytes_of(arena / "isaac/flat_patches.npy");
+    const Map map = read_map(arena / "map");
+    REQUIRE(bytes.size() == 128 + 20 * 12);
+    for (std::size_t i = 0; i < 20; ++i) {
+        std::array<float, 3> p{};
+        std::memcpy(p.data(), bytes.data() + 128 + 12 * i, 12);
+        CHECK(column_at(map.geometry, p[0], p[1]).layers.front() == Approx(p[2]).margin(1e-5));
+    }
+}
+
+TEST_CASE("what a format lacks or cannot use is told before all work")
+{
+    const Arena arena;
+    arena.write("yard.world", world_text);
+    arena.write("isaac/notes.txt", "mine");
+    const std::string query = "sample map -n 3 --robot box:0.5,0.5,0.5 ";
+    const auto refused = [&](const std::string& arguments, int status) {
+        const ProgramRun run = arena(query + arguments);
+        CHECK(run.status == status);
+        CHECK(run.out.empty());
+        return run.err;
+    };
+    CHECK_THAT(refused("--format ros1-launch", 2), Contains("needs --robot-file FILE") && Contains("box:0.5,0.5,0.5 is neither"));
+    CHECK_THAT(refused("--format sdf", 2), Contains("needs --robot-uri URI"));
+    CHECK_THAT(refused("--format isaaclab", 2), Contains("needs -o FOLDER"));
+    CHECK_THAT(refused("--format isaaclab -o isaac", 1), Contains("holds notes.txt"));
+    CHECK_THAT(refused("--format isaaclab --tiles 2 -o new", 2), Contains("--tiles is \"2\", needs ROWS,COLS"));
+    CHECK_THAT(refused("--format isaaclab --tiles 40,40 -o new", 2), Contains("has no spawn"));
+    CHECK_THAT(refused("--format mujoco --joint-qpos 1,a", 2), Contains("--joint-qpos: \"a\" is no finite number"));
+    CHECK_THAT(refused("--format ros2-launch-py --robot-file none.urdf", 4), Contains("none.urdf: does not exist (--robot-file)"));
+    CHECK_THAT(refused("--format ros2-launch-py --topic a --robot-file none.urdf", 2), Contains("--topic and --robot-file"));
+    CHECK_THAT(refused("--format ros2-launch-py --topic a --name 'a-{i}'", 2), Contains("\"a-1\" has \"-\""));
+    CHECK_THAT(refused("--format sdf --robot-uri model://a --name 'a::{i}'", 2), Contains("which no model's name may"));
+    CHECK_THAT(refused("--format sdf --robot-uri model://a --world none.world", 4), Contains("none.world: is missing"));
+    CHECK_THAT(refused("--format sdf --robot-uri model://a --world yard.world --world-name meadow", 4), Contains("has no world \"meadow\""));
+    CHECK_THAT(refused("--name robot", 2), Contains("gives all 3 robots one name"));
+    const ProgramRun idle = arena(query + "--format csv --tiles 1,1 --topic a");
+    CHECK(idle.status == 0);
+    CHECK_THAT(idle.err, Contains("notice: --tiles has no effect: --format csv does not ask for it"));
+    CHECK_THAT(idle.err, Contains("notice: --topic has no effect"));
+    const ProgramRun thesis = arena(query + "--format thesis --name 'a{i}' -o thesis");
+    CHECK(thesis.status == 0);
+    CHECK_THAT(thesis.err, Contains("notice: --name has no effect: --format thesis does not ask for it"));
+    const ProgramRun away = arena(query + "--format sdf --robot-uri model://a --world yard.world -o deep/new.sdf");
+    CHECK(away.status != 0);  // no such folder
+    CHECK_THAT(away.err, Contains("relative to it will be looked for beside the new file"));
+    const ProgramRun beside = arena(query + "--quiet --format sdf --robot-uri model://a --world yard.world -o new.sdf");
+    CHECK(beside.status == 0);
+    CHECK(arena.names() == std::set<std::string>{"map", "yard.world", "isaac", "thesis", "new.sdf"});
+}

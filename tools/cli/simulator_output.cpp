@@ -1,0 +1,242 @@
+#include "simulator_output.h"
+
+#include "interrupt.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace spawnfield::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array isaac_files{"root_pose.npy", "flat_patches.npy", "terrain_origins.npy", "isaaclab.json"};
+
+/// Which formats (as their beginnings) an option is for.
+struct OptionUse {
+    const char* option;
+    std::vector<std::string> formats;
+};
+
+const std::vector<OptionUse> option_uses = {{"--name", pose_formats},
+                                            {"--namespace", {"ros", "json"}},
+                                            {"--robot-file", {"ros", "sdf"}},
+                                            {"--robot-uri", {"sdf"}},
+                                            {"--topic", {"ros"}},
+                                            {"--world", {"sdf"}},
+                                            {"--world-name", {"ros2", "sdf"}},
+                                            {"--joint-qpos", {"mujoco"}},
+                                            {"--keys", {"mujoco"}},
+                                            {"--quaternion", {"isaaclab"}},
+                                            {"--tiles", {"isaaclab"}},
+                                            {"--blueprint", {"carla"}},
+                                            {"--unity-axes", {"unity"}}};
+
+bool is_for(const OptionUse& use, const std::string& format)
+{
+    return std::any_of(use.formats.begin(), use.formats.end(), [&](const std::string& start) { return format.starts_with(start); });
+}
+
+TileGrid parse_tiles(const std::string& text)
+{
+    const std::vector<double> v = parse_numbers("--tiles", text);
+    if (v.size() != 2) throw ArgumentError("--tiles is \"" + text + "\", needs ROWS,COLS: tiles along x and along y");
+    for (const double n : v)
+        if (!(n >= 1 && n <= 10000) || n != std::floor(n)) throw bad_value("--tiles", n, "whole numbers from 1 to 10000");
+    TileGrid grid;
+    grid.rows = int(v[0]);
+    grid.cols = int(v[1]);
+    return grid;
+}
+
+std::string text_of_file(const std::string& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream || !fs::is_regular_file(file)) throw FileError(file, "is missing or cannot be read");
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+/// A path that holds wherever the file is read from. What a launcher fills in stays as it is.
+std::string lasting_path(const std::string& option, const std::string& file)
+{
+    if (file.find("$(") != std::string::npos) return file;
+    if (!fs::exists(file)) throw FileError(file, "does not exist (" + option + ")");
+    return fs::absolute(file).lexically_normal().string();
+}
+
+/// The height of the ground below each robot.
+std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map& map)
+{
+    std::vector<Vec3> points;
+    for (const RobotStart& robot : robots) {
+        const Vec3& p = robot.position;
+        const std::optional<Ground> ground = ground_below(column_at(map.geometry, p.x(), p.y()), p.z());
+        if (!ground) throw ArgumentError("--format isaaclab: there is no ground below robot " + robot.name + " at " + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()));
+        points.push_back({p.x(), p.y(), ground->height});
+    }
+    return points;
+}
+
+}  // namespace
+
+void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format)
+{
+    for (const OptionUse& use : option_uses)
+        if (!is_for(use, format)) tell_idle(common, command, {use.option}, "--format " + format + " does not ask for it");
+}
+
+void add_simulator_options(CLI::App& command, SimulatorArgs& args)
+{
+    const std::string names = "Files for simulators";
+    const auto add = [&](const char* option, std::string& value, const char* help) { return command.add_option(option, value, help)->group(names); };
+    add("--name", args.name, "Robots' names: {i} is the number from 1 on, {i:03} the same as 001 (default robot_{i})");
+    add("--namespace", args.name_space, "Their ROS namespaces, by the same kind of pattern (default: their names)");
+    add("--robot-file", args.robot_file, "URDF or SDF that launch files and worlds spawn (default: --robot, if it is one)");
+    add("--robot-uri", args.robot_uri, "sdf: URI of the robot's model, as model://husky, in place of a file");
+    add("--topic", args.topic, "ROS 2: topic, ROS 1: parameter in each namespace that tells the robot's description, in place of a file");
+    add("--world", args.world, "sdf: the world file that gets the robots (default: a new world of nothing else)");
+    add("--world-name", args.world_name, "ROS 2: Gazebo's name of the world (default: the one that runs); sdf: that of a new world, or which one of --world");
+    add("--joint-qpos", args.joint_qpos, "mujoco: q,q,... of the joints that follow each free joint (default: none)");
+    add("--keys", args.keys, "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")->check(CLI::IsMember({"each", "together"}));
+    add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw from 3 on (default wxyz)")->check(CLI::IsMember({"wxyz", "xyzw"}));
+    add("--tiles", args.tiles, "isaaclab: ROWS,COLS of the terrain patches, along x and y (default 1,1)");
+    add("--blueprint", args.blueprint, "carla: what is spawned (default vehicle.tesla.model3)");
+    add("--unity-axes", args.unity_axes, "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity itself exported as glTF, FBX or OBJ (default ros)")->check(CLI::IsMember({"ros", "gltf"}));
+}
+
+SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target)
+    : common_(common), args_(args), target_(std::move(target))
+{
+    tell_idle_options(common, command, target_.format);
+    constexpr std::size_t enough = 1000;  // of the first names, to see whether the pattern is one
+    std::vector<RobotStart> some(std::min(target_.count, enough));
+    give_names(some);
+    if (is_ros()) settle_launch();
+    if (is("sdf")) settle_sdf();
+    if (is("mujoco") && !args_.joint_qpos.empty()) keys_.joints = parse_numbers("--joint-qpos", args_.joint_qpos);
+    keys_.together = args_.keys == "together";
+    if (!is("isaaclab")) return;
+    tiles_ = parse_tiles(args_.tiles);
+    if (target_.out.empty() || target_.out == "-") throw ArgumentError("--format isaaclab needs -o FOLDER");
+    folder_ = std::make_unique<OutputFolder>(target_.out, holds_only(isaac_files, "isaaclab result"));
+}
+
+void SimulatorOutput::give_names(std::vector<RobotStart>& robots, const std::vector<std::string>& own) const
+{
+    const bool has_own = args_.name.empty() && !own.empty();
+    if (has_own) check_names("column name:", own);
+    const std::string option = has_own ? "column name:" : "--name";
+    const std::vector<std::string> names = has_own ? own : numbered_names("--name", args_.name.empty() ? "robot_{i}" : args_.name, robots.size());
+    std::vector<std::string> name_spaces = names;
+    if (!args_.name_space.empty()) name_spaces = numbered_names("--namespace", args_.name_space, robots.size());
+    check_rules(option, names, name_spaces);
+    if (is("csv") && args_.name.empty() && !has_own) return;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+        robots[i].name = names[i];
+        if (is_ros() || is("json")) robots[i].name_space = name_spaces[i];
+    }
+}
+
+void SimulatorOutput::check_rules(const std::string& option, std::span<const std::string> names, std::span<const std::string> name_spaces) const
+{
+    if (is_ros() || is("sdf")) check_model_names(option, names);
+    if (is_ros()) check_ros_names(args_.name_space.empty() ? option + " (as a namespace; --namespace gives others)" : "--namespace", name_spaces, is("ros1-launch") ? 1 : 2);
+}
+
+std::string SimulatorOutput::own_file() const
+{
+    if (!args_.robot_file.empty()) return lasting_path("--robot-file", args_.robot_file);
+    const bool is_model = target_.robot.ends_with(".urdf") || target_.robot.ends_with(".sdf") || (is("sdf") && fs::is_regular_file(fs::path(target_.robot) / "model.config"));
+    return is_model ? lasting_path("--robot", target_.robot) : "";
+}
+
+void SimulatorOutput::settle_launch()
+{
+    launch_.world = args_.world_name;
+    launch_.topic = args_.topic;
+    if (!args_.topic.empty() && !args_.robot_file.empty()) throw ArgumentError("--topic and --robot-file are both given; robots are made of one of them");
+    if (args_.topic.empty()) launch_.file = own_file();
+    if (launch_.topic.empty() && launch_.file.empty())
+        throw ArgumentError("--format " + target_.format + " needs --robot-file FILE, a URDF or SDF to spawn, or --topic robot_description; --robot " + target_.robot +
+                            " is neither");
+    target_.format == "ros2-launch-py" ? ros2_launch_py({}, launch_) : ros1_launch({}, launch_);  // to be told of a bad file now
+}
+
+void SimulatorOutput::settle_sdf()
+{
+    if (!args_.robot_uri.empty() && !args_.robot_file.empty()) throw ArgumentError("--robot-uri and --robot-file are both given; robots are made of one of them");
+    sdf_.uri = args_.robot_uri.empty() ? own_file() : args_.robot_uri;
+    sdf_.world_name = args_.world_name;
+    if (sdf_.uri.empty())
+        throw ArgumentError("--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF; --robot " + target_.robot + " is neither");
+    if (args_.world.empty()) return;
+    sdf_.world_file = args_.world;
+    sdf_.world_text = text_of_file(args_.world);
+    sdf_world({}, sdf_);  // to be told of a bad file now
+    const bool beside = !target_.out.empty() && fs::absolute(target_.out).lexically_normal().parent_path() == fs::absolute(args_.world).lexically_normal().parent_path();
+    if (!beside) notice(common_, args_.world + ": paths in it that are relative to it will be looked for beside the new file; -o beside it keeps them right");
+}
+
+std::string SimulatorOutput::text_of(std::span<const RobotStart> robots) const
+{
+    if (is("csv")) return robots_csv(robots);
+    if (is("ros1-launch")) return ros1_launch(robots, launch_);
+    if (is("ros2-launch-py")) return ros2_launch_py(robots, launch_);
+    if (is("ros2-launch-xml")) return ros2_launch_xml(robots, launch_);
+    if (is("sdf")) return sdf_world(robots, sdf_);
+    if (is("mujoco")) return mujoco_keyframes(robots, keys_);
+    if (is("carla")) return carla_json(robots, args_.blueprint);
+    if (is("carla-ros")) return carla_objects_json(robots, args_.blueprint);
+    if (is("unreal")) return unreal_csv(robots);
+    return unity_csv(robots, args_.unity_axes == "gltf" ? Frame::UnityGltf : Frame::Unity);
+}
+
+void SimulatorOutput::write(std::span<const RobotStart> robots, const Map& map, const std::function<std::string()>& json) const
+{
+    if (is("isaaclab")) return write_isaac_lab(robots, map);
+    const std::string text = is("json") ? json() : text_of(robots);
+    write_output(target_.out, [&](const auto& sink) { sink(text); });
+}
+
+void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const Map& map) const
+{
+    const bool has_w_first = args_.quaternion == "wxyz";
+    TileGrid grid = tiles_;
+    grid.bounds = map.bounds;
+    const TerrainPatches patches = terrain_patches(points_on_ground(robots, map), grid);
+    nlohmann::ordered_json about;
+    about["format"] = "spawnfield-isaaclab/1";
+    about["frame"] = "metres, right-handed, x forward, y left, z up";
+    about["root_pose.npy"] = {{"shape", {robots.size(), 7}}, {"columns", has_w_first ? "x y z qw qx qy qz" : "x y z qx qy qz qw"},
+                              {"for", has_w_first ? "Isaac Lab 1 and 2" : "Isaac Lab 3"}};
+    about["flat_patches.npy"] = {{"shape", {grid.rows, grid.cols, patches.patches_per_tile, 3}}, {"is", "ground below the spawns, by tile: rows along x, columns along y"}};
+    about["terrain_origins.npy"] = {{"shape", {grid.rows, grid.cols, 3}}, {"is", "the first patch of each tile"}};
+    about["map"] = {{"name", map.name}, {"hash", map.hash}};
+    clear_progress_bar();
+    const fs::path& into = folder_->path();
+    write_file_atomically(into / "root_pose.npy", root_poses_npy(robots, has_w_first ? QuaternionOrder::Wxyz : QuaternionOrder::Xyzw));
+    write_file_atomically(into / "flat_patches.npy", patches.flat_patches);
+    write_file_atomically(into / "terrain_origins.npy", patches.terrain_origins);
+    write_file_atomically(into / "isaaclab.json", about.dump(2) + "\n");
+    if (was_interrupted()) throw Interrupted{};
+    folder_->commit();
+}
+
+void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, const std::string& poses,
+                  SimulatorOutput::Target target, const Session& session)
+{
+    const PoseTable table = open_poses(common, poses);
+    target.count = table.poses.size();
+    const SimulatorOutput output(common, command, args, std::move(target));
+    std::vector<RobotStart> robots = robot_starts(table);
+    output.give_names(robots, column_of(table, "name"));
+    output.write(robots, session.map, [&] { return poses_json(robots, session.map, session.robot); });
+}
+
+}  // namespace spawnfield::cli
