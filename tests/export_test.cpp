@@ -96,7 +96,7 @@ struct GeoTiff {
 template <class T>
 std::vector<T> tag_values(TIFF* tiff, std::uint32_t tag)
 {
-    std::uint32_t count = 0;  // libtiff passes it for all tags that it does not know
+    std::uint32_t count = 0;
     const T* values = nullptr;
     REQUIRE(TIFFGetField(tiff, tag, &count, &values) == 1);
     return {values, values + count};
@@ -104,8 +104,9 @@ std::vector<T> tag_values(TIFF* tiff, std::uint32_t tag)
 
 std::string tag_text(TIFF* tiff, std::uint32_t tag)
 {
-    const auto bytes = tag_values<char>(tiff, tag);
-    return std::string(bytes.data());
+    const char* text = nullptr;
+    REQUIRE(TIFFGetField(tiff, tag, &text) == 1);
+    return text;
 }
 
 GeoTiff read_geotiff(const fs::path& file)
@@ -428,6 +429,32 @@ TEST_CASE("a GeoTIFF's slopes see the neighbours beyond the edge of a tile")
     CHECK(wrong == 0);
     const int row = frame.rows / 4;
     CHECK((slopes(row, 254) == 0 && slopes(row, 255) > 80 && slopes(row, 256) > 80 && slopes(row, 257) == 0));
+}
+
+TEST_CASE("a GeoTIFF lies where the survey says, if that names its coordinates by a code")
+{
+    TestMap map = deck_map();
+    map.origin = GeoOrigin{500000.25, 4100000.5, 1, "EPSG:32611"};
+    const TempFolder folder;
+    const GridFrame frame = frame_around(map.bounds, 0.5);
+    write_geotiff(map, frame, nullptr, {}, folder / "a.tif");
+    const GeoTiff survey = read_geotiff(folder / "a.tif");
+    CHECK(survey.keys == std::vector<std::uint16_t>{1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32611});
+    CHECK(survey.at("elevation", 500000.25 - 3, 4100000.5 - 1) == float(2.1));
+    CHECK(survey.at("elevation", 500000.25 + 2, 4100000.5 + 2) == 0);
+    if (const auto python = python_with("rasterio"))
+        CHECK(python_accepts(*python, folder, "import rasterio, sys\nd = rasterio.open(sys.argv[1])\nassert d.crs.to_epsg() == 32611\n"
+                                              "assert abs(next(d.sample([(499997.25, 4099999.5)]))[0] - 2.1) < 1e-6\n", folder / "a.tif"));
+    map.origin->unit = 0.3048;  // feet
+    write_geotiff(map, frame, nullptr, {}, folder / "feet.tif");
+    const GeoTiff feet = read_geotiff(folder / "feet.tif");
+    CHECK(feet.at("elevation", 500000.25 - 3 / 0.3048, 4100000.5 - 1 / 0.3048) == float(2.1));
+    GeoTiffOptions local;
+    local.survey = false;
+    write_geotiff(map, frame, nullptr, local, folder / "local.tif");
+    map.origin->crs = "EPSG:4326000";
+    write_geotiff(map, frame, nullptr, {}, folder / "words.tif");
+    for (const char* const name : {"local.tif", "words.tif"}) CHECK(read_geotiff(folder / name).at("elevation", -3, -1) == float(2.1));
 }
 
 TEST_CASE("export --format geotiff writes the same bytes at any number of threads")

@@ -4,6 +4,7 @@
 #include "picture/palette.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/frames.h>
 #include <spawnfield/map_export.h>
 
 #include <Eigen/Geometry>
@@ -18,9 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Point = std::array<float, 3>;
-
-/// glTF's axes: y up.
-Vec3 y_up(const Vec3& v) { return {v.x() + 0.0, v.z() + 0.0, 0.0 - v.y()}; }  // never -0
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
@@ -39,7 +37,7 @@ struct Elements {
 
 Point rounded(const Vec3& point, const Vec3& origin)
 {
-    const Vec3 p = y_up(point - origin);
+    const Vec3 p = point_in(Frame::Gltf, point - origin);
     return {float(p.x()), float(p.y()), float(p.z())};
 }
 
@@ -320,14 +318,13 @@ public:
     std::size_t add(std::size_t pose, const Vec3& origin)
     {
         const auto& [position, rotation] = markers_.poses[pose];
-        const Vec3 place = y_up(position - origin);
-        Eigen::Quaterniond q(rotation);
+        const Vec3 place = point_in(Frame::Gltf, position - origin);
+        Eigen::Quaterniond q(rotation_in(Frame::Gltf, rotation));
         if (q.w() < 0) q.coeffs() = -q.coeffs();
-        const Vec3 axis = y_up(q.vec());
         Json json{{"name", markers_.names.empty() ? "spawn " + std::to_string(pose) : markers_.names[pose]},
                   {"mesh", mesh_of(pose)},
                   {"translation", {place.x(), place.y(), place.z()}},
-                  {"rotation", {axis.x(), axis.y(), axis.z(), q.w()}}};
+                  {"rotation", {q.x(), q.y(), q.z(), q.w()}}};
         if (!markers_.verdicts.empty()) json["extras"] = {{"verdict", to_string(markers_.verdicts[pose])}};
         return file_.nodes.add(json);
     }
@@ -388,7 +385,7 @@ void write_glb(const Map& map, const GlbMarkers& markers, const std::function<vo
         for (std::size_t pose = 0; pose < markers.poses.size(); ++pose) spawns.push_back(drawn.add(pose, origin));
         children.push_back(file.nodes.add({{"name", "spawns"}, {"children", spawns}}));
     }
-    const Vec3 place = y_up(origin);
+    const Vec3 place = point_in(Frame::Gltf, origin);
     Json root{{"name", map.name}};
     if (!children.empty()) root["children"] = children;
     if (place != Vec3::Zero()) root["translation"] = {place.x(), place.y(), place.z()};

@@ -106,6 +106,7 @@ void add_export(CLI::App& app, Run& run)
     command.add_option("--poses,-p", args->poses, "CSV file of poses, as sample and check write them");
     command.add_option("--step", args->step, "Between columns, m");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
+    command.add_flag("--local", args->local, "In the map's own frame, though the survey's coordinates are known");
     command.footer(help());
     command.callback([=, &command, &run] { run = [=, &command] { return run_export(*args, command); }; });
 }

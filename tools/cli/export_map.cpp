@@ -94,6 +94,7 @@ void write_geotiff(const ExportJob& job)
     } else {
         options.layers = image_layers(job);
     }
+    options.survey = !job.args.local;
     options.threads = job.args.threads;
     options.progress = progress_bar(job.args, "writing");
     spawnfield::write_geotiff(job.session.map, frame, verdicts ? &*verdicts : nullptr, options, job.args.out);
@@ -137,7 +138,7 @@ std::vector<ExportFormat> map_formats()
         {"nav2", "map_server's pair for ROS: -o FILE.yaml and FILE.pgm beside it, free where --robot can stand", {"--robot", "--out"},
          with(asking_options(), {"--layers", "--resolution"}), write_nav2},
         {"geotiff", "bands of elevation, layers, clearance, slope, water, obstacle, and the verdict of --robot if there is one", {"--out"},
-         with(asking_options(), {"--robot", "--layers", "--resolution"}), write_geotiff},
+         with(asking_options(), {"--robot", "--layers", "--resolution", "--local"}), write_geotiff},
         {"ply", "points where --robot was asked to stand, every --step metres, coloured by verdict", {"--robot", "--step"},
          with(asking_options(), {"--layers", "--bounds"}), write_ply},
         {"glb", "the scene by labels, with a marker at each of --poses: --robot's shape, coloured by a column verdict", {},
