@@ -321,6 +321,7 @@ public:
         const Vec3 place = point_in(Frame::Gltf, position - origin);
         Eigen::Quaterniond q(rotation_in(Frame::Gltf, rotation));
         if (q.w() < 0) q.coeffs() = -q.coeffs();
+        q.coeffs().array() += 0.0;  // never -0
         Json json{{"name", markers_.names.empty() ? "spawn " + std::to_string(pose) : markers_.names[pose]},
                   {"mesh", mesh_of(pose)},
                   {"translation", {place.x(), place.y(), place.z()}},
