@@ -1,6 +1,8 @@
 #include "arena.h"
 #include "base/tiff.h"
 #include "hard_scene.h"
+#include "picture/relief.h"
+#include "shared_scenes.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>
@@ -29,7 +31,7 @@ TestMap deck_map()
                                                      "- {name: floor, label: terrain, box: [8, 6, 1], xyz: [-1, 0, -0.5]}\n"
                                                      "- {name: deck, label: terrain, box: [3, 6, 0.2], xyz: [-3, 0, 2]}\n"
                                                      "- {name: block, label: obstacle, box: [1, 1, 1], xyz: [-3.5, 1, 2.6]}\n"
-                                                     "- {name: crate, box: [0.5, 0.5, 0.5], xyz: [1, 2, 0.25]}\n"
+                                                     "- {name: crate, box: [0.5, 0.5, 0.5], xyz: [1, 2, 0.2]}\n"
                                                      "- {name: pool, label: water, plane: [1, 2], xyz: [2, -2, 0.3]}\n"
                                                      "- {name: post, label: obstacle, cylinder: {radius: 0.2, length: 2}, xyz: [4.5, 0, 1]}\n");
     return map_of(load_scene(file));
@@ -94,7 +96,7 @@ struct GeoTiff {
 template <class T>
 std::vector<T> tag_values(TIFF* tiff, std::uint32_t tag)
 {
-    std::uint32_t count = 0;  // libtiff passes it for all tags that it does not know
+    std::uint32_t count = 0;
     const T* values = nullptr;
     REQUIRE(TIFFGetField(tiff, tag, &count, &values) == 1);
     return {values, values + count};
@@ -102,8 +104,9 @@ std::vector<T> tag_values(TIFF* tiff, std::uint32_t tag)
 
 std::string tag_text(TIFF* tiff, std::uint32_t tag)
 {
-    const auto bytes = tag_values<char>(tiff, tag);
-    return std::string(bytes.data());
+    const char* text = nullptr;
+    REQUIRE(TIFFGetField(tiff, tag, &text) == 1);
+    return text;
 }
 
 GeoTiff read_geotiff(const fs::path& file)
@@ -399,19 +402,73 @@ TEST_CASE("a GeoTIFF's bands hold what stands in the column at each cell's centr
     CHECK(top.at("clearance", -3.5, 1) == 0);        // its block
 }
 
-TEST_CASE("a GeoTIFF tells a ramp's slope, also across the edge of a tile and at the rim")
+TEST_CASE("a GeoTIFF tells a ramp's slope, also at the rim")
 {
     const TempFolder folder;
     const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
-                                                                     "- {name: ramp, label: terrain, plane: [30, 30], rpy: [0, -0.3, 0]}\n")));
-    const GridFrame frame = frame_around(map.bounds, 0.1);
-    REQUIRE(frame.cols > 256);
-    write_geotiff(map, frame, nullptr, {}, folder / "ramp.tif");
+                                                                     "- {name: ramp, label: terrain, plane: [3, 3], rpy: [0.2, -0.3, 0]}\n")));
+    write_geotiff(map, frame_around({Vec3(-1, -1, 0), Vec3(1, 1, 0)}, 0.1), nullptr, {}, folder / "ramp.tif");
     const GeoTiff read = read_geotiff(folder / "ramp.tif");
-    const HeightImage& slope = read.band("slope");
+    const double expected = std::acos(rotation_from_rpy(0.2, -0.3, 0)(2, 2)) * 180 / std::numbers::pi;
+    for (const float slope : read.band("slope").reshaped()) CHECK(slope == Approx(expected).epsilon(1e-4));
+}
+
+TEST_CASE("a GeoTIFF's slopes see the neighbours beyond the edge of a tile")
+{
+    const TestMap map = deck_map();
+    const TempFolder folder;
+    const GridFrame frame = frame_around(map.bounds, 3.5 / 256);  // the deck ends where the second tile begins
+    write_geotiff(map, frame, nullptr, {}, folder / "deck.tif");
+    const HeightImage slopes = read_geotiff(folder / "deck.tif").band("slope"), heights = page_image(rasterize_terrain(map.geometry, frame), "height.0");
+    std::size_t wrong = 0;
     for (int row = 0; row < frame.rows; ++row)
-        for (int col = 0; col < frame.cols; ++col)
-            if (!(std::abs(slope(row, col) - 0.3 * 180 / std::numbers::pi) < 0.01)) FAIL("slope " << slope(row, col) << " at " << row << ", " << col);
+        for (int col = 0; col < frame.cols; ++col) {
+            const double slope = std::atan(gradient(heights, row, col, frame.cell).norm()) * 180 / std::numbers::pi;
+            wrong += !(std::isnan(slope) ? std::isnan(slopes(row, col)) : std::abs(slope - slopes(row, col)) < 1e-4);
+        }
+    CHECK(wrong == 0);
+    const int row = frame.rows / 4;
+    CHECK((slopes(row, 254) == 0 && slopes(row, 255) > 80 && slopes(row, 256) > 80 && slopes(row, 257) == 0));
+}
+
+TEST_CASE("a GeoTIFF lies where the survey says, if that names its coordinates by a code")
+{
+    TestMap map = deck_map();
+    map.origin = GeoOrigin{500000.25, 4100000.5, 1, "EPSG:32611"};
+    const TempFolder folder;
+    const GridFrame frame = frame_around(map.bounds, 0.5);
+    write_geotiff(map, frame, nullptr, {}, folder / "a.tif");
+    const GeoTiff survey = read_geotiff(folder / "a.tif");
+    CHECK(survey.keys == std::vector<std::uint16_t>{1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32611});
+    CHECK(survey.at("elevation", 500000.25 - 3, 4100000.5 - 1) == float(2.1));
+    CHECK(survey.at("elevation", 500000.25 + 2, 4100000.5 + 2) == 0);
+    if (const auto python = python_with("rasterio"))
+        CHECK(python_accepts(*python, folder, "import rasterio, sys\nd = rasterio.open(sys.argv[1])\nassert d.crs.to_epsg() == 32611\n"
+                                              "assert abs(next(d.sample([(499997.25, 4099999.5)]))[0] - 2.1) < 1e-6\n", folder / "a.tif"));
+    map.origin->unit = 0.3048;  // feet
+    write_geotiff(map, frame, nullptr, {}, folder / "feet.tif");
+    const GeoTiff feet = read_geotiff(folder / "feet.tif");
+    CHECK(feet.at("elevation", 500000.25 - 3 / 0.3048, 4100000.5 - 1 / 0.3048) == float(2.1));
+    GeoTiffOptions local;
+    local.survey = false;
+    write_geotiff(map, frame, nullptr, local, folder / "local.tif");
+    map.origin->crs = "EPSG:4326000";
+    write_geotiff(map, frame, nullptr, {}, folder / "words.tif");
+    for (const char* const name : {"local.tif", "words.tif"}) CHECK(read_geotiff(folder / name).at("elevation", -3, -1) == float(2.1));
+}
+
+TEST_CASE("export --format geotiff writes the same bytes at any number of threads")
+{
+    const Arena arena;
+    const std::string command = "export map --format geotiff --resolution 0.05" + husky_option;  // 2 x 2 tiles
+    REQUIRE(arena(command + "--threads 1 -o one.tif").status == 0);
+    REQUIRE(arena(command + "--threads 3 -o two.tif").status == 0);
+    CHECK(bytes_of(arena / "one.tif") == bytes_of(arena / "two.tif"));
+    const GeoTiff read = read_geotiff(arena / "one.tif");
+    CHECK(read.at("verdict", 0, 3) == float(Verdict::Valid));
+    CHECK(read.at("verdict", -6.5, -5) == float(Verdict::Collision));
+    CHECK(read.at("verdict", 7, -7) == float(Verdict::Submerged));
+    CHECK(read.at("water", 7, -7) == float(1.45));
 }
 
 TEST_CASE("GDAL sees a GeoTIFF's bands, transform, units and no-data")
@@ -594,6 +651,28 @@ TEST_CASE("a map that is baked from a GLB gives nearly all the same verdicts")
     for (std::size_t c = 0; c < before.verdicts.size(); ++c) other += before.verdicts[c] != after.verdicts[c];
     CHECK(other < before.verdicts.size() / 200);  // round solids are polygons, and numbers are float32
     CHECK(glb_bytes(map, {}, 1) == glb_bytes(map, {}, 5));
+}
+
+TEST_CASE("real scenes are the same after a GLB")
+{
+    const auto scenes = shared_scenes();
+    if (!scenes) return;
+    for (const char* const name : {"inspection", "kaykit_town", "nasty", "lunar_pit", "octomap"}) {
+        CAPTURE(name);
+        const TestMap map = map_of(load_scene(*scenes / name / "scene.yaml"), 0.5);
+        const TempFolder folder;
+        const Scene read = load_glb(folder, glb_bytes(map));
+        const LabelCounts before = map.scene.count_labels(), after = read.count_labels();
+        for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water}) {
+            const auto& [triangles, primitives] = before[std::size_t(label)];  // boxes all of them
+            const double expected = double(triangles + 12 * primitives);
+            CHECK(double(after[std::size_t(label)].triangles) <= expected);
+            CHECK(double(after[std::size_t(label)].triangles) >= 0.999 * expected);  // some have no area in float32
+            CHECK(after[std::size_t(label)].primitives == 0);
+        }
+        const Bounds from = map.scene.bounds(), to = read.bounds();
+        CHECK(std::max((from.min - to.min).cwiseAbs().maxCoeff(), (from.max - to.max).cwiseAbs().maxCoeff()) < 1e-4);
+    }
 }
 
 TEST_CASE("export --format glb draws poses of a CSV file and says what is wrong with it")

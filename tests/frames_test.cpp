@@ -13,7 +13,7 @@ using namespace spawnfield;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-const std::vector<Frame> all_frames = {Frame::Ros, Frame::Carla, Frame::Unreal, Frame::Unity, Frame::UnityGltf};
+const std::vector<Frame> all_frames = {Frame::Ros, Frame::Carla, Frame::Unreal, Frame::Unity, Frame::UnityGltf, Frame::Gltf};
 
 Vec3 random_point(Random& random) { return {random.between(-50, 50), random.between(-50, 50), random.between(-50, 50)}; }
 Rpy random_rpy(Random& random) { return {random.between(-pi, pi), random.between(-pi / 2, pi / 2), random.between(-pi, pi)}; }
@@ -40,7 +40,7 @@ TEST_CASE("a turned arrow is the same arrow in every frame")
         CHECK(rule.frame == frame);
         for (const Mat3& axes : {rule.world_axes, rule.body_axes}) {
             CHECK((axes * axes.transpose()).isApprox(Mat3::Identity(), 0));
-            CHECK(axes.determinant() == (frame == Frame::Ros ? 1 : -1));
+            CHECK(axes.determinant() == (frame == Frame::Ros || frame == Frame::Gltf ? 1 : -1));
         }
         for (int i = 0; i < 200; ++i) {
             const Rpy rpy = random_rpy(random);
@@ -66,6 +66,7 @@ TEST_CASE("each frame's axes point where its makers say")
     CHECK(point_in(Frame::Unity, ahead) == Vec3(0, 0, 10));  // Unity: z forward, x right, y up
     CHECK(point_in(Frame::Unity, to_the_left) == Vec3(-10, 0, 0));
     CHECK(point_in(Frame::Unity, above) == Vec3(0, 10, 0));
+    CHECK(point_in(Frame::Gltf, {1, 2, 3}) == Vec3(1, 3, -2));  // what readers turn back by (x, -z, y)
     CHECK(std::signbit(point_in(Frame::Unity, ahead).x()) == false);  // no -0
 
     const Vec3 unity(1, 2, 3), gltf(-unity.x(), unity.y(), unity.z()), baked(gltf.x(), -gltf.z(), gltf.y());

@@ -30,6 +30,7 @@ enum class Frame {
     Unreal,     ///< as Carla, but in centimetres
     Unity,      ///< left-handed, x right, y up, z forward, m: as Unity's ROS-TCP-Connector and URDF-Importer turn ROS's frame
     UnityGltf,  ///< the same for a robot, but the world is one that Unity's glTF, FBX or OBJ exporters wrote (x negated) and that was baked as y up
+    Gltf,       ///< right-handed, x forward, y up, z right, m: for a scene that is written into a glTF file
 };
 
 struct FrameRule {

@@ -39,6 +39,7 @@ void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml
 
 struct GeoTiffOptions {
     LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< whose clearance and slope are told: one
+    bool survey = true;  ///< in the survey's coordinates where the map knows them by an EPSG code
     int threads = 0;
     Progress progress = {};
 };
@@ -53,7 +54,7 @@ struct GeoTiffOptions {
 /// obstacle                    highest obstacle that stands above elevation, or where there is no terrain, m
 /// verdict                     with `verdicts` (of the same frame) only: the number of the Verdict
 ///
-/// A local metric frame: pixels are areas, upper left corner first, x right, y up. Tiles deflated with predictor 3; BigTIFF
+/// A local metric frame, or the survey's: pixels are areas, upper left corner first, x right, y up. Tiles deflated with predictor 3; BigTIFF
 /// where it might pass 4 GB. O(elements + cells), in rows of tiles. Throws ArgumentError for LayerChoice All, OutputError.
 /// Sources: OGC GeoTIFF 1.1 (19-008r4); GDAL's GeoTIFF driver for GDAL_METADATA and GDAL_NODATA.
 void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* verdicts, const GeoTiffOptions& options,

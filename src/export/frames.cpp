@@ -19,17 +19,18 @@ Mat3 axes(const Vec3& x, const Vec3& y, const Vec3& z)
     return out;
 }
 
-std::array<FrameRule, 5> make_rules()
+std::array<FrameRule, 6> make_rules()
 {
     const Vec3 forward = Vec3::UnitX(), left = Vec3::UnitY(), up = Vec3::UnitZ();
-    const Mat3 same = Mat3::Identity(), unreal = axes(forward, -left, up), unity = axes(-left, up, forward);
+    const Mat3 same = Mat3::Identity(), unreal = axes(forward, -left, up), unity = axes(-left, up, forward), gltf = axes(forward, up, -left);
     // A glTF of Unity is (-x, y, z) of it, and what is baked as y up is (x, -z, y) of that: (-x, -z, y) of Unity.
     const Mat3 unity_gltf = axes(-forward, up, -left);
     return {{{Frame::Ros, same, same, 1},
              {Frame::Carla, unreal, unreal, 1},
              {Frame::Unreal, unreal, unreal, 100},
              {Frame::Unity, unity, unity, 1},
-             {Frame::UnityGltf, unity_gltf, unity, 1}}};
+             {Frame::UnityGltf, unity_gltf, unity, 1},
+             {Frame::Gltf, gltf, gltf, 1}}};
 }
 
 /// Of a quaternion and its negative, the one with w >= 0; never a zero with a sign.
@@ -65,7 +66,7 @@ Eigen::Quaterniond quaternion_from(const Rpy& rpy)
 
 const FrameRule& rule_of(Frame frame)
 {
-    static const std::array<FrameRule, 5> rules = make_rules();
+    static const std::array<FrameRule, 6> rules = make_rules();
     return rules[std::size_t(frame)];
 }
 

@@ -10,6 +10,7 @@
 #include <spawnfield/output_file.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -186,35 +187,52 @@ std::string metadata(const Map& map, const std::vector<Band>& bands, const Layer
     return text + "</GDALMetadata>\n";
 }
 
-void know_geo_tags(TIFF* tiff)
+/// The code of "EPSG:32611"; nothing if it is none that a GeoTIFF can name.
+std::optional<std::uint16_t> epsg_code(const std::string& crs)
 {
-    static const TIFFFieldInfo fields[] = {
-        {pixel_scale_tag, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, true, true, const_cast<char*>("ModelPixelScaleTag")},
-        {tiepoint_tag, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, true, true, const_cast<char*>("ModelTiepointTag")},
-        {geo_keys_tag, -1, -1, TIFF_SHORT, FIELD_CUSTOM, true, true, const_cast<char*>("GeoKeyDirectoryTag")},
-        {geo_text_tag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, true, false, const_cast<char*>("GeoAsciiParamsTag")},
-        {gdal_metadata_tag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, true, false, const_cast<char*>("GDAL_METADATA")},
-        {gdal_no_data_tag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, true, false, const_cast<char*>("GDAL_NODATA")}};
-    TIFFMergeFieldInfo(tiff, fields, std::size(fields));
+    std::uint16_t code = 0;
+    if (!crs.starts_with("EPSG:")) return std::nullopt;
+    const auto [end, error] = std::from_chars(crs.data() + 5, crs.data() + crs.size(), code);
+    if (error != std::errc{} || end != crs.data() + crs.size() || code < 1024 || code > 32766) return std::nullopt;
+    return code;
 }
 
-/// A frame of the scene's own, in metres, that lies nowhere on Earth.
-void set_geo_tags(TIFF* tiff, const GridFrame& frame)
+/// Keys of a projected system by its code, or of a frame of the scene's own, in metres, that lies nowhere on Earth.
+void set_geo_keys(TIFF* tiff, const std::optional<std::uint16_t>& code)
 {
-    const double scale[] = {frame.cell, frame.cell, 0};
-    const double tiepoint[] = {0, 0, 0, frame.x0, frame.y0 + frame.rows * frame.cell, 0};  // the upper left corner
     static const std::string citation = "spawnfield scene, m, x right, y up|";
-    const std::uint16_t user_defined = 32767, pixel_is_area = 1, metre = 9001, length = std::uint16_t(citation.size());
-    const std::uint16_t keys[] = {1, 1, 0, 4,                        // version, revision, number of keys; then key, place, count, value
-                                  1024, 0, 1, user_defined,          // GTModelType
-                                  1025, 0, 1, pixel_is_area,         // GTRasterType
-                                  1026, geo_text_tag, length, 0,     // GTCitation
-                                  3076, 0, 1, metre};                // ProjLinearUnits
+    const std::uint16_t user_defined = 32767, projected = 1, pixel_is_area = 1, metre = 9001, length = std::uint16_t(citation.size());
+    // Version, revision, number of keys; then key, place, count, value.
+    const std::uint16_t survey[] = {1,    1, 0, 3,                     //
+                                    1024, 0, 1, projected,             // GTModelType
+                                    1025, 0, 1, pixel_is_area,         // GTRasterType
+                                    3072, 0, 1, code.value_or(0)};     // ProjectedCSType
+    const std::uint16_t local[] = {1,    1,            0,      4,              //
+                                   1024, 0,            1,      user_defined,   // GTModelType
+                                   1025, 0,            1,      pixel_is_area,  // GTRasterType
+                                   1026, geo_text_tag, length, 0,              // GTCitation
+                                   3076, 0,            1,      metre};         // ProjLinearUnits
+    if (code) TIFFSetField(tiff, geo_keys_tag, int(std::size(survey)), survey);
+    else TIFFSetField(tiff, geo_keys_tag, int(std::size(local)), local);
+    if (!code) TIFFSetField(tiff, geo_text_tag, citation.c_str());
+}
+
+void set_geo_tags(TIFF* tiff, const GridFrame& frame, const std::optional<GeoOrigin>& survey)
+{
+    const GeoOrigin origin = survey.value_or(GeoOrigin{});
+    const double scale[] = {frame.cell / origin.unit, frame.cell / origin.unit, 0};
+    const double top = frame.y0 + frame.rows * frame.cell;
+    const double tiepoint[] = {0, 0, 0, origin.x + frame.x0 / origin.unit, origin.y + top / origin.unit, 0};  // the upper left corner
     TIFFSetField(tiff, pixel_scale_tag, int(std::size(scale)), scale);
     TIFFSetField(tiff, tiepoint_tag, int(std::size(tiepoint)), tiepoint);
-    TIFFSetField(tiff, geo_keys_tag, int(std::size(keys)), keys);
-    TIFFSetField(tiff, geo_text_tag, citation.c_str());
+    set_geo_keys(tiff, epsg_code(origin.crs));
     TIFFSetField(tiff, gdal_no_data_tag, "nan");
+}
+
+/// What the file's coordinates are to be: the survey's, or nothing for the map's own.
+std::optional<GeoOrigin> survey_of(const Map& map, const GeoTiffOptions& options)
+{
+    return options.survey && map.origin && epsg_code(map.origin->crs) ? map.origin : std::nullopt;
 }
 
 void set_tags(TIFF* tiff, const GridFrame& frame, std::size_t bands)
@@ -242,11 +260,12 @@ bool write_tiles(TIFF* tiff, const TileBands& source, const Tiles& tiles, std::s
         std::vector<std::vector<std::string>> streams(std::size_t(tiles.cols));
         Progress progress;
         if (options.progress) progress = [&](double share) { options.progress((row + share) / tiles.rows); };
-        parallel_for(streams.size(), options.threads, progress, [&](std::size_t col) { streams[col] = source.streams(std::size_t(row) * streams.size() + col); });
+        const std::size_t first = std::size_t(row) * streams.size();
+        parallel_for(streams.size(), options.threads, progress, [&](std::size_t col) { streams[col] = source.streams(first + col); });
         for (std::size_t band = 0; band < bands; ++band)
             for (std::size_t col = 0; col < streams.size(); ++col) {
                 std::string& bytes = streams[col][band];
-                const auto number = std::uint32_t(band * count + std::size_t(row) * streams.size() + col);
+                const auto number = std::uint32_t(band * count + first + col);
                 if (TIFFWriteRawTile(tiff, number, bytes.data(), tmsize_t(bytes.size())) != tmsize_t(bytes.size())) return false;
             }
     }
@@ -270,9 +289,8 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
     Tiff tiff = open_tiff(out.path(), most_bytes < 4e9 ? "w" : "w8");
     const auto failed = [&] { return OutputError(file.string(), "cannot be written; is there space, and is it a file?"); };
     if (!tiff) throw failed();
-    know_geo_tags(tiff.get());
     set_tags(tiff.get(), frame, bands.size());
-    set_geo_tags(tiff.get(), frame);
+    set_geo_tags(tiff.get(), frame, survey_of(map, options));
     TIFFSetField(tiff.get(), gdal_metadata_tag, metadata(map, bands, options.layers, verdicts != nullptr).c_str());
     if (!write_tiles(tiff.get(), TileBands(map, tiles, verdicts, options.layers, layers), tiles, bands.size(), options) || TIFFFlush(tiff.get()) != 1)
         throw failed();

@@ -4,6 +4,7 @@
 #include "picture/palette.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/frames.h>
 #include <spawnfield/map_export.h>
 
 #include <Eigen/Geometry>
@@ -18,9 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Point = std::array<float, 3>;
-
-/// glTF's axes: y up.
-Vec3 y_up(const Vec3& v) { return {v.x() + 0.0, v.z() + 0.0, 0.0 - v.y()}; }  // never -0
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
@@ -39,7 +37,7 @@ struct Elements {
 
 Point rounded(const Vec3& point, const Vec3& origin)
 {
-    const Vec3 p = y_up(point - origin);
+    const Vec3 p = point_in(Frame::Gltf, point - origin);
     return {float(p.x()), float(p.y()), float(p.z())};
 }
 
@@ -60,7 +58,8 @@ Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
                 const Home home = tile.home(element);
                 const std::uint64_t id = tile.ids[element];
                 if (home.col == 0 || home.row == 0) continue;  // another tile has it too, and that one tells
-                if (id >= impl.elements || tile.is_triangle(element) != (id < triangles)) throw FileError(impl.file, "contradicts itself; bake the map again");
+                if (id >= impl.elements || tile.is_triangle(element) != (id < triangles))
+                    throw FileError(impl.file, "contradicts itself; bake the map again");
                 if (tile.is_triangle(element)) {
                     CornersOfTriangle& to = out.triangles[id];
                     const auto corners = tile.corners(element);
@@ -79,7 +78,8 @@ Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
 /// Round solids are many triangles each.
 int sides_for(const Elements& elements)
 {
-    const auto round = std::count_if(elements.primitives.begin(), elements.primitives.end(), [](const Primitive& p) { return p.shape.kind != ShapeKind::Box; });
+    const auto round = std::count_if(elements.primitives.begin(), elements.primitives.end(),
+                                     [](const Primitive& p) { return p.shape.kind != ShapeKind::Box; });
     return round > 20000 ? 8 : round > 2000 ? 16 : 32;
 }
 
@@ -110,11 +110,12 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Triangles of one material with equal corners welded.
+/// Triangles of one material with equal corners welded; without those that float32 leaves no area.
 class Surface {
 public:
     void add(const Point& a, const Point& b, const Point& c)
     {
+        if (a == b || b == c || c == a) return;
         for (const Point& corner : {a, b, c}) indices_.push_back(number_of(corner));
     }
     bool empty() const { return indices_.empty(); }
@@ -149,9 +150,9 @@ public:
         const auto known = std::find(material_names_.begin(), material_names_.end(), name);
         if (known != material_names_.end()) return std::size_t(known - material_names_.begin());
         material_names_.push_back(name);
+        const Json light{linear(colour >> 16), linear(colour >> 8 & 255), linear(colour & 255), alpha};
         Json json{{"name", name},
-                  {"pbrMetallicRoughness",
-                   {{"baseColorFactor", {linear(colour >> 16), linear(colour >> 8 & 255), linear(colour & 255), alpha}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+                  {"pbrMetallicRoughness", {{"baseColorFactor", light}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
                   {"doubleSided", true}};
         if (alpha < 1) json["alphaMode"] = "BLEND";
         return materials_.add(json);
@@ -184,7 +185,8 @@ public:
         const std::uint64_t data = points_.size() + indices_.size();  // multiples of 4 both
         const std::uint64_t total = 12 + 8 + json.size() + (data > 0 ? 8 + data : 0);
         if (total > 0xffffffff)
-            throw OutputError(map.name + " as GLB", "would have " + std::to_string(total) + " bytes, the format holds at most 4294967295; leave parts out of the scene");
+            throw OutputError(map.name + " as GLB", "would have " + std::to_string(total) +
+                                                        " bytes, the format holds at most 4294967295; leave parts out of the scene");
         const auto word = [](std::uint64_t value) {
             const auto typed = std::uint32_t(value);
             return std::string(reinterpret_cast<const char*>(&typed), sizeof typed);
@@ -216,8 +218,8 @@ private:
         if (meshes_.size() > 0) {
             json = {{{"buffer", 0}, {"byteLength", points_.size()}, {"byteStride", sizeof(Point)}, {"target", 34962}},
                     {{"buffer", 0}, {"byteOffset", points_.size()}, {"byteLength", indices_.size()}, {"target", 34963}}};
-            text += ",\"materials\":" + materials_.take() + ",\"meshes\":" + meshes_.take() + ",\"accessors\":" + accessors_.take() + ",\"bufferViews\":" + text_of(json) +
-                    ",\"buffers\":[{\"byteLength\":" + std::to_string(points_.size() + indices_.size()) + "}]";
+            text += ",\"materials\":" + materials_.take() + ",\"meshes\":" + meshes_.take() + ",\"accessors\":" + accessors_.take();
+            text += ",\"bufferViews\":" + text_of(json) + ",\"buffers\":[{\"byteLength\":" + std::to_string(points_.size() + indices_.size()) + "}]";
         }
         return text + "}";
     }
@@ -291,9 +293,10 @@ std::optional<std::size_t> add_part(GlbFile& file, const Elements& elements, con
 Surface marker_surface(const Robot* robot)
 {
     Surface out;
-    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) { out.add(rounded(a, Vec3::Zero()), rounded(b, Vec3::Zero()), rounded(c, Vec3::Zero())); };
+    const Vec3 origin = Vec3::Zero();
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) { out.add(rounded(a, origin), rounded(b, origin), rounded(c, origin)); };
     if (robot == nullptr) {
-        tessellate_cone(Vec3::Zero(), Vec3::UnitX(), 0.25, 16, add);
+        tessellate_cone(origin, Vec3::UnitX(), 0.25, 16, add);
         return out;
     }
     for (const RobotPart& part : robot->parts) tessellate(part, 32, add);
@@ -315,14 +318,14 @@ public:
     std::size_t add(std::size_t pose, const Vec3& origin)
     {
         const auto& [position, rotation] = markers_.poses[pose];
-        const Vec3 place = y_up(position - origin);
-        Eigen::Quaterniond q(rotation);
+        const Vec3 place = point_in(Frame::Gltf, position - origin);
+        Eigen::Quaterniond q(rotation_in(Frame::Gltf, rotation));
         if (q.w() < 0) q.coeffs() = -q.coeffs();
-        const Vec3 axis = y_up(q.vec());
+        q.coeffs().array() += 0.0;  // never -0
         Json json{{"name", markers_.names.empty() ? "spawn " + std::to_string(pose) : markers_.names[pose]},
                   {"mesh", mesh_of(pose)},
                   {"translation", {place.x(), place.y(), place.z()}},
-                  {"rotation", {axis.x(), axis.y(), axis.z(), q.w()}}};
+                  {"rotation", {q.x(), q.y(), q.z(), q.w()}}};
         if (!markers_.verdicts.empty()) json["extras"] = {{"verdict", to_string(markers_.verdicts[pose])}};
         return file_.nodes.add(json);
     }
@@ -349,7 +352,8 @@ void check(const GlbMarkers& markers)
 {
     const std::size_t poses = markers.poses.size();
     const auto fits = [&](const char* name, std::size_t size) {
-        if (size != 0 && size != poses) throw ArgumentError("write_glb", name, double(size), "one for each of the " + std::to_string(poses) + " poses, or none");
+        if (size != 0 && size != poses)
+            throw ArgumentError("write_glb", name, double(size), "one for each of the " + std::to_string(poses) + " poses, or none");
     };
     fits("markers.verdicts", markers.verdicts.size());
     fits("markers.names", markers.names.size());
@@ -368,7 +372,8 @@ void write_glb(const Map& map, const GlbMarkers& markers, const std::function<vo
     {
         const Elements elements = elements_of(map.geometry, origin, threads);
         const int sides = sides_for(elements);
-        const std::vector<Range> triangles = ranges_by_part(elements.triangles, parts.size()), primitives = ranges_by_part(elements.primitives, parts.size());
+        const std::vector<Range> triangles = ranges_by_part(elements.triangles, parts.size());
+        const std::vector<Range> primitives = ranges_by_part(elements.primitives, parts.size());
         for (std::size_t part = 0; part < parts.size(); ++part) {
             const auto node = add_part(file, elements, triangles[part], primitives[part], parts[part].name, origin, sides);
             if (node) children.push_back(*node);
@@ -381,7 +386,7 @@ void write_glb(const Map& map, const GlbMarkers& markers, const std::function<vo
         for (std::size_t pose = 0; pose < markers.poses.size(); ++pose) spawns.push_back(drawn.add(pose, origin));
         children.push_back(file.nodes.add({{"name", "spawns"}, {"children", spawns}}));
     }
-    const Vec3 place = y_up(origin);
+    const Vec3 place = point_in(Frame::Gltf, origin);
     Json root{{"name", map.name}};
     if (!children.empty()) root["children"] = children;
     if (place != Vec3::Zero()) root["translation"] = {place.x(), place.y(), place.z()};

@@ -32,8 +32,8 @@ std::string yaml_text(const GridFrame& frame, const std::string& image, const st
     for (const std::string& line : comment) text += "# " + one_line(line) + "\n";
     YAML::Emitter name;
     name << image;
-    text += std::string("image: ") + name.c_str() + "\nmode: trinary\nresolution: " + number(frame.cell) + "\norigin: [" + number(frame.x0) + ", " +
-            number(frame.y0) + ", 0]\nnegate: 0\noccupied_thresh: 0.65\n";
+    text += std::string("image: ") + name.c_str() + "\nmode: trinary\nresolution: " + number(frame.cell) + "\n";
+    text += "origin: [" + number(frame.x0) + ", " + number(frame.y0) + ", 0]\nnegate: 0\noccupied_thresh: 0.65\n";
     // 205 is 0.19608 occupied: not free. The 0.25 that many files have makes it free.
     return text + "free_thresh: 0.196\n";
 }

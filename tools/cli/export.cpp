@@ -5,7 +5,7 @@
 namespace spawnfield::cli {
 namespace {
 
-/// All formats, in the order in which --help tells them.
+/// All formats, in the order in which --help tells them: further tables are to be appended here.
 const std::vector<ExportFormat>& formats()
 {
     static const std::vector<ExportFormat> table = map_formats();
@@ -45,7 +45,8 @@ void check_options(const ExportArgs& args, const CLI::App& command)
     const ExportFormat& format = format_of(args.format);
     for (const std::string& option : format.needs)
         if (command.count(option) == 0) throw ArgumentError("--format " + args.format + " needs " + option);
-    if (contains(format.needs, "--out") && args.out == "-") throw ArgumentError("--out is \"-\": --format " + args.format + " cannot go to standard output, name a file");
+    if (contains(format.needs, "--out") && args.out == "-") 
+        throw ArgumentError("--out is \"-\": --format " + args.format + " cannot go to standard output, name a file");
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         if (option->count() == 0 || contains(general, name) || uses(format, name)) continue;
@@ -70,8 +71,13 @@ int run_export(const ExportArgs& args, const CLI::App& command)
 
 std::string help()
 {
+    std::size_t width = 0;
+    for (const std::string& name : format_names()) width = std::max(width, name.size());
     std::string text = "Formats (docs/exports.md tells of their pixels, frames and colours):\n";
-    for (const ExportFormat& format : formats()) text += "  " + std::string(format.name) + std::string(10 - std::string(format.name).size(), ' ') + format.about + "\n";
+    for (const ExportFormat& format : formats()) {
+        const std::string name = format.name;
+        text += "  " + name + std::string(width - name.size() + 2, ' ') + format.about + "\n";
+    }
     return text + "Example:\n  spawnfield export /tmp/training --format nav2 --robot box:0.99,0.67,0.39 -o /tmp/training_nav2.yaml";
 }
 
@@ -92,13 +98,15 @@ void add_export(CLI::App& app, Run& run)
     command.get_option("--robot")->required(false);
     command.add_option("--format", args->format, "One of the formats below")->required()->check(CLI::IsMember(format_names()));
     command.add_option("--out,-o", args->out, "File to write (default: standard output, where the format can)");
-    command.add_option("--layers,--layer", args->layers, "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
+    command.add_option("--layers,--layer", args->layers,
+                       "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
     command.add_option("--poses,-p", args->poses, "CSV file of poses, as sample and check write them");
     command.add_option("--step", args->step, "Between columns, m");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
+    command.add_flag("--local", args->local, "In the map's own frame, though the survey's coordinates are known");
     command.footer(help());
     command.callback([=, &command, &run] { run = [=, &command] { return run_export(*args, command); }; });
 }

@@ -7,6 +7,7 @@ namespace spawnfield::cli {
 /// Options of `export`; which of them a format takes its row of the table says.
 struct ExportArgs : QueryArgs {
     std::string format, out, layers, bounds, poses;
+    bool local = false;
     double resolution = 0, step = 0, offset = 0.1, yaw = 0;
 };
 

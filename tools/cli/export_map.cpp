@@ -30,8 +30,9 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
 std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& options, const std::string& layers)
 {
     const Session& session = job.session;
-    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): where the origin of " + session.robot.name + " can be, " +
-            number(options.offset) + " m above its layer (" + (job.args.layers.empty() ? layers : job.args.layers) + "), yaw " + number(options.yaw) + " rad"};
+    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): where the origin of " + session.robot.name +
+            " can be, " + number(options.offset) + " m above its layer (" + (job.args.layers.empty() ? layers : job.args.layers) + "), yaw " +
+            number(options.yaw) + " rad"};
 }
 
 void check_one_layer(const ExportJob& job, const LayerChoice& layers)
@@ -86,8 +87,14 @@ void write_geotiff(const ExportJob& job)
     GeoTiffOptions options;
     const GridFrame frame = image_frame(job);
     std::optional<VerdictImage> verdicts;
-    if (job.has_robot()) verdicts = ask(job, image_options(job), frame);
-    options.layers = image_layers(job);
+    if (job.has_robot()) {
+        const RasterOptions asked = image_options(job);
+        verdicts = ask(job, asked, frame);
+        options.layers = asked.layers;
+    } else {
+        options.layers = image_layers(job);
+    }
+    options.survey = !job.args.local;
     options.threads = job.args.threads;
     options.progress = progress_bar(job.args, "writing");
     spawnfield::write_geotiff(job.session.map, frame, verdicts ? &*verdicts : nullptr, options, job.args.out);
@@ -131,7 +138,7 @@ std::vector<ExportFormat> map_formats()
         {"nav2", "map_server's pair for ROS: -o FILE.yaml and FILE.pgm beside it, free where --robot can stand", {"--robot", "--out"},
          with(asking_options(), {"--layers", "--resolution"}), write_nav2},
         {"geotiff", "bands of elevation, layers, clearance, slope, water, obstacle, and the verdict of --robot if there is one", {"--out"},
-         with(asking_options(), {"--robot", "--layers", "--resolution"}), write_geotiff},
+         with(asking_options(), {"--robot", "--layers", "--resolution", "--local"}), write_geotiff},
         {"ply", "points where --robot was asked to stand, every --step metres, coloured by verdict", {"--robot", "--step"},
          with(asking_options(), {"--layers", "--bounds"}), write_ply},
         {"glb", "the scene by labels, with a marker at each of --poses: --robot's shape, coloured by a column verdict", {},
