@@ -101,6 +101,23 @@ TEST_CASE("models are included from --model-path, from beside the file, and thro
     CHECK_THROWS_WITH(load(folder, inside), Catch::Contains("model://axle") && Catch::StartsWith((folder / "robot.sdf").string() + ": "));
 }
 
+TEST_CASE("models that include each other without end are refused, the same model twice is not")
+{
+    const TempFolder folder;
+    for (const std::string name : {"a", "b"}) {
+        folder.write(name + "/model.config", "<model><name>x</name><sdf version='1.9'>model.sdf</sdf></model>");
+        const std::string other = name == "a" ? "b" : "a";
+        folder.write(name + "/model.sdf", "<sdf version='1.9'><model name='" + name + "'>" + link_of("l", collision(small_box)) + "<include><uri> model://" + other +
+                                              " </uri></include></model></sdf>");
+    }
+    const auto canonical = [&](const std::string& name) { return std::filesystem::canonical(folder / name / "model.sdf").string(); };
+    CHECK_THROWS_WITH(load_robot((folder / "a").string()), canonical("a") + ": includes itself without end: " + canonical("a") + " > " + canonical("b") + " > " + canonical("a"));
+    folder.write("b/model.sdf", "<sdf version='1.9'><model name='b'>" + link_of("l", collision(small_box)) + "<!-- <include><uri>model://a</uri></include> --></model></sdf>");
+    folder.write("a/model.sdf", "<sdf version='1.9'><model name='a'>" + link_of("l", "") + "<include><uri>model://b</uri></include><include><uri>model://b</uri><name>c</name>"
+                                "<pose>1 0 0 0 0 0</pose></include></model></sdf>");
+    CHECK(load_robot((folder / "a").string()).parts.size() == 2);
+}
+
 TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
 {
     const TempFolder folder;
@@ -214,7 +231,7 @@ TEST_CASE("every prefix of an SDF robot is read or refused")
     const TempFolder folder;
     const std::string whole = sdf_of(link_of("a", collision(small_box)) + link_of("b", collision(small_box), "<pose>1 0 0 0 0 0</pose>") +
                                      joint("j", "revolute", "a", "b", "<axis><xyz>0 0 1</xyz></axis>"));
-    for (std::size_t length = 0; length < whole.size(); length += 7) {
+    for (std::size_t length = 0; length < whole.size(); length += 23) {
         const auto file = folder.write("robot.sdf", whole.substr(0, length));
         CHECK_THROWS_AS(load_robot(file.string()), FileError);
     }

@@ -3,6 +3,7 @@
 #include <spawnfield/shape.h>
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace spawnfield {
@@ -67,10 +68,14 @@ struct LabelRule {
     Label label = Label::Obstacle;
 };
 
+/// What the space counts as that an OctoMap has not seen, within the box around all that it has.
+enum class Unknown : std::uint8_t { Free, Blocked };
+
 struct SceneOptions {
     std::vector<LabelRule> labels = {};  ///< come before the file's own rules; the first match wins
     char up = 0;                         ///< 'y' or 'z' for a bare mesh; 0: what the format says, else z
     double scale = 1.0;                  ///< m per unit of a bare mesh, > 0
+    std::optional<Unknown> unknown = {}; ///< of all OctoMaps; nothing: what the scene file says, else Free
 };
 
 /// Reads a scene.yaml (format spawnfield-scene/1), an OctoMap (.bt, .ot) or any mesh that assimp reads.

@@ -5,6 +5,7 @@
 #include "robot/joints.h"
 #include "robot/mesh_parts.h"
 #include "scene/model_paths.h"
+#include "scene/sdf_includes.h"
 
 #include <spawnfield/error.h>
 
@@ -102,6 +103,7 @@ public:
     {
         const SdfSession session([this](const std::string& uri) { return find_uri(uri, file_.parent_path(), folders_).string(); });
         if (fs::is_directory(file_)) file_ = file_in(file_);
+        refuse_cyclic_includes(file_, folders_);
         sdf::Root root;
         check(root.Load(file_.string(), session.config()));
         if (root.Model() == nullptr)

@@ -156,10 +156,11 @@ struct SceneFile {
 void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
 {
     const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
-                                      {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels"});
+                                      {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels", "unknown"});
     if (kind == "mesh") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "mesh", "up", "scale", "solid", "sides", "labels"});
     else if (kind == "plane") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "plane", "sides"});
     else if (kind == "heightmap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "heightmap", "sides"});
+    else if (kind == "octomap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "octomap", "unknown"});
     else map.only({"name", "label", "xyz", "rpy", "rpy_deg", kind.c_str()});
 
     Label label = read_label(map, "obstacle");
@@ -193,7 +194,10 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
             append_heightmap(scene, part, read_heightmap(file.folder / path, heightmap), map.pose(), up);
         });
     } else if (kind == "octomap") {
-        in_part(map, "octomap", [&](const auto& path) { append_octomap(scene, part, file.folder / path, map.pose()); });
+        const Unknown given = map.one_of("unknown", {"free", "blocked"}, "free") == "blocked" ? Unknown::Blocked : Unknown::Free;
+        in_part(map, "octomap", [&](const auto& path) {
+            append_octomap(scene, part, file.folder / path, map.pose(), file.options.unknown.value_or(given));
+        });
     } else {
         scene.primitives.push_back({read_shape(map, kind), part, label});
         scene.parts[part].solid_pieces = 1;
@@ -218,6 +222,8 @@ Scene read_scene_yaml(const std::filesystem::path& file, const SceneOptions& opt
         const YamlMap map(node, file.string(), "part \"" + name + "\"");
         if (!part_names.insert(name).second) map.fail("name", "is given to an earlier part too, needs to be unique");
         read_part(map, common, scene);
+        if (scene.parts.back().name != name && !part_names.insert(scene.parts.back().name).second)
+            map.fail("octomap", "has unknown space, but its part's name \"" + scene.parts.back().name + "\" is given to another part");
     }
     if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
     tell_idle_rules(file, options.labels, common.names, scene);
@@ -241,7 +247,7 @@ Scene read_bare_file(const std::filesystem::path& file, const std::string& exten
         for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
             if (matches(rule->pattern, scene.name)) fallback = rule->label;
         const std::uint32_t part = add_part(scene, scene.name, "octomap", fallback);
-        if (fallback != Label::Ignore) append_octomap(scene, part, file, {});
+        if (fallback != Label::Ignore) append_octomap(scene, part, file, {}, options.unknown.value_or(Unknown::Free));
         tell_idle_rules(file, options.labels, {scene.name}, scene);
         return scene;
     }
@@ -277,6 +283,9 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options)
     if (yaml && (options.up != 0 || options.scale != 1.0))
         throw ArgumentError("load_scene", "up and scale are for a bare mesh; give them in " + file.string() + " (keys up, scale)");
     Scene scene = yaml ? read_scene_yaml(file, options) : read_bare_file(file, extension, options);
+    const auto is_octomap_part = [](const Part& part) { return part.kind == "octomap"; };
+    if (options.unknown && std::none_of(scene.parts.begin(), scene.parts.end(), is_octomap_part))
+        scene.notices.push_back(file.string() + ": has no OctoMap, so --unknown has no effect");
     if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored");
     return scene;
 }

@@ -9,7 +9,7 @@ namespace spawnfield::cli {
 namespace {
 
 struct BakeArgs : CommonArgs {
-    std::string scene, out, bounds, up;
+    std::string scene, out, bounds, up, unknown;
     double resolution = 0, occupancy_resolution = 0, scale = 1;
     std::vector<std::string> labels;
     bool allow_no_terrain = false;
@@ -38,6 +38,7 @@ int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
     for (const std::string& label : args.labels) scene_options.labels.push_back(parse_label(label));
     scene_options.up = args.up.empty() ? char{0} : args.up[0];
     scene_options.scale = parse_positive("--scale", args.scale);
+    if (!args.unknown.empty()) scene_options.unknown = args.unknown == "blocked" ? Unknown::Blocked : Unknown::Free;
     BakeOptions options;
     if (resolution_given) options.resolution = parse_positive("--resolution", args.resolution);
     if (occupancy_given) options.occupancy_resolution = parse_positive("--occupancy-resolution", args.occupancy_resolution);
@@ -65,7 +66,7 @@ void add_bake(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<BakeArgs>();
     CLI::App& command = *app.add_subcommand("bake", "Make a map from a scene");
-    command.add_option("scene", args->scene, "scene.yaml, a mesh (any format assimp reads) or an OctoMap (.bt)")->required();
+    command.add_option("scene", args->scene, "scene.yaml, a mesh (any format assimp reads) or an OctoMap (.bt, .ot)")->required();
     command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")->required();
     auto* resolution = command.add_option("--resolution", args->resolution, "Side of a terrain cell, m (default 0.1)");
     auto* occupancy = command.add_option("--occupancy-resolution", args->occupancy_resolution, "Side of a voxel, m (default 2.5 cells)");
@@ -73,6 +74,8 @@ void add_bake(CLI::App& app, Run& run)
     command.add_option("--up", args->up, "Up axis of a bare mesh: y or z (default: what the format says, else z)")->check(CLI::IsMember({"y", "z"}));
     command.add_option("--scale", args->scale, "Metres per unit of a bare mesh (default 1)");
     command.add_option("--label", args->labels, "'GLOB=LABEL': label of the nodes, materials or parts whose name matches (repeatable; first match wins)");
+    command.add_option("--unknown", args->unknown, "What an OctoMap has not seen, within the box around what it has: free or blocked (default: free, or what scene.yaml says)")
+        ->check(CLI::IsMember({"free", "blocked"}));
     command.add_flag("--allow-no-terrain", args->allow_no_terrain, "Bake a scene in which nothing is terrain");
     add_common(command, *args);
     command.footer("Example:\n  spawnfield bake maps/training/scene.yaml -o /tmp/training");
