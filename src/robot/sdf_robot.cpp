@@ -58,14 +58,16 @@ private:
     sdf::ParserConfig config_;
 };
 
-/// Where an error of libsdformat is and what it says; "" for the file that was asked for.
+/// Where an error of libsdformat is and what it says; the file only if it is another than the one asked for.
 std::string words_of(const sdf::Error& error, const fs::path& file)
 {
     std::string text;
     if (error.FilePath() && *error.FilePath() != file.string()) text += *error.FilePath() + ": ";
     if (error.LineNumber()) text += "line " + std::to_string(*error.LineNumber()) + ": ";
     else if (error.XmlPath() && !error.XmlPath()->empty()) text += *error.XmlPath() + ": ";
-    return text + error.Message();
+    text += error.Message();
+    if (error.Code() == sdf::ErrorCode::URI_LOOKUP) text += "; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell where models are";
+    return text;
 }
 
 /// What is about mass and age of the file, not about where collisions are.
