@@ -85,20 +85,37 @@ TEST_CASE("models are included from --model-path, from beside the file, and thro
 {
     const TempFolder folder;
     const std::string config = "<model><name>x</name><sdf version='1.9'>model.sdf</sdf></model>";
-    folder.write("models/wheel/model.config", config);
-    folder.write("models/wheel/model.sdf", "<sdf version='1.9'><model name='wheel'>" + link_of("rim", collision("<mesh><uri>model://wheel/rim.obj</uri></mesh>")) + "</model></sdf>");
-    folder.write("models/wheel/rim.obj", mesh_text::obj(hand::box({1, 1, 1})));
-    folder.write("models/axle/model.config", config);
-    folder.write("models/axle/model.sdf", "<sdf version='1.9'><model name='axle'>" + link_of("rod", "") +
+    folder.write("lib/wheel/model.config", config);
+    folder.write("lib/wheel/model.sdf", "<sdf version='1.9'><model name='wheel'>" + link_of("rim", collision("<mesh><uri>model://wheel/rim.obj</uri></mesh>")) + "</model></sdf>");
+    folder.write("lib/wheel/rim.obj", mesh_text::obj(hand::box({1, 1, 1})));
+    folder.write("lib/axle/model.config", config);
+    folder.write("lib/axle/model.sdf", "<sdf version='1.9'><model name='axle'>" + link_of("rod", "") +
                                               "<include><uri>model://wheel</uri><name>w</name><pose>0 2 0 0 0 0</pose></include></model></sdf>");
     const std::string inside = link_of("base", "") + "<include><uri>model://axle</uri><pose>0 0 1 0 0 0</pose></include>";
-    const Robot robot = load(folder, inside, {.model_paths = {folder / "models"}});
+    const Robot robot = load(folder, inside, {.model_paths = {folder / "lib"}});
     REQUIRE(robot.parts.size() == 1);
     CHECK(robot.parts[0].name == "axle::w::rim");
     check_bounds(robot.bounds(), {-0.5, 1.5, 0.5}, {0.5, 2.5, 1.5});
     // The folder itself; its neighbours are found, being in the folder above.
-    check_bounds(load_robot((folder / "models/axle").string()).bounds(), {-0.5, 1.5, -0.5}, {0.5, 2.5, 0.5});
-    CHECK_THROWS_WITH(load(folder, inside), Catch::Contains("model://axle") && Catch::StartsWith((folder / "robot.sdf").string() + ": "));
+    check_bounds(load_robot((folder / "lib/axle").string()).bounds(), {-0.5, 1.5, -0.5}, {0.5, 2.5, 0.5});
+    CHECK_THROWS_WITH(load(folder, inside), Catch::Contains("model://axle") && Catch::Contains("; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell") && Catch::StartsWith((folder / "robot.sdf").string() + ": "));
+}
+
+TEST_CASE("models that include each other without end are refused, the same model twice is not")
+{
+    const TempFolder folder;
+    for (const std::string name : {"a", "b"}) {
+        folder.write(name + "/model.config", "<model><name>x</name><sdf version='1.9'>model.sdf</sdf></model>");
+        const std::string other = name == "a" ? "b" : "a";
+        folder.write(name + "/model.sdf", "<sdf version='1.9'><model name='" + name + "'>" + link_of("l", collision(small_box)) + "<include><uri> model://" + other +
+                                              " </uri></include></model></sdf>");
+    }
+    const auto canonical = [&](const std::string& name) { return std::filesystem::canonical(folder / name / "model.sdf").string(); };
+    CHECK_THROWS_WITH(load_robot((folder / "a").string()), canonical("a") + ": includes itself without end: " + canonical("a") + " > " + canonical("b") + " > " + canonical("a"));
+    folder.write("b/model.sdf", "<sdf version='1.9'><model name='b'>" + link_of("l", collision(small_box)) + "<!-- <include><uri>model://a</uri></include> --></model></sdf>");
+    folder.write("a/model.sdf", "<sdf version='1.9'><model name='a'>" + link_of("l", "") + "<include><uri>model://b</uri></include><include><uri>model://b</uri><name>c</name>"
+                                "<pose>1 0 0 0 0 0</pose></include></model></sdf>");
+    CHECK(load_robot((folder / "a").string()).parts.size() == 2);
 }
 
 TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
@@ -175,14 +192,14 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
     const std::string file = (folder / "robot.sdf").string() + ": ", in_a = file + "link \"a\": collision \"c\": ";
     const std::pair<std::string, std::string> cases[] = {
         {link_of("a", ""), file + "has no <collision>, needs at least one (<visual> does not count)"},
-        {link_of("a", collision("<box><size>1 0 1</size></box>")), in_a + "<box> <size> is 0, needs > 0 (line 3)"},
-        {link_of("a", collision("<sphere><radius>-1</radius></sphere>")), in_a + "<sphere> <radius> is -1, needs > 0 (line 3)"},
+        {link_of("a", collision("<box><size>1 0 1</size></box>")), file + "\"a::c\": <box> <size> is 0, needs > 0 and at most 1000 km (line 3)"},
+        {link_of("a", collision("<sphere><radius>-1</radius></sphere>")), file + "\"a::c\": <sphere> <radius> is -1, needs > 0 and at most 1000 km (line 3)"},
         {link_of("a", collision("<plane><normal>0 0 1</normal></plane>")), in_a + "is a <plane>, which no robot can be made of: it has no end (line 3)"},
         {link_of("a", collision("<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>1</height></polyline>")),
-         in_a + "is a <polyline>, which is not known here; known: box, sphere, cylinder, capsule, ellipsoid, mesh (line 3)"},
+         in_a + "is a <polyline>, which robots cannot have here: a box or a mesh does (line 3)"},
         {link_of("a", collision("<mesh><uri>none.stl</uri></mesh>")),
-         in_a + "<mesh> none.stl is not found; model:// is looked for in --model-path, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH and the folders above the file, other "
-                "names beside it (line 3)"},
+         in_a + "<mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the "
+                "file (line 3)"},
         {link_of("a", collision("<mesh><uri>flat.obj</uri></mesh>")),
          in_a + "<mesh> cannot be used: " + (folder / "flat.obj").string() + ": its convex hull has no volume: its points lie in a plane (line 3)"},
     };
@@ -206,7 +223,7 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
         CHECK_THAT(refused(text), Catch::StartsWith(file));
     }
     std::filesystem::create_directories(folder / "empty");
-    CHECK_THROWS_WITH(load_robot((folder / "empty").string()), (folder / "empty").string() + ": is a folder without model.config, so no SDF model");
+    CHECK_THROWS_WITH(load_robot((folder / "empty").string()), (folder / "empty").string() + ": is a folder without model.config and .sdf file, needs to be a model's");
 }
 
 TEST_CASE("every prefix of an SDF robot is read or refused")
@@ -214,7 +231,7 @@ TEST_CASE("every prefix of an SDF robot is read or refused")
     const TempFolder folder;
     const std::string whole = sdf_of(link_of("a", collision(small_box)) + link_of("b", collision(small_box), "<pose>1 0 0 0 0 0</pose>") +
                                      joint("j", "revolute", "a", "b", "<axis><xyz>0 0 1</xyz></axis>"));
-    for (std::size_t length = 0; length < whole.size(); length += 7) {
+    for (std::size_t length = 0; length < whole.size(); length += 23) {
         const auto file = folder.write("robot.sdf", whole.substr(0, length));
         CHECK_THROWS_AS(load_robot(file.string()), FileError);
     }

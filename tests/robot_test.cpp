@@ -223,7 +223,7 @@ TEST_CASE("roll, pitch and yaw of a URDF turn about fixed axes")
     CHECK(robot.parts[0].shape.pose.rotation.isApprox(rotation_from_rpy(0.3, -0.4, 2.5), 1e-12));
 }
 
-TEST_CASE("package:// is found by --package-path first, then by looking upward from the file")
+TEST_CASE("package:// is found by --model-path first, then by looking upward from the file")
 {
     const TempFolder folder;
     folder.write("ws/my_robot/meshes/hull.stl", mesh_text::stl(hand::box({1, 1, 1})));
@@ -234,8 +234,8 @@ TEST_CASE("package:// is found by --package-path first, then by looking upward f
     check_bounds(load_robot(outside.string(), {{folder / "ws"}}).bounds(), {-1, -0.5, -0.5}, {1, 0.5, 0.5});
     check_bounds(load_robot(inside.string(), {{folder / "none", folder / "other"}}).bounds(), {-3, -1.5, -1.5}, {3, 1.5, 1.5});
     CHECK_THROWS_WITH(load_robot(outside.string()),
-                      outside.string() + ": link \"a\": package://my_robot/meshes/hull.stl is found neither in --package-path nor in the "
-                                         "folders above the file");
+                      outside.string() + ": link \"a\": <mesh> package://my_robot/meshes/hull.stl is found neither beside the file, nor in --model-path, "
+                                         "GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file");
 }
 
 TEST_CASE("file:// and relative mesh names work too; COLLADA's unit counts, its up axis does not")
@@ -272,7 +272,7 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
         {link_of("a", "<sphere radius=\"-0.5\"/>"), "link \"a\": <sphere radius> is -0.5, needs > 0"},
         {link_of("a", "<cylinder radius=\"1\" length=\"0\"/>"), "link \"a\": <cylinder> is 0, needs > 0"},
         {link_of("a", "<mesh filename=\"none.stl\"/>"),
-         "link \"a\": <mesh> cannot be used: " + (folder / "none.stl").string() + ": does not exist; is the path right?"},
+         "link \"a\": <mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file"},
         {link_of("a", "<mesh filename=\"flat.obj\"/>"), "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
                                                          ": its convex hull has no volume: its points lie in a plane"},
         {"<link", "is no valid URDF: Error reading Attributes."},

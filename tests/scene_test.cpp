@@ -207,14 +207,15 @@ TEST_CASE("an OctoMap is a scene by itself: terrain with a notice, or as its lab
     const Scene plain = load_scene(file);
     CHECK(plain.name == "house");
     CHECK(count(plain, Label::Terrain) == 2);
-    REQUIRE(plain.notices.size() == 1);
+    REQUIRE(plain.notices.size() == 2);
+    CHECK_THAT(plain.notices[1], Contains("are unknown"));
     CHECK(plain.notices[0] == file.string() + ": no label given, so everything is terrain (--label 'GLOB=LABEL' tells it apart)");
     check_near(plain.bounds().min, {0, 0, 0});
     check_near(plain.bounds().max, {3, 1, 1});
 
     const Scene labelled = load_scene(file, {.labels = {{"Hou*", Label::Obstacle}, {"*", Label::Terrain}}});
     CHECK(count(labelled, Label::Obstacle) == 2);
-    CHECK(labelled.notices.empty());
+    CHECK(labelled.notices.size() == 1);
     CHECK_THROWS_WITH(load_scene(file, {.labels = {{"*", Label::Ignore}}}), file.string() + ": has no geometry: all of it is ignored");
     CHECK_THROWS_AS(load_scene(file, {.scale = 2}), ArgumentError);
     CHECK_THROWS_AS(load_scene(file, {.up = 'y'}), ArgumentError);

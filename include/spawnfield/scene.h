@@ -86,6 +86,9 @@ struct LabelRule {
     Label label = Label::Obstacle;
 };
 
+/// What the space counts as that an OctoMap has not seen, within the box around all that it has.
+enum class Unknown : std::uint8_t { Free, Blocked };
+
 struct SceneOptions {
     std::vector<LabelRule> labels = {};  ///< come before the file's own rules; the first match wins
     char up = 0;                         ///< 'y' or 'z' for a bare mesh; 0: what the format says, else z
@@ -96,6 +99,7 @@ struct SceneOptions {
     bool strict = false;                 ///< a model or mesh that is missing is an error, not a notice
     std::string heightmap = {};          ///< of a bare elevation model: keys as under `heightmap:`, "size: [513, 513], z: [0, 75]"
     Bounds bounds = {};                  ///< infinite planes are cut to these, and 50 m beyond; empty: to all the rest and their drawn size
+    std::optional<Unknown> unknown = {}; ///< of all OctoMaps; nothing: what the scene file says, else Free
 };
 
 /// Reads a scene.yaml (format spawnfield-scene/1), an SDF world or model (.sdf, .world, a model's folder), a URDF, an OctoMap (.bt,

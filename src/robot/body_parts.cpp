@@ -19,6 +19,11 @@ std::string place_of(const CollisionBody& body)
     return "link \"" + body.names[1] + "\"" + (body.names.back().empty() ? "" : ": collision \"" + body.names.back() + "\"");
 }
 
+[[noreturn]] void fail(const CollisionBody& body, const std::string& file, const std::string& what)
+{
+    throw FileError(file, place_of(body) + ": " + what + (body.geometry.line ? " (line " + std::to_string(*body.geometry.line) + ")" : ""));
+}
+
 void append_ellipsoid(Robot& robot, const CollisionBody& body, const std::string& file)
 {
     RobotPart part = ellipsoid_hull(body.geometry.size, body.pose);
@@ -32,18 +37,17 @@ void append_ellipsoid(Robot& robot, const CollisionBody& body, const std::string
 void append_mesh_body(Robot& robot, const CollisionBody& body, ModelPaths& paths, const std::string& file, int most_parts)
 {
     const CollisionGeometry& geometry = body.geometry;
-    const auto fail = [&](const std::string& what) { throw FileError(file, place_of(body) + ": <mesh> " + what); };
     const std::filesystem::path found = paths.find(geometry.uri, geometry.folder);
     if (!std::filesystem::is_regular_file(found))
-        fail(geometry.uri + " is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file");
+        fail(body, file, "<mesh> " + geometry.uri + " is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file");
     try {
         // As Gazebo takes COLLADA: its <unit> counts, its <up_axis> does not.
         const FileMesh mesh = submesh_of(read_mesh(found), geometry, found.string());
         append_mesh(robot, {body.names[1], found, placed(mesh.nodes, geometry.size, body.pose)}, most_parts);
     } catch (const std::domain_error& error) {
-        fail("cannot be used: " + found.string() + ": its convex hull has no volume: " + error.what());
+        fail(body, file, "<mesh> cannot be used: " + found.string() + ": its convex hull has no volume: " + error.what());
     } catch (const FileError& error) {
-        fail(std::string("cannot be used: ") + error.what());
+        fail(body, file, std::string("<mesh> cannot be used: ") + error.what());
     }
 }
 
@@ -66,7 +70,7 @@ void append_body(Robot& robot, const CollisionBody& body, ModelPaths& paths, con
                             : geometry.kind == Kind::Heightmap ? "is a <heightmap>, which no robot can be made of: it has no thickness"
                             : geometry.kind == Kind::Polyline  ? "is a <polyline>, which robots cannot have here: a box or a mesh does"
                                                                : "is a <" + geometry.element + ">, which is not known here; known: box, sphere, cylinder, capsule, ellipsoid, mesh";
-    throw FileError(file, place_of(body) + ": " + why);
+    fail(body, file, why);
 }
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #include "robot/convex_split.h"
 
+#include "base/parallel.h"
 #include "robot/hull.h"
 
 #include <Eigen/Geometry>
@@ -155,20 +156,19 @@ std::vector<Plane> planes_through(const Block& block)
 /// The cut that leaves the least volume; of equal ones one across the longest side, through the middle.
 std::optional<std::array<Block, 2>> best_cut(const Block& block, const std::vector<SurfacePiece>& pieces)
 {
-    std::optional<std::array<Block, 2>> best;
-    double best_score = 0;
+    const std::vector<Plane> planes = planes_through(block);
     const Vec3 size = block.hull.bounds().max - block.hull.bounds().min;
-    for (const Plane& plane : planes_through(block)) {
-        auto sides = sides_of(block, plane, pieces);
-        if (!sides) continue;
+    std::vector<double> scores(planes.size(), infinite);
+    parallel_for(planes.size(), 0, {}, [&](std::size_t k) {
+        const auto sides = sides_of(block, planes[k], pieces);
+        if (!sides) return;
         const double left = (*sides)[0].volume, right = (*sides)[1].volume;
-        const double shortness = 1 - size[plane.axis] / size.maxCoeff();
-        const double score = left + right + 1e-6 * (std::abs(left - right) + 2 * shortness * block.volume);
-        if (best && !(score < best_score)) continue;
-        best = std::move(sides);
-        best_score = score;
-    }
-    return best;
+        const double shortness = 1 - size[planes[k].axis] / size.maxCoeff();
+        scores[k] = left + right + 1e-6 * (std::abs(left - right) + 2 * shortness * block.volume);
+    });
+    const auto best = std::min_element(scores.begin(), scores.end());
+    if (best == scores.end() || *best == infinite) return std::nullopt;
+    return sides_of(block, planes[std::size_t(best - scores.begin())], pieces);
 }
 
 class Splitter {

@@ -2,6 +2,7 @@
 
 #include "robot/body_parts.h"
 #include "robot/joints.h"
+#include "scene/sdf_includes.h"
 #include "scene/sdf_parser.h"
 
 #include <spawnfield/error.h>
@@ -45,6 +46,7 @@ public:
 
     Robot read()
     {
+        check_includes(file_, paths_);
         const SdfSession session(paths_, file_.parent_path());
         sdf::Root root;
         check(root.Load(file_.string(), session.config()));
@@ -80,7 +82,7 @@ private:
         const sdf::Error* first = nullptr;
         std::size_t harmless = 0;
         for (const sdf::Error& error : errors) {
-            if (!is_harmless(error.Code())) throw FileError(words_of(error, file_.string()), "cannot be used");
+            if (!is_harmless(error.Code())) throw FileError(words_of(error, file_.string()), "it is needed");
             if (harmless++ == 0) first = &error;
         }
         if (first == nullptr) return;

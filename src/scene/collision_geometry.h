@@ -22,6 +22,7 @@ struct CollisionGeometry {
     unsigned sampling = 1;                      ///< heightmap: samples for each pixel, between them interpolated
     std::vector<std::vector<std::array<double, 2>>> outlines;  ///< polyline: even-odd
     std::string element;                        ///< Unknown: what stands there
+    std::optional<int> line;                    ///< of its file, where that is known
 };
 
 /// A <collision> with its place.

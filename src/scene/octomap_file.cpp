@@ -41,6 +41,15 @@ Header read_header(const std::filesystem::path& file, const std::string& bytes, 
     return header;
 }
 
+/// Trees that hold log-odds of occupancy and write them alike; others count or map something else.
+constexpr const char* known_types = "OcTree, ColorOcTree or OcTreeStamped";
+
+void check_type(const std::filesystem::path& file, const Header& header)
+{
+    if (header.id == "OcTree" || header.id == "ColorOcTree" || header.id == "OcTreeStamped") return;
+    throw FileError(file.string(), "is an OctoMap of type " + (header.id.empty() ? "\"\"" : header.id) + ", needs " + known_types);
+}
+
 /// Nodes of the tree, two bits for each of eight children; 0 if it is deeper than a tree can be or the bytes end in it.
 /// octomap itself reads on past the end, so this looks first.
 std::size_t count_nodes(std::string_view data, int depth, std::size_t& at)
@@ -64,6 +73,7 @@ std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
 {
     const std::string bytes = read_file(file);
     const Header header = read_header(file, bytes, "binary OctoMap (.bt)", "# Octomap OcTree binary file");
+    check_type(file, header);
     const std::string_view data = std::string_view(bytes).substr(header.data);
     std::size_t at = 0;
     const std::size_t nodes = header.nodes == 0 ? 0 : count_nodes(data, 0, at);
@@ -76,15 +86,18 @@ std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
     return tree;
 }
 
-/// Whether the bytes hold a whole tree: of each node a float, a mask of its children, then these (octomap/OcTreeBaseImpl.hxx).
-bool is_whole(std::string_view data, int depth, std::size_t& at)
+/// Copies a whole tree without what its nodes have beside their log-odds; false if the bytes end in it. Of each node a float,
+/// `extra` bytes, a mask of its children, then these (octomap/OcTreeBaseImpl.hxx).
+bool copy_plain(std::string_view data, std::size_t extra, int depth, std::size_t& at, std::string& out)
 {
     constexpr std::size_t value_size = sizeof(float);
-    if (depth > max_depth || at + value_size + 1 > data.size()) return false;
-    const unsigned children = static_cast<unsigned char>(data[at + value_size]);
-    at += value_size + 1;
+    if (depth > max_depth || at + value_size + extra + 1 > data.size()) return false;
+    out += data.substr(at, value_size);
+    out += data[at + value_size + extra];
+    const unsigned children = static_cast<unsigned char>(out.back());
+    at += value_size + extra + 1;
     for (unsigned child = 0; child < 8; ++child)
-        if ((children >> child & 1) != 0 && !is_whole(data, depth + 1, at)) return false;
+        if ((children >> child & 1) != 0 && !copy_plain(data, extra, depth + 1, at, out)) return false;
     return true;
 }
 
@@ -92,13 +105,15 @@ std::unique_ptr<octomap::OcTree> read_full(const std::filesystem::path& file)
 {
     const std::string bytes = read_file(file);
     const Header header = read_header(file, bytes, "full OctoMap (.ot)", "# Octomap OcTree file");
-    if (header.id != "OcTree") throw FileError(file.string(), "is an OctoMap of type " + header.id + ", needs OcTree");
+    check_type(file, header);
     auto tree = std::make_unique<octomap::OcTree>(header.resolution);
     if (header.nodes == 0) return tree;
     const std::string_view data = std::string_view(bytes).substr(header.data);
+    const std::size_t extra = header.id == "ColorOcTree" ? 3 : 0;  // red, green, blue
     std::size_t at = 0;
-    if (!is_whole(data, 0, at)) throw FileError(file.string(), "is cut short or damaged");
-    std::istringstream stream{std::string(data), std::ios::binary};
+    std::string plain;
+    if (!copy_plain(data, extra, 0, at, plain)) throw FileError(file.string(), "is cut short or damaged");
+    std::istringstream stream{plain, std::ios::binary};
     tree->readData(stream);
     return tree;
 }

@@ -1,29 +1,66 @@
 #include "scene/octomap_part.h"
 
 #include "scene/octomap_file.h"
+#include "scene/octomap_space.h"
 
 #include <spawnfield/error.h>
 
-namespace spawnfield {
+#include <cstdio>
 
-void append_octomap(Scene& scene, std::uint32_t part, const std::filesystem::path& file, const Pose& pose)
+namespace spawnfield {
+namespace {
+
+void append_box(Scene& scene, std::uint32_t part, const Vec3& centre, const Vec3& size, const Pose& pose)
+{
+    Primitive primitive;
+    primitive.shape.kind = ShapeKind::Box;
+    primitive.shape.size = size;
+    primitive.shape.pose = pose * Pose{centre, Mat3::Identity()};
+    primitive.part = part;
+    primitive.label = scene.parts[part].label;
+    scene.primitives.push_back(primitive);
+    ++scene.parts[part].solid_pieces;
+}
+
+void append_unknown(Scene& scene, const std::string& name, const octomap::OcTree& tree, const VoxelBox& extent, const Pose& pose)
+{
+    Part unknown;
+    unknown.name = name + ":unknown";
+    unknown.kind = "octomap";
+    unknown.label = Label::Obstacle;
+    scene.parts.push_back(std::move(unknown));
+    const auto part = std::uint32_t(scene.parts.size() - 1);
+    for (const VoxelBox& box : unknown_boxes(tree, extent)) {
+        const Bounds bounds = bounds_of(tree, box);
+        append_box(scene, part, (bounds.min + bounds.max) / 2, bounds.max - bounds.min, pose);
+    }
+}
+
+std::string unknown_words(const octomap::OcTree& tree, const VoxelBox& extent, Unknown unknown)
+{
+    const double voxel = tree.getResolution() * tree.getResolution() * tree.getResolution();
+    const double all = extent.volume(), share = 1 - known_volume(tree) / all;
+    char text[160];
+    std::snprintf(text, sizeof text, "%.6g m3 of its %.6g m3 are unknown (%.1f %%) and ", share * all * voxel, all * voxel, 100 * share);
+    return text + std::string(unknown == Unknown::Blocked ? "count as solid" : "count as free (--unknown blocked makes them solid)");
+}
+
+}  // namespace
+
+void append_octomap(Scene& scene, std::uint32_t part, const std::filesystem::path& file, const Pose& pose, Unknown unknown)
 {
     const auto tree = read_octomap(file);
     for (auto leaf = tree->begin_leafs(), end = tree->end_leafs(); leaf != end; ++leaf) {
         if (!tree->isNodeOccupied(*leaf)) continue;
-        Primitive primitive;
-        primitive.shape.kind = ShapeKind::Box;
-        primitive.shape.size = Vec3::Constant(tree->getNodeSize(leaf.getDepth()));
         const octomap::OcTreeKey key = leaf.getKey();
         Vec3 centre;
         for (int axis = 0; axis < 3; ++axis) centre[axis] = tree->keyToCoord(key[axis], leaf.getDepth());
-        primitive.shape.pose = pose * Pose{centre, Mat3::Identity()};
-        primitive.part = part;
-        primitive.label = scene.parts[part].label;
-        scene.primitives.push_back(primitive);
-        ++scene.parts[part].solid_pieces;
+        append_box(scene, part, centre, Vec3::Constant(tree->getNodeSize(leaf.getDepth())), pose);
     }
     if (scene.parts[part].solid_pieces == 0) throw FileError(file.string(), "has no occupied leaf, needs at least one");
+    const VoxelBox extent = known_extent(*tree);
+    if (unknown == Unknown::Blocked) append_unknown(scene, scene.parts[part].name, *tree, extent, pose);
+    scene.notices.push_back(file.string() + ": " + unknown_words(*tree, extent, unknown));
 }
 
 }  // namespace spawnfield

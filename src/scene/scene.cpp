@@ -163,10 +163,11 @@ struct SceneFile {
 void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
 {
     const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
-                                      {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels"});
+                                      {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels", "unknown"});
     if (kind == "mesh") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "mesh", "up", "scale", "solid", "sides", "labels"});
     else if (kind == "plane") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "plane", "sides"});
     else if (kind == "heightmap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "heightmap", "sides"});
+    else if (kind == "octomap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "octomap", "unknown"});
     else map.only({"name", "label", "xyz", "rpy", "rpy_deg", kind.c_str()});
 
     Label label = read_label(map, "obstacle");
@@ -202,7 +203,10 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
             place_scene(scene, found, map.pose(), map.file() + ": " + map.place());
         });
     } else if (kind == "octomap") {
-        in_part(map, "octomap", [&](const auto& path) { append_octomap(scene, part, file.folder / path, map.pose()); });
+        const Unknown given = map.one_of("unknown", {"free", "blocked"}, "free") == "blocked" ? Unknown::Blocked : Unknown::Free;
+        in_part(map, "octomap", [&](const auto& path) {
+            append_octomap(scene, part, file.folder / path, map.pose(), file.options.unknown.value_or(given));
+        });
     } else {
         scene.primitives.push_back({read_shape(map, kind), part, label});
         scene.parts[part].solid_pieces = 1;
@@ -227,6 +231,8 @@ Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
         const YamlMap map(node, file.string(), "part \"" + name + "\"");
         if (!part_names.insert(name).second) map.fail("name", "is given to an earlier part too, needs to be unique");
         read_part(map, common, scene);
+        if (scene.parts.back().name != name && !part_names.insert(scene.parts.back().name).second)
+            map.fail("octomap", "has unknown space, but its part's name \"" + scene.parts.back().name + "\" is given to another part");
     }
     if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
     tell_idle_rules(file, options.labels, common.names, scene);
@@ -277,7 +283,7 @@ Scene read_bare_file(const fs::path& file, const std::string& extension, const S
         for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
             if (matches(rule->pattern, scene.name)) fallback = rule->label;
         const std::uint32_t part = add_part(scene, scene.name, "octomap", fallback);
-        if (fallback != Label::Ignore) append_octomap(scene, part, file, {});
+        if (fallback != Label::Ignore) append_octomap(scene, part, file, {}, options.unknown.value_or(Unknown::Free));
         tell_idle_rules(file, options.labels, {scene.name}, scene);
         return scene;
     }
@@ -369,7 +375,10 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
                   : urdf                                         ? read_urdf_scene(file, options)
                   : is_elevation_model(file, extension, options) ? read_elevation_model(file, options)
                                                                  : read_bare_file(file, extension, options);
-    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored, missing or without collision");
+    const auto is_octomap_part = [](const Part& part) { return part.kind == "octomap"; };
+    if (options.unknown && std::none_of(scene.parts.begin(), scene.parts.end(), is_octomap_part))
+        scene.notices.push_back(file.string() + ": has no OctoMap, so --unknown has no effect");
+    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored" + std::string(gazebo ? ", missing or without collision" : ""));
     const Remedies remedies = yaml  ? Remedies{"scale of its part:", "up of its part"}
                               : gazebo ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}
                                     : Remedies{"--scale", "--up y or z"};

@@ -27,6 +27,7 @@ public:
     CollisionGeometry read(const sdf::Geometry& from) const
     {
         CollisionGeometry out;
+        out.line = place_.line;
         switch (from.Type()) {
         case sdf::GeometryType::BOX: set(out, Kind::Box, "<box> <size>", vector_of(from.BoxShape()->Size())); break;
         case sdf::GeometryType::SPHERE: set(out, Kind::Sphere, "<sphere> <radius>", Vec3(from.SphereShape()->Radius(), 1, 1)); break;
@@ -138,7 +139,9 @@ std::string words_of(const sdf::Error& error, const std::string& file)
     if (out.empty() || out.front() == '<') out = file;  // text that was given has a name in brackets
     if (error.LineNumber()) out += ": line " + std::to_string(*error.LineNumber());
     if (error.XmlPath()) out += ": " + *error.XmlPath();
-    return out + ": " + error.Message();
+    out += ": " + error.Message();
+    if (error.Code() == sdf::ErrorCode::URI_LOOKUP) out += "; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell where models are";
+    return out;
 }
 
 Vec3 vector_of(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }

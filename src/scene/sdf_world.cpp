@@ -1,51 +1,18 @@
 #include "scene/sdf_world.h"
 
 #include "base/number.h"
+#include "scene/sdf_includes.h"
 
 #include <spawnfield/error.h>
 
-#include <tinyxml2.h>
-
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
 #include <sstream>
 
 namespace spawnfield {
 namespace {
 
 namespace fs = std::filesystem;
-using Xml = tinyxml2::XMLElement;
-
-std::string trimmed(const std::string& text)
-{
-    const auto space = " \t\r\n";
-    const std::size_t start = text.find_first_not_of(space);
-    return start == std::string::npos ? "" : text.substr(start, text.find_last_not_of(space) - start + 1);
-}
-
-std::string text_of(const Xml& parent, const char* name)
-{
-    const Xml* const child = parent.FirstChildElement(name);
-    return child != nullptr && child->GetText() != nullptr ? trimmed(child->GetText()) : "";
-}
-
-std::string line_of(const Xml& element) { return "line " + std::to_string(element.GetLineNum()) + ": "; }
-
-template <class Visit>
-void for_each_child(const Xml& parent, const char* name, const Visit& visit)
-{
-    for (const Xml* child = parent.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name)) visit(*child);
-}
-
-template <class Visit>
-void for_each_element(const Xml& element, const Visit& visit)
-{
-    visit(element);
-    for_each_child(element, nullptr, [&](const Xml& child) { for_each_element(child, visit); });
-}
-
 /// x y z roll pitch yaw. Nothing where the pose is none of six plain numbers, or hangs on something.
 std::optional<Pose> plain_pose(const Xml& pose)
 {
@@ -93,8 +60,8 @@ public:
 
     SdfWorld read()
     {
-        const auto document = checked(file_);
-        visit_includes(file_, *document);
+        missing_ = check_includes(file_, paths_);
+        const auto document = read_sdf_xml(file_);
         Xml* const world = document->RootElement()->FirstChildElement("world");
         if (world == nullptr) {
             read_lone_model();
@@ -114,66 +81,6 @@ public:
     }
 
 private:
-    using Document = std::unique_ptr<tinyxml2::XMLDocument>;
-
-    /// A file that is XML and says that it is SDF.
-    static Document checked(const fs::path& file)
-    {
-        auto document = std::make_unique<tinyxml2::XMLDocument>();
-        const auto refuse = [&](int line, const std::string& what) {
-            throw FileError(file.string(), (line > 0 ? "line " + std::to_string(line) + ": " : "") + what);
-        };
-        const tinyxml2::XMLError error = document->LoadFile(file.c_str());
-        if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED || error == tinyxml2::XML_ERROR_FILE_READ_ERROR)
-            refuse(0, "cannot be read");
-        if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT || (error == tinyxml2::XML_SUCCESS && document->RootElement() == nullptr))
-            refuse(0, "is empty, needs an <sdf> element");
-        if (error != tinyxml2::XML_SUCCESS) {
-            std::string name = document->ErrorName();
-            std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return c == '_' ? ' ' : char(std::tolower(c)); });
-            refuse(document->ErrorLineNum(), "is no valid XML (" + name + "): is a tag left open or misspelt?");
-        }
-        const Xml& root = *document->RootElement();
-        const std::string name = root.Name();
-        if (name == "robot") refuse(root.GetLineNum(), "<robot> is URDF; give the file the ending .urdf");
-        if (name != "sdf" && name != "gazebo") refuse(root.GetLineNum(), "<" + name + "> stands where <sdf version=\"…\"> needs to");
-        if (root.Attribute("version") == nullptr) refuse(root.GetLineNum(), "<" + name + "> has no version, needs such as version=\"1.6\"");
-        return document;
-    }
-
-    fs::path file_of(const std::string& uri, const fs::path& folder)
-    {
-        const fs::path found = paths_.find(uri, folder);
-        return found.empty() || !fs::is_directory(found) ? found : sdf_file_of(found);
-    }
-
-    /// Each file that is included, once; what leads to itself is refused, what leads nowhere is kept in mind.
-    void visit_includes(const fs::path& file, const tinyxml2::XMLDocument& document)
-    {
-        stack_.push_back(fs::weakly_canonical(file));
-        for_each_element(*document.RootElement(), [&](const Xml& include) {
-            if (std::string(include.Name()) != "include") return;
-            const std::string place = file.string() + ": " + line_of(include);
-            const std::string uri = text_of(include, "uri");
-            if (uri.empty()) throw FileError(place + "<include>", "has no <uri>, needs the model that it includes");
-            const fs::path found = file_of(uri, file.parent_path());
-            if (found.empty()) {
-                ++missing_.try_emplace(uri, place.substr(0, place.size() - 2), std::size_t{0}).first->second.second;
-                return;
-            }
-            const fs::path canonical = fs::weakly_canonical(found);
-            const auto again = std::find(stack_.begin(), stack_.end(), canonical);
-            if (again != stack_.end()) {
-                std::string chain;
-                for (auto link = again; link != stack_.end(); ++link) chain += link->string() + " includes ";
-                throw FileError(place + "<include> <uri> " + uri, "leads back to itself: " + chain + canonical.string());
-            }
-            if (!visited_.insert(canonical).second || found.extension() == ".urdf") return;
-            visit_includes(found, *checked(found));
-        });
-        stack_.pop_back();
-    }
-
     void read_lone_model()
     {
         const SdfContent content = read_sdf_file(file_, paths_);
@@ -190,7 +97,7 @@ private:
         if (hangs_on_frames(world)) return out;
         for_each_child(world, "include", [&](const Xml& include) {
             if (!is_plain(include)) return;
-            const fs::path file = file_of(text_of(include, "uri"), file_.parent_path());
+            const fs::path file = included_file(text_of(include, "uri"), file_.parent_path(), paths_);
             if (!file.empty() && model_in(file).is_plain_model) out.push_back(&include);
         });
         return out;
@@ -227,7 +134,7 @@ private:
 
     void append_include(const Xml& include)
     {
-        const SdfContent& model = model_in(file_of(text_of(include, "uri"), file_.parent_path()));
+        const SdfContent& model = model_in(included_file(text_of(include, "uri"), file_.parent_path(), paths_));
         const Xml* const pose = include.FirstChildElement("pose");
         const std::string name = text_of(include, "name");
         append_placed(model, pose != nullptr ? *plain_pose(*pose) : model.pose, name.empty() ? model.name : name, include.GetLineNum());
@@ -300,11 +207,9 @@ private:
     const fs::path file_;
     ModelPaths& paths_;
     SdfWorld out_;
-    std::vector<fs::path> stack_;
-    std::set<fs::path> visited_;
     std::set<std::string> names_;
     std::map<fs::path, SdfContent> models_;
-    std::map<std::string, std::pair<std::string, std::size_t>> missing_;  ///< by URI: where first, how often
+    MissingIncludes missing_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace spawnfield::cli {
 
 /// Options of whatever reads a scene: `bake` and `info`.
 struct SceneArgs {
-    std::string up, heightmap;
+    std::string up, heightmap, unknown;
     double scale = 1;
     std::vector<std::string> labels;
     bool strict = false;
@@ -17,7 +17,7 @@ struct SceneArgs {
 void add_scene_options(CLI::App& command, SceneArgs& args);
 
 /// Their names, to tell that they say nothing elsewhere.
-inline const std::vector<std::string> scene_option_names{"--up", "--scale", "--heightmap", "--label", "--strict"};
+inline const std::vector<std::string> scene_option_names{"--up", "--scale", "--heightmap", "--unknown", "--label", "--strict"};
 
 /// Throws ArgumentError.
 SceneOptions scene_options(const SceneArgs& args, const ModelPathArgs& paths);
