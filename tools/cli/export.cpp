@@ -8,7 +8,11 @@ namespace {
 /// All formats, in the order in which --help tells them.
 const std::vector<ExportFormat>& formats()
 {
-    static const std::vector<ExportFormat> table = map_formats();
+    static const std::vector<ExportFormat> table = [] {
+        std::vector<ExportFormat> all = map_formats(), poses = pose_export_formats();
+        all.insert(all.end(), poses.begin(), poses.end());
+        return all;
+    }();
     return table;
 }
 
@@ -70,8 +74,9 @@ int run_export(const ExportArgs& args, const CLI::App& command)
 
 std::string help()
 {
-    std::string text = "Formats (docs/exports.md tells of their pixels, frames and colours):\n";
-    for (const ExportFormat& format : formats()) text += "  " + std::string(format.name) + std::string(10 - std::string(format.name).size(), ' ') + format.about + "\n";
+    constexpr std::size_t width = 17;
+    std::string text = "Formats (docs/exports.md and docs/simulators.md tell of their pixels, frames and colours):\n";
+    for (const ExportFormat& format : formats()) text += "  " + std::string(format.name) + std::string(width - std::string_view(format.name).size(), ' ') + format.about + "\n";
     return text + "Example:\n  spawnfield export /tmp/training --format nav2 --robot box:0.99,0.67,0.39 -o /tmp/training_nav2.yaml";
 }
 
@@ -87,7 +92,7 @@ const std::vector<std::string>& asking_options()
 void add_export(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<ExportArgs>();
-    CLI::App& command = *app.add_subcommand("export", "A map in a file of another program");
+    CLI::App& command = *app.add_subcommand("export", "A map, or poses in it, in a file of another program");
     add_query(command, *args);
     command.get_option("--robot")->required(false);
     command.add_option("--format", args->format, "One of the formats below")->required()->check(CLI::IsMember(format_names()));
@@ -98,6 +103,8 @@ void add_export(CLI::App& app, Run& run)
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
     command.add_option("--step", args->step, "Between columns, m");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
+    command.add_option("--poses,-p", args->poses, "CSV file of poses, as check takes it; its column name names the robots, if --name does not");
+    add_simulator_options(command, args->simulator);
     command.footer(help());
     command.callback([=, &command, &run] { run = [=, &command] { return run_export(*args, command); }; });
 }

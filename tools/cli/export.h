@@ -1,12 +1,13 @@
 #pragma once
 
-#include "cli.h"
+#include "simulator_output.h"
 
 namespace spawnfield::cli {
 
 /// Options of `export`; which of them a format takes its row of the table says.
 struct ExportArgs : QueryArgs {
-    std::string format, out, layers, bounds;
+    std::string format, out, layers, bounds, poses;
+    SimulatorArgs simulator;
     double resolution = 0, step = 0, offset = 0.1, yaw = 0;
 };
 
@@ -35,5 +36,8 @@ const std::vector<std::string>& asking_options();
 
 /// Formats that are made of a whole map.
 std::vector<ExportFormat> map_formats();
+
+/// Formats that are made of the poses of a CSV file.
+std::vector<ExportFormat> pose_export_formats();
 
 }  // namespace spawnfield::cli

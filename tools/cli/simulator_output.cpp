@@ -22,7 +22,7 @@ struct OptionUse {
     std::vector<std::string> formats;
 };
 
-const std::vector<OptionUse> option_uses = {{"--name", pose_formats},
+const std::vector<OptionUse> option_uses = {{"--name", {pose_formats.begin(), pose_formats.end()}},
                                             {"--namespace", {"ros", "json"}},
                                             {"--robot-file", {"ros", "sdf"}},
                                             {"--robot-uri", {"sdf"}},
@@ -70,6 +70,22 @@ std::string lasting_path(const std::string& option, const std::string& file)
     return fs::absolute(file).lexically_normal().string();
 }
 
+fs::path folder_of(const std::string& file) { return fs::absolute(file).lexically_normal().parent_path(); }
+
+/// Of an SDF file; empty if there is none.
+std::string first_relative_uri(const std::string& text)
+{
+    const std::string begin = "<uri>";
+    for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1)) {
+        const std::size_t start = text.find_first_not_of(" \t\r\n", at + begin.size());
+        const std::string uri = start == std::string::npos ? "" : text.substr(start, text.find_first_of("< \t\r\n", start) - start);
+        const bool is_file = uri.starts_with("file://");
+        const std::string path = is_file ? uri.substr(7) : uri;
+        if (!path.empty() && path[0] != '/' && (is_file || uri.find("://") == std::string::npos)) return uri;
+    }
+    return "";
+}
+
 /// The height of the ground below each robot.
 std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map& map)
 {
@@ -84,6 +100,14 @@ std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map
 }
 
 }  // namespace
+
+std::vector<std::string> simulator_options_of(const std::string& format)
+{
+    std::vector<std::string> options;
+    for (const OptionUse& use : option_uses)
+        if (is_for(use, format)) options.push_back(use.option);
+    return options;
+}
 
 void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format)
 {
@@ -156,6 +180,8 @@ std::string SimulatorOutput::own_file() const
     return is_model ? lasting_path("--robot", target_.robot) : "";
 }
 
+std::string SimulatorOutput::robot_is_neither() const { return target_.robot.empty() ? "" : "; --robot " + target_.robot + " is neither"; }
+
 void SimulatorOutput::settle_launch()
 {
     launch_.world = args_.world_name;
@@ -163,8 +189,7 @@ void SimulatorOutput::settle_launch()
     if (!args_.topic.empty() && !args_.robot_file.empty()) throw ArgumentError("--topic and --robot-file are both given; robots are made of one of them");
     if (args_.topic.empty()) launch_.file = own_file();
     if (launch_.topic.empty() && launch_.file.empty())
-        throw ArgumentError("--format " + target_.format + " needs --robot-file FILE, a URDF or SDF to spawn, or --topic robot_description; --robot " + target_.robot +
-                            " is neither");
+        throw ArgumentError("--format " + target_.format + " needs --robot-file FILE, a URDF or SDF to spawn, or --topic robot_description" + robot_is_neither());
     target_.format == "ros2-launch-py" ? ros2_launch_py({}, launch_) : ros1_launch({}, launch_);  // to be told of a bad file now
 }
 
@@ -174,13 +199,15 @@ void SimulatorOutput::settle_sdf()
     sdf_.uri = args_.robot_uri.empty() ? own_file() : args_.robot_uri;
     sdf_.world_name = args_.world_name;
     if (sdf_.uri.empty())
-        throw ArgumentError("--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF; --robot " + target_.robot + " is neither");
+        throw ArgumentError("--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF" + robot_is_neither());
     if (args_.world.empty()) return;
     sdf_.world_file = args_.world;
     sdf_.world_text = text_of_file(args_.world);
     sdf_world({}, sdf_);  // to be told of a bad file now
-    const bool beside = !target_.out.empty() && fs::absolute(target_.out).lexically_normal().parent_path() == fs::absolute(args_.world).lexically_normal().parent_path();
-    if (!beside) notice(common_, args_.world + ": paths in it that are relative to it will be looked for beside the new file; -o beside it keeps them right");
+    const std::string relative = first_relative_uri(sdf_.world_text);
+    const bool is_beside = !target_.out.empty() && folder_of(target_.out) == folder_of(args_.world);
+    if (!relative.empty() && !is_beside)
+        notice(common_, args_.world + ": " + relative + " and the like are relative to this file, and will be looked for beside the new one; -o beside it keeps them right");
 }
 
 std::string SimulatorOutput::text_of(std::span<const RobotStart> robots) const
