@@ -335,6 +335,26 @@ TEST_CASE("patches lie on the ground below the spawns")
     }
 }
 
+TEST_CASE("the commands of each simulator's page work as they are written")
+{
+    const TempFolder folder;  // stands for /tmp and for the source folder
+    fs::create_symlink(SPAWNFIELD_CLI, folder / "spawnfield");
+    fs::create_symlink(SPAWNFIELD_SOURCE "/maps", folder / "maps");
+    for (const auto& page : fs::directory_iterator(SPAWNFIELD_SOURCE "/docs/simulators")) {
+        std::istringstream text(bytes_of(page.path()));
+        std::string script;
+        bool is_code = false;
+        for (std::string line; std::getline(text, line);) {
+            if (line.starts_with("```")) is_code = line == "```" && !is_code;
+            else if (is_code && (line.starts_with("spawnfield ") || line.starts_with("cp "))) script += line + "\n";
+        }
+        for (std::size_t at = script.find("/tmp"); at != std::string::npos; at = script.find("/tmp")) script.replace(at, 4, ".");
+        INFO(page.path().string() + "\n" + script);
+        CHECK(std::count(script.begin(), script.end(), '\n') >= 2);
+        CHECK(run_program(folder, "--version && set -e && PATH=$PWD:$PATH\n" + script).status == 0);
+    }
+}
+
 TEST_CASE("what a format lacks or cannot use is told before all work")
 {
     const Arena arena;

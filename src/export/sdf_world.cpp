@@ -97,7 +97,8 @@ std::size_t end_of_world(std::string_view text, int index)
         else if (is_tag(rest, "</world") && --depth == 0 && number == index) return at;
         else if (is_tag(rest, "<world")) {
             if (depth == 0) ++number;
-            if (rest[rest.find('>') - 1] != '/') ++depth;
+            at = text.find('>', at);
+            if (at != std::string_view::npos && text[at - 1] != '/') ++depth;
         }
         if (at == std::string_view::npos) return at;
     }
@@ -125,9 +126,9 @@ std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& op
 {
     tinyxml2::XMLDocument document;
     const FoundWorld found = parse_world(document, options.world_text, options);
-    const std::set<std::string> taken = names_in(*found.element);
+    std::set<std::string> taken = names_in(*found.element);
     for (const RobotStart& robot : robots)
-        if (taken.contains(robot.name))
+        if (!taken.insert(robot.name).second)
             throw FileError(options.world_file, "line " + std::to_string(found.element->GetLineNum()) + ": <world> has a \"" + robot.name +
                                                     "\" already; give the robots other names");
     for (const RobotStart& robot : robots) add_robot(*found.element, robot, options.uri);
