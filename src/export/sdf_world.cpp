@@ -115,9 +115,14 @@ std::string inserted(std::span<const RobotStart> robots, const SdfWorldOptions& 
     const bool is_alone = text.find_first_not_of(" \t", line) == end;
     const std::string margin = is_alone ? text.substr(line, end - line) : "";
     std::string out = text.substr(0, is_alone ? line : end) + (is_alone ? "" : "\n");
-    for (const RobotStart& robot : robots)
-        out += margin + "  <include>\n" + margin + "    <uri>" + xml_escaped(options.uri) + "</uri>\n" + margin + "    <name>" + xml_escaped(robot.name) + "</name>\n" +
-               margin + "    <pose>" + spaced(robot) + "</pose>\n" + margin + "  </include>\n";
+    const auto add_line = [&](const std::string& content) { out += margin + content + "\n"; };
+    for (const RobotStart& robot : robots) {
+        add_line("  <include>");
+        add_line("    <uri>" + xml_escaped(options.uri) + "</uri>");
+        add_line("    <name>" + xml_escaped(robot.name) + "</name>");
+        add_line("    <pose>" + spaced(robot) + "</pose>");
+        add_line("  </include>");
+    }
     return out + text.substr(is_alone ? line : end);
 }
 

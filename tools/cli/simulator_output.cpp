@@ -93,7 +93,9 @@ std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map
     for (const RobotStart& robot : robots) {
         const Vec3& p = robot.position;
         const std::optional<Ground> ground = ground_below(column_at(map.geometry, p.x(), p.y()), p.z());
-        if (!ground) throw ArgumentError("--format isaaclab: there is no ground below robot " + robot.name + " at " + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()));
+        if (!ground)
+            throw ArgumentError("--format isaaclab: there is no ground below robot " + robot.name + " at " + number(p.x()) + ", " + number(p.y()) + ", " +
+                                number(p.z()));
         points.push_back({p.x(), p.y(), ground->height});
     }
     return points;
@@ -127,11 +129,13 @@ void add_simulator_options(CLI::App& command, SimulatorArgs& args)
     add("--world", args.world, "sdf: the world file that gets the robots (default: a new world of nothing else)");
     add("--world-name", args.world_name, "ROS 2: Gazebo's name of the world (default: the one that runs); sdf: that of a new world, or which one of --world");
     add("--joint-qpos", args.joint_qpos, "mujoco: q,q,... of the joints that follow each free joint (default: none)");
-    add("--keys", args.keys, "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")->check(CLI::IsMember({"each", "together"}));
+    add("--keys", args.keys, "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")
+        ->check(CLI::IsMember({"each", "together"}));
     add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw from 3 on (default wxyz)")->check(CLI::IsMember({"wxyz", "xyzw"}));
     add("--tiles", args.tiles, "isaaclab: ROWS,COLS of the terrain patches, along x and y (default 1,1)");
     add("--blueprint", args.blueprint, "carla: what is spawned (default vehicle.tesla.model3)");
-    add("--unity-axes", args.unity_axes, "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity itself exported as glTF, FBX or OBJ (default ros)")->check(CLI::IsMember({"ros", "gltf"}));
+    add("--unity-axes", args.unity_axes, "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity exported as glTF, FBX or OBJ (default ros)")
+        ->check(CLI::IsMember({"ros", "gltf"}));
 }
 
 SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target)
@@ -170,14 +174,17 @@ void SimulatorOutput::give_names(std::vector<RobotStart>& robots, const std::vec
 void SimulatorOutput::check_rules(const std::string& option, std::span<const std::string> names, std::span<const std::string> name_spaces) const
 {
     if (is_ros() || is("sdf")) check_model_names(option, names);
-    if (is_ros()) check_ros_names(args_.name_space.empty() ? option + " (as a namespace; --namespace gives others)" : "--namespace", name_spaces, is("ros1-launch") ? 1 : 2);
+    if (!is_ros()) return;
+    const std::string origin = args_.name_space.empty() ? option + " (as a namespace; --namespace gives others)" : "--namespace";
+    check_ros_names(origin, name_spaces, is("ros1-launch") ? 1 : 2);
 }
 
 std::string SimulatorOutput::own_file() const
 {
     if (!args_.robot_file.empty()) return lasting_path("--robot-file", args_.robot_file);
-    const bool is_model = target_.robot.ends_with(".urdf") || target_.robot.ends_with(".sdf") || (is("sdf") && fs::is_regular_file(fs::path(target_.robot) / "model.config"));
-    return is_model ? lasting_path("--robot", target_.robot) : "";
+    const bool is_file = target_.robot.ends_with(".urdf") || target_.robot.ends_with(".sdf");
+    const bool is_folder = is("sdf") && fs::is_regular_file(fs::path(target_.robot) / "model.config");
+    return is_file || is_folder ? lasting_path("--robot", target_.robot) : "";
 }
 
 std::string SimulatorOutput::robot_is_neither() const { return target_.robot.empty() ? "" : "; --robot " + target_.robot + " is neither"; }
@@ -207,7 +214,8 @@ void SimulatorOutput::settle_sdf()
     const std::string relative = first_relative_uri(sdf_.world_text);
     const bool is_beside = !target_.out.empty() && folder_of(target_.out) == folder_of(args_.world);
     if (!relative.empty() && !is_beside)
-        notice(common_, args_.world + ": " + relative + " and the like are relative to this file, and will be looked for beside the new one; -o beside it keeps them right");
+        notice(common_, args_.world + ": " + relative + " and the like are relative to this file, and will be looked for beside the new one; " +
+                            "-o beside it keeps them right");
 }
 
 std::string SimulatorOutput::text_of(std::span<const RobotStart> robots) const
@@ -242,7 +250,8 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     about["frame"] = "metres, right-handed, x forward, y left, z up";
     about["root_pose.npy"] = {{"shape", {robots.size(), 7}}, {"columns", has_w_first ? "x y z qw qx qy qz" : "x y z qx qy qz qw"},
                               {"for", has_w_first ? "Isaac Lab 1 and 2" : "Isaac Lab 3"}};
-    about["flat_patches.npy"] = {{"shape", {grid.rows, grid.cols, patches.patches_per_tile, 3}}, {"is", "ground below the spawns, by tile: rows along x, columns along y"}};
+    about["flat_patches.npy"] = {{"shape", {grid.rows, grid.cols, patches.patches_per_tile, 3}},
+                                 {"is", "ground below the spawns, by tile: rows along x, columns along y"}};
     about["terrain_origins.npy"] = {{"shape", {grid.rows, grid.cols, 3}}, {"is", "the first patch of each tile"}};
     about["map"] = {{"name", map.name}, {"hash", map.hash}};
     clear_progress_bar();
