@@ -14,6 +14,7 @@ find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(TBB REQUIRED)
+find_package(sdformat12 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(urdfdom REQUIRED IMPORTED_TARGET urdfdom)
 pkg_check_modules(qhull REQUIRED IMPORTED_TARGET qhull_r)
@@ -24,4 +25,4 @@ pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 set(SPAWNFIELD_PRIVATE_LIBRARIES
   fcl PkgConfig::ccd octomap octomath assimp::assimp opencv_core opencv_imgproc yaml-cpp tinyxml2::tinyxml2 sdformat12::sdformat12
   nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate
-  Threads::Threads)
+  sdformat12::sdformat12 Threads::Threads)

@@ -116,6 +116,11 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
          "spawnfield: columns at a cell of 1e-05 m is 6.4e+11, needs at most 1e+08; take a coarser resolution"},
         {"info map --up y", "spawnfield: --up is for a bare mesh; map is a folder"},
         {"info map --package-path .", "spawnfield: --package-path is for a robot; map is a folder"},
+        {"info map --picture new.png", "spawnfield: --picture is for a robot; map is a folder"},
+        {"info scene.yaml --joints a=1", "spawnfield: --joints is for a robot; scene.yaml is none"},
+        {"info box:1,1,1 --joints a=1", "spawnfield: joint \"a\" is given, but box:1,1,1 has no joints"},
+        {sample + "-n 5 --joints elbow", "spawnfield: --joints: \"elbow\" is no joint, needs name=value[,name=value…], rad or m"},
+        {sample + "-n 5 --joints elbow=1,wrist=x", "spawnfield: --joints: wrist: \"x\" is no finite number"},
         {"info scene.yaml --verify", "spawnfield: --verify is for a map folder; scene.yaml is none"},
         {"info box:1,1,1 --scale 1", "spawnfield: --scale is for a bare mesh; box:1,1,1 is a robot"},
         {experiment + "--dims 2", "spawnfield: --steps is required, as 0.5:2:0.5 (or --search)"},
@@ -191,7 +196,7 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
         {"experiment none -o new --dims 2 --steps 1" + husky, "spawnfield: none: does not exist; is the path right?"},
         {"heatmap none -o out" + husky, "spawnfield: none: does not exist; is the path right?"},
         {"heatmap map -o out --spawns word.csv" + husky, "spawnfield: word.csv: line 3: column y is \"two\", needs a number"},
-        {"sample map -o out -n 5 --robot none.urdf", "spawnfield: none.urdf: does not exist; a robot is a robot.yaml, a .urdf or box:LX,LY,LZ[@x,y,z]"},
+        {"sample map -o out -n 5 --robot none.urdf", "spawnfield: none.urdf: does not exist; a robot is a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]"},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 4);
 }

@@ -1,11 +1,14 @@
 #include "arena.h"
 #include "base/tiff.h"
+#include "hard_scene.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/map_export.h>
 #include <spawnfield/output_file.h>
 
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include <iostream>
@@ -152,6 +155,52 @@ bool python_accepts(const std::string& python, const TempFolder& folder, const s
 {
     const fs::path program = folder.write("script.py", script);
     return std::system((python + " '" + program.string() + "' '" + file.string() + "'").c_str()) == 0;
+}
+
+std::string glb_bytes(const Map& map, const GlbMarkers& markers = {}, int threads = 0)
+{
+    std::string bytes;
+    write_glb(map, markers, [&](std::string_view piece) { bytes += piece; }, threads);
+    return bytes;
+}
+
+/// The JSON chunk, with the chunks' sizes checked.
+nlohmann::json glb_json(const std::string& bytes)
+{
+    const auto word = [&](std::size_t at) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, bytes.data() + at, sizeof value);
+        return std::size_t(value);
+    };
+    REQUIRE(bytes.starts_with("glTF"));
+    CHECK((word(4) == 2 && word(8) == bytes.size() && word(12) % 4 == 0 && word(16) == 0x4E4F534A));
+    if (20 + word(12) < bytes.size()) CHECK((20 + word(12) + 8 + word(20 + word(12)) == bytes.size() && word(24 + word(12)) == 0x004E4942));
+    return nlohmann::json::parse(bytes.substr(20, word(12)));
+}
+
+/// As the project's own reader sees it.
+Scene load_glb(const TempFolder& folder, const std::string& bytes)
+{
+    SceneOptions options;
+    options.labels = {{"terrain", Label::Terrain}, {"water", Label::Water}, {"obstacle", Label::Obstacle}, {"spawn*", Label::Ignore}};
+    return load_scene(folder.write("a.glb", bytes), options);
+}
+
+/// Triangles with their labels whatever their order and first corner; those without area, which readers drop, left out.
+std::multiset<std::array<double, 10>> triangles_of(const Scene& scene)
+{
+    std::multiset<std::array<double, 10>> out;
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        std::array<std::array<double, 3>, 3> corners;
+        for (std::size_t c = 0; c < 3; ++c) Vec3::Map(corners[c].data()) = scene.vertices[scene.triangles[t][c]] + Vec3::Zero();
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[0] == corners[2]) continue;
+        std::array<double, 10> flat{};
+        for (std::size_t i = 0; i < 9; ++i) flat[i] = corners[i / 3][i % 3];
+        flat[9] = double(scene.triangle_labels[t]);
+        out.insert(flat);
+    }
+    return out;
 }
 
 RasterOptions on_layer(LayerChoice layers, double offset = 0.1, double yaw = 0)
@@ -442,6 +491,142 @@ valid = [p for p in v if p['verdict'] == 7]
 assert len(valid) > 500 and all((p['red'], p['green'], p['blue']) == (0, 0x9e, 0x73) for p in valid)
 assert any(abs(p['z'] - 0.45) < 1e-12 for p in valid)
 )", arena / "a.ply"));
+}
+
+TEST_CASE("a GLB that is loaded again has the same triangles with the same labels, also far from the origin")
+{
+    const std::uint64_t seed = GENERATE(range(0, 12));
+    Scene scene = random_scene(seed);
+    scene.primitives.clear();
+    for (Vec3& vertex : scene.vertices) vertex = (1024 * vertex).array().round() / 1024;  // so that float32 keeps them
+    scene = shifted(scene, Vec3(500000, -4500000, 3000));
+    const TestMap map = map_of(scene);
+    const TempFolder folder;
+    CHECK(triangles_of(load_glb(folder, glb_bytes(map))) == triangles_of(map.scene));
+}
+
+TEST_CASE("solids in a GLB are closed, hold their place and most of their volume")
+{
+    const TempFolder folder;
+    const auto [shape, volume] = GENERATE(std::pair{"box: [1, 2, 3]", 6.0}, std::pair{"sphere: 2", 4.0 / 3 * std::numbers::pi * 8},
+                                          std::pair{"cylinder: {radius: 1, length: 3}", std::numbers::pi * 3},
+                                          std::pair{"capsule: {radius: 1, length: 3}", std::numbers::pi * (3 + 4.0 / 3)});
+    const TestMap map = map_of(load_scene(folder.write("scene.yaml", std::string("format: spawnfield-scene/1\nparts:\n- {name: it, label: obstacle, rpy: [0.3, -0.4, 2],"
+                                                                                 " xyz: [7.3, -2, 1], ") + shape + "}\n")));
+    const Scene read = load_glb(folder, glb_bytes(map));
+    CAPTURE(shape);
+    REQUIRE(read.pieces.size() == 1);
+    CHECK((read.pieces[0].solid && !read.pieces[0].open));
+    double six_volumes = 0;
+    double off = 0;
+    const Pose& pose = map.scene.primitives[0].shape.pose;
+    for (const Triangle& t : read.triangles) six_volumes += read.vertices[t[0]].dot(read.vertices[t[1]].cross(read.vertices[t[2]]));
+    for (const Vec3& vertex : read.vertices) {  // each lies on the surface
+        Vec3 p = (pose.rotation.transpose() * (vertex - pose.position)).cwiseAbs();
+        const std::string kind = shape;
+        if (kind.starts_with("box")) p -= Vec3(0.5, 1, 1.5);
+        else if (kind.starts_with("cylinder")) p = Vec3(0, 0, p.z() - 1.5);
+        else p = Vec3(Vec3(p.x(), p.y(), std::max(0.0, p.z() - (kind.starts_with("capsule") ? 1.5 : 0))).norm() - (kind.starts_with("sphere") ? 2 : 1), 0, 0);
+        off = std::max(off, p.cwiseAbs().maxCoeff());
+    }
+    CHECK(off < 1e-6);
+    CHECK(six_volumes / 6 <= volume + 1e-5);  // and outside is outside
+    CHECK(six_volumes / 6 > 0.98 * volume);
+    const Bounds bounds = read.bounds(), expected = map.scene.bounds();
+    CHECK((bounds.min - expected.min).cwiseAbs().maxCoeff() < 0.02);
+    CHECK((bounds.max - expected.max).cwiseAbs().maxCoeff() < 0.02);
+}
+
+TEST_CASE("a GLB's markers stand at their poses and look where they look, coloured by verdict")
+{
+    const TestMap map = map_of(shifted(load_scene(training_scene.substr(1, training_scene.size() - 2)), Vec3(500000, 0, 20)));
+    const Robot robot = husky();
+    GlbMarkers markers;
+    markers.poses = {{Vec3(500001.125, -2.5, 20.1), rotation_from_rpy(0, 0, 2)}, {Vec3(499999, 3, 21), rotation_from_rpy(0.3, -0.2, -3)}};
+    markers.verdicts = {Verdict::Valid, Verdict::Collision};
+    markers.names = {"first", "the \"second\" \xff"};  // quotes, and what is no UTF-8
+    const GlbMarkers bare{markers.poses, {}, {}, nullptr};
+    for (const Robot* of : {&robot, static_cast<const Robot*>(nullptr)}) {
+        markers.robot = of;
+        const std::string bytes = glb_bytes(map, markers);
+        const nlohmann::json json = glb_json(bytes);
+        const auto named = [&](const std::string& name) {
+            for (const auto& node : json["nodes"])
+                if (node["name"] == name) return node;
+            FAIL("no node " << name);
+            return nlohmann::json();
+        };
+        const auto root = json["nodes"][json["scenes"][0]["nodes"][0].get<std::size_t>()];
+        CHECK(root["translation"] == nlohmann::json({500000, 20, 0}));
+        for (std::size_t m = 0; m < 2; ++m) {
+            const auto node = json["nodes"][named("spawns")["children"][m].get<std::size_t>()];
+            if (m == 0) CHECK(node["name"] == "first");
+            const auto& t = node["translation"];
+            const Vec3 place(t[0].get<double>() + 500000, -t[2].get<double>(), t[1].get<double>() + 20);  // back to z up
+            CHECK((place - markers.poses[m].position).norm() < 1e-9);
+            const auto& r = node["rotation"];
+            const Eigen::Quaterniond q(r[3].get<double>(), r[0].get<double>(), r[1].get<double>(), r[2].get<double>());
+            for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+                const Vec3 turned = q * Vec3(axis.x(), axis.z(), -axis.y());
+                CHECK((Vec3(turned.x(), -turned.z(), turned.y()) - markers.poses[m].rotation * axis).norm() < 1e-9);
+            }
+            CHECK(node["extras"]["verdict"] == to_string(markers.verdicts[m]));
+            const auto material = json["materials"][json["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0]["material"].get<std::size_t>()];
+            CHECK(material["name"] == std::string("spawn ") + to_string(markers.verdicts[m]));
+        }
+        CHECK(glb_json(glb_bytes(map, bare))["nodes"].size() == json["nodes"].size());
+        const TempFolder folder;
+        const Scene read = load_scene(folder.write("a.glb", bytes)), without = load_glb(folder, bytes);
+        CHECK(read.triangles.size() > without.triangles.size());
+        CHECK(triangles_of(without) == triangles_of(load_glb(folder, glb_bytes(map))));  // the scene is the same
+    }
+}
+
+TEST_CASE("a map that is baked from a GLB gives nearly all the same verdicts")
+{
+    const TestMap map = training_map();
+    const TempFolder folder;
+    const TestMap again = map_of(load_glb(folder, glb_bytes(map)));
+    const RasterOptions options = on_layer({LayerChoice::Kind::Top, 0}, 0.15);
+    const GridFrame frame = frame_around(map.bounds, 0.2);
+    const VerdictImage before = verdict_image(map, checker_of(map, husky()), frame, options), after = verdict_image(again, checker_of(again, husky()), frame, options);
+    std::size_t other = 0;
+    for (std::size_t c = 0; c < before.verdicts.size(); ++c) other += before.verdicts[c] != after.verdicts[c];
+    CHECK(other < before.verdicts.size() / 200);  // round solids are polygons, and numbers are float32
+    CHECK(glb_bytes(map, {}, 1) == glb_bytes(map, {}, 5));
+}
+
+TEST_CASE("export --format glb draws poses of a CSV file and says what is wrong with it")
+{
+    const Arena arena;
+    arena.write("poses.csv", "name,x,y,z,yaw\na,0,3,0.1,0\nb,-6.5,-5,0.1,1\n");
+    REQUIRE(arena("check map --poses poses.csv -o verdicts.csv" + husky_option).status == 0);
+    REQUIRE(arena("export map --format glb --poses verdicts.csv -o a.glb" + husky_option).status == 0);
+    const nlohmann::json json = glb_json(bytes_of(arena / "a.glb"));
+    std::map<std::string, std::string> verdicts;
+    for (const auto& node : json["nodes"])
+        if (node.contains("extras")) verdicts[node["name"]] = node["extras"]["verdict"];
+    CHECK(verdicts == std::map<std::string, std::string>{{"a", "valid"}, {"b", "collision"}});
+    CHECK(arena("export map --format glb --poses verdicts.csv -q" + husky_option).out == bytes_of(arena / "a.glb"));
+    arena.write("bad.csv", "x,y,z,verdict\n0,0,0,valid\n0,0,0,good\n");
+    const ProgramRun bad = arena("export map --format glb --poses bad.csv -o bad.glb");
+    CHECK(bad.status == 4);
+    CHECK(bad.err == "spawnfield: bad.csv: pose 2: column verdict is \"good\", needs a verdict's name, as valid or collision\n");
+    CHECK_FALSE(fs::exists(arena / "bad.glb"));
+    CHECK_THAT(arena("export map --format glb -o b.glb" + husky_option).err, Contains("--robot has no effect: without --poses there is nowhere to draw it"));
+    const auto python = python_with("trimesh");
+    if (!python) return;
+    CHECK(python_accepts(*python, arena, R"(
+import sys
+import trimesh
+s = trimesh.load(sys.argv[1])
+names = set(s.graph.nodes_geometry)
+assert {'floor', 'large_ball', 'a', 'b'} <= names, names
+low, high = s.bounds
+assert abs(low[0] + 10.1) < 1e-5 and abs(low[1] + 3.05) < 1e-5 and abs(high[2] - 10.1) < 1e-5, s.bounds
+place, geometry = s.graph['a']
+assert abs(place[:3, 3] - (0, 0.1, -3)).max() < 1e-6 and s.geometry[geometry].is_watertight
+)", arena / "a.glb"));
 }
 
 TEST_CASE("export says which option a format needs, takes or refuses, and writes nothing then")

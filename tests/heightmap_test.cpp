@@ -162,20 +162,20 @@ TEST_CASE("heightmaps that make no sense are refused by name")
     const std::string start = (folder / "scene.yaml").string() + ": part \"ground\": heightmap.";
     const auto used = [&](const char* file) { return start + "file cannot be used: " + (folder / file).string() + ": "; };
     CHECK_THROWS_WITH(load(folder, "file: none.png, size: [1, 1], z: [0, 1]"), used("none.png") + "does not exist; is the path right? (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: text.png, size: [1, 1], z: [0, 1]"), used("text.png") + "is neither PNG nor TIFF; a heightmap needs to be one of them (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: photo.jpg, size: [1, 1], z: [0, 1]"), used("photo.jpg") + "is neither PNG nor TIFF; a heightmap needs to be one of them (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: text.png, size: [1, 1], z: [0, 1]"), used("text.png") + "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout told with the key raw (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: photo.jpg, size: [1, 1], z: [0, 1]"), used("photo.jpg") + "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout told with the key raw (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: colour.png, size: [1, 1], z: [0, 1]"), used("colour.png") + "has 3 channels, needs 1 (grey) (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: thin.png, size: [1, 1], z: [0, 1]"), used("thin.png") + "has 2 x 1 pixels, needs at least 2 x 2 (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1]"),
                       used("grey.png") + "is an integer image; heightmap.z is missing (heights of 0 and of the largest value) (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: float.tiff, size: [1, 1], z: [0, 1]"),
-                      used("float.tiff") + "is a float image, which is metres already; heightmap.z must go (line 4)");
+                      used("float.tiff") + "has heights in metres already; heightmap.z must go (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: inf.tiff, size: [1, 1]"),
                       used("inf.tiff") + "row 1, column 0 is infinite, needs a finite height or NaN (no ground) (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: hole.tiff, size: [1, 1]"), used("hole.tiff") + "has no heights: every pixel is NaN (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: hole.tiff, size: [1, 1]"), used("hole.tiff") + "has no heights: every pixel is NaN or no-data (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [0, 1], z: [0, 1]"), start + "size has 0, needs > 0 (line 4)");
     CHECK_THROWS_WITH(load(folder, "size: [1, 1], z: [0, 1]"), start + "file is missing");
-    CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1], zed: [0, 1]"), start + "zed is no known key; known: file, size, z (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1], zed: [0, 1]"), start + "zed is no known key; known: file, size, cell, z, origin, nodata, raw (line 4)");
 }
 
 TEST_CASE("real heightmaps have the heights that their sources tell")

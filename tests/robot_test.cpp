@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
+#include <numbers>
 #include <set>
 
 using namespace spawnfield;
@@ -39,6 +41,14 @@ std::string joint_of(const std::string& parent, const std::string& child, const 
 {
     return "<joint name=\"" + parent + "_" + child + "\" type=\"" + type + "\"><origin " + origin + "/><parent link=\"" + parent +
            "\"/><child link=\"" + child + "\"/><axis xyz=\"0 0 1\"/><limit lower=\"1\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>\n";
+}
+
+std::string axis_joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child, const std::string& origin,
+                       const std::string& axis, const std::string& limits = "", const std::string& more = "")
+{
+    const std::string limit = limits.empty() ? "" : "<limit " + limits + " effort=\"1\" velocity=\"1\"/>";
+    return "<joint name=\"" + name + "\" type=\"" + type + "\"><origin " + origin + "/><parent link=\"" + parent + "\"/><child link=\"" + child +
+           "\"/><axis xyz=\"" + axis + "\"/>" + limit + more + "</joint>\n";
 }
 
 Robot load_urdf(const TempFolder& folder, const std::string& inside, const RobotOptions& options = {})
@@ -276,10 +286,104 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
     };
     for (const auto& [text, wanted] : links) CHECK_THROWS_WITH(load_urdf(folder, text), xml + ": " + wanted);
 
+    CHECK_THROWS_WITH(load_urdf(folder, "<xacro:property name=\"a\" value=\"1\"/>"),
+                      xml + ": holds xacro macros; expand them first: xacro robot.urdf > robot.urdf");
+    const auto xacro = folder.write("husky.urdf.xacro", "");
+    CHECK_THROWS_WITH(load_robot(xacro.string()), xacro.string() + ": is a xacro file; expand it first: xacro husky.urdf.xacro > robot.urdf");
+
     CHECK_THROWS_WITH(load_robot((folder / "none.yaml").string()),
-                      (folder / "none.yaml").string() + ": does not exist; a robot is a robot.yaml, a .urdf or box:LX,LY,LZ[@x,y,z]");
+                      (folder / "none.yaml").string() + ": does not exist; a robot is a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
     const auto odd = folder.write("robot.txt", "");
-    CHECK_THROWS_WITH(load_robot(odd.string()), odd.string() + ": is no known robot format, needs .yaml, .urdf or box:LX,LY,LZ[@x,y,z]");
+    CHECK_THROWS_WITH(load_robot(odd.string()), odd.string() + ": is no known robot format, needs a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
+}
+
+TEST_CASE("joints turn and slide what hangs on them about their own axes")
+{
+    const TempFolder folder;
+    const std::string arm = "<link name=\"base\"/>" + axis_joint("turn", "continuous", "base", "arm", "xyz=\"1 0 0\"", "0 0 2") + "<link name=\"arm\"/>" +
+                            axis_joint("slide", "prismatic", "arm", "hand", "xyz=\"1 0 0\"", "1 0 0", "lower=\"-1\" upper=\"0.5\"") +
+                            link_of("hand", small_box);
+    // The arm points along y from (1, 0, 0); the hand slides out along it.
+    const Robot robot = load_urdf(folder, arm, {.joints = {{"turn", std::numbers::pi / 2}, {"slide", 0.5}}});
+    check_bounds(robot.bounds(), {1 - 0.2, 1.5 - 0.1, -0.3}, {1 + 0.2, 1.5 + 0.1, 0.3});
+    check_bounds(load_urdf(folder, arm).bounds(), {2 - 0.1, -0.2, -0.3}, {2 + 0.1, 0.2, 0.3});
+    CHECK(robot.parts[0].name == "hand");
+    CHECK(robot.notices.empty());
+}
+
+TEST_CASE("a joint that mimics follows, and is told where that leads out of its limits")
+{
+    const TempFolder folder;
+    const std::string limits = "lower=\"-1\" upper=\"1\"";
+    const std::string arm = "<link name=\"base\"/>" + axis_joint("a", "prismatic", "base", "left", "xyz=\"0 0 0\"", "1 0 0", limits) +
+                            link_of("left", small_box) +
+                            axis_joint("b", "prismatic", "base", "right", "xyz=\"0 0 0\"", "0 1 0", limits, "<mimic joint=\"a\" multiplier=\"-3\" offset=\"0.5\"/>") +
+                            link_of("right", small_box);
+    const Robot robot = load_urdf(folder, arm, {.joints = {{"a", 1}}});
+    check_bounds(robot.parts[0].bounds(), {0.9, -0.2, -0.3}, {1.1, 0.2, 0.3});
+    check_bounds(robot.parts[1].bounds(), {-0.1, -2.7, -0.3}, {0.1, -2.3, 0.3});
+    REQUIRE(robot.notices.size() == 1);
+    CHECK(robot.notices[0] == (folder / "robot.urdf").string() + ": joint \"b\" stands at -2.5 m, as \"a\" has it, though its limits are -1 to 1 m");
+}
+
+TEST_CASE("joints that cannot stand so are refused with what can be given")
+{
+    const TempFolder folder;
+    const std::string limits = "lower=\"0.5\" upper=\"1\"", file = (folder / "robot.urdf").string();
+    const std::string robot = link_of("base", small_box) + axis_joint("turn", "revolute", "base", "a", "xyz=\"0 0 0\"", "0 0 1", limits) +
+                              "<link name=\"a\"/>" + axis_joint("glue", "fixed", "base", "b", "xyz=\"0 0 0\"", "0 0 1") + "<link name=\"b\"/>" +
+                              axis_joint("free", "floating", "base", "c", "xyz=\"0 0 0\"", "0 0 1") + "<link name=\"c\"/>" +
+                              axis_joint("wheel", "continuous", "base", "d", "xyz=\"0 0 0\"", "0 0 1", "", "<mimic joint=\"turn\"/>") + "<link name=\"d\"/>";
+    const std::pair<JointPosition, std::string> cases[] = {
+        {{"tern", 0.7}, "joint \"tern\" is not in " + file + "; those that move: turn"},
+        {{"glue", 0}, "joint \"glue\" is fixed in " + file + "; those that move: turn"},
+        {{"free", 0}, "joint \"free\" is of type floating, which cannot be moved by one number; those that move: turn"},
+        {{"wheel", 0}, "joint \"wheel\" follows joint \"turn\"; give that one"},
+        {{"turn", 1.25}, "joint \"turn\" is 1.25, its limits in " + file + " are 0.5 to 1 rad"},
+        {{"turn", NAN}, "joint \"turn\" is nan, needs a finite number"},
+    };
+    for (const auto& [joint, wanted] : cases) {
+        CHECK_THROWS_AS(load_urdf(folder, robot, {.joints = {joint}}), ArgumentError);
+        CHECK_THROWS_WITH(load_urdf(folder, robot, {.joints = {joint}}), "load_robot: " + wanted);
+    }
+    CHECK_THROWS_WITH(load_urdf(folder, robot, {.joints = {{"turn", 0.5}, {"turn", 0.6}}}), "load_robot: joint \"turn\" is given twice");
+    CHECK_THROWS_WITH(load_robot("box:1,1,1", {.joints = {{"a", 1}}}), "load_robot: joint \"a\" is given, but box:1,1,1 has no joints");
+    const Robot at_zero = load_urdf(folder, robot);
+    REQUIRE(at_zero.notices.size() == 1);
+    CHECK(at_zero.notices[0] == file + ": joint \"turn\" stands at 0 rad, though its limits are 0.5 to 1 rad");
+}
+
+TEST_CASE("mimics of nothing and of themselves are told")
+{
+    const TempFolder folder;
+    const auto with_mimic = [&](const std::string& of) {
+        return link_of("base", small_box) + axis_joint("a", "continuous", "base", "x", "xyz=\"0 0 0\"", "0 0 1", "", "<mimic joint=\"" + of + "\"/>") + "<link name=\"x\"/>";
+    };
+    const std::string file = (folder / "robot.urdf").string();
+    CHECK_THROWS_WITH(load_urdf(folder, with_mimic("q")), file + ": joint \"a\" mimics \"q\", which is no joint");
+    CHECK_THROWS_WITH(load_urdf(folder, with_mimic("a")), file + ": joint \"a\" mimics itself");
+}
+
+TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not known")
+{
+    const TempFolder folder;
+    hand::Mesh open = mesh_text::box({0, 0, 0}, {1, 1, 1});
+    open.triangles.pop_back();
+    folder.write("l.obj", mesh_text::obj({{.name = "a", .mesh = mesh_text::box({0, 0, 0}, {4, 1, 1})},
+                                          {.name = "b", .mesh = mesh_text::box({0, 1, 0}, {1, 3, 1})}}));
+    folder.write("open.obj", mesh_text::obj(open));
+    folder.write("box.obj", mesh_text::obj(mesh_text::box({0, 0, 0}, {1, 1, 1})));
+    const Robot robot = load_parts(folder, "  - {mesh: l.obj, name: bend, scale: 2}\n  - {mesh: open.obj}\n  - {mesh: box.obj}\n");
+    REQUIRE(robot.meshes.size() == 3);
+    CHECK(*robot.meshes[0].mesh_volume == Approx(6 * 8));
+    CHECK(robot.meshes[0].volume == Approx(9 * 8));
+    CHECK(*robot.meshes[0].growth() == Approx(0.5));
+    CHECK_FALSE(robot.meshes[1].growth());
+    CHECK(*robot.meshes[2].growth() == Approx(0).margin(1e-9));
+    const std::string file = (folder / "robot.yaml").string() + ": ";
+    REQUIRE(robot.notices.size() == 2);
+    CHECK(robot.notices[0] == file + "\"bend\": l.obj counts as its convex hull, 72 m3, 50 % more than the mesh");
+    CHECK(robot.notices[1] == file + "open.obj counts as its convex hull, 1 m3; how much more than the mesh is not known, as that is not watertight or overlaps itself");
 }
 
 TEST_CASE("real robots have the bounds that their sources tell")

@@ -295,6 +295,7 @@ TEST_CASE("export writes the poses of a CSV file in every format, with roll and 
     CHECK(output("csv") == robots_csv(robots));
     CHECK(output("ros1-launch --robot-file cart.urdf") == ros1_launch(robots, {.file = urdf}));
     CHECK(output("ros2-launch-py --robot cart.urdf") == ros2_launch_py(robots, {.file = urdf}));
+    CHECK(output("ros2-launch-py --robot cart.urdf --package-path . --mesh-parts 2") == ros2_launch_py(robots, {.file = urdf}));
     CHECK(output("ros2-launch-xml --topic a") == ros2_launch_xml(robots, {.topic = "a"}));
     CHECK(output("sdf --robot-uri model://cart") == sdf_world(robots, {.uri = "model://cart"}));
     CHECK(output("mujoco --keys together") == mujoco_keyframes(robots, {.together = true}));

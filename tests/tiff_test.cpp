@@ -27,9 +27,10 @@ std::filesystem::path write_tiff(const TempFolder& folder, const TiffTags& tags,
         const auto add = [&](auto typed) { to.append(reinterpret_cast<const char*>(&typed), sizeof typed); };
         for (int c = 0; c < tags.channels; ++c) {
             if (tags.format == SAMPLEFORMAT_IEEEFP && tags.bits == 64) add(value);
-            else if (tags.bits == 32) add(float(value));
-            else if (tags.bits == 16) add(std::uint16_t(value));
-            else add(std::uint8_t(value));
+            else if (tags.format == SAMPLEFORMAT_IEEEFP && tags.bits == 32) add(float(value));
+            else if (tags.bits == 32) add(std::uint32_t(std::int64_t(value)));
+            else if (tags.bits == 16) add(std::uint16_t(std::int64_t(value)));
+            else add(std::uint8_t(std::int64_t(value)));
         }
     };
     const std::filesystem::path file = folder / "a.tiff";
@@ -89,6 +90,18 @@ TEST_CASE("TIFF images are read whatever their layout, byte order and compressio
     CHECK(same);
 }
 
+TEST_CASE("integers with a sign, and those of 32 bits, stand for themselves")
+{
+    const TempFolder folder;
+    const int bits = GENERATE(8, 16, 32);
+    const auto pixel = [](std::uint32_t row, std::uint32_t col) { return double(row * 3 + col) - 4; };
+    const GreyImage image = read_grey_tiff(write_tiff(folder, {.bits = bits, .format = SAMPLEFORMAT_INT}, pixel));
+    CHECK(image.largest == 0);
+    CHECK(image.pixels == Pixels{-4, -3, -2, -1, 0, 1});
+    const auto far = [](std::uint32_t row, std::uint32_t col) { return 4294967290.0 + double(row * 3 + col); };
+    CHECK(read_grey_tiff(write_tiff(folder, {.bits = 32}, far)).pixels == Pixels{4294967290, 4294967291, 4294967292, 4294967293, 4294967294, 4294967295});
+}
+
 TEST_CASE("a TIFF image whose 0 is white is turned round, so that white is high")
 {
     const TempFolder folder;
@@ -105,12 +118,13 @@ TEST_CASE("TIFF images that are damaged or no grey heights are refused with thei
     const auto check_refused = [&](const TiffTags& tags, const std::string& reason) {
         CHECK_THROWS_WITH(read_grey_tiff(write_tiff(folder, tags)), file + reason);
     };
-    const std::string wanted = ", needs 8 or 16 bits without sign, or float of 32 or 64";
-    check_refused({.bits = 8, .channels = 3, .photometric = PHOTOMETRIC_RGB}, "has 3 channels, needs 1 (grey)");
-    check_refused({.bits = 8, .channels = 2}, "has 2 channels, needs 1 (grey)");
+    const std::string wanted = ", needs integers of 8, 16 or 32 bits, or float of 32 or 64";
+    check_refused({.bits = 8, .channels = 3, .photometric = PHOTOMETRIC_RGB}, "has 3 channels, needs 1 (grey); gdal_translate -b 1 takes the first");
+    check_refused({.bits = 8, .channels = 2}, "has 2 channels, needs 1 (grey); gdal_translate -b 1 takes the first");
     check_refused({.bits = 8, .photometric = PHOTOMETRIC_PALETTE}, "has a palette, needs 1 channel (grey)");
-    check_refused({.format = SAMPLEFORMAT_INT}, "has pixels of 16 bits with sign" + wanted);
-    check_refused({.bits = 32}, "has pixels of 32 bits" + wanted);
+    check_refused({.bits = 64, .format = SAMPLEFORMAT_INT}, "has pixels of 64 bits with sign" + wanted);
+    check_refused({.bits = 4}, "has pixels of 4 bits" + wanted);
+    CHECK_THROWS_WITH(read_grey_tiff(write_tiff(folder, {.cols = 90, .rows = 70}), 6299), file + "has 90 x 70 pixels, needs at most 6299");
     check_refused({.format = SAMPLEFORMAT_IEEEFP}, "has pixels of 16-bit float" + wanted);
     check_refused({.orientation = ORIENTATION_BOTLEFT},
                   "is stored turned or mirrored (orientation 4), needs its upper left corner first (1)");

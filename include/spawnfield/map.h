@@ -16,6 +16,7 @@ struct Map {
     double occupancy_resolution = 0;  ///< m
     Geometry geometry;
     SolidBounds solid_bounds;         ///< of the terrain's raster
+    std::optional<GeoOrigin> origin;  ///< where it lies in a survey's coordinates
     int layers = 0;                   ///< most terrain layers above one cell centre
     std::string scene_file;           ///< name of the file it was baked from
     std::string scene_hash;           ///< xxh64 of that file, 16 hexadecimal digits

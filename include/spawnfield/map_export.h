@@ -64,4 +64,21 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
 /// and one tells the numbers. Source: Turk, The PLY Polygon File Format, 1994.
 void write_ply(const RasterResult& raster, const std::vector<std::string>& comment, const std::function<void(std::string_view)>& sink);
 
+/// Poses to be drawn into a GLB.
+struct GlbMarkers {
+    std::vector<Pose> poses = {};             ///< scene_from_robot
+    std::vector<Verdict> verdicts = {};       ///< one for each pose, or none at all
+    std::vector<std::string> names = {};      ///< one for each pose, or none at all: "spawn 0", …
+    const Robot* robot = nullptr;             ///< drawn with a cone on its top along its x; without it the cone alone, 1 m long
+};
+
+/// The scene as binary glTF 2.0, told to `sink` in pieces: y up as glTF wants it, (x, y, z) becomes (x, z, -y), metres.
+///
+/// A node for each part, of its name; a material for each label and for the verdicts of markers. Their root carries the
+/// scene's place in whole metres, so that float32 corners keep their millimetres far from the origin. Round solids become polygons on
+/// their surface: of 32 sides, of 16 where there are more than 2000 of them, of 8 beyond 20000. Markers are the children of a
+/// node "spawns". About 100 bytes of memory for each triangle. Throws OutputError beyond the 4 GiB that the format can hold, FileError for a
+/// damaged map. Source: Khronos, glTF 2.0 specification (ISO/IEC 12113:2022).
+void write_glb(const Map& map, const GlbMarkers& markers, const std::function<void(std::string_view)>& sink, int threads = 0, const Progress& progress = {});
+
 }  // namespace spawnfield

@@ -31,6 +31,10 @@ std::vector<std::string> column_of(const PoseTable& table, const std::string& na
 std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names = {}, const std::vector<std::string>& name_spaces = {});
 std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names = {}, const std::vector<std::string>& name_spaces = {});
 
+/// What a column `verdict` says of each pose, as `check` and `raster` write it; empty if there is none. Throws FileError, with the
+/// name of the file that the table was read from.
+std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::path& file);
+
 /// The table's columns that are named as some that verdicts_csv adds: those take their place.
 std::vector<std::string> replaced_columns(const PoseTable& table);
 

@@ -3,6 +3,7 @@
 #include <spawnfield/shape.h>
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace spawnfield {
@@ -12,9 +13,22 @@ struct RobotPart {
     Shape shape;
     std::vector<Vec3> hull_vertices;               ///< Hull only: corners in the robot's frame
     std::vector<std::array<int, 3>> hull_faces;    ///< Hull only: triangles, counterclockwise from outside
+    std::string name;                              ///< the link it belongs to, or its name in robot.yaml; may be empty
 
     Vec3 centre() const;  ///< a point inside, robot frame
     Bounds bounds() const;
+};
+
+/// What stands for a mesh collision: one convex hull or several, which hold all of it.
+struct MeshFit {
+    std::string name;                   ///< of its parts
+    std::string file;                   ///< without folders
+    std::size_t parts = 1;              ///< convex hulls; they share no volume
+    double volume = 0;                  ///< of these, m3
+    std::optional<double> mesh_volume;  ///< m3; only of a mesh whose pieces are watertight and lie apart
+
+    /// What is added to the mesh, as a share of it: 0.1 is 10 % more.
+    std::optional<double> growth() const { return mesh_volume ? std::optional(volume / *mesh_volume - 1) : std::nullopt; }
 };
 
 /// A rigid body: the union of convex parts, in its own frame, whose origin is the pose that commands take and give.
@@ -23,19 +37,31 @@ struct Robot {
     std::vector<RobotPart> parts;   ///< at least one
     std::vector<Vec3> contacts;     ///< where wheels or feet touch the ground; may be empty
     std::vector<std::string> notices;
+    std::vector<MeshFit> meshes = {};  ///< one for each mesh collision
 
     Bounds bounds() const;
 };
 
-struct RobotOptions {
-    std::vector<std::filesystem::path> package_paths = {};  ///< folders that hold ROS packages, for package:// URIs
+/// Where a joint stands.
+struct JointPosition {
+    std::string joint;
+    double value = 0;  ///< rad of revolute and continuous joints, m of prismatic ones
 };
 
-/// Reads robot.yaml (format spawnfield-robot/1), a .urdf, or `box:LX,LY,LZ[@x,y,z]`.
+struct RobotOptions {
+    std::vector<std::filesystem::path> model_paths = {};  ///< folders that hold models or ROS packages, as SceneOptions::model_paths
+    std::vector<JointPosition> joints = {};               ///< of a URDF or SDF model; all others stand at 0, or where those that they mimic tell
+    int mesh_parts = 1;                                   ///< most convex parts that a mesh collision is split into, 1 .. 64; 1: its convex hull
+};
+
+/// Reads robot.yaml (format spawnfield-robot/1), a .urdf, an SDF model (.sdf, or the folder with its model.config), or
+/// `box:LX,LY,LZ[@x,y,z]`.
 ///
-/// URDF: the union of all links' <collision> at zero joint positions, in the root link's frame; <visual> is never read.
-/// Meshes become their convex hulls (Barber, Dobkin, Huhdanpaa, The Quickhull algorithm, 1996; libqhull).
-/// Throws FileError for files, ArgumentError for a bad `box:`.
+/// URDF, SDF: the union of all links' <collision>, in the frame of the root link or of the model; <visual> is never read.
+/// Meshes become their convex hulls (Barber, Dobkin, Huhdanpaa, The Quickhull algorithm, 1996; libqhull), or several of
+/// them, of what planes cut them into: nothing of the mesh is outside of their union.
+/// Throws FileError for files, ArgumentError for a bad `box:`, for joints that the file has not, that cannot be moved or
+/// whose limits do not hold the value, and for mesh_parts out of range.
 Robot load_robot(const std::string& robot, const RobotOptions& options = {});
 
 }  // namespace spawnfield

@@ -3,6 +3,7 @@
 #include <spawnfield/shape.h>
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace spawnfield {
@@ -41,6 +42,13 @@ struct LabelCount {
 };
 using LabelCounts = std::array<LabelCount, 3>;  ///< of Terrain, Obstacle, Water
 
+/// Where a scene lies in the coordinates of a survey, such as those of a UTM zone: x of the survey = x + x_of_scene / unit.
+struct GeoOrigin {
+    double x = 0, y = 0;  ///< survey coordinates of the scene's 0, 0, in units
+    double unit = 1;      ///< m
+    std::string crs;      ///< "EPSG:32611", or the survey's own words; empty: unknown
+};
+
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// A rule by which the collisions of a world got their label, for the user to see.
@@ -61,6 +69,7 @@ struct Scene {
     std::vector<std::uint32_t> triangle_pieces; ///< one for each triangle
     std::vector<Piece> pieces;
     std::vector<Primitive> primitives;
+    std::optional<GeoOrigin> origin;   ///< from the first elevation model that tells where it lies
     std::vector<std::string> notices;  ///< defaults that mattered while reading; for the user to see
     std::vector<NameRule> rules;       ///< by which an SDF or URDF world was labelled, in their order
     /// What a map of it covers unless it is told otherwise; empty: all of it. Infinite planes reach beyond.
@@ -85,13 +94,15 @@ struct SceneOptions {
     /// IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH, and the folders above the file with their `models`.
     std::vector<std::filesystem::path> model_paths = {};
     bool strict = false;                 ///< a model or mesh that is missing is an error, not a notice
+    std::string heightmap = {};          ///< of a bare elevation model: keys as under `heightmap:`, "size: [513, 513], z: [0, 75]"
     Bounds bounds = {};                  ///< infinite planes are cut to these, and 50 m beyond; empty: to all the rest and their drawn size
 };
 
 /// Reads a scene.yaml (format spawnfield-scene/1), an SDF world or model (.sdf, .world, a model's folder), a URDF, an OctoMap (.bt,
-/// .ot) or any mesh that assimp reads.
+/// .ot), an elevation model (GeoTIFF, ESRI ASCII grid, PNG, raw) or any mesh that assimp reads.
 ///
-/// A bare mesh or OctoMap is one part named after the file; without label rules all of it is terrain, with a notice.
+/// A bare mesh or OctoMap is one part named after the file; without label rules all of it is terrain, with a notice. So is an elevation
+/// model: terrain whose middle lies at 0, 0, with the heights of the file; Scene::origin tells where that is.
 /// Of SDF and URDF each collision is a part, named model::link::collision; the options' rules match that name or one of its
 /// words between ::. Else planes, heightmaps and what is named as ground is terrain, the rest obstacle (docs/input-files.md).
 /// Throws FileError with file, part, key, value and limit. Format: DESIGN.md, formats/scene.md.

@@ -146,7 +146,7 @@ bool is_png(std::string_view start)
     return start.size() >= 8 && png_sig_cmp(reinterpret_cast<png_const_bytep>(start.data()), 0, 8) == 0;
 }
 
-GreyImage read_grey_png(const std::filesystem::path& file)
+GreyImage read_grey_png(const std::filesystem::path& file, std::uint64_t most)
 {
     const std::string bytes = read_file(file);
     Reader reader(bytes);
@@ -157,9 +157,9 @@ GreyImage read_grey_png(const std::filesystem::path& file)
     if (reader.has_palette()) throw FileError(file.string(), "has a palette, needs 1 channel (grey)");
     if (reader.channels() != 1)
         throw FileError(file.string(), "has " + std::to_string(reader.channels()) + " channels, needs 1 (grey)");
-    if (std::uint64_t(reader.rows()) * std::uint64_t(reader.cols()) > max_pixels)
+    if (std::uint64_t(reader.rows()) * std::uint64_t(reader.cols()) > most)
         throw FileError(file.string(), "has " + std::to_string(reader.cols()) + " x " + std::to_string(reader.rows()) + " pixels, needs at most " +
-                                           std::to_string(max_pixels));
+                                           std::to_string(most));
     require(reader.prepare());
 
     const std::size_t rows = std::size_t(reader.rows()), row_pixels = std::size_t(reader.cols());

@@ -11,8 +11,8 @@ namespace spawnfield {
 bool is_png(std::string_view start);  ///< its first 8 bytes or more
 
 /// 1 to 16 bits, interlaced or not; pixels of fewer than 8 bits are spread over 0 .. 255. Gamma and transparency are not
-/// applied. Throws FileError.
-GreyImage read_grey_png(const std::filesystem::path& file);
+/// applied. Throws FileError; for more than `most` pixels before any is read.
+GreyImage read_grey_png(const std::filesystem::path& file, std::uint64_t most = max_pixels);
 
 /// Pixels of 8-bit blue, green, red. Same pixels, same bytes. Throws OutputError.
 void write_bgr_png(const std::filesystem::path& file, int rows, int cols, const std::uint8_t* pixels);

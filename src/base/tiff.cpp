@@ -1,5 +1,7 @@
 #include "base/tiff.h"
 
+#include "base/geotiff.h"
+
 #include <spawnfield/error.h>
 
 #include <algorithm>
@@ -34,23 +36,25 @@ Layout layout(TIFF* tiff)
 }
 
 bool is_float(const Layout& l) { return l.format == SAMPLEFORMAT_IEEEFP && (l.bits == 32 || l.bits == 64); }
-bool is_unsigned(const Layout& l) { return l.format == SAMPLEFORMAT_UINT && (l.bits == 8 || l.bits == 16); }
+bool is_unsigned(const Layout& l) { return l.format == SAMPLEFORMAT_UINT && (l.bits == 8 || l.bits == 16 || l.bits == 32); }
+bool is_signed(const Layout& l) { return l.format == SAMPLEFORMAT_INT && (l.bits == 8 || l.bits == 16 || l.bits == 32); }
+bool has_white(const Layout& l) { return is_unsigned(l) && l.bits < 32; }  ///< a picture, perhaps, of which the largest value is white
 
-void check(const Layout& l, const std::string& file)
+void check(const Layout& l, const std::string& file, std::uint64_t most)
 {
     if (l.photometric == PHOTOMETRIC_PALETTE) throw FileError(file, "has a palette, needs 1 channel (grey)");
-    if (l.channels != 1) throw FileError(file, "has " + std::to_string(l.channels) + " channels, needs 1 (grey)");
-    if (!is_float(l) && !is_unsigned(l))
+    if (l.channels != 1) throw FileError(file, "has " + std::to_string(l.channels) + " channels, needs 1 (grey); gdal_translate -b 1 takes the first");
+    if (!is_float(l) && !is_unsigned(l) && !is_signed(l))
         throw FileError(file, "has pixels of " + std::to_string(l.bits) +
                                   (l.format == SAMPLEFORMAT_UINT     ? " bits"
                                    : l.format == SAMPLEFORMAT_INT    ? " bits with sign"
                                    : l.format == SAMPLEFORMAT_IEEEFP ? "-bit float"
                                                                      : " bits of no known kind") +
-                                  ", needs 8 or 16 bits without sign, or float of 32 or 64");
+                                  ", needs integers of 8, 16 or 32 bits, or float of 32 or 64");
     if (l.orientation != ORIENTATION_TOPLEFT)
         throw FileError(file, "is stored turned or mirrored (orientation " + std::to_string(l.orientation) + "), needs its upper left corner first (1)");
-    if (std::max({std::uint64_t(l.rows), std::uint64_t(l.cols), std::uint64_t(l.rows) * l.cols}) > max_pixels)
-        throw FileError(file, "has " + std::to_string(l.cols) + " x " + std::to_string(l.rows) + " pixels, needs at most " + std::to_string(max_pixels));
+    if (std::max({std::uint64_t(l.rows), std::uint64_t(l.cols), std::uint64_t(l.rows) * l.cols}) > most)
+        throw FileError(file, "has " + std::to_string(l.cols) + " x " + std::to_string(l.rows) + " pixels, needs at most " + std::to_string(most));
     if (!TIFFIsCODECConfigured(l.compression))
         throw FileError(file, "is compressed in a way that libtiff cannot decode here (scheme " + std::to_string(l.compression) + "); save it with deflate");
 }
@@ -66,6 +70,8 @@ double value(const std::byte* bytes)
 double value(const Layout& l, const std::byte* bytes)
 {
     if (l.format == SAMPLEFORMAT_IEEEFP) return l.bits == 32 ? value<float>(bytes) : value<double>(bytes);
+    if (is_signed(l)) return l.bits == 8 ? value<std::int8_t>(bytes) : l.bits == 16 ? value<std::int16_t>(bytes) : value<std::int32_t>(bytes);
+    if (l.bits == 32) return value<std::uint32_t>(bytes);
     const double white = l.bits == 8 ? 255 : 65535;
     const double stored = l.bits == 8 ? value<std::uint8_t>(bytes) : value<std::uint16_t>(bytes);
     return l.photometric == PHOTOMETRIC_MINISWHITE ? white - stored : stored;
@@ -107,6 +113,7 @@ Tiff open_tiff(const std::filesystem::path& file, const char* mode)
     std::call_once(once, [] {
         TIFFSetErrorHandler(nullptr);
         TIFFSetWarningHandler(nullptr);
+        register_geo_tags();
     });
     return Tiff(TIFFOpen(file.c_str(), mode));
 }
@@ -118,14 +125,14 @@ bool is_tiff(std::string_view start)
     return four == "II*\0"sv || four == "MM\0*"sv || four == "II+\0"sv || four == "MM\0+"sv;
 }
 
-GreyImage read_grey_tiff(const std::filesystem::path& file)
+GreyImage read_grey_tiff(const std::filesystem::path& file, std::uint64_t most)
 {
     const auto damaged = [&] { return FileError(file.string(), "is cut short or a damaged TIFF image"); };
     const Tiff tiff = open_tiff(file, "r");
     if (!tiff) throw damaged();
     const Layout found = layout(tiff.get());
-    check(found, file.string());
-    GreyImage image{int(found.rows), int(found.cols), is_float(found) ? 0.0 : found.bits == 8 ? 255.0 : 65535.0, {}};
+    check(found, file.string(), most);
+    GreyImage image{int(found.rows), int(found.cols), !has_white(found) ? 0.0 : found.bits == 8 ? 255.0 : 65535.0, {}};
     const bool tiled = TIFFIsTiled(tiff.get());
     const tmsize_t piece = tiled ? TIFFTileSize(tiff.get()) : TIFFScanlineSize(tiff.get());
     const std::size_t wanted = tiled ? std::size_t(found.tile_rows) * found.tile_cols : found.cols;

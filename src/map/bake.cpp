@@ -122,6 +122,7 @@ Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& 
     const Bounds extent = scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds;
     map.bounds = chosen_bounds("bake", options.bounds, extent);
     if (!map.bounds.meets(extent)) throw FileError(scene_file.string(), "bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
+    map.origin = scene.origin;
     map.resolution = options.resolution > 0 ? options.resolution : default_resolution(map.bounds, report);
     map.occupancy_resolution = options.occupancy_resolution > 0
                                    ? options.occupancy_resolution

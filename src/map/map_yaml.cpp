@@ -92,6 +92,14 @@ GridFrame read_frame(const YamlMap& root)
     return frame;
 }
 
+std::string origin_text(const GeoOrigin& origin)
+{
+    const std::string crs = origin.crs.empty() ? "" : ", crs: " + quoted(origin.crs);
+    return "{x: " + number(origin.x) + ", y: " + number(origin.y) + ", unit: " + number(origin.unit) + crs + "}";
+}
+
+GeoOrigin read_origin(const YamlMap& map) { return {map.finite("x"), map.finite("y"), map.positive("unit"), map.text("crs", "")}; }
+
 /// The last line, which holds the checksum of all before it.
 std::string hash_line(const std::string& hash) { return hash_key + "\"" + hash + "\"\n"; }
 
@@ -138,6 +146,7 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
     text += "# of every image: row 0 is the largest y, column 0 the smallest x; x0, y0 is the lower left corner\n";
     text += "frame: {x0: " + number(frame.x0) + ", y0: " + number(frame.y0) + ", cell: " + number(frame.cell) +
             ", rows: " + std::to_string(frame.rows) + ", cols: " + std::to_string(frame.cols) + "}\n";
+    if (map.origin) text += "# survey coordinates of 0, 0, in units of so many metres\norigin: " + origin_text(*map.origin) + "\n";
     text += "layers: " + std::to_string(map.layers) + "\n";
     text += "terrain:  # pages of terrain.tiff, float32 metres, NaN: nothing\n";
     for (const TerrainMap::Page& page : terrain.pages) text += "  - " + page.name + "\n";
@@ -164,6 +173,7 @@ MapYaml read_map_yaml(const fs::path& folder)
     out.map.bounds = read_bounds(root);
     out.map.resolution = root.positive("resolution");
     out.map.occupancy_resolution = root.positive("occupancy_resolution");
+    if (root.has("origin")) out.map.origin = read_origin(root.map("origin"));
     out.map.layers = int(root.finite("layers"));
     out.map.scene_file = root.map("scene").text("file");
     out.map.scene_hash = root.map("scene").text("xxh64");

@@ -138,6 +138,13 @@ void draw_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour 
     cv::polylines(image, std::vector{points}, true, scalar(edge), whole(edge_width), cv::LINE_AA, shift);
 }
 
+void draw_outline(Image& image, const std::vector<cv::Point2d>& corners, Colour edge, double edge_width)
+{
+    std::vector<cv::Point> points;
+    for (const cv::Point2d& corner : corners) points.push_back(in_fractions(corner));
+    cv::polylines(image, std::vector{points}, true, scalar(edge), whole(edge_width), cv::LINE_AA, shift);
+}
+
 void draw_dot(Image& image, cv::Point2d centre, double radius, Colour inside, Colour edge, double edge_width)
 {
     const int fractions = cvRound(radius * (1 << shift));

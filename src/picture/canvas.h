@@ -47,6 +47,7 @@ int whole(double pixels);  ///< rounded, at least 1
 void fill(Image& image, const cv::Rect& area, Colour colour);
 void outline(Image& image, const cv::Rect& area, int thickness, Colour colour);  ///< around the area, outside it
 void draw_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour inside, Colour edge, double edge_width);
+void draw_outline(Image& image, const std::vector<cv::Point2d>& corners, Colour edge, double edge_width);  ///< a closed line
 void draw_dot(Image& image, cv::Point2d centre, double radius, Colour inside, Colour edge, double edge_width);
 
 /// Throws OutputError.

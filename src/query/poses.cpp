@@ -296,6 +296,29 @@ std::vector<Spawn> spawns_of(const PoseTable& table)
     return out;
 }
 
+std::vector<std::string> column_of(const PoseTable& table, const std::string& name)
+{
+    const std::vector<std::string> names = split_line(table.header);
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) return {};
+    std::vector<std::string> out;
+    for (const std::string& row : table.rows) out.push_back(split_line(row)[std::size_t(at - names.begin())]);
+    return out;
+}
+
+std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::path& file)
+{
+    std::vector<Verdict> out;
+    for (const std::string& text : column_of(table, "verdict")) {
+        std::size_t verdict = 0;
+        while (verdict < verdict_count && text != to_string(Verdict(verdict))) ++verdict;
+        if (verdict == verdict_count)
+            throw FileError(file.string(), "pose " + std::to_string(out.size() + 1) + ": column verdict is \"" + text + "\", needs a verdict's name, as valid or collision");
+        out.push_back(Verdict(verdict));
+    }
+    return out;
+}
+
 std::vector<std::string> replaced_columns(const PoseTable& table)
 {
     std::vector<std::string> names = split_line(table.header);
@@ -335,16 +358,6 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
         text.clear();
     });
     sink(text);
-}
-
-std::vector<std::string> column_of(const PoseTable& table, const std::string& name)
-{
-    const std::vector<std::string> names = split_line(table.header);
-    const auto at = std::find(names.begin(), names.end(), name);
-    std::vector<std::string> out;
-    if (at == names.end()) return out;
-    for (const std::string& row : table.rows) out.push_back(split_line(row)[std::size_t(at - names.begin())]);
-    return out;
 }
 
 std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names, const std::vector<std::string>& name_spaces)

@@ -1,7 +1,7 @@
 #include "base/number.h"
-#include "robot/hull.h"
+#include "robot/mesh_parts.h"
+#include "robot/sdf_robot.h"
 #include "robot/urdf.h"
-#include "scene/mesh.h"
 #include "scene/yaml_map.h"
 
 #include <spawnfield/error.h>
@@ -75,20 +75,17 @@ Robot box_robot(const std::string& argument)
     return {argument, {part}, {}, {}};
 }
 
-RobotPart read_hull(const YamlMap& map, const std::filesystem::path& folder)
+void append_mesh_part(Robot& robot, const YamlMap& map, const std::filesystem::path& folder, int mesh_parts)
 {
     const std::filesystem::path file = folder / map.text("mesh");
     const Vec3 scale = map.scale();
-    const Pose pose = map.pose();
     const char given_up = map.has("up") ? map.one_of("up", {"y", "z"}, "z")[0] : char{0};
     try {
-        const FileMesh mesh = read_mesh(file);
+        FileMesh mesh = read_mesh(file);
         const char up = given_up != 0 ? given_up : mesh.up;
-        std::vector<Vec3> points;
-        for (const FileMesh::Node& node : mesh.nodes)
-            for (const Vec3& vertex : node.vertices)
-                points.push_back(pose.rotation * turned_up(vertex.cwiseProduct(scale), up) + pose.position);
-        return convex_hull(points);
+        for (FileMesh::Node& node : mesh.nodes)
+            for (Vec3& vertex : node.vertices) vertex = turned_up(vertex.cwiseProduct(scale), up);
+        append_mesh(robot, {map.text("name", ""), file, placed(std::move(mesh.nodes), Vec3::Ones(), map.pose())}, mesh_parts);
     } catch (const std::domain_error& error) {
         map.fail("mesh", "cannot be used: " + file.string() + ": its convex hull has no volume: " + error.what());
     } catch (const FileError& error) {
@@ -96,20 +93,22 @@ RobotPart read_hull(const YamlMap& map, const std::filesystem::path& folder)
     }
 }
 
-RobotPart read_robot_part(const YamlMap& map, const std::filesystem::path& folder)
+void append_part(Robot& robot, const YamlMap& map, const std::filesystem::path& folder, int mesh_parts)
 {
     const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "mesh"}, {"name", "xyz", "rpy", "rpy_deg", "scale", "up"});
     if (kind == "mesh") {
         map.only({"name", "mesh", "xyz", "rpy", "rpy_deg", "scale", "up"});
-        return read_hull(map, folder);
+        append_mesh_part(robot, map, folder, mesh_parts);
+        return;
     }
     map.only({"name", "xyz", "rpy", "rpy_deg", kind.c_str()});
     RobotPart part;
     part.shape = read_shape(map, kind);
-    return part;
+    part.name = map.text("name", "");
+    robot.parts.push_back(std::move(part));
 }
 
-Robot read_robot_yaml(const std::filesystem::path& file)
+Robot read_robot_yaml(const std::filesystem::path& file, int mesh_parts)
 {
     const YamlMap root = read_yaml(file, "spawnfield-robot/1");
     root.only({"format", "name", "parts", "contacts"});
@@ -117,23 +116,45 @@ Robot read_robot_yaml(const std::filesystem::path& file)
     robot.name = root.text("name", file.stem().string());
     std::size_t count = 0;
     for (const YAML::Node& node : root.list("parts"))
-        robot.parts.push_back(read_robot_part({node, file.string(), "part " + std::to_string(++count)}, file.parent_path()));
+        append_part(robot, {node, file.string(), "part " + std::to_string(++count)}, file.parent_path(), mesh_parts);
     if (robot.parts.empty()) root.fail("parts", "is empty, needs at least one part");
     if (root.has("contacts")) robot.contacts = root.vectors("contacts");
     return robot;
+}
+
+constexpr const char* known_kinds = "a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]";
+
+Robot read_robot(const std::string& robot, const RobotOptions& options)
+{
+    const std::filesystem::path file = robot;
+    const std::string extension = file.extension().string();
+    if (std::filesystem::is_directory(file)) return read_sdf_robot(file, options);
+    if (!std::filesystem::is_regular_file(file)) throw FileError(robot, std::string("does not exist; a robot is ") + known_kinds);
+    if (extension == ".urdf") return read_urdf(file, options);
+    if (extension == ".sdf" || extension == ".world") return read_sdf_robot(file, options);
+    if (extension == ".xacro")
+        throw FileError(robot, "is a xacro file; expand it first: xacro " + file.filename().string() + " > robot.urdf");
+    if (extension != ".yaml" && extension != ".yml") throw FileError(robot, std::string("is no known robot format, needs ") + known_kinds);
+    if (!options.joints.empty())
+        throw ArgumentError("load_robot", "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
+    return read_robot_yaml(file, options.mesh_parts);
 }
 
 }  // namespace
 
 Robot load_robot(const std::string& robot, const RobotOptions& options)
 {
-    if (robot.starts_with("box:")) return box_robot(robot);
-    const std::filesystem::path file = robot;
-    if (!std::filesystem::is_regular_file(file))
-        throw FileError(robot, "does not exist; a robot is a robot.yaml, a .urdf or box:LX,LY,LZ[@x,y,z]");
-    if (file.extension() == ".urdf") return read_urdf(file, options);
-    if (file.extension() == ".yaml" || file.extension() == ".yml") return read_robot_yaml(file);
-    throw FileError(robot, "is no known robot format, needs .yaml, .urdf or box:LX,LY,LZ[@x,y,z]");
+    constexpr int most_parts = 64;
+    if (options.mesh_parts < 1 || options.mesh_parts > most_parts)
+        throw ArgumentError("load_robot", "mesh_parts", options.mesh_parts, "1 .. " + std::to_string(most_parts));
+    if (robot.starts_with("box:")) {
+        if (!options.joints.empty())
+            throw ArgumentError("load_robot", "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
+        return box_robot(robot);
+    }
+    Robot out = read_robot(robot, options);
+    for (std::string& text : growth_notices(out)) out.notices.push_back(robot + ": " + std::move(text));
+    return out;
 }
 
 }  // namespace spawnfield

@@ -1,8 +1,8 @@
 #include "robot/urdf.h"
 
 #include "base/number.h"
-#include "robot/hull.h"
-#include "scene/mesh.h"
+#include "robot/body_parts.h"
+#include "robot/joints.h"
 
 #include <spawnfield/error.h>
 
@@ -42,26 +42,76 @@ private:
     std::string first_;
 };
 
+Joint joint_of(const urdf::Joint& joint)
+{
+    using Motion = Joint::Motion;
+    Joint out;
+    out.name = joint.name;
+    switch (joint.type) {
+    case urdf::Joint::REVOLUTE: out.motion = Motion::Turning, out.type = "revolute"; break;
+    case urdf::Joint::CONTINUOUS: out.motion = Motion::Turning, out.type = "continuous"; break;
+    case urdf::Joint::PRISMATIC: out.motion = Motion::Sliding, out.type = "prismatic"; break;
+    case urdf::Joint::FLOATING: out.motion = Motion::Other, out.type = "floating"; break;
+    case urdf::Joint::PLANAR: out.motion = Motion::Other, out.type = "planar"; break;
+    default: out.type = "fixed"; break;
+    }
+    if (joint.limits && joint.type != urdf::Joint::CONTINUOUS) {
+        out.lower = joint.limits->lower;
+        out.upper = joint.limits->upper;
+    }
+    if (joint.mimic) out.mimic = Joint::Mimic{joint.mimic->joint_name, joint.mimic->multiplier, joint.mimic->offset};
+    return out;
+}
+
+CollisionGeometry geometry_of(const urdf::Geometry& geometry, const std::filesystem::path& folder)
+{
+    CollisionGeometry out;
+    if (geometry.type == urdf::Geometry::BOX) {
+        const auto& box = static_cast<const urdf::Box&>(geometry);
+        out.kind = CollisionGeometry::Kind::Box;
+        out.size = {box.dim.x, box.dim.y, box.dim.z};
+    } else if (geometry.type == urdf::Geometry::SPHERE) {
+        out.kind = CollisionGeometry::Kind::Sphere;
+        out.size[0] = static_cast<const urdf::Sphere&>(geometry).radius;
+    } else if (geometry.type == urdf::Geometry::CYLINDER) {
+        const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+        out.kind = CollisionGeometry::Kind::Cylinder;
+        out.size = {cylinder.radius, cylinder.length, 1};
+    } else {
+        const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
+        out.kind = CollisionGeometry::Kind::Mesh;
+        out.size = {mesh.scale.x, mesh.scale.y, mesh.scale.z};
+        out.uri = mesh.filename;
+        out.folder = folder;
+    }
+    return out;
+}
+
 class UrdfReader {
 public:
-    UrdfReader(std::filesystem::path file, const RobotOptions& options) : file_(std::move(file)), options_(options) {}
+    UrdfReader(std::filesystem::path file, const std::vector<JointPosition>& joints) : file_(std::move(file)), joints_(joints) {}
 
-    Robot read()
+    UrdfModel read()
     {
         std::ifstream stream(file_, std::ios::binary);
         if (!stream || !std::filesystem::is_regular_file(file_))
             throw FileError(file_.string(), "does not exist; is the path right?");
         std::stringstream text;
         text << stream.rdbuf();
+        if (text.str().find("<xacro:") != std::string::npos)
+            throw FileError(file_.string(), "holds xacro macros; expand them first: xacro " + file_.filename().string() + " > robot.urdf");
         UrdfdomErrors errors;
         const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text.str());
         // urdfdom goes on with a link that it could not read to its end, and that would make the robot smaller.
         if (!errors.first().empty()) throw FileError(file_.string(), "is no valid URDF: " + errors.first());
         if (!model || !model->getRoot()) throw FileError(file_.string(), "is no valid URDF");
-        robot_.name = model->getName();
+        out_.name = model->getName();
+        std::vector<Joint> joints;
+        for (const auto& entry : model->joints_) joints.push_back(joint_of(*entry.second));
+        positions_ = joint_positions(file_.string(), joints, joints_, out_.notices);
         add_link(*model->getRoot(), {});
-        if (robot_.parts.empty()) throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
-        return std::move(robot_);
+        if (out_.bodies.empty()) throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
+        return std::move(out_);
     }
 
 private:
@@ -69,74 +119,33 @@ private:
     {
         for (const auto& collision : link.collision_array) {
             if (!collision || !collision->geometry) fail(link, "has a <collision> without geometry");
-            add_collision(link, *collision->geometry, robot_from_link * pose_of(collision->origin));
+            require_positive(link, *collision->geometry);
+            out_.bodies.push_back({{out_.name, link.name, collision->name}, robot_from_link * pose_of(collision->origin),
+                                   geometry_of(*collision->geometry, file_.parent_path())});
         }
         for (const auto& joint : link.child_joints) {
             for (const auto& child : link.child_links)
                 if (child->name == joint->child_link_name)
-                    add_link(*child, robot_from_link * pose_of(joint->parent_to_joint_origin_transform));
+                    add_link(*child, robot_from_link * pose_of(joint->parent_to_joint_origin_transform) * motion_of(link, *joint));
         }
     }
 
-    void add_collision(const urdf::Link& link, const urdf::Geometry& geometry, const Pose& pose)
+    Pose motion_of(const urdf::Link& link, const urdf::Joint& joint) const
     {
-        RobotPart part;
-        part.shape.pose = pose;
-        if (geometry.type == urdf::Geometry::BOX) {
-            const auto& box = static_cast<const urdf::Box&>(geometry);
-            part.shape.kind = ShapeKind::Box;
-            part.shape.size = {box.dim.x, box.dim.y, box.dim.z};
-            require_positive(link, "<box size>", part.shape.size.minCoeff());
-        } else if (geometry.type == urdf::Geometry::SPHERE) {
-            part.shape.kind = ShapeKind::Sphere;
-            part.shape.size[0] = static_cast<const urdf::Sphere&>(geometry).radius;
-            require_positive(link, "<sphere radius>", part.shape.size[0]);
-        } else if (geometry.type == urdf::Geometry::CYLINDER) {
-            const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
-            part.shape.kind = ShapeKind::Cylinder;
-            part.shape.size = {cylinder.radius, cylinder.length, 0};
-            require_positive(link, "<cylinder>", std::min(cylinder.radius, cylinder.length));
-        } else {
-            part = mesh_part(link, static_cast<const urdf::Mesh&>(geometry), pose);
-        }
-        robot_.parts.push_back(std::move(part));
+        const auto value = positions_.find(joint.name);
+        if (value == positions_.end() || value->second == 0) return {};
+        const Vec3 axis(joint.axis.x, joint.axis.y, joint.axis.z);
+        if (!(axis.norm() > 1e-6)) fail(link, "joint \"" + joint.name + "\" has an <axis> of no length");
+        return joint_motion(joint_of(joint).motion, axis.normalized(), value->second);
     }
 
-    RobotPart mesh_part(const urdf::Link& link, const urdf::Mesh& mesh, const Pose& pose) const
+    void require_positive(const urdf::Link& link, const urdf::Geometry& geometry) const
     {
-        const std::filesystem::path file = resolve(link, mesh.filename);
-        const Vec3 scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
-        std::vector<Vec3> points;
-        try {
-            // As Gazebo takes COLLADA: its <unit> counts, its <up_axis> does not.
-            for (const FileMesh::Node& node : read_mesh(file).nodes)
-                for (const Vec3& vertex : node.vertices) points.push_back(pose.rotation * vertex.cwiseProduct(scale) + pose.position);
-            return convex_hull(points);
-        } catch (const std::domain_error& error) {
-            fail(link, "<mesh> cannot be used: " + file.string() + ": its convex hull has no volume: " + error.what());
-        } catch (const FileError& error) {
-            fail(link, std::string("<mesh> cannot be used: ") + error.what());
-        }
-    }
-
-    std::filesystem::path resolve(const urdf::Link& link, const std::string& uri) const
-    {
-        const std::string package = "package://", local = "file://";
-        if (uri.starts_with(local)) return uri.substr(local.size());
-        if (!uri.starts_with(package)) return file_.parent_path() / uri;
-        const std::filesystem::path inside = uri.substr(package.size());
-        std::vector<std::filesystem::path> folders = options_.package_paths;
-        const auto absolute = std::filesystem::absolute(file_).lexically_normal();
-        for (auto folder = absolute.parent_path(); folder != folder.root_path(); folder = folder.parent_path())
-            folders.push_back(folder);
-        for (const auto& folder : folders)
-            if (std::filesystem::is_regular_file(folder / inside)) return folder / inside;
-        fail(link, uri + " is found neither in --package-path nor in the folders above the file");
-    }
-
-    void require_positive(const urdf::Link& link, const std::string& what, double value) const
-    {
-        if (!(value > 0) || !std::isfinite(value)) fail(link, what + " is " + number(value) + ", needs > 0");
+        const CollisionGeometry found = geometry_of(geometry, {});
+        if (found.kind == CollisionGeometry::Kind::Mesh) return;
+        const char* const what = found.kind == CollisionGeometry::Kind::Box ? "<box size>" : found.kind == CollisionGeometry::Kind::Sphere ? "<sphere radius>" : "<cylinder>";
+        for (const double side : found.size)
+            if (!(side > 0) || !std::isfinite(side)) fail(link, std::string(what) + " is " + number(side) + ", needs > 0");
     }
 
     [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const
@@ -145,12 +154,24 @@ private:
     }
 
     const std::filesystem::path file_;
-    const RobotOptions& options_;
-    Robot robot_;
+    const std::vector<JointPosition>& joints_;
+    UrdfModel out_;
+    std::map<std::string, double> positions_;  ///< of joints
 };
 
 }  // namespace
 
-Robot read_urdf(const std::filesystem::path& file, const RobotOptions& options) { return UrdfReader(file, options).read(); }
+UrdfModel read_urdf_model(const std::filesystem::path& file, const std::vector<JointPosition>& joints) { return UrdfReader(file, joints).read(); }
+
+Robot read_urdf(const std::filesystem::path& file, const RobotOptions& options)
+{
+    UrdfModel model = read_urdf_model(file, options.joints);
+    ModelPaths paths(options.model_paths, file);
+    Robot robot;
+    robot.name = model.name;
+    robot.notices = std::move(model.notices);
+    for (const CollisionBody& body : model.bodies) append_body(robot, body, paths, file.string(), options.mesh_parts);
+    return robot;
+}
 
 }  // namespace spawnfield

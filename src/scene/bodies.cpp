@@ -80,22 +80,6 @@ private:
     std::vector<NameRule> rules_;
 };
 
-/// The shape whose equation the scene keeps.
-std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pose)
-{
-    const Vec3& size = geometry.size;
-    switch (geometry.kind) {
-    case Kind::Box: return Shape{ShapeKind::Box, size, pose};
-    case Kind::Sphere: return Shape{ShapeKind::Sphere, Vec3(size[0], 0, 0), pose};
-    case Kind::Cylinder: return Shape{ShapeKind::Cylinder, Vec3(size[0], size[1], 0), pose};
-    case Kind::Capsule: return Shape{ShapeKind::Capsule, Vec3(size[0], size[1], 0), pose};
-    case Kind::Ellipsoid:
-        if (size[0] == size[1] && size[1] == size[2]) return Shape{ShapeKind::Sphere, Vec3(size[0], 0, 0), pose};
-        return {};
-    default: return {};
-    }
-}
-
 /// A closed mesh around the ellipsoid: rings of latitude, corners so far out that the faces stay outside of it.
 FileMesh ellipsoid_mesh(const Vec3& radii, int rings, int around)
 {
@@ -128,14 +112,19 @@ FileMesh ellipsoid_mesh(const Vec3& radii, int rings, int around)
 /// (gazebo::common::ImageHeightmap, HeightmapShape); between pixels, `sampling` - 1 samples are interpolated bilinearly.
 Heightmap gazebo_heights(const fs::path& file, const CollisionGeometry& geometry)
 {
-    const GreyImage image = read_grey_image(file);
+    std::vector<std::string> ignored;
+    const GreyImage image = read_height_file(file, {}, false, ignored).image;
+    if (image.rows < 2 || image.cols < 2) throw FileError(file.string(), "has " + std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels, needs at least 2 x 2");
     if (image.largest == 0) throw FileError(file.string(), "has float pixels: a <heightmap> needs an image of 8 or 16 bits; bake the elevation model itself");
     const double brightest = *std::max_element(image.pixels.begin(), image.pixels.end());
     const double scale = brightest > 0 ? geometry.size.z() / brightest : 0;
     const int s = int(geometry.sampling);
     const std::uint64_t wanted = (std::uint64_t(image.rows - 1) * s + 1) * (std::uint64_t(image.cols - 1) * s + 1);
-    if (wanted > max_pixels) throw FileError(file.string(), "has " + std::to_string(wanted) + " samples with <sampling> " + std::to_string(s) + ", needs at most " + std::to_string(max_pixels));
-    Heightmap map{{geometry.size.x(), geometry.size.y()}, (image.rows - 1) * s + 1, (image.cols - 1) * s + 1, {}};
+    if (wanted > max_heights) throw FileError(file.string(), "has " + std::to_string(wanted) + " samples with <sampling> " + std::to_string(s) + ", needs at most " + std::to_string(max_heights));
+    Heightmap map;
+    map.size = {geometry.size.x(), geometry.size.y()};
+    map.rows = (image.rows - 1) * s + 1;
+    map.cols = (image.cols - 1) * s + 1;
     map.heights.reserve(wanted);
     const auto pixel = [&](int row, int col) { return image.pixels[std::size_t(std::min(row, image.rows - 1)) * image.cols + std::min(col, image.cols - 1)]; };
     for (int row = 0; row < map.rows; ++row)
@@ -146,27 +135,6 @@ Heightmap gazebo_heights(const fs::path& file, const CollisionGeometry& geometry
             map.heights.push_back(scale * (upper * (1 - v) + lower * v));
         }
     return map;
-}
-
-/// The only node of that name, moved so that the middle of its box is the origin if it is to be centred.
-FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, const std::string& file)
-{
-    FileMesh out;
-    out.materials = mesh.materials;
-    std::string names;
-    for (const FileMesh::Node& node : mesh.nodes) {
-        if (node.name == geometry.submesh) out.nodes.push_back(node);
-        names += (names.empty() ? "" : ", ") + node.name;
-    }
-    if (out.nodes.empty()) throw FileError(file, "has no submesh \"" + geometry.submesh + "\"; it has " + names);
-    if (geometry.is_centred) {
-        Bounds box;
-        for (const FileMesh::Node& node : out.nodes)
-            for (const Vec3& vertex : node.vertices) box.extend(vertex);
-        for (FileMesh::Node& node : out.nodes)
-            for (Vec3& vertex : node.vertices) vertex -= (box.min + box.max) / 2;
-    }
-    return out;
 }
 
 /// The part of the infinite plane z = 0 of `pose` that lies in the box: a convex polygon's corners, none if they do not meet.
@@ -315,7 +283,7 @@ private:
                 append_ellipsoid(body, part);
             } else {
                 const auto mesh = meshes_.read(files_.at(&body));
-                append_mesh_body(body, part, geometry.submesh.empty() ? *mesh : submesh_of(*mesh, geometry, files_.at(&body).string()), geometry.size);
+                append_mesh_body(body, part, submesh_of(*mesh, geometry, files_.at(&body).string()), geometry.size);
             }
         } catch (const std::domain_error& error) {
             throw FileError(file_.string(), "\"" + scoped_name(body) + "\": <polyline>: " + error.what());

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <spawnfield/types.h>
+#include "scene/mesh.h"
 
 #include <array>
-#include <filesystem>
-#include <string>
-#include <vector>
 
 namespace spawnfield {
 
@@ -36,5 +33,12 @@ struct CollisionBody {
 
 /// "house::link::collision" (SDFormat's scoped names).
 std::string scoped_name(const CollisionBody& body);
+
+/// Of a box, sphere, cylinder or capsule, and of an ellipsoid that is a sphere.
+std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pose);
+
+/// What of its file a mesh geometry means: all, or the nodes of its submesh, with the middle of their box moved to the origin if
+/// it is to be centred. Throws FileError.
+FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, const std::string& file);
 
 }  // namespace spawnfield

@@ -89,7 +89,7 @@ ModelPaths::Path ModelPaths::find(const std::string& uri, const Path& folder)
         if (const Path found = found_in(named, inside); !found.empty()) return found;
     for (const Path& above : above_)
         if (const Path found = found_in(above, inside); !found.empty()) {
-            guessed_.insert(above);
+            if (above != above_.front()) guessed_.insert(above);  // beside the file is no guess
             return found;
         }
     return {};

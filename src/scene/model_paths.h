@@ -19,7 +19,7 @@ public:
     /// What the URI names, seen from a file in `folder`: a file or a folder that exists, or nothing.
     Path find(const std::string& uri, const Path& folder);
 
-    /// Folders above the file in which something was found: nobody named them.
+    /// Folders above the file's own in which something was found: nobody named them.
     const std::set<Path>& guessed() const { return guessed_; }
 
 private:

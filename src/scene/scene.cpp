@@ -1,3 +1,5 @@
+#include "base/input_file.h"
+#include "robot/urdf.h"
 #include "scene/bodies.h"
 #include "scene/elements.h"
 #include "scene/heightmap.h"
@@ -195,7 +197,9 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
         const HeightmapOptions heightmap = read_heightmap_options(map.map("heightmap"));
         const bool up = map.one_of("sides", {"both", "up"}, "both") == "up";
         in_part(map.map("heightmap"), "file", [&](const auto& path) {
-            append_heightmap(scene, part, read_heightmap(file.folder / path, heightmap), map.pose(), up);
+            const Heightmap found = read_heightmap(file.folder / path, heightmap);
+            append_heightmap(scene, part, found, map.pose(), up);
+            place_scene(scene, found, map.pose(), map.file() + ": " + map.place());
         });
     } else if (kind == "octomap") {
         in_part(map, "octomap", [&](const auto& path) { append_octomap(scene, part, file.folder / path, map.pose()); });
@@ -226,6 +230,33 @@ Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
     }
     if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
     tell_idle_rules(file, options.labels, common.names, scene);
+    return scene;
+}
+
+bool is_elevation_model(const fs::path& file, const std::string& extension, const SceneOptions& options)
+{
+    if (!options.heightmap.empty() || extension == ".asc" || extension == ".tif" || extension == ".tiff" || extension == ".png") return true;
+    if (extension == ".raw" && read_file(file).find('\0') != std::string::npos)  // else text: a mesh that assimp reads
+        throw FileError(file.string(), "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
+    return false;
+}
+
+Scene read_elevation_model(const fs::path& file, const SceneOptions& options)
+{
+    if (options.up != 0 || options.scale != 1.0)
+        throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() + " is an elevation model, in metres and z up");
+    Scene scene;
+    scene.name = file.stem().string();
+    Label label = Label::Terrain;
+    for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
+        if (matches(rule->pattern, scene.name)) label = rule->label;
+    const std::uint32_t part = add_part(scene, scene.name, "heightmap", label);
+    if (label != Label::Ignore) {
+        const Heightmap found = read_heightmap(file, parse_heightmap_options(options.heightmap));
+        append_heightmap(scene, part, found, {}, false);
+        place_scene(scene, found, {}, file.string());
+    }
+    tell_idle_rules(file, options.labels, {scene.name}, scene);
     return scene;
 }
 
@@ -271,10 +302,19 @@ void tell_some(const fs::path& file, const Names& names, const std::string& what
     scene.notices.push_back(file.string() + ": " + std::to_string(names.size()) + " " + what + ": " + some + (names.size() > most ? ", …" : ""));
 }
 
+void tell_guessed(const fs::path& file, const ModelPaths& paths, Scene& scene)
+{
+    Names guessed;
+    for (const fs::path& folder : paths.guessed()) guessed.push_back(folder.string());
+    tell_some(file, guessed, guessed.size() == 1 ? "folder of models was found above the file (--model-path names others)" : "folders of models were found above the file (--model-path names others)", scene);
+}
+
 Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
 {
     ModelPaths paths(options.model_paths, file);
     SdfWorld world = read_sdf_world(file, paths);
+    if (world.model_count == 0)
+        throw FileError(file.string(), "has no models, so nothing to stand on; what is spawned into it at run time has to be in the file");
     Scene scene;
     scene.name = world.name.empty() || world.name == "default" ? file.stem().string() : world.name;
     scene.notices = std::move(world.notices);
@@ -282,11 +322,20 @@ Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
     tell_some(file, world.bare_models, world.bare_models.size() == 1 ? "model has no collision and is not there for a robot" : "models have no collision and are not there for a robot", scene);
     if (world.actor_count > 0) scene.notices.push_back(file.string() + ": <actor>: " + std::to_string(world.actor_count) + " left out, as they move");
     if (world.road_count > 0) scene.notices.push_back(file.string() + ": <road>: " + std::to_string(world.road_count) + " left out, as they are only seen");
-    Names guessed;
-    for (const fs::path& folder : paths.guessed()) guessed.push_back(folder.string());
-    tell_some(file, guessed, guessed.size() == 1 ? "folder of models was found above the file (--model-path names others)" : "folders of models were found above the file (--model-path names others)", scene);
-    if (world.model_count == 0)
-        throw FileError(file.string(), "has no models, so nothing to stand on; what is spawned into it at run time has to be in the file");
+    tell_guessed(file, paths, scene);
+    return scene;
+}
+
+/// A world that is spawned as a URDF, at the origin.
+Scene read_urdf_scene(const fs::path& file, const SceneOptions& options)
+{
+    ModelPaths paths(options.model_paths, file);
+    UrdfModel model = read_urdf_model(file, {});
+    Scene scene;
+    scene.name = model.name;
+    scene.notices = std::move(model.notices);
+    append_bodies(scene, file, std::move(model.bodies), paths, options, {});
+    tell_guessed(file, paths, scene);
     return scene;
 }
 
@@ -308,14 +357,21 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     const fs::path file = scene_file_of(scene_path);
     if (!fs::is_regular_file(file)) throw FileError(file.string(), fs::exists(file) ? "is no file" : "does not exist; is the path right?");
     const std::string extension = lower_extension(file);
-    const bool yaml = extension == ".yaml" || extension == ".yml", sdf = extension == ".sdf" || extension == ".world";
-    if ((yaml || sdf) && (options.up != 0 || options.scale != 1.0))
+    const bool yaml = extension == ".yaml" || extension == ".yml", sdf = extension == ".sdf" || extension == ".world", urdf = extension == ".urdf";
+    const bool gazebo = sdf || urdf;
+    if ((yaml || gazebo) && (options.up != 0 || options.scale != 1.0))
         throw ArgumentError("load_scene", "up and scale are for a bare mesh; " +
-                                              (sdf ? "Gazebo takes a world as it is" : "give them in " + file.string() + " (keys up, scale)"));
-    Scene scene = yaml ? read_scene_yaml(file, options) : sdf ? read_sdf_scene(file, options) : read_bare_file(file, extension, options);
+                                              (gazebo ? "Gazebo takes a world as it is" : "give them in " + file.string() + " (keys up, scale)"));
+    if ((yaml || gazebo) && !options.heightmap.empty())
+        throw ArgumentError("load_scene", "--heightmap is for an elevation model by itself" + (yaml ? "; give the keys in " + file.string() + " (heightmap)" : std::string()));
+    Scene scene = yaml                                           ? read_scene_yaml(file, options)
+                  : sdf                                          ? read_sdf_scene(file, options)
+                  : urdf                                         ? read_urdf_scene(file, options)
+                  : is_elevation_model(file, extension, options) ? read_elevation_model(file, options)
+                                                                 : read_bare_file(file, extension, options);
     if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored, missing or without collision");
     const Remedies remedies = yaml  ? Remedies{"scale of its part:", "up of its part"}
-                              : sdf ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}
+                              : gazebo ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}
                                     : Remedies{"--scale", "--up y or z"};
     for (std::string& doubt : doubts_about(scene, file.string(), remedies)) scene.notices.push_back(std::move(doubt));
     return scene;

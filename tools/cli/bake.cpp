@@ -8,7 +8,7 @@
 namespace spawnfield::cli {
 namespace {
 
-struct BakeArgs : CommonArgs, SceneArgs {
+struct BakeArgs : CommonArgs, SceneArgs, ModelPathArgs {
     std::string scene, out, bounds;
     double resolution = 0, occupancy_resolution = 0;
     bool allow_no_terrain = false;
@@ -24,7 +24,7 @@ std::string words(const BakeReport& report)
 int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
 {
     Summary summary("bake", args);
-    SceneOptions reading = scene_options(args);
+    SceneOptions reading = scene_options(args, args);
     BakeOptions options;
     if (resolution_given) options.resolution = parse_positive("--resolution", args.resolution);
     if (occupancy_given) options.occupancy_resolution = parse_positive("--occupancy-resolution", args.occupancy_resolution);
@@ -53,12 +53,13 @@ void add_bake(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<BakeArgs>();
     CLI::App& command = *app.add_subcommand("bake", "Make a map from a scene");
-    command.add_option("scene", args->scene, "scene.yaml, a Gazebo world or model (.world, .sdf, a model's folder), a mesh (any format assimp reads) or an OctoMap (.bt)")->required();
+    command.add_option("scene", args->scene, "scene.yaml, a Gazebo world or model (.world, .sdf, a model's folder), a mesh (any format assimp reads), an OctoMap (.bt) or an elevation model (.tif, .asc, .png, .raw)")->required();
     command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")->required();
     auto* resolution = command.add_option("--resolution", args->resolution, "Side of a terrain cell, m (default 0.1)");
     auto* occupancy = command.add_option("--occupancy-resolution", args->occupancy_resolution, "Side of a voxel, m (default 2.5 cells)");
     command.add_option("--bounds", args->bounds, "x0,y0,z0,x1,y1,z1 in m (default: the scene's)");
     add_scene_options(command, *args);
+    add_model_path(command, *args);
     command.add_flag("--allow-no-terrain", args->allow_no_terrain, "Bake a scene in which nothing is terrain");
     add_common(command, *args);
     command.footer("Example:\n  spawnfield bake maps/training/scene.yaml -o /tmp/training");

@@ -51,8 +51,8 @@ void add_common(CLI::App& command, CommonArgs& args)
 void add_query(CLI::App& command, QueryArgs& args)
 {
     command.add_option("map", args.map, "Map folder, from `spawnfield bake`")->required();
-    command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, or box:LX,LY,LZ[@x,y,z] (m)")->required();
-    command.add_option("--package-path", args.package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
+    command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, an SDF model, or box:LX,LY,LZ[@x,y,z] (m)")->required();
+    add_robot_options(command, args);
     command.add_option("--max-height", args.max_height, "Most metres of the robot's origin above its ground (default 1)");
     command.add_option("--max-water-depth", args.max_water_depth, "Water higher than this above the ground does not count, m (default: all does)");
     command.add_option("--max-slope", args.max_slope, "Ask poses that would be valid how they stand too: steep above so many degrees, unstable over an edge (default: not asked)");
@@ -210,7 +210,7 @@ std::unique_ptr<Session> open_session(const QueryArgs& args)
         session->map = read_map(args.map);
         return session;
     }
-    session->robot = load_robot(args.robot, {{args.package_paths.begin(), args.package_paths.end()}});
+    session->robot = load_robot(args.robot, robot_options(args));
     for (const std::string& text : session->robot.notices) notice(args, text);
     session->map = read_map(args.map);
     if (args.collision == "octree") {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "robot_args.h"
+
 #include <spawnfield/error.h>
 #include <spawnfield/output_file.h>
 #include <spawnfield/poses.h>
@@ -28,9 +30,8 @@ struct CommonArgs {
 void add_common(CLI::App& command, CommonArgs& args);
 
 /// Options of every command that asks a map about a robot.
-struct QueryArgs : CommonArgs {
+struct QueryArgs : CommonArgs, RobotArgs {
     std::string map, robot, collision = "geometry";
-    std::vector<std::string> package_paths;
     double max_height = 1.0;
     bool exhaustive = false;
     double max_water_depth = std::numeric_limits<double>::infinity();

@@ -84,8 +84,8 @@ std::string help()
 
 const std::vector<std::string>& asking_options()
 {
-    static const std::vector<std::string> options{"--package-path", "--max-height", "--max-water-depth", "--max-slope",
-                                                  "--collision",    "--exhaustive", "--offset",          "--yaw"};
+    static const std::vector<std::string> options{"--model-path", "--joints",    "--mesh-parts", "--max-height", "--max-water-depth",
+                                                  "--max-slope",  "--collision", "--exhaustive", "--offset",     "--yaw"};
     return options;
 }
 
@@ -103,7 +103,7 @@ void add_export(CLI::App& app, Run& run)
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
     command.add_option("--step", args->step, "Between columns, m");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
-    command.add_option("--poses,-p", args->poses, "CSV file of poses, as check takes it; its column name names the robots, if --name does not");
+    command.add_option("--poses,-p", args->poses, "CSV file of poses, as sample and check write them; a column name names the robots where --name does not");
     add_simulator_options(command, args->simulator);
     command.footer(help());
     command.callback([=, &command, &run] { run = [=, &command] { return run_export(*args, command); }; });

@@ -107,6 +107,22 @@ void write_ply(const ExportJob& job)
     write_output(job.args.out, [&](const auto& sink) { spawnfield::write_ply(result, comment_of(job, options, "all"), sink); });
 }
 
+void write_glb(const ExportJob& job)
+{
+    GlbMarkers markers;
+    if (job.has_robot()) markers.robot = &job.session.robot;
+    if (job.args.poses.empty()) {
+        tell_idle(job.args, job.command, {"--robot"}, "without --poses there is nowhere to draw it");
+    } else {
+        const PoseTable table = open_poses(job.args, job.args.poses);
+        markers.poses = table.poses;
+        markers.verdicts = verdicts_of(table, job.args.poses);
+        markers.names = column_of(table, "name");
+    }
+    const Progress progress = progress_bar(job.args, "export");
+    write_output(job.args.out, [&](const auto& sink) { spawnfield::write_glb(job.session.map, markers, sink, job.args.threads, progress); });
+}
+
 }  // namespace
 
 std::vector<ExportFormat> map_formats()
@@ -118,6 +134,8 @@ std::vector<ExportFormat> map_formats()
          with(asking_options(), {"--robot", "--layers", "--resolution"}), write_geotiff},
         {"ply", "points where --robot was asked to stand, every --step metres, coloured by verdict", {"--robot", "--step"},
          with(asking_options(), {"--layers", "--bounds"}), write_ply},
+        {"glb", "the scene by labels, with a marker at each of --poses: --robot's shape, coloured by a column verdict", {},
+         {"--robot", "--model-path", "--joints", "--mesh-parts", "--poses"}, write_glb},
     };
 }
 

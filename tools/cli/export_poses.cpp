@@ -12,7 +12,7 @@ void write(const ExportJob& job)
 ExportFormat row(const char* name, const char* about)
 {
     std::vector<std::string> takes = simulator_options_of(name), needs = {"--poses"};
-    takes.insert(takes.end(), {"--robot", "--package-path"});
+    takes.insert(takes.end(), {"--robot", "--model-path", "--joints", "--mesh-parts"});
     if (std::string_view(name) == "isaaclab") needs.push_back("--out");
     return {name, about, std::move(needs), std::move(takes), write};
 }

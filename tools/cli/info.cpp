@@ -2,6 +2,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/map.h>
+#include <spawnfield/robot_picture.h>
 
 #include <nlohmann/json.hpp>
 
@@ -16,15 +17,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-struct InfoArgs : CommonArgs, SceneArgs {
+struct InfoArgs : CommonArgs, SceneArgs, RobotArgs {
     std::string what;
-    std::vector<std::string> package_paths;
     bool json = false, verify = false;
+    std::string picture;
 };
 
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json json_of(const Bounds& bounds) { return {{"min", json_of(bounds.min)}, {"max", json_of(bounds.max)}}; }
+
+Json json_of(const GeoOrigin& origin) { return {{"x", origin.x}, {"y", origin.y}, {"unit", origin.unit}, {"crs", origin.crs}}; }
 
 Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
 {
@@ -45,6 +48,7 @@ Json scene_json(const Scene& scene)
     out.update(json_of(scene.count_labels(), scene.parts));
     for (const NameRule& rule : scene.rules)
         out["rules"].push_back({{"what", rule.what}, {"label", to_string(rule.label)}, {"collisions", rule.count}});
+    if (scene.origin) out["origin"] = json_of(*scene.origin);
     out["notices"] = scene.notices;
     return out;
 }
@@ -54,6 +58,7 @@ Json map_json(const Map& map, bool verified)
     Json out = {{"kind", "map"}, {"name", map.name}, {"bounds", json_of(map.bounds)}, {"resolution", map.resolution},
                 {"occupancy_resolution", map.occupancy_resolution}, {"layers", map.layers},
                 {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
+    if (map.origin) out["origin"] = json_of(*map.origin);
     if (verified) out["verified"] = true;
     out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
     for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
@@ -72,13 +77,21 @@ Json robot_json(const Robot& robot)
     Json out = {{"kind", "robot"}, {"name", robot.name}, {"bounds", json_of(robot.bounds())}};
     out["parts"] = Json::array();
     for (const RobotPart& part : robot.parts) {
-        Json entry = {{"shape", kind_of(part)}, {"bounds", json_of(part.bounds())}};
+        Json entry = {{"name", part.name}, {"shape", kind_of(part)}, {"bounds", json_of(part.bounds())}};
         if (part.shape.kind == ShapeKind::Hull) entry["vertices"] = part.hull_vertices.size();
         else entry["size"] = json_of(part.shape.size);
         out["parts"].push_back(entry);
     }
+    out["meshes"] = Json::array();
+    for (const MeshFit& fit : robot.meshes) {
+        Json entry = {{"name", fit.name}, {"file", fit.file}, {"parts", fit.parts}, {"volume", fit.volume}, {"mesh_volume", nullptr}};
+        if (fit.mesh_volume) entry["mesh_volume"] = *fit.mesh_volume;
+        out["meshes"].push_back(entry);
+    }
+    out["turning_radius"] = turning_radius(robot);
     out["contacts"] = Json::array();
     for (const Vec3& contact : robot.contacts) out["contacts"].push_back(json_of(contact));
+    out["notices"] = robot.notices;
     return out;
 }
 
@@ -99,6 +112,16 @@ std::string extent_lines(const Json& bounds)
         out << (axis ? " x " : "") << bounds["max"][std::size_t(axis)].get<double>() - bounds["min"][std::size_t(axis)].get<double>();
     out << " m\n";
     return out.str();
+}
+
+/// In full, as millions of metres are usual.
+std::string origin_line(const Json& out)
+{
+    if (!out.contains("origin")) return "";
+    const Json& origin = out["origin"];
+    const std::string crs = origin["crs"];
+    return "  0, 0 is x " + number(origin["x"]) + ", y " + number(origin["y"]) + (crs.empty() ? "" : " of " + crs) +
+           (origin["unit"] == 1.0 ? "" : ", in units of " + number(origin["unit"]) + " m") + "\n";
 }
 
 /// Says what is filled and what is a shell, as nothing surprises more.
@@ -138,34 +161,69 @@ std::string map_lines(const Json& map)
     std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() + ", hash " +
                       map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
     out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") + "; voxels of " +
-           map["occupancy_resolution"].dump() + " m\n";
+           map["occupancy_resolution"].dump() + " m\n" + origin_line(map);
     out += scene_lines(map) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
     return out;
 }
 
+/// How well the hulls of a mesh collision fit it.
+std::string mesh_line(const Json& mesh)
+{
+    char text[120];
+    const double volume = mesh["volume"];
+    if (mesh["mesh_volume"].is_null()) std::snprintf(text, sizeof text, "%.4g m3; not watertight, or it overlaps itself: how much is added is not known", volume);
+    else std::snprintf(text, sizeof text, "%.4g m3, %.1f %% more than the mesh", volume, 100 * (volume / mesh["mesh_volume"].get<double>() - 1));
+    const std::string name = mesh["name"];
+    return "  " + (name.empty() ? "" : name + ": ") + mesh["file"].get<std::string>() + " as " + counted(mesh["parts"], "convex hull") + ", " + text + "\n";
+}
+
 std::string robot_lines(const Json& robot)
 {
     std::string out = "robot " + robot["name"].get<std::string>() + "\n" + extent_lines(robot["bounds"]) + "parts\n";
     for (const Json& part : robot["parts"]) {
-        out += "  " + part["shape"].get<std::string>();
+        const std::string name = part["name"];
+        out += "  " + (name.empty() ? "" : name + ": ") + part["shape"].get<std::string>();
         if (part.contains("vertices")) out += " of " + part["vertices"].dump() + " vertices";
         out += ", from " + metres(part["bounds"]["min"]) + " to " + metres(part["bounds"]["max"]) + " m\n";
     }
-    if (!robot["contacts"].empty()) out += "contacts\n";
+    if (!robot["meshes"].empty()) out += "meshes\n";
+    for (const Json& mesh : robot["meshes"]) out += mesh_line(mesh);
+    out += "footprint\n  turns within " + metres(Json::array({robot["turning_radius"]})) + " m of its origin\n";
+    out += "contacts\n";
+    if (robot["contacts"].empty()) out += "  none given: --max-slope takes the corners of what lies within 2 cm of the lowest point\n";
     for (const Json& contact : robot["contacts"]) out += "  " + metres(contact) + " m\n";
     return out;
 }
 
-bool is_robot(const std::string& what)
+std::string text_of(const fs::path& file)
 {
-    if (what.starts_with("box:") || fs::path(what).extension() == ".urdf") return true;
-    if (!what.ends_with(".yaml") && !what.ends_with(".yml")) return false;
-    std::ifstream file(what);
+    std::ifstream stream(file);
     std::stringstream text;
-    text << file.rdbuf();
-    return text.str().find("spawnfield-robot/") != std::string::npos;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+/// An SDF model that can move, rather than a world or a piece of scenery.
+bool is_moving_model(const std::string& text)
+{
+    const auto has = [&](const char* what) { return text.find(what) != std::string::npos; };
+    return has("<model") && !has("<world") && !has("<static>true") && !has("<static>1");
+}
+
+/// Options tell a URDF or SDF model that could be both.
+bool is_robot(const std::string& what, bool has_robot_options, bool has_scene_options)
+{
+    const std::string extension = fs::path(what).extension().string();
+    if (has_scene_options && !has_robot_options && !what.starts_with("box:") && extension != ".yaml" && extension != ".yml") return false;
+    if (what.starts_with("box:") || extension == ".urdf" || extension == ".xacro") return true;
+    if (fs::is_directory(what)) {
+        if (!fs::exists(fs::path(what) / "model.config")) return false;
+        return has_robot_options || is_moving_model(text_of(fs::path(what) / "model.sdf"));
+    }
+    if (extension == ".sdf") return has_robot_options || is_moving_model(text_of(what));
+    return (extension == ".yaml" || extension == ".yml") && text_of(what).find("spawnfield-robot/") != std::string::npos;
 }
 
 int run_info(const InfoArgs& args, const CLI::App& command)
@@ -173,21 +231,30 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     const Progress listen = progress_bar(args, "info");
     Summary summary("info", args);
     Json out;
-    if (fs::is_directory(args.what) && !fs::exists(fs::path(args.what) / "model.config")) {
+    std::vector<std::string> robot_options_of_info = robot_option_names;
+    robot_options_of_info.emplace_back("--picture");
+    const auto has_one_of = [&](const std::vector<std::string>& options) {
+        return std::any_of(options.begin(), options.end(), [&](const std::string& option) { return command.count(option) > 0; });
+    };
+    const bool robot_given = is_robot(args.what, has_one_of(robot_options_of_info), has_one_of(scene_option_names));
+    if (fs::is_directory(args.what) && !robot_given && !fs::exists(fs::path(args.what) / "model.config")) {
         refuse(command, scene_option_names, "is for a scene; " + args.what + " is a map's folder");
-        refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is a map's folder");
+        refuse(command, robot_options_of_info, "is for a robot; " + args.what + " is a map's folder");
         if (args.verify) verify_map(args.what);
         const Map map = read_map(args.what);
         summary.map_hash = map.hash;
         out = map_json(map, args.verify);
-    } else if (is_robot(args.what)) {
+    } else if (robot_given) {
         refuse(command, scene_option_names, "is for a scene; " + args.what + " is a robot");
         refuse(command, {"--verify"}, "is for a map; " + args.what + " is a robot");
-        out = robot_json(load_robot(args.what, {{args.package_paths.begin(), args.package_paths.end()}}));
+        const Robot robot = load_robot(args.what, robot_options(args));
+        for (const std::string& text : robot.notices) notice(args, text);
+        if (!args.picture.empty()) write_robot_picture(robot, args.picture);
+        out = robot_json(robot);
     } else {
-        refuse(command, {"--package-path"}, "is for a robot; " + args.what + " is none");
+        refuse(command, robot_options_of_info, "is for a robot; " + args.what + " is none");
         refuse(command, {"--verify"}, "is for a map folder; " + args.what + " is none");
-        const Scene scene = load_scene(args.what, scene_options(args));
+        const Scene scene = load_scene(args.what, scene_options(args, args));
         for (const std::string& text : scene.notices) notice(args, text);
         out = scene_json(scene);
     }
@@ -197,7 +264,7 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     const std::string text = args.json          ? out.dump(2) + "\n"
                              : kind == "map"    ? map_lines(out)
                              : kind == "robot"  ? robot_lines(out)
-                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + scene_lines(out);
+                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + origin_line(out) + scene_lines(out);
     write_output("", [&](const auto& sink) { sink(text); });
     summary.lap("write");
     summary.extra = {args.what};
@@ -211,13 +278,14 @@ void add_info(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<InfoArgs>();
     CLI::App& command = *app.add_subcommand("info", "What a map, a scene or a robot holds");
-    command.add_option("what", args->what, "Map folder, scene file or model folder, robot.yaml, .urdf or box:LX,LY,LZ")->required();
+    command.add_option("what", args->what, "Map folder, scene or world file, model folder, robot.yaml, .urdf, SDF model or box:LX,LY,LZ")->required();
     command.add_flag("--json", args->json, "As JSON");
+    command.add_option("--picture", args->picture, "PNG file: draw a robot from above, from the side and from the front");
     command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
     add_scene_options(command, *args);
-    command.add_option("--package-path", args->package_paths, "Folder that holds ROS packages, for package:// in a .urdf (repeatable)");
+    add_robot_options(command, *args);
     add_common(command, *args);
-    command.footer("Example:\n  spawnfield info maps/training/scene.yaml");
+    command.footer("Example:\n  spawnfield info maps/training/scene.yaml\n  spawnfield info maps/robots/husky.yaml --picture /tmp/husky.png");
     command.callback([=, &command, &run] { run = [=, &command] { return run_info(*args, command); }; });
 }
 

@@ -18,21 +18,20 @@ void add_scene_options(CLI::App& command, SceneArgs& args)
 {
     command.add_option("--up", args.up, "Up axis of a bare mesh: y or z (default: what the format says, else z)")->check(CLI::IsMember({"y", "z"}));
     command.add_option("--scale", args.scale, "Metres per unit of a bare mesh (default 1)");
+    command.add_option("--heightmap", args.heightmap, "Keys of a bare elevation model as in scene.yaml: 'size: [513, 513], z: [0, 75]'");
     command.add_option("--label", args.labels,
                        "'GLOB=LABEL': label of the nodes, materials, parts, models, links or collisions whose name matches (repeatable; first match wins)");
-    command.add_option("--model-path", args.model_paths,
-                       "Folder that holds models or ROS packages, for model:// and package:// in SDF and URDF (repeatable; then come GZ_SIM_RESOURCE_PATH, "
-                       "GAZEBO_MODEL_PATH and the folders above the file)");
     command.add_flag("--strict", args.strict, "Refuse a world of which a model or a mesh is missing");
 }
 
-SceneOptions scene_options(const SceneArgs& args)
+SceneOptions scene_options(const SceneArgs& args, const ModelPathArgs& paths)
 {
     SceneOptions options;
     for (const std::string& label : args.labels) options.labels.push_back(parse_label(label));
     options.up = args.up.empty() ? char{0} : args.up[0];
     options.scale = parse_positive("--scale", args.scale);
-    options.model_paths.assign(args.model_paths.begin(), args.model_paths.end());
+    options.heightmap = args.heightmap;
+    options.model_paths.assign(paths.model_paths.begin(), paths.model_paths.end());
     options.strict = args.strict;
     return options;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli.h"
+#include "model_path.h"
 
 #include <spawnfield/scene.h>
 
@@ -8,17 +9,17 @@ namespace spawnfield::cli {
 
 /// Options of whatever reads a scene: `bake` and `info`.
 struct SceneArgs {
-    std::string up;
+    std::string up, heightmap;
     double scale = 1;
-    std::vector<std::string> labels, model_paths;
+    std::vector<std::string> labels;
     bool strict = false;
 };
 void add_scene_options(CLI::App& command, SceneArgs& args);
 
 /// Their names, to tell that they say nothing elsewhere.
-inline const std::vector<std::string> scene_option_names{"--up", "--scale", "--label", "--model-path", "--strict"};
+inline const std::vector<std::string> scene_option_names{"--up", "--scale", "--heightmap", "--label", "--strict"};
 
 /// Throws ArgumentError.
-SceneOptions scene_options(const SceneArgs& args);
+SceneOptions scene_options(const SceneArgs& args, const ModelPathArgs& paths);
 
 }  // namespace spawnfield::cli

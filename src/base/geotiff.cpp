@@ -1,0 +1,282 @@
+#include "base/geotiff.h"
+
+#include "base/number.h"
+#include "base/tiff.h"
+
+#include <spawnfield/error.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+enum GeoTag : std::uint32_t {
+    model_pixel_scale = 33550,
+    model_tiepoint = 33922,
+    model_transformation = 34264,
+    geo_key_directory = 34735,
+    geo_double_params = 34736,
+    geo_ascii_params = 34737,
+    gdal_metadata = 42112,
+    gdal_no_data = 42113,
+};
+
+enum GeoKey : std::uint16_t {
+    model_type = 1024,
+    raster_type = 1025,
+    citation = 1026,
+    geodetic_crs = 2048,
+    projected_crs = 3072,
+    projected_citation = 3073,
+    linear_units = 3076,
+    linear_unit_size = 3077,
+    vertical_units = 4099,
+};
+
+constexpr unsigned user_defined = 32767;
+
+TIFFExtendProc parent_extender = nullptr;
+
+void extend_tags(TIFF* tiff)
+{
+    static char names[8][20] = {"ModelPixelScale", "ModelTiepoint", "ModelTransformation", "GeoKeyDirectory",
+                                "GeoDoubleParams", "GeoAsciiParams", "GDALMetadata", "GDALNoData"};
+    const auto any = [](std::uint32_t tag, TIFFDataType type, char* name) {
+        return TIFFFieldInfo{tag, TIFF_VARIABLE2, TIFF_VARIABLE2, type, FIELD_CUSTOM, 1, 1, name};
+    };
+    const auto text = [](std::uint32_t tag, char* name) { return TIFFFieldInfo{tag, TIFF_VARIABLE, TIFF_VARIABLE, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name}; };
+    static const TIFFFieldInfo fields[] = {
+        any(model_pixel_scale, TIFF_DOUBLE, names[0]), any(model_tiepoint, TIFF_DOUBLE, names[1]),
+        any(model_transformation, TIFF_DOUBLE, names[2]), any(geo_key_directory, TIFF_SHORT, names[3]),
+        any(geo_double_params, TIFF_DOUBLE, names[4]), text(geo_ascii_params, names[5]),
+        text(gdal_metadata, names[6]), text(gdal_no_data, names[7])};
+    TIFFMergeFieldInfo(tiff, fields, std::uint32_t(std::size(fields)));
+    if (parent_extender != nullptr) parent_extender(tiff);
+}
+
+template <class T>
+std::vector<T> array_of(TIFF* tiff, std::uint32_t tag)
+{
+    std::uint32_t count = 0;
+    const T* values = nullptr;
+    if (TIFFGetField(tiff, tag, &count, &values) != 1 || values == nullptr) return {};
+    return {values, values + count};
+}
+
+std::string text_of(TIFF* tiff, std::uint32_t tag)
+{
+    const char* text = nullptr;
+    return TIFFGetField(tiff, tag, &text) == 1 && text != nullptr ? text : "";
+}
+
+bool second_page_is_mask(TIFF* tiff)
+{
+    std::uint32_t kind = 0;
+    return TIFFReadDirectory(tiff) == 1 && TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind) == 1 && (kind & FILETYPE_MASK) != 0;
+}
+
+/// The GeoKeyDirectory: a head of four numbers, then four for each key: id, tag that holds its value (0: the last number is it),
+/// count, offset in that tag.
+class GeoKeys {
+public:
+    GeoKeys(const GeoTags& tags, const std::string& file) : tags_(tags), file_(file)
+    {
+        if (tags.keys.empty()) return;
+        if (tags.keys.size() < 4 || tags.keys.size() < 4 + 4 * std::size_t(tags.keys[3]))
+            throw FileError(file, "has a GeoKeyDirectory that is cut short");
+    }
+
+    std::optional<unsigned> number(GeoKey key) const
+    {
+        const std::uint16_t* const entry = find(key);
+        if (entry == nullptr || entry[1] != 0) return std::nullopt;
+        return entry[3];
+    }
+
+    std::optional<double> real(GeoKey key) const
+    {
+        const std::uint16_t* const entry = find(key);
+        if (entry == nullptr || entry[1] != geo_double_params) return std::nullopt;
+        if (entry[3] >= tags_.doubles.size()) throw FileError(file_, "has a GeoKey " + std::to_string(key) + " without its value");
+        return tags_.doubles[entry[3]];
+    }
+
+    std::string text(GeoKey key) const
+    {
+        const std::uint16_t* const entry = find(key);
+        if (entry == nullptr || entry[1] != geo_ascii_params || entry[3] >= tags_.ascii.size()) return "";
+        const std::string text = tags_.ascii.substr(entry[3], entry[2]);
+        return text.substr(0, text.find('|'));
+    }
+
+private:
+    const std::uint16_t* find(GeoKey key) const
+    {
+        for (std::size_t i = 4; !tags_.keys.empty() && i < 4 + 4 * std::size_t(tags_.keys[3]); i += 4)
+            if (tags_.keys[i] == key) return &tags_.keys[i];
+        return nullptr;
+    }
+
+    const GeoTags& tags_;
+    const std::string& file_;
+};
+
+std::optional<double> metres_of(unsigned unit)
+{
+    switch (unit) {
+    case 9001: return 1;
+    case 9002: return 0.3048;
+    case 9003: return 1200.0 / 3937;  // US survey foot
+    case 9036: return 1000;
+    default: return std::nullopt;
+    }
+}
+
+/// Pixel (col, row) to the survey's coordinates.
+struct Affine {
+    double x, dx, y, dy;  ///< x + col dx, y - row dy
+};
+
+Affine affine(const GeoTags& tags, const std::string& file)
+{
+    const std::vector<double>& m = tags.transformation;
+    if (m.size() >= 16) {
+        if (m[1] != 0 || m[4] != 0)
+            throw FileError(file, "is rotated against its coordinates (ModelTransformation), needs rows from west to east; gdalwarp makes it so");
+        return {m[3], m[0], m[7], -m[5]};
+    }
+    const std::vector<double>&scale = tags.pixel_scale, &tie = tags.tiepoints;
+    if (scale.size() < 2 || tie.size() < 6)
+        throw FileError(file, "has " + std::to_string(tie.size() / 6) + " tie points and " + (scale.size() < 2 ? "no" : "a") +
+                                  " pixel scale (ModelPixelScale), needs one of each, or a ModelTransformation; gdalwarp makes it so");
+    return {tie[3] - tie[0] * scale[0], scale[0], tie[4] + tie[1] * scale[1], scale[1]};
+}
+
+void check(const Affine& a, const std::string& file)
+{
+    if (!std::isfinite(a.x) || !std::isfinite(a.y) || !std::isfinite(a.dx) || !std::isfinite(a.dy))
+        throw FileError(file, "has a place or pixel scale that is not finite");
+    if (!(a.dx > 0) || !(a.dy > 0))
+        throw FileError(file, "has a pixel scale of " + number(a.dx) + ", " + number(a.dy) +
+                                  ", needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
+}
+
+void refuse_degrees(const GeoKeys& keys, const std::string& file)
+{
+    const unsigned type = keys.number(model_type).value_or(1);
+    if (type != 2 && type != 3) return;
+    const unsigned code = keys.number(geodetic_crs).value_or(user_defined);
+    throw FileError(file, std::string("is in ") + (type == 2 ? "degrees (geographic" : "coordinates of the whole globe (geocentric") +
+                              (code == user_defined ? "" : ", EPSG:" + std::to_string(code)) +
+                              "), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres such as the UTM zone's");
+}
+
+double linear_unit(const GeoKeys& keys, const std::string& file, std::vector<std::string>& notices)
+{
+    const auto code = keys.number(linear_units);
+    if (!code) {
+        notices.push_back(file + ": does not tell the unit of x and y, which are taken as metres");
+        return 1;
+    }
+    const std::optional<double> size = *code == user_defined ? keys.real(linear_unit_size) : metres_of(*code);
+    if (!size || !std::isfinite(*size) || !(*size > 0))
+        throw FileError(file, "has x and y in unit " + std::to_string(*code) +
+                                  " (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, 9003); reproject it with gdalwarp -t_srs");
+    if (*size != 1) notices.push_back(file + ": x and y are in units of " + number(*size) + " m and were converted to metres");
+    return *size;
+}
+
+std::string crs_of(const GeoKeys& keys)
+{
+    const unsigned code = keys.number(projected_crs).value_or(0);
+    if (code != 0 && code != user_defined) return "EPSG:" + std::to_string(code);
+    std::string words = keys.text(projected_citation);
+    if (words.empty()) words = keys.text(citation);
+    std::erase_if(words, [](unsigned char c) { return c < ' ' || c > '~'; });
+    return words;
+}
+
+/// The text of an <Item> in GDAL's metadata whose role is as given; empty if there is none.
+std::string metadata_item(const std::string& metadata, const std::string& role)
+{
+    const std::size_t at = metadata.find("role=\"" + role + "\"");
+    const std::size_t start = at == std::string::npos ? at : metadata.find('>', at);
+    if (start == std::string::npos) return "";
+    return metadata.substr(start + 1, metadata.find('<', start) - start - 1);
+}
+
+void refuse_scaled(const GeoTags& tags, const std::string& file)
+{
+    for (const auto& [role, none] : {std::pair{"scale", 1.0}, std::pair{"offset", 0.0}}) {
+        const std::string text = metadata_item(tags.metadata, role);
+        double value = none;
+        if (text.empty() || (parse_number(text, value) && value == none)) continue;
+        throw FileError(file, std::string("has heights with a ") + role + " of " + text + ", needs plain ones; gdal_translate -unscale -ot Float32 makes them");
+    }
+}
+
+}  // namespace
+
+void register_geo_tags() { parent_extender = TIFFSetTagExtender(extend_tags); }
+
+GeoTags read_geo_tags(const std::filesystem::path& file)
+{
+    const Tiff tiff = open_tiff(file, "r");
+    if (!tiff) throw FileError(file.string(), "is cut short or a damaged TIFF image");
+    GeoTags tags;
+    tags.pixel_scale = array_of<double>(tiff.get(), model_pixel_scale);
+    tags.tiepoints = array_of<double>(tiff.get(), model_tiepoint);
+    tags.transformation = array_of<double>(tiff.get(), model_transformation);
+    tags.doubles = array_of<double>(tiff.get(), geo_double_params);
+    tags.keys = array_of<std::uint16_t>(tiff.get(), geo_key_directory);
+    tags.ascii = text_of(tiff.get(), geo_ascii_params);
+    tags.metadata = text_of(tiff.get(), gdal_metadata);
+    tags.no_data = text_of(tiff.get(), gdal_no_data);
+    tags.has_mask = second_page_is_mask(tiff.get());
+    return tags;
+}
+
+bool is_georeferenced(const GeoTags& tags) { return !tags.pixel_scale.empty() || !tags.tiepoints.empty() || !tags.transformation.empty(); }
+
+GeoFrame geo_frame(const GeoTags& tags, const std::string& file, std::vector<std::string>& notices)
+{
+    const GeoKeys keys(tags, file);
+    refuse_degrees(keys, file);
+    const Affine a = affine(tags, file);
+    check(a, file);
+    const unsigned type = keys.number(raster_type).value_or(1);
+    if (type != 1 && type != 2 && type != user_defined)
+        throw FileError(file, "has GTRasterTypeGeoKey " + std::to_string(type) + ", needs 1 (pixels are areas) or 2 (points)");
+    const double half = type == 2 ? 0 : 0.5;
+    return {a.x + half * a.dx, a.y - half * a.dy, a.dx, a.dy, linear_unit(keys, file, notices), keys.number(model_type) == 1u, crs_of(keys)};
+}
+
+std::optional<double> no_data_value(const GeoTags& tags, const std::string& file)
+{
+    const std::size_t start = tags.no_data.find_first_not_of(' ');
+    if (start == std::string::npos) return std::nullopt;
+    double value = 0;
+    if (!parse_number(std::string_view(tags.no_data).substr(start, tags.no_data.find_last_not_of(' ') + 1 - start), value))
+        throw FileError(file, "has a GDAL_NODATA of \"" + tags.no_data + "\", needs a number");
+    return value;
+}
+
+double height_unit(const GeoTags& tags, const std::string& file, std::vector<std::string>& notices)
+{
+    refuse_scaled(tags, file);
+    const auto code = GeoKeys(tags, file).number(vertical_units);
+    const std::string type = metadata_item(tags.metadata, "unittype");
+    std::optional<double> unit = 1;
+    if (code) unit = metres_of(*code);
+    else if (type == "ft" || type == "foot" || type == "feet" || type == "Foot") unit = metres_of(9002);
+    else if (type == "sft" || type == "us-ft" || type == "US survey foot") unit = metres_of(9003);
+    else if (!type.empty() && type != "m" && type != "metre" && type != "meter" && type != "metres" && type != "meters" && type != "Meter") unit = {};
+    if (!unit)
+        throw FileError(file, "has heights in unit " + (code ? std::to_string(*code) + " (VerticalUnitsGeoKey)" : "\"" + type + "\"") +
+                                  ", needs metres (9001), kilometres (9036) or feet (9002, 9003)");
+    if (*unit != 1) notices.push_back(file + ": heights are in units of " + number(*unit) + " m and were converted to metres");
+    return *unit;
+}
+
+}  // namespace spawnfield

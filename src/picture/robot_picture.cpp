@@ -1,0 +1,330 @@
+#include "free_space/footprint.h"
+#include "picture/canvas.h"
+#include "picture/ticks.h"
+#include "query/contacts.h"
+
+#include <spawnfield/robot_picture.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+namespace spawnfield {
+namespace {
+
+constexpr int circle_corners = 64;
+constexpr double text_cap = 10, small_cap = 8, title_cap = 14, line = 19;  // pixels
+constexpr double left = 66, right = 24, top = 66, bottom = 46, between = 74;
+constexpr double least_legend = 250;
+
+/// What a view shows to the right and upwards, and of what it shows the nearest last. From the right: x and z.
+struct Axes {
+    Vec3 u, v, nearness;
+    const char* heading;
+    const char *u_name, *v_name;
+};
+
+const Axes from_above{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), "from above", "x", "y"};
+const Axes from_right{Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY(), "from its right side", "x", "z"};
+const Axes from_front{Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX(), "from the front", "y", "z"};
+
+/// Corners of a polygon around a circle, seen along the view.
+void add_circle(const Axes& axes, const Vec3& centre, const Vec3& a, const Vec3& b, Polygon2& out)
+{
+    const double outer = 1 / std::cos(std::numbers::pi / circle_corners);
+    for (int k = 0; k < circle_corners; ++k) {
+        const double angle = 2 * std::numbers::pi * k / circle_corners;
+        const Vec3 point = centre + outer * (std::cos(angle) * a + std::sin(angle) * b);
+        out.emplace_back(axes.u.dot(point), axes.v.dot(point));
+    }
+}
+
+/// Outline of a part, m.
+Polygon2 silhouette(const RobotPart& part, const Axes& axes)
+{
+    const Pose& pose = part.shape.pose;
+    const Vec3& size = part.shape.size;
+    const Vec3 half_axis = size[1] / 2 * pose.rotation.col(2);
+    Polygon2 out;
+    switch (part.shape.kind) {
+    case ShapeKind::Hull:
+        for (const Vec3& vertex : part.hull_vertices) out.emplace_back(axes.u.dot(vertex), axes.v.dot(vertex));
+        break;
+    case ShapeKind::Box:
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3 side(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
+            const Vec3 point = pose.rotation * size.cwiseProduct(side) + pose.position;
+            out.emplace_back(axes.u.dot(point), axes.v.dot(point));
+        }
+        break;
+    case ShapeKind::Sphere: add_circle(axes, pose.position, size[0] * axes.u, size[0] * axes.v, out); break;
+    case ShapeKind::Cylinder:
+        for (const double end : {-1.0, 1.0})
+            add_circle(axes, pose.position + end * half_axis, size[0] * pose.rotation.col(0), size[0] * pose.rotation.col(1), out);
+        break;
+    case ShapeKind::Capsule:
+        for (const double end : {-1.0, 1.0}) add_circle(axes, pose.position + end * half_axis, size[0] * axes.u, size[0] * axes.v, out);
+        break;
+    }
+    return convex_hull(std::move(out));
+}
+
+/// Colours of links, in the order of the file; the ninth has that of the first.
+class LinkColours {
+public:
+    explicit LinkColours(const Robot& robot)
+    {
+        for (const RobotPart& part : robot.parts)
+            if (index_.try_emplace(part.name, names_.size()).second) names_.push_back(part.name);
+    }
+    const std::vector<std::string>& names() const { return names_; }
+    Colour of(const std::string& name) const
+    {
+        constexpr std::array colours{0x56b4e9u, 0xe69f00u, 0x009e73u, 0xf0e442u, 0xcc79a7u, 0x999999u, 0xd55e00u, 0x0072b2u};
+        const Colour colour = rgb(colours[index_.at(name) % colours.size()]);
+        const auto lighter = [&](int c) { return static_cast<std::uint8_t>(colour[c] + (255 - colour[c]) * 45 / 100); };
+        return {lighter(0), lighter(1), lighter(2)};
+    }
+
+private:
+    std::map<std::string, std::size_t> index_;
+    std::vector<std::string> names_;
+};
+
+/// A view on the paper.
+struct Pane {
+    Axes axes;
+    cv::Rect area;            ///< pixels
+    double u0 = 0, v0 = 0;    ///< of its lower left corner, m
+    double scale = 1;         ///< pixels per metre
+
+    cv::Point2d at(double u, double v) const { return {area.x + (u - u0) * scale, area.br().y - (v - v0) * scale}; }
+    cv::Point2d at(const Vec3& point) const { return at(axes.u.dot(point), axes.v.dot(point)); }
+};
+
+std::vector<cv::Point2d> on_paper(const Pane& pane, const Polygon2& polygon)
+{
+    std::vector<cv::Point2d> out;
+    for (const Vec2& corner : polygon) out.push_back(pane.at(corner.x(), corner.y()));
+    return out;
+}
+
+/// All that the views have to show.
+Bounds shown_bounds(const Robot& robot, const RobotContacts& contacts)
+{
+    Bounds bounds = robot.bounds();
+    bounds.extend(Vec3::Zero());
+    for (const Vec3& contact : contacts.points) bounds.extend(contact);
+    const double room = 0.06 * (bounds.max - bounds.min).maxCoeff();
+    bounds.min.array() -= room;
+    bounds.max.array() += room;
+    return bounds;
+}
+
+struct Sheet {
+    std::array<Pane, 3> panes;
+    cv::Rect legend;
+    cv::Size size;
+};
+
+/// From above in the upper left; below it from the right, beside that from the front; the legend in the upper right.
+Sheet lay_out(const Bounds& bounds)
+{
+    constexpr double width = 1000, most_height = 1100;
+    const Vec3 size = bounds.max - bounds.min;
+    const double room = width - left - right - between;
+    double scale = std::min(room / (size.x() + size.y()), (most_height - top - bottom - between) / (size.y() + size.z()));
+    if (size.y() * scale < least_legend) scale = std::min(scale, (room - least_legend) / size.x());
+    const auto pane = [&](const Axes& axes, double x, double y) {
+        const double u = axes.u.dot(bounds.min), v = axes.v.dot(bounds.min);
+        return Pane{axes, {cvRound(x), cvRound(y), whole(axes.u.dot(size) * scale), whole(axes.v.dot(size) * scale)}, u, v, scale};
+    };
+    // The legend needs some height too, however flat the view from above is.
+    const double first_row = std::max(size.y() * scale, 300.0);
+    const double second = left + size.x() * scale + between, below = top + first_row + between;
+    Sheet sheet;
+    sheet.panes = {pane(from_above, left, top), pane(from_right, left, below), pane(from_front, second, below)};
+    sheet.legend = {cvRound(second), int(top), cvRound(std::max(width - right - second, least_legend)), whole(first_row)};
+    sheet.size = {int(width), cvRound(below + size.z() * scale + bottom)};
+    return sheet;
+}
+
+void draw_grid(Image& image, const Pane& pane)
+{
+    const Colour grid = rgb(0xe4e4e4);
+    const RoundStep step = round_up(60 / pane.scale);
+    const Ticks us = ticks_within(pane.u0, pane.u0 + pane.area.width / pane.scale, step);
+    const Ticks vs = ticks_within(pane.v0, pane.v0 + pane.area.height / pane.scale, step);
+    for (int k = 0; k < us.count; ++k) {
+        const double x = pane.at(us.at(k), 0).x;
+        fill(image, {cvRound(x - 0.5), pane.area.y, 1, pane.area.height}, grid);
+        draw_text(image, us.label(k), {x, pane.area.br().y + 8 + small_cap}, {small_cap, muted, Align::Centre});
+    }
+    for (int k = 0; k < vs.count; ++k) {
+        const double y = pane.at(0, vs.at(k)).y;
+        fill(image, {pane.area.x, cvRound(y - 0.5), pane.area.width, 1}, grid);
+        draw_text(image, vs.label(k), {pane.area.x - 8.0, y + small_cap / 2}, {small_cap, muted, Align::Right});
+    }
+    const std::string names = std::string(pane.axes.u_name) + " right, " + pane.axes.v_name + " up, m";
+    draw_text(image, pane.axes.heading, {double(pane.area.x), pane.area.y - 9.0}, {text_cap});
+    const double used = text_width(pane.axes.heading, text_cap);
+    if (used + 16 + text_width(names, small_cap) < pane.area.width)
+        draw_text(image, names, {double(pane.area.br().x), pane.area.y - 9.0}, {small_cap, muted, Align::Right});
+}
+
+/// The farthest first. Around them all a thick line, the outline of their union; the hidden ones show as thin lines.
+void draw_parts(Image& image, const Pane& pane, const Robot& robot, const LinkColours& colours)
+{
+    std::vector<std::vector<cv::Point2d>> outlines;
+    std::vector<std::size_t> order(robot.parts.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::vector<double> nearness;
+    for (const RobotPart& part : robot.parts) {
+        outlines.push_back(on_paper(pane, silhouette(part, pane.axes)));
+        const Bounds box = part.bounds();
+        nearness.push_back(std::max(pane.axes.nearness.dot(box.min), pane.axes.nearness.dot(box.max)));
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return nearness[a] < nearness[b]; });
+    for (const auto& corners : outlines) draw_polygon(image, corners, ink, ink, 5);
+    for (const std::size_t k : order) draw_polygon(image, outlines[k], colours.of(robot.parts[k].name), rgb(0x4d4d4d), 1);
+    for (const auto& corners : outlines) draw_outline(image, corners, rgb(0x8c8c8c), 1);
+}
+
+/// Large and dark where the robot's file gives them; those that are taken instead may be many, close together.
+void draw_contact(Image& image, cv::Point2d place, bool given)
+{
+    draw_dot(image, place, given ? 5 : 2.5, given ? ink : white, given ? white : ink, given ? 1.6 : 1);
+}
+
+void draw_contacts(Image& image, const Pane& pane, const RobotContacts& contacts)
+{
+    for (const Vec3& contact : contacts.points) draw_contact(image, pane.at(contact), contacts.given);
+}
+
+/// Arrows along the two axes of the view from the origin.
+void draw_axes(Image& image, const Pane& pane)
+{
+    const cv::Point2d origin = pane.at(0, 0);
+    constexpr double length = 46, head = 9;
+    const auto arrow = [&](cv::Point2d along, const char* name) {
+        const cv::Point2d tip = origin + length * along, side(-along.y, along.x);
+        draw_polygon(image, {origin, tip - head * along}, ink, ink, 2);
+        draw_polygon(image, {tip, tip - head * along + 4.5 * side, tip - head * along - 4.5 * side}, ink, ink, 1);
+        const cv::Point2d place = tip + 9.0 * along;
+        draw_text(image, name, {place.x, place.y + text_cap / 2}, {text_cap, ink, Align::Centre});
+    };
+    arrow({1, 0}, pane.axes.u_name);
+    arrow({0, -1}, pane.axes.v_name);
+    draw_dot(image, origin, 3.5, white, ink, 1.5);
+}
+
+std::string rounded(double value)
+{
+    const std::string text = fixed(value, 3);
+    return text == "-0.000" ? "0.000" : text;
+}
+
+/// Writes line by line downwards.
+class LegendWriter {
+public:
+    LegendWriter(Image& image, const cv::Rect& area) : image_(image), area_(area), y_(area.y + text_cap) {}
+
+    void text(const std::string& words, Colour colour = ink)
+    {
+        draw_text(image_, cut_to(words, text_cap, area_.width), {double(area_.x), y_}, {text_cap, colour});
+        y_ += line;
+    }
+    void swatch(Colour colour, const std::string& words)
+    {
+        const cv::Rect box(area_.x, cvRound(y_ - text_cap - 1), 18, 12);
+        fill(image_, box, colour);
+        outline(image_, box, 1, muted);
+        draw_text(image_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
+        y_ += line;
+    }
+    void contact(bool given, const std::string& words)
+    {
+        draw_contact(image_, {area_.x + 9.0, y_ - text_cap / 2}, given);
+        draw_text(image_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
+        y_ += line;
+    }
+    void thick_line(const std::string& words)
+    {
+        fill(image_, {area_.x, cvRound(y_ - text_cap / 2 - 1), 18, 3}, ink);
+        draw_text(image_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
+        y_ += line;
+    }
+    void scale_bar(double scale)
+    {
+        const RoundStep step = round_down(0.6 * area_.width / scale);
+        const int length = whole(step.value * scale), y = cvRound(y_ - 4);
+        fill(image_, {area_.x, y, length, 3}, ink);
+        fill(image_, {area_.x, y - 4, 2, 11}, ink);
+        fill(image_, {area_.x + length - 2, y - 4, 2, 11}, ink);
+        draw_text(image_, fixed(step.value, step.decimals) + " m", {area_.x + length + 10.0, y + text_cap / 2 + 1}, {text_cap});
+        y_ += line + 4;
+    }
+    void gap() { y_ += line / 2; }
+    int lines_left() const { return int((area_.br().y - y_) / line) + 1; }
+
+private:
+    Image& image_;
+    const cv::Rect area_;
+    double y_;
+};
+
+void write_legend(Image& image, const Sheet& sheet, const Robot& robot, const RobotContacts& contacts, const LinkColours& colours)
+{
+    LegendWriter legend(image, sheet.legend);
+    const Bounds bounds = robot.bounds();
+    const Vec3 size = bounds.max - bounds.min;
+    legend.scale_bar(sheet.panes[0].scale);
+    legend.text(rounded(size.x()) + " x " + rounded(size.y()) + " x " + rounded(size.z()) + " m");
+    const double low = bounds.min.z();
+    legend.text("lowest point " + (std::abs(low) < 5e-4 ? "at the height of the origin" : rounded(std::abs(low)) + (low < 0 ? " m below origin" : " m above origin")));
+    legend.text("turns within " + rounded(turning_radius(robot)) + " m of its origin");
+    legend.gap();
+    legend.thick_line("footprint");
+    legend.contact(contacts.given, contacts.given ? "contacts" : "contacts taken: none given");
+    legend.gap();
+    const auto& names = colours.names();
+    if (names.size() == 1 && names[0].empty()) return;
+    const std::size_t room = std::size_t(std::max(legend.lines_left(), 3));
+    const std::size_t listed = names.size() <= room ? names.size() : room - 1;
+    for (std::size_t k = 0; k < listed; ++k) legend.swatch(colours.of(names[k]), names[k].empty() ? "(no name)" : names[k]);
+    if (listed < names.size()) legend.text("and " + std::to_string(names.size() - listed) + " more", muted);
+}
+
+}  // namespace
+
+double turning_radius(const Robot& robot)
+{
+    double radius = 0;
+    for (const RobotPart& part : robot.parts)
+        for (const Vec2& corner : silhouette(part, from_above)) radius = std::max(radius, corner.norm());
+    return radius;
+}
+
+RobotContacts robot_contacts(const Robot& robot) { return {contacts_of(robot), span_area(robot.contacts)}; }
+
+void write_robot_picture(const Robot& robot, const std::filesystem::path& file)
+{
+    const RobotContacts contacts = robot_contacts(robot);
+    const Sheet sheet = lay_out(shown_bounds(robot, contacts));
+    const LinkColours colours(robot);
+    Image image(sheet.size, white);
+    for (const Pane& pane : sheet.panes) {
+        draw_grid(image, pane);
+        draw_parts(image, pane, robot, colours);
+        draw_contacts(image, pane, contacts);
+        draw_axes(image, pane);
+        outline(image, pane.area, 1, muted);
+    }
+    draw_text(image, cut_to(robot.name, title_cap, sheet.size.width - left - right), {left, 30}, {title_cap});
+    write_legend(image, sheet, robot, contacts, colours);
+    write_png(image, file);
+}
+
+}  // namespace spawnfield

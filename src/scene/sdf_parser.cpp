@@ -1,0 +1,158 @@
+#include "scene/sdf_parser.h"
+
+#include "base/number.h"
+
+#include <spawnfield/error.h>
+
+#include <console_bridge/console.h>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = CollisionGeometry::Kind;
+
+std::mutex& one_at_a_time()
+{
+    static std::mutex mutex;
+    return mutex;
+}
+
+std::string list(const Vec3& v) { return number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()); }
+
+class GeometryReader {
+public:
+    explicit GeometryReader(const SdfPlace& place) : place_(place) {}
+
+    CollisionGeometry read(const sdf::Geometry& from) const
+    {
+        CollisionGeometry out;
+        switch (from.Type()) {
+        case sdf::GeometryType::BOX: set(out, Kind::Box, "<box> <size>", vector_of(from.BoxShape()->Size())); break;
+        case sdf::GeometryType::SPHERE: set(out, Kind::Sphere, "<sphere> <radius>", Vec3(from.SphereShape()->Radius(), 1, 1)); break;
+        case sdf::GeometryType::CYLINDER:
+            set(out, Kind::Cylinder, "<cylinder> <radius>, <length>", Vec3(from.CylinderShape()->Radius(), from.CylinderShape()->Length(), 1));
+            break;
+        case sdf::GeometryType::CAPSULE:
+            set(out, Kind::Capsule, "<capsule> <radius>, <length>", Vec3(from.CapsuleShape()->Radius(), from.CapsuleShape()->Length(), 1));
+            break;
+        case sdf::GeometryType::ELLIPSOID: set(out, Kind::Ellipsoid, "<ellipsoid> <radii>", vector_of(from.EllipsoidShape()->Radii())); break;
+        case sdf::GeometryType::PLANE:
+            set(out, Kind::Plane, "<plane> <size>", Vec3(from.PlaneShape()->Size().X(), from.PlaneShape()->Size().Y(), 1));
+            out.normal = vector_of(from.PlaneShape()->Normal());
+            if (!(out.normal.norm() > 0) || !out.normal.allFinite()) fail("<plane> <normal> is (" + list(out.normal) + "), needs a direction");
+            break;
+        case sdf::GeometryType::MESH: set_mesh(out, *from.MeshShape()); break;
+        case sdf::GeometryType::HEIGHTMAP: set_heightmap(out, *from.HeightmapShape()); break;
+        default: set_by_element(out, from.Element());
+        }
+        return out;
+    }
+
+private:
+    void set(CollisionGeometry& out, Kind kind, const std::string& what, const Vec3& size) const
+    {
+        constexpr double largest = 1e6;  // m: beyond it, a slip of the pen
+        for (const double side : size)
+            if (!(side > 0) || side > largest) fail(what + " is " + number(side) + ", needs > 0 and at most 1000 km");
+        out.kind = kind;
+        out.size = size;
+    }
+
+    void set_mesh(CollisionGeometry& out, const sdf::Mesh& mesh) const
+    {
+        out.kind = Kind::Mesh;
+        out.uri = mesh.Uri();
+        out.folder = folder_of(mesh.FilePath());
+        out.size = vector_of(mesh.Scale());
+        out.submesh = mesh.Submesh();
+        out.is_centred = mesh.CenterSubmesh();
+        if (!out.size.allFinite() || out.size.cwiseAbs().minCoeff() == 0) fail("<mesh> <scale> is (" + list(out.size) + "), needs three numbers that are not 0");
+    }
+
+    void set_heightmap(CollisionGeometry& out, const sdf::Heightmap& map) const
+    {
+        set(out, Kind::Heightmap, "<heightmap> <size>", vector_of(map.Size()).cwiseAbs());
+        out.uri = map.Uri();
+        out.folder = folder_of(map.FilePath());
+        out.position = vector_of(map.Position());
+        out.sampling = map.Sampling();
+        if (out.sampling < 1 || out.sampling > 16) fail("<heightmap> <sampling> is " + std::to_string(out.sampling) + ", needs 1 to 16");
+    }
+
+    /// What libsdformat 12 has no class for.
+    void set_by_element(CollisionGeometry& out, const sdf::ElementPtr& element) const
+    {
+        if (!element || !element->HasElement("polyline")) {
+            const sdf::ElementPtr child = element ? element->GetFirstElement() : nullptr;
+            if (child) out.element = child->GetName();
+            return;
+        }
+        double height = 0;
+        for (sdf::ElementPtr line = element->GetElement("polyline"); line; line = line->GetNextElement("polyline")) {
+            if (height == 0) height = line->Get<double>("height");  // of the first, as Gazebo has it
+            auto& outline = out.outlines.emplace_back();
+            for (sdf::ElementPtr point = line->HasElement("point") ? line->GetElement("point") : nullptr; point; point = point->GetNextElement("point")) {
+                const auto at = point->Get<ignition::math::Vector2d>();
+                outline.push_back({at.X(), at.Y()});
+            }
+        }
+        set(out, Kind::Polyline, "<polyline> <height>", Vec3(height, 1, 1));
+    }
+
+    /// A file's text that was given has a name in brackets.
+    fs::path folder_of(const std::string& named) const
+    {
+        return named.empty() || named.front() == '<' || !fs::exists(named) ? place_.file.parent_path() : fs::path(named).parent_path();
+    }
+
+    [[noreturn]] void fail(const std::string& what) const
+    {
+        throw FileError(place_.file.string(), "\"" + place_.name + "\": " + what + (place_.line ? " (line " + std::to_string(*place_.line) + ")" : ""));
+    }
+
+    const SdfPlace& place_;
+};
+
+}  // namespace
+
+SdfSession::SdfSession(ModelPaths& paths, const fs::path& folder) : lock_(one_at_a_time()), log_level_(console_bridge::getLogLevel())
+{
+    const auto find = [&paths, folder](const std::string& uri) { return paths.find(uri, folder).string(); };
+    config_.SetFindCallback(find);
+    config_.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
+    sdf::setFindCallback(find);
+    sdf::Console::Instance()->SetQuiet(true);
+    console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+}
+
+SdfSession::~SdfSession()
+{
+    console_bridge::setLogLevel(console_bridge::LogLevel(log_level_));
+    sdf::setFindCallback([](const std::string&) { return std::string(); });
+}
+
+std::string words_of(const sdf::Error& error, const std::string& file)
+{
+    std::string out = error.FilePath().value_or(file);
+    if (out.empty() || out.front() == '<') out = file;  // text that was given has a name in brackets
+    if (error.LineNumber()) out += ": line " + std::to_string(*error.LineNumber());
+    if (error.XmlPath()) out += ": " + *error.XmlPath();
+    return out + ": " + error.Message();
+}
+
+Vec3 vector_of(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
+
+Pose pose_of(const ignition::math::Pose3d& pose)
+{
+    const ignition::math::Matrix3d m(pose.Rot().Normalized());
+    Pose out;
+    out.position = vector_of(pose.Pos());
+    for (unsigned row = 0; row < 3; ++row)
+        for (unsigned col = 0; col < 3; ++col) out.rotation(row, col) = m(row, col);
+    return out;
+}
+
+CollisionGeometry geometry_of(const sdf::Geometry& geometry, const SdfPlace& place) { return GeometryReader(place).read(geometry); }
+
+}  // namespace spawnfield

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "scene/collision_geometry.h"
+#include "scene/model_paths.h"
+
+#include <sdf/sdf.hh>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+namespace spawnfield {
+
+/// libsdformat finds files through a global callback (nested includes ask that one alone) and prints on its own, as does the URDF
+/// parser that it tries on what it does not understand: all of it is held while this lives. One at a time.
+class SdfSession {
+public:
+    SdfSession(ModelPaths& paths, const std::filesystem::path& folder);
+    SdfSession(const SdfSession&) = delete;
+    SdfSession& operator=(const SdfSession&) = delete;
+    ~SdfSession();
+
+    const sdf::ParserConfig& config() const { return config_; }
+
+private:
+    std::lock_guard<std::mutex> lock_;
+    int log_level_;
+    sdf::ParserConfig config_;
+};
+
+/// File, line, element and words of an error, without what it has not.
+std::string words_of(const sdf::Error& error, const std::string& file);
+
+Vec3 vector_of(const ignition::math::Vector3d& v);
+Pose pose_of(const ignition::math::Pose3d& pose);
+
+/// Where a collision stands, for complaints.
+struct SdfPlace {
+    std::filesystem::path file;
+    std::string name;         ///< scoped
+    std::optional<int> line;
+};
+
+/// Throws FileError for sizes that are no numbers > 0 or beyond 1000 km.
+CollisionGeometry geometry_of(const sdf::Geometry& geometry, const SdfPlace& place);
+
+}  // namespace spawnfield

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace spawnfield::cli {
+
+/// Where models and ROS packages are, for scenes and robots.
+struct ModelPathArgs {
+    std::vector<std::string> model_paths;
+};
+
+inline void add_model_path(CLI::App& command, ModelPathArgs& args)
+{
+    command.add_option("--model-path,--package-path", args.model_paths,
+                       "Folder that holds models or ROS packages, for model:// and package:// in SDF and URDF (repeatable; then come GZ_SIM_RESOURCE_PATH, "
+                       "GAZEBO_MODEL_PATH and the folders above the file)");
+}
+
+}  // namespace spawnfield::cli
