@@ -37,6 +37,7 @@ std::vector<RobotStart> random_robots(std::size_t count)
     for (const std::string& name : names)
         out.push_back({name, name, {random.between(-90, 90), random.between(-90, 90), random.between(-9, 9)},
                        {random.between(-pi, pi), random.between(-pi / 2, pi / 2), random.between(-pi, pi)}});
+    out.front().rpy.pitch = pi / 2;  // nose down
     return out;
 }
 
@@ -276,6 +277,51 @@ TEST_CASE("sample and search write the robots of their CSV file in every format"
     }
 }
 
+TEST_CASE("export writes the poses of a CSV file in every format, with roll and pitch and their own names")
+{
+    const Arena arena;
+    arena.write("cart.urdf", urdf_text);
+    const std::string rows = "first,1,2,3,0.1,-0.2,0.3\nsecond,-4,5.5,6,0,1.5707963267948966,3\n";
+    arena.write("poses.csv", "name,x,y,z,roll,pitch,yaw\n" + rows);
+    const PoseTable table = read_poses(arena / "poses.csv");
+    const std::vector<RobotStart> robots = robot_starts(table, {"first", "second"}, {"first", "second"});
+    const auto output = [&](const std::string& arguments) {
+        const ProgramRun run = arena("export map --quiet --poses poses.csv --format " + arguments);
+        CHECK(run.status == 0);
+        CHECK(run.err.empty());
+        return run.out;
+    };
+    const std::string urdf = fs::canonical(arena.path()) / "cart.urdf";
+    CHECK(output("csv") == robots_csv(robots));
+    CHECK(output("ros1-launch --robot-file cart.urdf") == ros1_launch(robots, {.file = urdf}));
+    CHECK(output("ros2-launch-py --robot cart.urdf") == ros2_launch_py(robots, {.file = urdf}));
+    CHECK(output("ros2-launch-py --robot cart.urdf --package-path . --mesh-parts 2") == ros2_launch_py(robots, {.file = urdf}));
+    CHECK(output("ros2-launch-xml --topic a") == ros2_launch_xml(robots, {.topic = "a"}));
+    CHECK(output("sdf --robot-uri model://cart") == sdf_world(robots, {.uri = "model://cart"}));
+    CHECK(output("mujoco --keys together") == mujoco_keyframes(robots, {.together = true}));
+    CHECK(output("carla") == carla_json(robots, "vehicle.tesla.model3"));
+    CHECK(output("carla-ros --blueprint a") == carla_objects_json(robots, "a"));
+    CHECK(output("unity") == unity_csv(robots, Frame::Unity));
+    CHECK(output("unreal") == unreal_csv(robots));
+    output("isaaclab -o isaac");
+    CHECK(bytes_of(arena / "isaac/root_pose.npy") == root_poses_npy(robots, QuaternionOrder::Wxyz));
+    const auto json = nlohmann::json::parse(output("json --name 'r{i}'"));
+    CHECK(json["poses"][1]["name"] == "r2");  // --name goes before the file's names
+    CHECK(json["poses"][1]["rpy"][1] == Approx(1.5707963267948966).epsilon(1e-15));
+    CHECK_FALSE(json.contains("robot"));
+
+    arena.write("twice.csv", "name,x,y,z\na,0,0,1\na,1,0,1\n");
+    CHECK_THAT(arena("export map --poses twice.csv --format json").err, Contains("column name: \"a\" is the name of two robots"));
+    arena.write("buried.csv", "x,y,z\n0,0,-50\n");
+    const ProgramRun buried = arena("export map --poses buried.csv --format isaaclab -o new");
+    CHECK(buried.status == 2);
+    CHECK_THAT(buried.err, Contains("there is no ground below robot robot_1 at 0, 0, -50"));
+    CHECK_THAT(arena("export map --format unity").err, Contains("--format unity needs --poses"));
+    CHECK_THAT(arena("export map --format unity --poses poses.csv --tiles 1,1").err, Contains("--tiles is not for --format unity; it is for isaaclab"));
+    CHECK_THAT(arena("export map --format nav2 --robot box:1,1,1 --poses poses.csv -o a.yaml").err, Contains("--poses is not for --format nav2"));
+    CHECK_FALSE(fs::exists(arena / "new"));
+}
+
 TEST_CASE("patches lie on the ground below the spawns")
 {
     const Arena arena;
@@ -287,6 +333,26 @@ TEST_CASE("patches lie on the ground below the spawns")
         std::array<float, 3> p{};
         std::memcpy(p.data(), bytes.data() + 128 + 12 * i, 12);
         CHECK(column_at(map.geometry, p[0], p[1]).layers.front() == Approx(p[2]).margin(1e-5));
+    }
+}
+
+TEST_CASE("the commands of each simulator's page work as they are written")
+{
+    const TempFolder folder;  // stands for /tmp and for the source folder
+    fs::create_symlink(SPAWNFIELD_CLI, folder / "spawnfield");
+    fs::create_symlink(SPAWNFIELD_SOURCE "/maps", folder / "maps");
+    for (const auto& page : fs::directory_iterator(SPAWNFIELD_SOURCE "/docs/simulators")) {
+        std::istringstream text(bytes_of(page.path()));
+        std::string script;
+        bool is_code = false;
+        for (std::string line; std::getline(text, line);) {
+            if (line.starts_with("```")) is_code = line == "```" && !is_code;
+            else if (is_code && (line.starts_with("spawnfield ") || line.starts_with("cp "))) script += line + "\n";
+        }
+        for (std::size_t at = script.find("/tmp"); at != std::string::npos; at = script.find("/tmp")) script.replace(at, 4, ".");
+        INFO(page.path().string() + "\n" + script);
+        CHECK(std::count(script.begin(), script.end(), '\n') >= 2);
+        CHECK(run_program(folder, "--version && set -e && PATH=$PWD:$PATH\n" + script).status == 0);
     }
 }
 
@@ -323,10 +389,15 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
     const ProgramRun thesis = arena(query + "--format thesis --name 'a{i}' -o thesis");
     CHECK(thesis.status == 0);
     CHECK_THAT(thesis.err, Contains("notice: --name has no effect: --format thesis does not ask for it"));
-    const ProgramRun away = arena(query + "--format sdf --robot-uri model://a --world yard.world -o deep/new.sdf");
-    CHECK(away.status != 0);  // no such folder
-    CHECK_THAT(away.err, Contains("relative to it will be looked for beside the new file"));
-    const ProgramRun beside = arena(query + "--quiet --format sdf --robot-uri model://a --world yard.world -o new.sdf");
-    CHECK(beside.status == 0);
-    CHECK(arena.names() == std::set<std::string>{"map", "yard.world", "isaac", "thesis", "new.sdf"});
+    const auto told_relative = [&](const std::string& world, const std::string& out) {
+        const ProgramRun run = arena(query + "--format sdf --robot-uri model://a --world " + world + " -o " + out);
+        CHECK(run.status == 0);
+        return run.err.find("are relative to this file") != std::string::npos;
+    };
+    arena.write("near/a.world", "<sdf version='1.6'><world name='a'><include><uri>\n  models/b </uri></include></world></sdf>");
+    CHECK_FALSE(told_relative("yard.world", "new.sdf"));
+    CHECK_FALSE(told_relative("yard.world", "near/new.sdf"));  // has no paths
+    CHECK_FALSE(told_relative("near/a.world", "near/new.sdf"));
+    CHECK(told_relative("near/a.world", "new.sdf"));
+    CHECK(arena.names() == std::set<std::string>{"map", "yard.world", "isaac", "thesis", "new.sdf", "near"});
 }

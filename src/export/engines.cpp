@@ -47,7 +47,8 @@ std::string carla_objects_json(std::span<const RobotStart> robots, const std::st
     out["objects"] = Json::array();
     for (const RobotStart& robot : robots) {
         const Vec3& p = robot.position;
-        const Json point = {{"x", p.x()}, {"y", p.y()}, {"z", p.z()}, {"roll", robot.rpy.roll * degrees}, {"pitch", robot.rpy.pitch * degrees}, {"yaw", robot.rpy.yaw * degrees}};
+        const Rpy& rpy = robot.rpy;
+        const Json point = {{"x", p.x()}, {"y", p.y()}, {"z", p.z()}, {"roll", rpy.roll * degrees}, {"pitch", rpy.pitch * degrees}, {"yaw", rpy.yaw * degrees}};
         out["objects"].push_back({{"type", blueprint}, {"id", robot.name}, {"spawn_point", point}, {"sensors", Json::array()}});
     }
     return dumped(out);

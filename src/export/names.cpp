@@ -37,8 +37,9 @@ Pattern read_pattern(const std::string& option, const std::string& text)
         pattern.before = text;
         return pattern;
     }
-    const bool is_place = open != std::string::npos && close != std::string::npos && open < close && read_place(text.substr(open + 1, close - open - 1), pattern.digits);
-    if (!is_place) fail(option, text, "has braces that are no {i} or {i:03} (the robot's number, with zeros up to so many digits, 1 to 9)");
+    const bool is_pair = open != std::string::npos && close != std::string::npos && open < close;
+    if (!is_pair || !read_place(text.substr(open + 1, close - open - 1), pattern.digits))
+        fail(option, text, "has braces that are no {i} or {i:03} (the robot's number, with zeros up to so many digits, 1 to 9)");
     pattern.before = text.substr(0, open);
     pattern.after = text.substr(close + 1);
     pattern.has_number = true;

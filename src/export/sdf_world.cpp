@@ -97,7 +97,8 @@ std::size_t end_of_world(std::string_view text, int index)
         else if (is_tag(rest, "</world") && --depth == 0 && number == index) return at;
         else if (is_tag(rest, "<world")) {
             if (depth == 0) ++number;
-            if (rest[rest.find('>') - 1] != '/') ++depth;
+            at = text.find('>', at);
+            if (at != std::string_view::npos && text[at - 1] != '/') ++depth;
         }
         if (at == std::string_view::npos) return at;
     }
@@ -114,9 +115,14 @@ std::string inserted(std::span<const RobotStart> robots, const SdfWorldOptions& 
     const bool is_alone = text.find_first_not_of(" \t", line) == end;
     const std::string margin = is_alone ? text.substr(line, end - line) : "";
     std::string out = text.substr(0, is_alone ? line : end) + (is_alone ? "" : "\n");
-    for (const RobotStart& robot : robots)
-        out += margin + "  <include>\n" + margin + "    <uri>" + xml_escaped(options.uri) + "</uri>\n" + margin + "    <name>" + xml_escaped(robot.name) + "</name>\n" +
-               margin + "    <pose>" + spaced(robot) + "</pose>\n" + margin + "  </include>\n";
+    const auto add_line = [&](const std::string& content) { out += margin + content + "\n"; };
+    for (const RobotStart& robot : robots) {
+        add_line("  <include>");
+        add_line("    <uri>" + xml_escaped(options.uri) + "</uri>");
+        add_line("    <name>" + xml_escaped(robot.name) + "</name>");
+        add_line("    <pose>" + spaced(robot) + "</pose>");
+        add_line("  </include>");
+    }
     return out + text.substr(is_alone ? line : end);
 }
 
@@ -125,9 +131,9 @@ std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& op
 {
     tinyxml2::XMLDocument document;
     const FoundWorld found = parse_world(document, options.world_text, options);
-    const std::set<std::string> taken = names_in(*found.element);
+    std::set<std::string> taken = names_in(*found.element);
     for (const RobotStart& robot : robots)
-        if (taken.contains(robot.name))
+        if (!taken.insert(robot.name).second)
             throw FileError(options.world_file, "line " + std::to_string(found.element->GetLineNum()) + ": <world> has a \"" + robot.name +
                                                     "\" already; give the robots other names");
     for (const RobotStart& robot : robots) add_robot(*found.element, robot, options.uri);

@@ -246,7 +246,7 @@ Json json_head(const std::string& command, const Map& map, const Robot& robot, J
     out["version"] = version();
     out["command"] = command;
     out["map"] = {{"name", map.name}, {"hash", map.hash}};
-    out["robot"] = robot.name;
+    if (!robot.name.empty()) out["robot"] = robot.name;
     if (!settings.is_null()) out["settings"] = std::move(settings);
     out["frame"] = "metres, radians, x forward, y left, z up (REP-103)";
     out["quaternion_order"] = "xyzw";

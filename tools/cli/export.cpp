@@ -8,7 +8,11 @@ namespace {
 /// All formats, in the order in which --help tells them: further tables are to be appended here.
 const std::vector<ExportFormat>& formats()
 {
-    static const std::vector<ExportFormat> table = map_formats();
+    static const std::vector<ExportFormat> table = [] {
+        std::vector<ExportFormat> all = map_formats(), poses = pose_export_formats();
+        all.insert(all.end(), poses.begin(), poses.end());
+        return all;
+    }();
     return table;
 }
 
@@ -73,7 +77,7 @@ std::string help()
 {
     std::size_t width = 0;
     for (const std::string& name : format_names()) width = std::max(width, name.size());
-    std::string text = "Formats (docs/exports.md tells of their pixels, frames and colours):\n";
+    std::string text = "Formats (docs/exports.md and docs/simulators.md tell of their pixels, frames and colours):\n";
     for (const ExportFormat& format : formats()) {
         const std::string name = format.name;
         text += "  " + name + std::string(width - name.size() + 2, ' ') + format.about + "\n";
@@ -85,15 +89,15 @@ std::string help()
 
 const std::vector<std::string>& asking_options()
 {
-    static const std::vector<std::string> options{"--package-path", "--max-height", "--max-water-depth", "--max-slope",
-                                                  "--collision",    "--exhaustive", "--offset",          "--yaw"};
+    static const std::vector<std::string> options{"--model-path", "--joints",    "--mesh-parts", "--max-height", "--max-water-depth",
+                                                  "--max-slope",  "--collision", "--exhaustive", "--offset",     "--yaw"};
     return options;
 }
 
 void add_export(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<ExportArgs>();
-    CLI::App& command = *app.add_subcommand("export", "A map in a file of another program");
+    CLI::App& command = *app.add_subcommand("export", "A map, or poses in it, in a file of another program");
     add_query(command, *args);
     command.get_option("--robot")->required(false);
     command.add_option("--format", args->format, "One of the formats below")->required()->check(CLI::IsMember(format_names()));
@@ -103,10 +107,11 @@ void add_export(CLI::App& app, Run& run)
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
-    command.add_option("--poses,-p", args->poses, "CSV file of poses, as sample and check write them");
     command.add_option("--step", args->step, "Between columns, m");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
     command.add_flag("--local", args->local, "In the map's own frame, though the survey's coordinates are known");
+    command.add_option("--poses,-p", args->poses, "CSV file of poses, as sample and check write them; a column name names the robots where --name does not");
+    add_simulator_options(command, args->simulator);
     command.footer(help());
     command.callback([=, &command, &run] { run = [=, &command] { return run_export(*args, command); }; });
 }

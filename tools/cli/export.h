@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli.h"
+#include "simulator_output.h"
 
 namespace spawnfield::cli {
 
@@ -8,6 +8,7 @@ namespace spawnfield::cli {
 struct ExportArgs : QueryArgs {
     std::string format, out, layers, bounds, poses;
     bool local = false;
+    SimulatorArgs simulator;
     double resolution = 0, step = 0, offset = 0.1, yaw = 0;
 };
 
@@ -36,5 +37,8 @@ const std::vector<std::string>& asking_options();
 
 /// Formats that are made of a whole map.
 std::vector<ExportFormat> map_formats();
+
+/// Formats that are made of the poses of a CSV file.
+std::vector<ExportFormat> pose_export_formats();
 
 }  // namespace spawnfield::cli

@@ -142,7 +142,7 @@ std::vector<ExportFormat> map_formats()
         {"ply", "points where --robot was asked to stand, every --step metres, coloured by verdict", {"--robot", "--step"},
          with(asking_options(), {"--layers", "--bounds"}), write_ply},
         {"glb", "the scene by labels, with a marker at each of --poses: --robot's shape, coloured by a column verdict", {},
-         {"--robot", "--package-path", "--poses"}, write_glb},
+         {"--robot", "--model-path", "--joints", "--mesh-parts", "--poses"}, write_glb},
     };
 }
 

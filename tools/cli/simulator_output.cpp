@@ -22,7 +22,7 @@ struct OptionUse {
     std::vector<std::string> formats;
 };
 
-const std::vector<OptionUse> option_uses = {{"--name", pose_formats},
+const std::vector<OptionUse> option_uses = {{"--name", {pose_formats.begin(), pose_formats.end()}},
                                             {"--namespace", {"ros", "json"}},
                                             {"--robot-file", {"ros", "sdf"}},
                                             {"--robot-uri", {"sdf"}},
@@ -70,6 +70,22 @@ std::string lasting_path(const std::string& option, const std::string& file)
     return fs::absolute(file).lexically_normal().string();
 }
 
+fs::path folder_of(const std::string& file) { return fs::absolute(file).lexically_normal().parent_path(); }
+
+/// Of an SDF file; empty if there is none.
+std::string first_relative_uri(const std::string& text)
+{
+    const std::string begin = "<uri>";
+    for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1)) {
+        const std::size_t start = text.find_first_not_of(" \t\r\n", at + begin.size());
+        const std::string uri = start == std::string::npos ? "" : text.substr(start, text.find_first_of("< \t\r\n", start) - start);
+        const bool is_file = uri.starts_with("file://");
+        const std::string path = is_file ? uri.substr(7) : uri;
+        if (!path.empty() && path[0] != '/' && (is_file || uri.find("://") == std::string::npos)) return uri;
+    }
+    return "";
+}
+
 /// The height of the ground below each robot.
 std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map& map)
 {
@@ -77,13 +93,23 @@ std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map
     for (const RobotStart& robot : robots) {
         const Vec3& p = robot.position;
         const std::optional<Ground> ground = ground_below(column_at(map.geometry, p.x(), p.y()), p.z());
-        if (!ground) throw ArgumentError("--format isaaclab: there is no ground below robot " + robot.name + " at " + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()));
+        if (!ground)
+            throw ArgumentError("--format isaaclab: there is no ground below robot " + robot.name + " at " + number(p.x()) + ", " + number(p.y()) + ", " +
+                                number(p.z()));
         points.push_back({p.x(), p.y(), ground->height});
     }
     return points;
 }
 
 }  // namespace
+
+std::vector<std::string> simulator_options_of(const std::string& format)
+{
+    std::vector<std::string> options;
+    for (const OptionUse& use : option_uses)
+        if (is_for(use, format)) options.push_back(use.option);
+    return options;
+}
 
 void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format)
 {
@@ -103,11 +129,13 @@ void add_simulator_options(CLI::App& command, SimulatorArgs& args)
     add("--world", args.world, "sdf: the world file that gets the robots (default: a new world of nothing else)");
     add("--world-name", args.world_name, "ROS 2: Gazebo's name of the world (default: the one that runs); sdf: that of a new world, or which one of --world");
     add("--joint-qpos", args.joint_qpos, "mujoco: q,q,... of the joints that follow each free joint (default: none)");
-    add("--keys", args.keys, "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")->check(CLI::IsMember({"each", "together"}));
+    add("--keys", args.keys, "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")
+        ->check(CLI::IsMember({"each", "together"}));
     add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw from 3 on (default wxyz)")->check(CLI::IsMember({"wxyz", "xyzw"}));
     add("--tiles", args.tiles, "isaaclab: ROWS,COLS of the terrain patches, along x and y (default 1,1)");
     add("--blueprint", args.blueprint, "carla: what is spawned (default vehicle.tesla.model3)");
-    add("--unity-axes", args.unity_axes, "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity itself exported as glTF, FBX or OBJ (default ros)")->check(CLI::IsMember({"ros", "gltf"}));
+    add("--unity-axes", args.unity_axes, "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity exported as glTF, FBX or OBJ (default ros)")
+        ->check(CLI::IsMember({"ros", "gltf"}));
 }
 
 SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target)
@@ -146,15 +174,20 @@ void SimulatorOutput::give_names(std::vector<RobotStart>& robots, const std::vec
 void SimulatorOutput::check_rules(const std::string& option, std::span<const std::string> names, std::span<const std::string> name_spaces) const
 {
     if (is_ros() || is("sdf")) check_model_names(option, names);
-    if (is_ros()) check_ros_names(args_.name_space.empty() ? option + " (as a namespace; --namespace gives others)" : "--namespace", name_spaces, is("ros1-launch") ? 1 : 2);
+    if (!is_ros()) return;
+    const std::string origin = args_.name_space.empty() ? option + " (as a namespace; --namespace gives others)" : "--namespace";
+    check_ros_names(origin, name_spaces, is("ros1-launch") ? 1 : 2);
 }
 
 std::string SimulatorOutput::own_file() const
 {
     if (!args_.robot_file.empty()) return lasting_path("--robot-file", args_.robot_file);
-    const bool is_model = target_.robot.ends_with(".urdf") || target_.robot.ends_with(".sdf") || (is("sdf") && fs::is_regular_file(fs::path(target_.robot) / "model.config"));
-    return is_model ? lasting_path("--robot", target_.robot) : "";
+    const bool is_file = target_.robot.ends_with(".urdf") || target_.robot.ends_with(".sdf");
+    const bool is_folder = is("sdf") && fs::is_regular_file(fs::path(target_.robot) / "model.config");
+    return is_file || is_folder ? lasting_path("--robot", target_.robot) : "";
 }
+
+std::string SimulatorOutput::robot_is_neither() const { return target_.robot.empty() ? "" : "; --robot " + target_.robot + " is neither"; }
 
 void SimulatorOutput::settle_launch()
 {
@@ -163,8 +196,7 @@ void SimulatorOutput::settle_launch()
     if (!args_.topic.empty() && !args_.robot_file.empty()) throw ArgumentError("--topic and --robot-file are both given; robots are made of one of them");
     if (args_.topic.empty()) launch_.file = own_file();
     if (launch_.topic.empty() && launch_.file.empty())
-        throw ArgumentError("--format " + target_.format + " needs --robot-file FILE, a URDF or SDF to spawn, or --topic robot_description; --robot " + target_.robot +
-                            " is neither");
+        throw ArgumentError("--format " + target_.format + " needs --robot-file FILE, a URDF or SDF to spawn, or --topic robot_description" + robot_is_neither());
     target_.format == "ros2-launch-py" ? ros2_launch_py({}, launch_) : ros1_launch({}, launch_);  // to be told of a bad file now
 }
 
@@ -174,13 +206,16 @@ void SimulatorOutput::settle_sdf()
     sdf_.uri = args_.robot_uri.empty() ? own_file() : args_.robot_uri;
     sdf_.world_name = args_.world_name;
     if (sdf_.uri.empty())
-        throw ArgumentError("--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF; --robot " + target_.robot + " is neither");
+        throw ArgumentError("--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF" + robot_is_neither());
     if (args_.world.empty()) return;
     sdf_.world_file = args_.world;
     sdf_.world_text = text_of_file(args_.world);
     sdf_world({}, sdf_);  // to be told of a bad file now
-    const bool beside = !target_.out.empty() && fs::absolute(target_.out).lexically_normal().parent_path() == fs::absolute(args_.world).lexically_normal().parent_path();
-    if (!beside) notice(common_, args_.world + ": paths in it that are relative to it will be looked for beside the new file; -o beside it keeps them right");
+    const std::string relative = first_relative_uri(sdf_.world_text);
+    const bool is_beside = !target_.out.empty() && folder_of(target_.out) == folder_of(args_.world);
+    if (!relative.empty() && !is_beside)
+        notice(common_, args_.world + ": " + relative + " and the like are relative to this file, and will be looked for beside the new one; " +
+                            "-o beside it keeps them right");
 }
 
 std::string SimulatorOutput::text_of(std::span<const RobotStart> robots) const
@@ -215,7 +250,8 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     about["frame"] = "metres, right-handed, x forward, y left, z up";
     about["root_pose.npy"] = {{"shape", {robots.size(), 7}}, {"columns", has_w_first ? "x y z qw qx qy qz" : "x y z qx qy qz qw"},
                               {"for", has_w_first ? "Isaac Lab 1 and 2" : "Isaac Lab 3"}};
-    about["flat_patches.npy"] = {{"shape", {grid.rows, grid.cols, patches.patches_per_tile, 3}}, {"is", "ground below the spawns, by tile: rows along x, columns along y"}};
+    about["flat_patches.npy"] = {{"shape", {grid.rows, grid.cols, patches.patches_per_tile, 3}},
+                                 {"is", "ground below the spawns, by tile: rows along x, columns along y"}};
     about["terrain_origins.npy"] = {{"shape", {grid.rows, grid.cols, 3}}, {"is", "the first patch of each tile"}};
     about["map"] = {{"name", map.name}, {"hash", map.hash}};
     clear_progress_bar();

@@ -21,6 +21,9 @@ struct SimulatorArgs {
 };
 void add_simulator_options(CLI::App& command, SimulatorArgs& args);
 
+/// Those of these options that say something to the format.
+std::vector<std::string> simulator_options_of(const std::string& format);
+
 /// A notice for each of these options that was given and says nothing to the format.
 void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format);
 
@@ -52,6 +55,7 @@ private:
     void settle_launch();
     void settle_sdf();
     std::string own_file() const;
+    std::string robot_is_neither() const;
     std::string text_of(std::span<const RobotStart> robots) const;
     void write_isaac_lab(std::span<const RobotStart> robots, const Map& map) const;
 
