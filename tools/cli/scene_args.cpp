@@ -19,6 +19,7 @@ void add_scene_options(CLI::App& command, SceneArgs& args)
     command.add_option("--up", args.up, "Up axis of a bare mesh: y or z (default: what the format says, else z)")->check(CLI::IsMember({"y", "z"}));
     command.add_option("--scale", args.scale, "Metres per unit of a bare mesh (default 1)");
     command.add_option("--heightmap", args.heightmap, "Keys of a bare elevation model as in scene.yaml: 'size: [513, 513], z: [0, 75]'");
+    command.add_option("--wall-height", args.wall_height, "Of the walls of a 2D map (map.yaml of nav2 or ROS), m (default 2)");
     command.add_option("--label", args.labels,
                        "'GLOB=LABEL': label of the nodes, materials, parts, models, links or collisions whose name matches (repeatable; first match wins)");
     command.add_option("--model-path", args.model_paths,
@@ -34,6 +35,7 @@ SceneOptions scene_options(const SceneArgs& args)
     options.up = args.up.empty() ? char{0} : args.up[0];
     options.scale = parse_positive("--scale", args.scale);
     options.heightmap = args.heightmap;
+    if (args.wall_height != 0) options.wall_height = parse_positive("--wall-height", args.wall_height);
     options.model_paths.assign(args.model_paths.begin(), args.model_paths.end());
     options.strict = args.strict;
     return options;
