@@ -69,7 +69,8 @@ PolygonIndex::PolygonIndex(const std::vector<Region>& regions)
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Entry& entry = all[i];
         if (i == 0 || entry.row != all[i - 1].row || entry.polygon != all[i - 1].polygon) {
-            groups_.push_back({entry.polygon, std::uint32_t(i), std::uint32_t(i), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
+            constexpr double far = std::numeric_limits<double>::infinity();
+            groups_.push_back({entry.polygon, std::uint32_t(i), std::uint32_t(i), far, -far});
             ++starts_[entry.row + 1];
         }
         Group& group = groups_.back();

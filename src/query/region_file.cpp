@@ -32,7 +32,8 @@ Ring checked(Ring ring, const std::string& file, const std::string& place)
 {
     ring = without_repeats(std::move(ring));
     if (ring.size() < 3) throw FileError(file, place + " has " + std::to_string(ring.size()) + " different corners, needs at least 3");
-    const Vec2 along = *std::max_element(ring.begin(), ring.end(), [&](const Vec2& a, const Vec2& b) { return (a - ring[0]).norm() < (b - ring[0]).norm(); }) - ring[0];
+    const auto is_nearer = [&](const Vec2& a, const Vec2& b) { return (a - ring[0]).norm() < (b - ring[0]).norm(); };
+    const Vec2 along = *std::max_element(ring.begin(), ring.end(), is_nearer) - ring[0];
     const bool is_line = std::all_of(ring.begin(), ring.end(), [&](const Vec2& p) { return std::abs(cross(along, p - ring[0])) <= 1e-9 * along.norm(); });
     if (is_line) throw FileError(file, place + " has no area: its corners lie on one line");
     return ring;
@@ -301,7 +302,9 @@ void read_cells(const std::filesystem::path& file, MapCells cells, Region& out)
     const Nav2Map map = read_nav2_map(file);
     out.notices = map.notices;
     Region::Polygon rings = CellRings(map, cells == MapCells::Free ? Nav2Map::Cell::Free : Nav2Map::Cell::Occupied).rings();
-    if (rings.empty()) throw FileError(file.string(), std::string("has no ") + (cells == MapCells::Free ? "free" : "occupied") + " cell; are negate and the thresholds right?");
+    if (rings.empty())
+        throw FileError(file.string(), std::string("has no ") + (cells == MapCells::Free ? "free" : "occupied") +
+                                           " cell; are negate and the thresholds right?");
     out.polygons.push_back(std::move(rings));
 }
 

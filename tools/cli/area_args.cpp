@@ -39,7 +39,8 @@ void tell_about(const CommonArgs& common, const Map& map, const std::string& opt
 void add_area(CLI::App& command, AreaArgs& args)
 {
     command.add_option("--region", args.regions,
-                       "Where poses are wanted: x0,y0,x1,y1 in m, or a file in the map's metres: GeoJSON, CSV (x,y), map.yaml of nav2 (free cells); repeatable: in any")
+                       "Where poses are wanted: x0,y0,x1,y1 in m, or a file in the map's metres: GeoJSON, CSV (x,y), map.yaml of nav2 (free cells); "
+                       "repeatable: in any of them")
         ->allow_extra_args(false);
     command.add_option("--keep-out", args.keep_outs, "Where not, in the same ways; of a nav2 map the occupied cells (repeatable)")->allow_extra_args(false);
 }

@@ -25,7 +25,9 @@ std::string shortfall(const SpawnOptions& options, const SpawnList& list, const 
     const std::string found = std::to_string(list.spawns.size()), of_count = found + " of " + std::to_string(options.count) + " spawns ";
     const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
                                (std::isfinite(options.max_slope) ? "a larger --max-slope, " : "") +
-                               (command == "sample" ? "another --offset or a wider --region" : "more --max-failures or wider --bounds");
+                               (command == "sample"               ? "another --offset or a wider --region"
+                                : options.area.is_everywhere() ? "more --max-failures or wider --bounds"
+                                                               : "more --max-failures or a wider --region");
     if (list.is_full && list.spawns.empty()) return "no spawn fits: it is proven that no pose is valid; " + advice + " may give some";
     if (list.is_full) return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice + " may give more";
     if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
