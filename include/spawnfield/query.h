@@ -2,6 +2,7 @@
 
 #include <spawnfield/collision.h>
 #include <spawnfield/map.h>
+#include <spawnfield/region.h>
 
 #include <atomic>
 
@@ -72,6 +73,7 @@ struct LayerChoice {
 struct RasterOptions : QueryOptions {
     int dims = 2;                ///< 2: a pose per column and layer; 3: a pose per column and height
     Bounds bounds = {};          ///< empty: the map's; two-dimensional rasters leave z aside
+    Area area = {};              ///< columns elsewhere are left out: they give no pose and count nowhere
     double step = 1.0;           ///< m between columns, > 0
     double step_z = 0;           ///< m between heights, > 0; 0: as step
     double offset = 0.1;         ///< m of the origin above its layer (2D, snap); with snap 0 .. max_height
@@ -106,6 +108,7 @@ struct RasterPose {
 struct RasterResult {
     int dims = 2;
     RasterGrid grid;
+    Area area = {};                 ///< outside of which columns were left out
     double yaw = 0, offset = 0;
     std::vector<RasterPose> poses;  ///< y after y, x fastest, from the top down; of 3D rasters without the aerial ones
     VerdictCounts counts{};         ///< of all poses, the aerial ones too
@@ -127,6 +130,7 @@ struct SpawnList {
     std::vector<Spawn> spawns;    ///< in the order in which they were found
     VerdictCounts counts{};       ///< of the positions that were judged
     std::uint64_t draws = 0;      ///< all of them
+    std::uint64_t off_area = 0;   ///< draws that did not lie in SpawnOptions::area
     std::uint64_t too_close = 0;  ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
     bool is_full = false;         ///< sample: fewer than count, and proven that none fits beside them
@@ -140,6 +144,8 @@ struct SpawnOptions : QueryOptions {
     std::size_t count = 1;       ///< 1 .. max_spawns
     double min_distance = 0;     ///< m between positions, >= 0
     Bounds bounds = {};          ///< empty: the map's; sample leaves z aside
+    /// Positions lie in it. Draws elsewhere are failures that nobody judges (SpawnList::off_area); draws are made from its bounds only.
+    Area area = {};
     bool random_yaw = false;     ///< uniform in [-pi, pi), else yaw
     double yaw = 0;              ///< rad
     std::uint64_t seed = 0;

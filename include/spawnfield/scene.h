@@ -93,6 +93,7 @@ struct SceneOptions {
     std::vector<LabelRule> labels = {};  ///< come before the file's own rules; the first match wins
     char up = 0;                         ///< 'y' or 'z' for a bare mesh; 0: what the format says, else z
     double scale = 1.0;                  ///< m per unit of a bare mesh, > 0
+    double wall_height = 0;              ///< m, of the walls of a nav2 map, > 0; 0: 2 m, with a notice
     /// Folders that hold models or ROS packages, for model:// and package:// URIs; then come GZ_SIM_RESOURCE_PATH,
     /// IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH, and the folders above the file with their `models`.
     std::vector<std::filesystem::path> model_paths = {};
@@ -103,10 +104,11 @@ struct SceneOptions {
 };
 
 /// Reads a scene.yaml (format spawnfield-scene/1), an SDF world or model (.sdf, .world, a model's folder), a URDF, an OctoMap (.bt,
-/// .ot), an elevation model (GeoTIFF, ESRI ASCII grid, PNG, raw) or any mesh that assimp reads.
+/// .ot), an elevation model (GeoTIFF, ESRI ASCII grid, PNG, raw), a 2D map (map.yaml of nav2 or ROS) or any mesh that assimp reads.
 ///
 /// A bare mesh or OctoMap is one part named after the file; without label rules all of it is terrain, with a notice. So is an elevation
 /// model: terrain whose middle lies at 0, 0, with the heights of the file; Scene::origin tells where that is.
+/// A 2D map is part "floor", terrain at z = 0 under all cells that are not unknown, and part "walls", boxes on the occupied ones.
 /// Of SDF and URDF each collision is a part, named model::link::collision; the options' rules match that name or one of its
 /// words between ::. Else planes, heightmaps and what is named as ground is terrain, the rest obstacle (docs/input-files.md).
 /// Throws FileError with file, part, key, value and limit. Format: DESIGN.md, formats/scene.md.

@@ -57,10 +57,11 @@ public:
         return true;
     }
 
-    bool prepare()  ///< whole bytes for each pixel
+    bool prepare(bool in_full)  ///< whole bytes for each sample; in full: palettes and transparency as colours and alpha
     {
         if (setjmp(png_jmpbuf(png_))) return false;
-        png_set_expand_gray_1_2_4_to_8(png_);
+        if (in_full) png_set_expand(png_);
+        else png_set_expand_gray_1_2_4_to_8(png_);
         png_set_interlace_handling(png_);
         png_read_update_info(png_, info_);
         return true;
@@ -146,34 +147,67 @@ bool is_png(std::string_view start)
     return start.size() >= 8 && png_sig_cmp(reinterpret_cast<png_const_bytep>(start.data()), 0, 8) == 0;
 }
 
-GreyImage read_grey_png(const std::filesystem::path& file, std::uint64_t most)
-{
-    const std::string bytes = read_file(file);
-    Reader reader(bytes);
-    const auto require = [&](bool good) {
-        if (!good) throw FileError(file.string(), std::string("is a damaged PNG image: ") + reader.message());
-    };
-    require(reader.read_header());
-    if (reader.has_palette()) throw FileError(file.string(), "has a palette, needs 1 channel (grey)");
-    if (reader.channels() != 1)
-        throw FileError(file.string(), "has " + std::to_string(reader.channels()) + " channels, needs 1 (grey)");
-    if (std::uint64_t(reader.rows()) * std::uint64_t(reader.cols()) > most)
-        throw FileError(file.string(), "has " + std::to_string(reader.cols()) + " x " + std::to_string(reader.rows()) + " pixels, needs at most " +
-                                           std::to_string(most));
-    require(reader.prepare());
+namespace {
 
-    const std::size_t rows = std::size_t(reader.rows()), row_pixels = std::size_t(reader.cols());
-    const std::size_t pixel_bytes = reader.bits() == 16 ? 2 : 1, row_bytes = row_pixels * pixel_bytes;
+using Bytes = std::unique_ptr<png_byte[]>;
+
+void require(bool good, const Reader& reader, const std::string& file)
+{
+    if (!good) throw FileError(file, std::string("is a damaged PNG image: ") + reader.message());
+}
+
+void check_size(const Reader& reader, const std::string& file, std::uint64_t most)
+{
+    if (std::uint64_t(reader.rows()) * std::uint64_t(reader.cols()) > most)
+        throw FileError(file, "has " + std::to_string(reader.cols()) + " x " + std::to_string(reader.rows()) + " pixels, needs at most " + std::to_string(most));
+}
+
+/// All samples of a prepared reader, of one byte or two, row after row.
+Bytes read_samples(Reader& reader, const std::string& file)
+{
+    const std::size_t rows = std::size_t(reader.rows());
+    const std::size_t row_bytes = std::size_t(reader.cols()) * std::size_t(reader.channels()) * (reader.bits() == 16 ? 2 : 1);
     // Not cleared, so that a damaged header which tells of a giant costs nothing.
-    const auto data = std::make_unique_for_overwrite<png_byte[]>(rows * row_bytes);
+    Bytes data = std::make_unique_for_overwrite<png_byte[]>(rows * row_bytes);
     const auto starts = std::make_unique_for_overwrite<png_bytep[]>(rows);
     for (std::size_t row = 0; row < rows; ++row) starts[row] = data.get() + row * row_bytes;
-    require(reader.read_rows(starts.get()));
+    require(reader.read_rows(starts.get()), reader, file);
+    return data;
+}
 
-    GreyImage image{reader.rows(), reader.cols(), pixel_bytes == 2 ? 65535.0 : 255.0, {}};
-    image.pixels.resize(rows * row_pixels);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = pixel_bytes == 2 ? data[2 * i] * 256 + data[2 * i + 1] : data[i];
+std::uint16_t sample(const Bytes& data, std::size_t i, bool wide) { return wide ? std::uint16_t(data[2 * i] * 256 + data[2 * i + 1]) : data[i]; }
+
+}  // namespace
+
+GreyImage read_grey_png(const std::filesystem::path& path, std::uint64_t most)
+{
+    const std::string bytes = read_file(path), file = path.string();
+    Reader reader(bytes);
+    require(reader.read_header(), reader, file);
+    if (reader.has_palette()) throw FileError(file, "has a palette, needs 1 channel (grey)");
+    if (reader.channels() != 1) throw FileError(file, "has " + std::to_string(reader.channels()) + " channels, needs 1 (grey)");
+    check_size(reader, file, most);
+    require(reader.prepare(false), reader, file);
+    const Bytes data = read_samples(reader, file);
+    const bool wide = reader.bits() == 16;
+    GreyImage image{reader.rows(), reader.cols(), wide ? 65535.0 : 255.0, {}};
+    image.pixels.resize(std::size_t(image.rows) * std::size_t(image.cols));
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = sample(data, i, wide);
+    return image;
+}
+
+ColourImage read_colour_png(const std::filesystem::path& path, std::uint64_t most)
+{
+    const std::string bytes = read_file(path), file = path.string();
+    Reader reader(bytes);
+    require(reader.read_header(), reader, file);
+    check_size(reader, file, most);
+    require(reader.prepare(true), reader, file);
+    const Bytes data = read_samples(reader, file);
+    const bool wide = reader.bits() == 16;
+    ColourImage image{reader.rows(), reader.cols(), reader.channels(), wide ? 65535 : 255, {}};
+    image.samples.resize(std::size_t(image.rows) * std::size_t(image.cols) * std::size_t(image.channels));
+    for (std::size_t i = 0; i < image.samples.size(); ++i) image.samples[i] = sample(data, i, wide);
     return image;
 }
 

@@ -89,7 +89,7 @@ ShownPoses shown_poses(const RasterResult& raster)
 /// What a column without a pose is: in 3D rasters all its poses are aerial, which are counted but not listed.
 bool is_aerial_without_pose(const RasterResult& raster)
 {
-    return raster.dims == 3 && raster.counts[static_cast<std::size_t>(Verdict::Aerial)] > 0;
+    return raster.dims == 3 && raster.counts[static_cast<std::size_t>(Verdict::Aerial)] > 0 && raster.area.is_everywhere();
 }
 
 Image verdict_colours(const ShownPoses& shown, Colour without_pose)
@@ -206,7 +206,7 @@ void append_no_pose(const ShownPoses& shown, const RasterResult& raster, Legend&
     if (count == 0 || is_aerial_without_pose(raster)) return;
     const bool lower_layer = !raster.poses.empty() && std::all_of(raster.poses.begin(), raster.poses.end(),
                                                                   [](const RasterPose& pose) { return pose.layer > 0; });
-    const std::string name = raster.dims == 3 ? "no pose" : lower_layer ? "no such layer" : "no terrain";
+    const std::string name = !raster.area.is_everywhere() ? "off the region, or no terrain" : raster.dims == 3 ? "no pose" : lower_layer ? "no such layer" : "no terrain";
     legend.entries.push_back({no_pose, name, counted(static_cast<std::uint64_t>(count), "column")});
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/polygon2.h"
+#include "base/rect.h"
 #include "geometry/tile.h"
 
 #include <spawnfield/geometry.h>
@@ -11,14 +12,6 @@
 #include <vector>
 
 namespace spawnfield {
-
-/// A rectangle as seen from above, m.
-struct Rect {
-    double low_x, low_y, high_x, high_y;
-
-    double centre_x() const { return (low_x + high_x) / 2; }
-    double centre_y() const { return (low_y + high_y) / 2; }
-};
 
 constexpr double proof_slack = 1e-8;  ///< m that heights and distances of a cell are held away from their limits
 

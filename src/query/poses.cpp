@@ -236,6 +236,8 @@ Json settings_json(const SpawnOptions& options, const Map& map, int axes)
     out["bounds"] = bounds_json(options.bounds.is_empty() ? map.bounds : options.bounds, axes);
     if (std::isfinite(options.max_water_depth)) out["max_water_depth"] = options.max_water_depth;
     if (std::isfinite(options.max_slope)) out["max_slope"] = options.max_slope;
+    for (const Region& region : options.area.within) out["region"].push_back(region.name);
+    for (const Region& region : options.area.keep_out) out["keep_out"].push_back(region.name);
     return out;
 }
 

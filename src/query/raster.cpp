@@ -1,5 +1,6 @@
 #include "base/chosen_bounds.h"
 #include "base/parallel.h"
+#include "query/area_index.h"
 #include "query/judging.h"
 
 #include <spawnfield/error.h>
@@ -87,7 +88,7 @@ public:
     static constexpr int most_rows = 32, block = 128;  ///< of a strip; columns of a block
 
     RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid, double top)
-        : options_(options), grid_(grid), top_(top), judging_(map, checker, query_options(options))
+        : options_(options), grid_(grid), top_(top), judging_(map, checker, query_options(options)), area_(options.area)
     {
     }
 
@@ -98,12 +99,16 @@ public:
         judge.face(options_.yaw);
         for (int col = 0; col < grid_.cols; col += block) {
             const int cols = std::min(block, grid_.cols - col);
+            if (area_.misses({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1), grid_.y_of(first + int(out.size()) - 1)})) continue;
             Columns columns;
             if (options_.height_check)
                 columns = Columns(judging_.map().geometry, {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
             for (int j = 0; j < int(out.size()); ++j) {
                 judge.set_y(grid_.y_of(first + j));
-                for (int i = 0; i < cols; ++i) judge_column(judge, columns, i, j, grid_.x_of(col + i), grid_.y_of(first + j), out[std::size_t(j)]);
+                for (int i = 0; i < cols; ++i) {
+                    const double x = grid_.x_of(col + i), y = grid_.y_of(first + j);
+                    if (area_.contains({x, y})) judge_column(judge, columns, i, j, x, y, out[std::size_t(j)]);
+                }
             }
         }
     }
@@ -214,6 +219,7 @@ private:
     const RasterGrid& grid_;
     const double top_;  ///< upper limit of the bounds' z
     const Judging judging_;
+    const AreaIndex area_;
 };
 
 }  // namespace
@@ -234,6 +240,7 @@ RasterResult raster(const Map& map, const CollisionChecker& checker, const Raste
     out.dims = options.dims;
     out.yaw = options.yaw;
     out.offset = options.offset;
+    out.area = options.area;
     const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
     out.grid = grid_of(bounds, options);
     const RasterJudge judge(map, checker, options, out.grid, bounds.max.z());
@@ -265,10 +272,12 @@ void for_each_pose(const RasterResult& raster, bool aerial, const std::function<
         return;
     }
     const RasterGrid& grid = raster.grid;
+    const AreaIndex area(raster.area);
     auto next = raster.poses.begin();
     for (int j = 0; j < grid.rows; ++j)
         for (int i = 0; i < grid.cols; ++i) {
             const double x = grid.x_of(i), y = grid.y_of(j);
+            if (!area.contains({x, y})) continue;
             const auto end = std::find_if(next, raster.poses.end(), [&](const RasterPose& pose) { return pose.x != x || pose.y != y; });
             const Steps replaced = replaced_steps(grid, raster.offset, std::span(next, end));
             for (int k = grid.heights - 1; k >= 0; --k) {

@@ -1,5 +1,6 @@
 #include "base/chosen_bounds.h"
 #include "base/polygon2.h"
+#include "query/area_index.h"
 #include "query/cell_proofs.h"
 #include "query/spawning.h"
 
@@ -98,13 +99,11 @@ private:
     std::vector<Cell> left_;
 };
 
-Bounds within(Bounds box, const Bounds& limits)
+Bounds within(const Bounds& box, Bounds limits)
 {
-    for (int axis = 0; axis < 2; ++axis) {
-        box.min[axis] = std::max(box.min[axis], limits.min[axis] - touch_tolerance);
-        box.max[axis] = std::min(box.max[axis], limits.max[axis] + touch_tolerance);
-    }
-    return box;
+    limits.min.array() -= touch_tolerance;
+    limits.max.array() += touch_tolerance;
+    return overlap(box, limits);
 }
 
 /// One pass with a fixed number of slots per column. A draw takes one slot at one point; a slot without a layer gives
@@ -112,8 +111,8 @@ Bounds within(Bounds box, const Bounds& limits)
 class Sampler {
 public:
     Sampler(const Map& map, const CollisionChecker& checker, const SampleOptions& options, std::size_t slots)
-        : map_(map), checker_(checker), options_(options), judging_(map, checker, standing(options)),
-          box_(chosen_bounds("sample", options.bounds, map.bounds, 2)), slots_(slots), taken_(options.min_distance)
+        : map_(map), checker_(checker), options_(options), judging_(map, checker, standing(options)), area_(options.area),
+          box_(overlap(chosen_bounds("sample", options.bounds, map.bounds, 2), options.area.bounds())), slots_(slots), taken_(options.min_distance)
     {
     }
 
@@ -151,6 +150,7 @@ private:
             ++draws;
             ++failures;
             if (overfull_) return false;
+            out.off_area += candidate.off_area;
             if (candidate.on_ground && take(candidate, out)) failures = 0;
             return out.spawns.size() < options_.count && draws < most && go_on(draws, failures);
         });
@@ -196,7 +196,10 @@ private:
         proofs.set_half_cell(cells.width() / 2, cells.height() / 2);
         std::vector<std::uint8_t> flags(cells.size());
         parallel_for((flags.size() + chunk - 1) / chunk, options_.threads, share_found(options_, out), [&](std::size_t c) {
-            for (std::size_t i = c * chunk; i < std::min(flags.size(), (c + 1) * chunk); ++i) flags[i] = proofs.is_closed(cells.at(i));
+            for (std::size_t i = c * chunk; i < std::min(flags.size(), (c + 1) * chunk); ++i) {
+                const Rect cell = cells.at(i);
+                flags[i] = area_.misses(cell) || proofs.is_closed(cell);
+            }
         });
         cells.drop(flags);
     }
@@ -216,6 +219,8 @@ private:
         const double x = at.x(), y = at.y(), slot = from.uniform(0, double(slots_));
         Candidate out;
         out.spawn.yaw = draw_yaw(options_, from);
+        out.off_area = !area_.contains(at);
+        if (out.off_area) return out;
         const Column column = column_at(map_.geometry, x, y);
         const std::vector<double> layers = chosen_layers(column, options_.layers);
         if (layers.size() > slots_) overfull_ = true;
@@ -246,6 +251,7 @@ private:
     const CollisionChecker& checker_;
     const SampleOptions& options_;
     const Judging judging_;
+    const AreaIndex area_;
     const Bounds box_;
     const std::size_t slots_;
     TakenPoints taken_;

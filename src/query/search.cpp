@@ -1,5 +1,6 @@
 #include "base/chosen_bounds.h"
 #include "free_space/bounds_tile.h"
+#include "query/area_index.h"
 #include "query/spawning.h"
 
 #include <spawnfield/error.h>
@@ -70,7 +71,8 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
 {
     check_spawn_options("search", options);
     if (options.max_failures < 1) throw ArgumentError("search", "max_failures", double(options.max_failures), ">= 1");
-    const Bounds box = chosen_bounds("search", options.bounds, map.bounds);
+    const AreaIndex area(options.area);
+    const Bounds box = overlap(chosen_bounds("search", options.bounds, map.bounds), options.area.bounds());
     const Judging judging(map, checker, options);
     const FarAbove far_above(options.exhaustive ? nullptr : &map, options.max_height);
     TakenPoints checked(options.min_distance);
@@ -81,6 +83,8 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
         Vec3& p = out.spawn.position;
         for (int axis = 0; axis < 3; ++axis) p[axis] = draw.uniform(box.min[axis], box.max[axis]);
         out.spawn.yaw = draw_yaw(options, draw);
+        out.off_area = !area.contains(p.head<2>());
+        if (out.off_area) return out;
         out.clear = checked.before().is_clear(p);
         if (!out.clear) return out;
         if (far_above.holds(p)) out.verdict = Verdict::Aerial;
@@ -93,7 +97,9 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
     draw_in_order(0, judging, share_found(options, out), checked, batch_size, look, [&](const Candidate& candidate) {
         ++out.draws;
         ++failures;
-        if (!candidate.clear || !checked.is_still_clear(candidate.spawn.position)) {
+        if (candidate.off_area) {
+            ++out.off_area;
+        } else if (!candidate.clear || !checked.is_still_clear(candidate.spawn.position)) {
             ++out.too_close;
         } else {
             checked.add(candidate.spawn.position);

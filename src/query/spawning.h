@@ -12,6 +12,16 @@
 
 namespace spawnfield {
 
+/// Of the first two axes; those of z are the first box's.
+inline Bounds overlap(Bounds box, const Bounds& other)
+{
+    for (int axis = 0; axis < 2; ++axis) {
+        box.min[axis] = std::max(box.min[axis], other.min[axis]);
+        box.max[axis] = std::min(box.max[axis], other.max[axis]);
+    }
+    return box;
+}
+
 /// Throws ArgumentError unless count, distances and bounds are in their limits.
 void check_spawn_options(const char* function, const SpawnOptions& options);
 
@@ -23,6 +33,7 @@ inline double draw_yaw(const SpawnOptions& options, Draw& draw)
 /// A draw that was looked at: judged only if it was clear of the points that stood before its batch.
 struct Candidate {
     bool on_ground = false;  ///< whether the draw gave a pose at all
+    bool off_area = false;
     bool clear = false;
     bool exact_check = false;
     Verdict verdict = Verdict::Outside;

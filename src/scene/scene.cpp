@@ -1,9 +1,11 @@
 #include "base/input_file.h"
+#include "base/number.h"
 #include "robot/urdf.h"
 #include "scene/bodies.h"
 #include "scene/elements.h"
 #include "scene/heightmap.h"
 #include "scene/mesh.h"
+#include "scene/nav2_map.h"
 #include "scene/octomap_part.h"
 #include "scene/plausibility.h"
 #include "scene/sdf_world.h"
@@ -239,6 +241,14 @@ Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
     return scene;
 }
 
+/// Of a file by itself: the label of a part with this name.
+Label bare_label(const std::string& name, const SceneOptions& options, Label fallback)
+{
+    for (const LabelRule& rule : options.labels)
+        if (matches(rule.pattern, name)) return rule.label;
+    return fallback;
+}
+
 bool is_elevation_model(const fs::path& file, const std::string& extension, const SceneOptions& options)
 {
     if (!options.heightmap.empty() || extension == ".asc" || extension == ".tif" || extension == ".tiff" || extension == ".png") return true;
@@ -253,9 +263,7 @@ Scene read_elevation_model(const fs::path& file, const SceneOptions& options)
         throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() + " is an elevation model, in metres and z up");
     Scene scene;
     scene.name = file.stem().string();
-    Label label = Label::Terrain;
-    for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
-        if (matches(rule->pattern, scene.name)) label = rule->label;
+    const Label label = bare_label(scene.name, options, Label::Terrain);
     const std::uint32_t part = add_part(scene, scene.name, "heightmap", label);
     if (label != Label::Ignore) {
         const Heightmap found = read_heightmap(file, parse_heightmap_options(options.heightmap));
@@ -263,6 +271,25 @@ Scene read_elevation_model(const fs::path& file, const SceneOptions& options)
         place_scene(scene, found, {}, file.string());
     }
     tell_idle_rules(file, options.labels, {scene.name}, scene);
+    return scene;
+}
+
+Scene read_nav2_scene(const fs::path& file, const SceneOptions& options)
+{
+    if (options.up != 0 || options.scale != 1.0 || !options.heightmap.empty())
+        throw ArgumentError("load_scene", "up and scale are for a mesh, --heightmap for an elevation model; " + file.string() + " is a 2D map");
+    if (!(options.wall_height >= 0) || !std::isfinite(options.wall_height)) throw ArgumentError("load_scene", "wall_height", options.wall_height, "> 0 m");
+    constexpr double usual_height = 2;
+    const Nav2Map map = read_nav2_map(file);
+    if (std::find(map.cells.begin(), map.cells.end(), Nav2Map::Cell::Free) == map.cells.end())
+        throw FileError(file.string(), "has no free cell (" + std::to_string(map.cols) + " x " + std::to_string(map.rows) + "); are negate and the thresholds right?");
+    Scene scene;
+    scene.name = file.stem().string();
+    scene.notices = map.notices;
+    if (options.wall_height == 0) scene.notices.push_back(file.string() + ": walls are " + number(usual_height) + " m high (--wall-height sets it)");
+    append_nav2_map(scene, map, bare_label("floor", options, Label::Terrain), bare_label("walls", options, Label::Obstacle),
+                    options.wall_height > 0 ? options.wall_height : usual_height);
+    tell_idle_rules(file, options.labels, {"floor", "walls"}, scene);
     return scene;
 }
 
@@ -363,6 +390,8 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     const fs::path file = scene_file_of(scene_path);
     if (!fs::is_regular_file(file)) throw FileError(file.string(), fs::exists(file) ? "is no file" : "does not exist; is the path right?");
     const std::string extension = lower_extension(file);
+    if ((extension == ".yaml" || extension == ".yml") && is_nav2_map(file)) return read_nav2_scene(file, options);
+    if (options.wall_height != 0) throw ArgumentError("load_scene", "wall_height is for a 2D map; " + file.string() + " is none");
     const bool yaml = extension == ".yaml" || extension == ".yml", sdf = extension == ".sdf" || extension == ".world", urdf = extension == ".urdf";
     const bool gazebo = sdf || urdf;
     if ((yaml || gazebo) && (options.up != 0 || options.scale != 1.0))

@@ -187,7 +187,7 @@ void YamlMap::fail(const std::string& what) const
                                (line >= 0 ? " (line " + std::to_string(line + 1) + ")" : ""));
 }
 
-YamlMap read_yaml(const std::filesystem::path& file, const std::string& format)
+YamlMap read_yaml(const std::filesystem::path& file)
 {
     std::ifstream stream(file);
     if (!stream || std::filesystem::is_directory(file)) throw FileError(file.string(), "cannot be read; is the path right?");
@@ -197,7 +197,12 @@ YamlMap read_yaml(const std::filesystem::path& file, const std::string& format)
     } catch (const YAML::Exception& error) {
         throw FileError(file.string(), "line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
     }
-    const YamlMap map(root, file.string(), "");
+    return {root, file.string(), ""};
+}
+
+YamlMap read_yaml(const std::filesystem::path& file, const std::string& format)
+{
+    const YamlMap map = read_yaml(file);
     const std::string found = map.text("format");
     if (found != format) map.fail("format", "is \"" + found + "\", needs " + format);
     return map;

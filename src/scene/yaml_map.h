@@ -52,7 +52,10 @@ private:
     std::string file_, place_, prefix_;
 };
 
-/// The root mapping of a YAML file whose `format` is as given. Throws FileError for a file that is missing or malformed.
+/// The root mapping of a YAML file. Throws FileError for a file that is missing or malformed.
+YamlMap read_yaml(const std::filesystem::path& file);
+
+/// The same of one whose `format` is as given. Throws FileError for a file that is missing or malformed.
 YamlMap read_yaml(const std::filesystem::path& file, const std::string& format);
 
 /// Exactly one of the keys that the map has; throws FileError if none or several. If none, a key that is neither of them

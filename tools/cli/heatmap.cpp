@@ -1,4 +1,4 @@
-#include "cli.h"
+#include "area_args.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
@@ -9,6 +9,7 @@ namespace spawnfield::cli {
 namespace {
 
 struct HeatmapArgs : QueryArgs {
+    AreaArgs area;
     std::string out, quantity = "verdict", layers = "all", spawns, bounds;
     double step = 0, offset = 0.1, yaw = 0;
     int size = 1000;
@@ -40,6 +41,7 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     options.yaw = parse_finite("--yaw", args.yaw, "rad");
     options.layers = parse_layers(args.layers);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
+    options.area = read_area(args, args.area);
     HeatmapOptions picture;
     picture.quantity = quantity_of(args.quantity);
     picture.pixels = args.size;
@@ -47,6 +49,7 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     const auto session = open_session(args);
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step) : default_step(session->map, options);
     tell_if_off_map(args, session->map, "--bounds", options.bounds);
+    tell_about_area(args, session->map, options.area);
     tell_if_no_layer(args, session->map, options.layers);
     tell_if_in_ground(args, session->robot, options.offset);
     const TerrainMap terrain = read_terrain(session->map);
@@ -80,6 +83,7 @@ void add_heatmap(CLI::App& app, Run& run)
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
+    add_area(command, args->area);
     command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000)")->check(CLI::Range(200, 16000));
     command.footer("Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png");
     command.callback([=, &command, &run] { run = [=, &command] { return run_heatmap(*args, command); }; });

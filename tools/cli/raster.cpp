@@ -1,3 +1,4 @@
+#include "area_args.h"
 #include "raster_args.h"
 #include "thesis_output.h"
 
@@ -10,6 +11,7 @@ namespace spawnfield::cli {
 namespace {
 
 struct RasterCommandArgs : RasterArgs {
+    AreaArgs area;
     double step = 0, step_z = 0;
     bool write_aerial = false;
     std::string format = "csv", out, heatmap;
@@ -32,6 +34,7 @@ RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
     options.step = parse_positive("--step", args.step);
     if (command.count("--step-z") > 0) options.step_z = parse_positive("--step-z", args.step_z);
     check_write_aerial(args, command, options);
+    options.area = read_area(args, args.area);
     return options;
 }
 
@@ -47,6 +50,8 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     if (!is_3d || options.snap) add("Offset (m)", number(options.offset));
     add("Yaw (rad)", number(options.yaw));
     add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, options.dims));
+    for (const Region& region : options.area.within) add("Region", region.name);
+    for (const Region& region : options.area.keep_out) add("Keep out", region.name);
     add("Layers", args.layers);
     if (is_3d) add("Height check", options.height_check ? "yes" : "no");
     if (is_3d && options.height_check) add("Max height (m)", number(options.max_height));
@@ -63,6 +68,7 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     const auto session = open_session(args);
     tell_about(args, *session, options);
+    tell_about_area(args, session->map, options.area);
     summary.lap("load");
     const RasterResult result = raster(session->map, *session->checker, options);
     summary.lap("query");
@@ -95,6 +101,7 @@ void add_raster(CLI::App& app, Run& run)
     command.get_option("--dims")->required();
     command.add_option("--step", args->step, "Between columns, m")->required();
     command.add_option("--step-z", args->step_z, "Between heights, m (default: --step)");
+    add_area(command, args->area);
     command.add_flag("--write-aerial", args->write_aerial, "3D: write aerial poses too; with --format thesis those off the terrain, in 2D as well");
     command.add_option("--format", args->format, "csv, or thesis: a folder of Valid_Locations.txt and the like in Unity's frame (default csv)")
         ->check(CLI::IsMember({"csv", "thesis"}));

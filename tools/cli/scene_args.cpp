@@ -21,6 +21,7 @@ void add_scene_options(CLI::App& command, SceneArgs& args)
     command.add_option("--heightmap", args.heightmap, "Keys of a bare elevation model as in scene.yaml: 'size: [513, 513], z: [0, 75]'");
     command.add_option("--unknown", args.unknown, "What an OctoMap has not seen, within the box around what it has: free or blocked (default: free, or what scene.yaml says)")
         ->check(CLI::IsMember({"free", "blocked"}));
+    command.add_option("--wall-height", args.wall_height, "Of the walls of a 2D map (map.yaml of nav2 or ROS), m (default 2)");
     command.add_option("--label", args.labels,
                        "'GLOB=LABEL': label of the nodes, materials, parts, models, links or collisions whose name matches (repeatable; first match wins)");
     command.add_flag("--strict", args.strict, "Refuse a world of which a model or a mesh is missing");
@@ -34,6 +35,7 @@ SceneOptions scene_options(const SceneArgs& args, const ModelPathArgs& paths)
     options.scale = parse_positive("--scale", args.scale);
     if (!args.unknown.empty()) options.unknown = args.unknown == "blocked" ? Unknown::Blocked : Unknown::Free;
     options.heightmap = args.heightmap;
+    if (args.wall_height != 0) options.wall_height = parse_positive("--wall-height", args.wall_height);
     options.model_paths.assign(paths.model_paths.begin(), paths.model_paths.end());
     options.strict = args.strict;
     return options;

@@ -10,14 +10,14 @@ namespace spawnfield::cli {
 /// Options of whatever reads a scene: `bake` and `info`.
 struct SceneArgs {
     std::string up, heightmap, unknown;
-    double scale = 1;
+    double scale = 1, wall_height = 0;
     std::vector<std::string> labels;
     bool strict = false;
 };
 void add_scene_options(CLI::App& command, SceneArgs& args);
 
 /// Their names, to tell that they say nothing elsewhere.
-inline const std::vector<std::string> scene_option_names{"--up", "--scale", "--heightmap", "--unknown", "--label", "--strict"};
+inline const std::vector<std::string> scene_option_names{"--up", "--scale", "--heightmap", "--unknown", "--wall-height", "--label", "--strict"};
 
 /// Throws ArgumentError.
 SceneOptions scene_options(const SceneArgs& args, const ModelPathArgs& paths);

@@ -1,3 +1,4 @@
+#include "area_args.h"
 #include "simulator_output.h"
 #include "spawn_args.h"
 #include "thesis_output.h"
@@ -12,8 +13,9 @@ namespace {
 struct SpawnArgs : QueryArgs {
     DrawArgs draws;
     SimulatorArgs simulator;
+    AreaArgs area;
     double offset = 0.1;
-    std::string bounds, region, layers = "all", yaw = "0", format = "csv", out;
+    std::string bounds, layers = "all", yaw = "0", format = "csv", out;
 
     bool is_thesis() const { return format == "thesis"; }
 };
@@ -23,7 +25,9 @@ std::string shortfall(const SpawnOptions& options, const SpawnList& list, const 
     const std::string found = std::to_string(list.spawns.size()), of_count = found + " of " + std::to_string(options.count) + " spawns ";
     const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
                                (std::isfinite(options.max_slope) ? "a larger --max-slope, " : "") +
-                               (command == "sample" ? "another --offset or a wider --region" : "more --max-failures or wider --bounds");
+                               (command == "sample"               ? "another --offset or a wider --region"
+                                : options.area.is_everywhere() ? "more --max-failures or wider --bounds"
+                                                               : "more --max-failures or a wider --region");
     if (list.is_full && list.spawns.empty()) return "no spawn fits: it is proven that no pose is valid; " + advice + " may give some";
     if (list.is_full) return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice + " may give more";
     if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
@@ -43,11 +47,14 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnO
     add("Min distance (m)", number(options.min_distance));
     add("Yaw (rad)", options.random_yaw ? "random" : number(options.yaw));
     add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, command == "sample" ? 2 : 3));
+    for (const Region& region : options.area.within) add("Region", region.name);
+    for (const Region& region : options.area.keep_out) add("Keep out", region.name);
     add("Max water depth (m)", number(options.max_water_depth));
     if (std::isfinite(options.max_slope)) add("Max slope (rad)", number(options.max_slope));
     out.insert(out.end(), own.begin(), own.end());
     add("Spawns", std::to_string(list.spawns.size()));
     add("Draws", std::to_string(list.draws));
+    if (!options.area.is_everywhere()) add("Draws off the region", std::to_string(list.off_area));
     add("Draws too close", std::to_string(list.too_close));
     add("Positions that are not valid", "counted, not written");
     return out;
@@ -71,7 +78,8 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
     summary.map_hash = session.map.hash;
     summary.seed = options.seed;
     summary.extra = {std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns",
-                     counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close"};
+                     counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
+                         (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region")};
     summary.finish();
     if (list.spawns.size() == options.count) return done;
     notice(args, shortfall(options, list, command));
@@ -105,10 +113,14 @@ int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Opti
 int run_search(const SpawnArgs& args, const CLI::App& command)
 {
     Summary summary("search", args);
-    const SearchOptions options = search_options(args, args.draws, args.bounds, "search");
+    SearchOptions options = search_options(args, args.draws, args.bounds, "search");
+    options.area = read_area(args, args.area);
     const Settings own = {{"Max failures", std::to_string(options.max_failures)}, {"Max height (m)", number(options.max_height)}};
     return run_spawn(search, summary, args, command, options, "search", own,
-                     [&](const Session& session) { tell_if_off_map(args, session.map, "--bounds", options.bounds); });
+                     [&](const Session& session) {
+                         tell_if_off_map(args, session.map, "--bounds", options.bounds);
+                         tell_about_area(args, session.map, options.area);
+                     });
 }
 
 int run_sample(const SpawnArgs& args, const CLI::App& command)
@@ -116,13 +128,18 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
     Summary summary("sample", args);
     SampleOptions options;
     fill(options, args, args.draws, "sample");
-    if (!args.region.empty()) options.bounds = parse_bounds("--region", args.region, true);
+    options.area = read_area(args, args.area);
+    if (const auto box = lone_box(args.area)) {  // as bounds its draws are all within
+        options.bounds = *box;
+        options.area.within.clear();
+    }
     options.offset = parse_finite("--offset", args.offset, "m");
     options.layers = parse_layers(args.layers);
     tell_idle(args, command, {"--max-height"}, "samples stand on their layers");
     const Settings own = {{"Offset (m)", number(options.offset)}, {"Layers", args.layers}};
     return run_spawn(sample, summary, args, command, options, "sample", own, [&](const Session& session) {
         tell_if_off_map(args, session.map, "--region", options.bounds);
+        tell_about_area(args, session.map, options.area);
         tell_if_no_layer(args, session.map, options.layers);
         tell_if_in_ground(args, session.robot, options.offset);
     });
@@ -133,6 +150,7 @@ void add_spawn_options(CLI::App& command, SpawnArgs& args)
     add_query(command, args);
     add_draws(command, args.draws);
     command.get_option("--count")->required();
+    add_area(command, args.area);
     command.add_option("--yaw", args.yaw, "rad, or random (default 0)");
     std::vector<std::string> formats = pose_formats;
     formats.push_back("thesis");
@@ -161,7 +179,6 @@ void add_sample(CLI::App& app, Run& run)
     CLI::App& command = *app.add_subcommand("sample", "N valid spawns, uniform by area");
     add_spawn_options(command, *args);
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
-    command.add_option("--region", args->region, "x0,y0,x1,y1 in m (default: the map's bounds)");
     command.add_option("--layers,--layer", args->layers, "all, top, bottom, or N from the top (0 first)");
     command.footer("Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");
     command.callback([=, &command, &run] { run = [=, &command] { return run_sample(*args, command); }; });
