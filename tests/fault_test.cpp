@@ -166,7 +166,7 @@ TEST_CASE("a scene file that is none is told so")
         CHECK(complaint(folder, [&] { load_scene(file); }) == "@/scene.yaml: " + wanted);
     }
     CHECK(complaint(folder, [&] { load_scene(folder / "none.yaml"); }) == "@/none.yaml: does not exist; is the path right?");
-    CHECK(complaint(folder, [&] { load_scene(folder.path()); }) == "@: is no file");
+    CHECK(complaint(folder, [&] { load_scene(folder.path()); }) == "@: is a folder without model.config and .sdf file, needs to be a model's");
     const fs::path good = folder.write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: a, sphere: 1}]\n");
     CHECK(complaint(folder, [&] { load_scene(good, {.up = 'y'}); }) ==
           "load_scene: up and scale are for a bare mesh; give them in @/scene.yaml (keys up, scale)");

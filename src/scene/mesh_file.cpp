@@ -64,7 +64,7 @@ std::string collada_up_axis(const std::filesystem::path& file)
 /// Source: Autodesk, FBX SDK, FbxSystemUnit and FbxAxisSystem.
 Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
 {
-    double centimetres = 1;
+    float centimetres = 1;  // as assimp has it
     std::int32_t up = 1;
     if (scene.mMetaData != nullptr) {
         scene.mMetaData->Get("UnitScaleFactor", centimetres);
@@ -72,7 +72,7 @@ Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
     }
     mesh.up = up == 0 ? 'x' : up == 2 ? 'z' : 'y';
     Mat4 metres = Mat4::Identity();
-    metres.topLeftCorner<3, 3>() *= centimetres / 100;
+    metres.topLeftCorner<3, 3>() *= double(centimetres) / 100;
     return metres;
 }
 

@@ -10,7 +10,7 @@
 namespace spawnfield {
 namespace {
 
-std::string metres(double value) { return number(value < 10 ? std::round(value * 1000) / 1000 : std::round(value)); }
+std::string metres(double value) { return value < 10 ? number(std::round(value * 1000) / 1000) : std::to_string(std::llround(value)); }
 
 /// Area of all faces as seen along x, y and z, m2.
 Vec3 seen_areas(const Scene& scene)

@@ -408,9 +408,9 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     if (options.unknown && std::none_of(scene.parts.begin(), scene.parts.end(), is_octomap_part))
         scene.notices.push_back(file.string() + ": has no OctoMap, so --unknown has no effect");
     if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored" + std::string(gazebo ? ", missing or without collision" : ""));
-    const Remedies remedies = yaml  ? Remedies{"scale of its part:", "up of its part"}
+    const Remedies remedies = yaml     ? Remedies{"scale of its part:", "up of its part"}
                               : gazebo ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}
-                                    : Remedies{"--scale", "--up y or z"};
+                                       : Remedies{"--scale", "--up y or z"};
     for (std::string& doubt : doubts_about(scene, file.string(), remedies)) scene.notices.push_back(std::move(doubt));
     return scene;
 }

@@ -240,6 +240,7 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     if (fs::is_directory(args.what) && !robot_given && !fs::exists(fs::path(args.what) / "model.config")) {
         refuse(command, scene_option_names, "is for a scene; " + args.what + " is a map's folder");
         refuse(command, robot_options_of_info, "is for a robot; " + args.what + " is a map's folder");
+        refuse(command, {"--model-path"}, "is for a scene or a robot; " + args.what + " is a map's folder");
         if (args.verify) verify_map(args.what);
         const Map map = read_map(args.what);
         summary.map_hash = map.hash;
