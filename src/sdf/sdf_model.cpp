@@ -1,6 +1,7 @@
 #include "scene/sdf_model.h"
 
-#include "scene/sdf_parser.h"
+#include "scene/sdf_module.h"
+#include "sdf/sdf_parser.h"
 
 #include <spawnfield/error.h>
 
@@ -142,7 +143,7 @@ private:
 
 }  // namespace
 
-SdfContent read_sdf_file(const fs::path& file, ModelPaths& paths, const std::optional<std::string>& text)
+SdfContent sdf_module::read_file(const fs::path& file, ModelPaths& paths, const std::optional<std::string>& text)
 {
     return SdfReader(file, paths).read(text);
 }

@@ -1,4 +1,4 @@
-#include "scene/sdf_parser.h"
+#include "sdf/sdf_parser.h"
 
 #include "base/number.h"
 

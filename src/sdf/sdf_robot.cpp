@@ -3,7 +3,8 @@
 #include "robot/body_parts.h"
 #include "robot/joints.h"
 #include "scene/sdf_includes.h"
-#include "scene/sdf_parser.h"
+#include "scene/sdf_module.h"
+#include "sdf/sdf_parser.h"
 
 #include <spawnfield/error.h>
 
@@ -186,6 +187,6 @@ private:
 
 }  // namespace
 
-Robot read_sdf_robot(const fs::path& file_or_folder, const RobotOptions& options) { return SdfReader(file_or_folder, options).read(); }
+Robot sdf_module::read_robot(const fs::path& file_or_folder, const RobotOptions& options) { return SdfReader(file_or_folder, options).read(); }
 
 }  // namespace spawnfield
