@@ -317,6 +317,8 @@ TEST_CASE("what is ground is found by rules, and --label comes first")
     CHECK(changed["house::l::floor_1"] == "water");
     CHECK(changed["Sidewalk_7::l::c"] == "ignore");
     CHECK(changed["ground_plane::l::c"] == "terrain");
+    for (const NameRule& rule : told.rules)  // what the options decided, no rule did
+        if (rule.what == "name sidewalk*" || rule.what == "name floor*") CHECK(rule.count == 0);
     CHECK(has_notice(told, "label \"nothing*\" matches no model, link, collision, node or material"));
 
     const Scene unnamed = load_world(folder, model_of("rock", unit_box));

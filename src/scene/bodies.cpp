@@ -226,7 +226,8 @@ private:
         for (const CollisionBody& body : bodies) {
             const bool counts = body.geometry.kind != Kind::Unknown;
             unknown += !counts;
-            labels_.push_back(counts ? rules.label_of(body) : Label::Ignore);
+            const bool is_told = std::any_of(options_.labels.begin(), options_.labels.end(), [&](const LabelRule& rule) { return matches_body(rule.pattern, body); });
+            labels_.push_back(!counts ? Label::Ignore : is_told ? Label::Obstacle : rules.label_of(body));  // add_part knows what was told
         }
         if (!rules.has_ground() && options_.labels.empty()) {
             scene_.rules.push_back({"all: nothing is a plane, a heightmap or named as ground", Label::Terrain, bodies.size() - unknown});
