@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "check_bounds.h"
 #include "mesh_text.h"
 #include "robot/convex_split.h"
 #include "robot/ellipsoid.h"
@@ -16,14 +17,6 @@
 using namespace spawnfield;
 
 namespace {
-
-void check_bounds(const Bounds& bounds, const Vec3& min, const Vec3& max, double margin = 1e-9)
-{
-    for (int axis = 0; axis < 3; ++axis) {
-        CHECK(bounds.min[axis] == Approx(min[axis]).margin(margin));
-        CHECK(bounds.max[axis] == Approx(max[axis]).margin(margin));
-    }
-}
 
 std::string sdf_of(const std::string& inside) { return "<sdf version=\"1.9\">\n<model name=\"test\">\n" + inside + "\n</model>\n</sdf>\n"; }
 

@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "check_bounds.h"
 #include "mesh_text.h"
 #include "robot/hull.h"
 #include "shared_scenes.h"
@@ -16,14 +17,6 @@
 using namespace spawnfield;
 
 namespace {
-
-void check_bounds(const Bounds& bounds, const Vec3& min, const Vec3& max, double margin = 1e-9)
-{
-    for (int axis = 0; axis < 3; ++axis) {
-        CHECK(bounds.min[axis] == Approx(min[axis]).margin(margin));
-        CHECK(bounds.max[axis] == Approx(max[axis]).margin(margin));
-    }
-}
 
 Robot load_parts(const TempFolder& folder, const std::string& parts, const std::string& more = "")
 {

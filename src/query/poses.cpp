@@ -1,5 +1,6 @@
 #include "base/input_file.h"
 #include "base/number.h"
+#include "base/text.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
@@ -42,12 +43,6 @@ std::string quoted_if_needed(const std::string& text)
     std::string out = "\"";
     for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
     return out + "\"";
-}
-
-std::string lower_case(std::string text)
-{
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
 }
 
 bool is_pose_column(const std::string& name)

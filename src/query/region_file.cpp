@@ -1,6 +1,7 @@
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/polygon2.h"
+#include "base/text.h"
 #include "scene/nav2_map.h"
 
 #include <spawnfield/error.h>
@@ -143,12 +144,6 @@ void read_geojson(const std::string& text, const std::string& file, Region& out)
 }
 
 // ---- CSV ----
-
-std::string trimmed(std::string_view text)
-{
-    const std::size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-    return first == std::string_view::npos ? "" : std::string(text.substr(first, last + 1 - first));
-}
 
 std::vector<std::string> fields_of(std::string_view line)
 {
@@ -315,8 +310,7 @@ Region read_region(const std::filesystem::path& file, MapCells cells)
     if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), std::filesystem::exists(file) ? "is no file" : "does not exist; is the path right?");
     Region out;
     out.name = file.filename().string();
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string extension = lower_case(file.extension().string());
     if (extension == ".yaml" || extension == ".yml") read_cells(file, cells, out);
     else if (extension == ".json" || extension == ".geojson") read_geojson(read_file(file), file.string(), out);
     else read_csv(read_file(file), file.string(), out);

@@ -1,6 +1,7 @@
 #include "scene/ascii_grid.h"
 
 #include "base/number.h"
+#include "base/text.h"
 
 #include <spawnfield/error.h>
 
@@ -17,13 +18,6 @@ namespace {
 constexpr std::array header_words{"ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value"};
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
-std::string lower(std::string_view word)
-{
-    std::string out(word);
-    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return out;
-}
 
 bool is_header_word(const std::string& word) { return std::find(header_words.begin(), header_words.end(), word) != header_words.end(); }
 
@@ -78,7 +72,7 @@ Header read_header(Words& words, const std::string& file)
     Header header;
     for (double value = 0;;) {
         const std::string_view word = words.peek();
-        const std::string key = lower(word);
+        const std::string key = lower_case(word);
         if (!is_header_word(key)) {
             if (word.empty() || parse_number(word, value)) return header;
             throw fault(file, words, quoted(word) + " is neither a number nor a word of an ESRI ASCII grid's header; known: ncols, nrows, xllcorner or "
@@ -181,7 +175,7 @@ void read_values(Words words, const std::string& file, GreyImage& image)
 
 bool is_ascii_grid(std::string_view start)
 {
-    const std::string word = lower(Words(start).peek());
+    const std::string word = lower_case(Words(start).peek());
     return is_header_word(word);
 }
 

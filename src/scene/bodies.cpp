@@ -226,8 +226,8 @@ private:
         for (const CollisionBody& body : bodies) {
             const bool counts = body.geometry.kind != Kind::Unknown;
             unknown += !counts;
-            const bool is_told = std::any_of(options_.labels.begin(), options_.labels.end(), [&](const LabelRule& rule) { return matches_body(rule.pattern, body); });
-            labels_.push_back(!counts ? Label::Ignore : is_told ? Label::Obstacle : rules.label_of(body));  // add_part knows what was told
+            const auto told = std::find_if(options_.labels.begin(), options_.labels.end(), [&](const LabelRule& rule) { return matches_body(rule.pattern, body); });
+            labels_.push_back(!counts ? Label::Ignore : told != options_.labels.end() ? told->label : rules.label_of(body));
         }
         if (!rules.has_ground() && options_.labels.empty()) {
             scene_.rules.push_back({"all: nothing is a plane, a heightmap or named as ground", Label::Terrain, bodies.size() - unknown});
@@ -247,27 +247,21 @@ private:
         return out;
     }
 
-    std::uint32_t add_part(const CollisionBody& body, Label fallback)
+    std::uint32_t add_part(const CollisionBody& body, Label label)
     {
         Part part;
         part.name = scoped_name(body);
         part.kind = kind_names[std::size_t(body.geometry.kind)];
-        part.label = fallback;
-        for (const LabelRule& rule : options_.labels)
-            if (matches_body(rule.pattern, body)) {
-                part.label = rule.label;
-                break;
-            }
+        part.label = label;
         scene_.parts.push_back(std::move(part));
         return std::uint32_t(scene_.parts.size() - 1);
     }
 
-    void append_body(const CollisionBody& body, Label fallback)
+    void append_body(const CollisionBody& body, Label label)
     {
         const CollisionGeometry& geometry = body.geometry;
         if (geometry.kind == Kind::Unknown) return;
-        const std::uint32_t part = add_part(body, fallback);
-        const Label label = scene_.parts[part].label;
+        const std::uint32_t part = add_part(body, label);
         if (const std::optional<Shape> shape = shape_of(geometry, body.pose)) {
             if (label == Label::Ignore) return;
             scene_.primitives.push_back({*shape, part, label});
@@ -284,7 +278,8 @@ private:
                 append_ellipsoid(body, part);
             } else {
                 const auto mesh = meshes_.read(files_.at(&body));
-                append_mesh_body(body, part, submesh_of(*mesh, geometry, files_.at(&body).string()), geometry.size);
+                if (geometry.submesh.empty()) append_mesh_body(body, part, *mesh, geometry.size);
+                else append_mesh_body(body, part, submesh_of(*mesh, geometry, files_.at(&body).string()), geometry.size);
             }
         } catch (const std::domain_error& error) {
             throw FileError(file_.string(), "\"" + scoped_name(body) + "\": <polyline>: " + error.what());
@@ -347,10 +342,10 @@ private:
         return body.pose * Pose{Vec3::Zero(), turn};
     }
 
-    void append_plane(const CollisionBody& body, Label fallback)
+    void append_plane(const CollisionBody& body, Label label)
     {
-        const std::uint32_t part = add_part(body, fallback);
-        if (scene_.parts[part].label == Label::Ignore) return;
+        const std::uint32_t part = add_part(body, label);
+        if (label == Label::Ignore) return;
         Bounds box = scene_.map_bounds;
         box.min -= Vec3::Constant(beyond_bounds);
         box.max += Vec3::Constant(beyond_bounds);
@@ -378,7 +373,7 @@ private:
     ModelPaths& paths_;
     const SceneOptions& options_;
     MeshFiles meshes_;
-    std::vector<Label> labels_;  ///< one for each body, by the default rules
+    std::vector<Label> labels_;  ///< one for each body
     std::map<const CollisionBody*, fs::path> files_;
     std::map<std::string, std::pair<std::string, std::size_t>> lost_;  ///< by URI: whose first, how often
     std::vector<std::string> missing_;

@@ -1,4 +1,5 @@
 #include "base/number.h"
+#include "base/text.h"
 #include "scene/mesh.h"
 
 #include <spawnfield/error.h>
@@ -31,12 +32,6 @@ struct PointHash {
         return hash;
     }
 };
-
-std::string lower(std::string text)
-{
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
-}
 
 Mat4 matrix_of(const aiMatrix4x4& m)
 {
@@ -138,7 +133,7 @@ void collect(const aiScene& scene, const aiNode& node, const Mat4& parent, const
 FileMesh read_mesh(const std::filesystem::path& file)
 {
     if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
-    const std::string extension = lower(file.extension().string());
+    const std::string extension = lower_case(file.extension().string());
     Assimp::Importer importer;
     // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);

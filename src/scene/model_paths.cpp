@@ -1,6 +1,7 @@
 #include "scene/model_paths.h"
 
 #include "base/number.h"
+#include "base/text.h"
 
 #include <spawnfield/error.h>
 
@@ -42,11 +43,9 @@ fs::path found_in_fuel_cache(const std::string& uri)
     std::vector<std::string> words;
     for (const fs::path& word : fs::path(without("https://", uri))) words.push_back(word.string());
     if (home == nullptr || words.size() < 5) return {};
-    std::string name = words[4];
+    std::string name = lower_case(words[4]);
     for (std::size_t at = name.find("%20"); at != std::string::npos; at = name.find("%20")) name.replace(at, 3, " ");
-    for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
-    std::string owner = words[2];
-    for (char& c : owner) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string owner = lower_case(words[2]);
     for (const char* const cache : {".gz/fuel", ".ignition/fuel"}) {
         const fs::path versions = fs::path(home) / cache / words[0] / owner / words[3] / name;
         double newest = 0;

@@ -1,5 +1,6 @@
 #include "base/input_file.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "robot/urdf.h"
 #include "scene/bodies.h"
 #include "scene/elements.h"
@@ -307,10 +308,9 @@ Scene read_bare_file(const fs::path& file, const std::string& extension, const S
     if (is_octomap(extension)) {
         if (options.up != 0 || options.scale != 1.0)
             throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() + " is an OctoMap, in metres and z up");
-        for (auto rule = options.labels.rbegin(); rule != options.labels.rend(); ++rule)
-            if (matches(rule->pattern, scene.name)) fallback = rule->label;
-        const std::uint32_t part = add_part(scene, scene.name, "octomap", fallback);
-        if (fallback != Label::Ignore) append_octomap(scene, part, file, {}, options.unknown.value_or(Unknown::Free));
+        const Label label = bare_label(scene.name, options, fallback);
+        const std::uint32_t part = add_part(scene, scene.name, "octomap", label);
+        if (label != Label::Ignore) append_octomap(scene, part, file, {}, options.unknown.value_or(Unknown::Free));
         tell_idle_rules(file, options.labels, {scene.name}, scene);
         return scene;
     }
@@ -372,13 +372,6 @@ Scene read_urdf_scene(const fs::path& file, const SceneOptions& options)
     return scene;
 }
 
-std::string lower_extension(const fs::path& file)
-{
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return extension;
-}
-
 }  // namespace
 
 fs::path scene_file_of(const fs::path& scene) { return fs::is_directory(scene) ? sdf_file_of(scene) : scene; }
@@ -389,7 +382,7 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
         throw ArgumentError("load_scene", "scale", options.scale, "> 0 m per unit");
     const fs::path file = scene_file_of(scene_path);
     if (!fs::is_regular_file(file)) throw FileError(file.string(), fs::exists(file) ? "is no file" : "does not exist; is the path right?");
-    const std::string extension = lower_extension(file);
+    const std::string extension = lower_case(file.extension().string());
     if ((extension == ".yaml" || extension == ".yml") && is_nav2_map(file)) return read_nav2_scene(file, options);
     if (options.wall_height != 0) throw ArgumentError("load_scene", "wall_height is for a 2D map; " + file.string() + " is none");
     const bool yaml = extension == ".yaml" || extension == ".yml", sdf = extension == ".sdf" || extension == ".world", urdf = extension == ".urdf";

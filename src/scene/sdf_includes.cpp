@@ -1,22 +1,16 @@
 #include "scene/sdf_includes.h"
 
+#include "base/text.h"
+
 #include <spawnfield/error.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 
 namespace spawnfield {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string trimmed(const std::string& text)
-{
-    const auto space = " \t\r\n";
-    const std::size_t start = text.find_first_not_of(space);
-    return start == std::string::npos ? "" : text.substr(start, text.find_last_not_of(space) - start + 1);
-}
 
 class IncludeWalk {
 public:
@@ -71,8 +65,8 @@ std::unique_ptr<tinyxml2::XMLDocument> read_sdf_xml(const fs::path& file)
     if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT || (error == tinyxml2::XML_SUCCESS && document->RootElement() == nullptr))
         refuse(0, "is empty, needs an <sdf> element");
     if (error != tinyxml2::XML_SUCCESS) {
-        std::string name = document->ErrorName();
-        std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return c == '_' ? ' ' : char(std::tolower(c)); });
+        std::string name = lower_case(document->ErrorName());
+        std::replace(name.begin(), name.end(), '_', ' ');
         refuse(document->ErrorLineNum(), "is no valid XML (" + name + "): is a tag left open or misspelt?");
     }
     const Xml& root = *document->RootElement();
@@ -97,10 +91,10 @@ fs::path included_file(const std::string& uri, const fs::path& folder, ModelPath
     return found.empty() || !fs::is_directory(found) ? found : sdf_file_of(found);
 }
 
-MissingIncludes check_includes(const fs::path& file, ModelPaths& paths)
+MissingIncludes check_includes(const fs::path& file, const tinyxml2::XMLDocument& document, ModelPaths& paths)
 {
     IncludeWalk walk(paths);
-    walk.visit(file, *read_sdf_xml(file));
+    walk.visit(file, document);
     return walk.take();
 }
 

@@ -13,6 +13,7 @@ namespace spawnfield {
 namespace {
 
 namespace fs = std::filesystem;
+
 /// x y z roll pitch yaw. Nothing where the pose is none of six plain numbers, or hangs on something.
 std::optional<Pose> plain_pose(const Xml& pose)
 {
@@ -60,8 +61,8 @@ public:
 
     SdfWorld read()
     {
-        missing_ = check_includes(file_, paths_);
         const auto document = read_sdf_xml(file_);
+        missing_ = check_includes(file_, *document, paths_);
         Xml* const world = document->RootElement()->FirstChildElement("world");
         if (world == nullptr) {
             read_lone_model();

@@ -47,7 +47,7 @@ public:
 
     Robot read()
     {
-        check_includes(file_, paths_);
+        check_includes(file_, *read_sdf_xml(file_), paths_);
         const SdfSession session(paths_, file_.parent_path());
         sdf::Root root;
         check(root.Load(file_.string(), session.config()));

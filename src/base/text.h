@@ -1,0 +1,26 @@
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <string_view>
+
+namespace spawnfield {
+
+/// ASCII letters alone change.
+inline std::string lower_case(std::string_view text)
+{
+    std::string out(text);
+    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return out;
+}
+
+/// Without the white space around it.
+inline std::string trimmed(std::string_view text)
+{
+    constexpr std::string_view space = " \t\r\n";
+    const std::size_t first = text.find_first_not_of(space);
+    return first == std::string_view::npos ? "" : std::string(text.substr(first, text.find_last_not_of(space) + 1 - first));
+}
+
+}  // namespace spawnfield
