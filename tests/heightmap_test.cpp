@@ -164,7 +164,7 @@ TEST_CASE("heightmaps that make no sense are refused by name")
     CHECK_THROWS_WITH(load(folder, "file: none.png, size: [1, 1], z: [0, 1]"), used("none.png") + "does not exist; is the path right? (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: text.png, size: [1, 1], z: [0, 1]"), used("text.png") + "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout told with the key raw (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: photo.jpg, size: [1, 1], z: [0, 1]"), used("photo.jpg") + "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout told with the key raw (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: colour.png, size: [1, 1], z: [0, 1]"), used("colour.png") + "has 3 channels, needs 1 (grey) (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: colour.png, size: [1, 1], z: [0, 1]"), used("colour.png") + "has a pixel that is coloured (column 0, row 0), needs to be a grey image (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: thin.png, size: [1, 1], z: [0, 1]"), used("thin.png") + "has 2 x 1 pixels, needs at least 2 x 2 (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1]"),
                       used("grey.png") + "is an integer image; heightmap.z is missing (heights of 0 and of the largest value) (line 4)");

@@ -79,15 +79,23 @@ TEST_CASE("gamma and transparency leave PNG pixels as they are")
     CHECK(read_png(folder, {.lines = {0, 1, 2, 0, 3, 4}, .before = chunks}).pixels == Pixels{1, 2, 3, 4});
 }
 
+TEST_CASE("a PNG image that is grey is read as such, in whatever colours it is stored")
+{
+    const TempFolder folder;
+    CHECK(read_png(folder, {.colour = 2, .lines = {0, 1, 1, 1, 2, 2, 2, 0, 3, 3, 3, 4, 4, 4}}).pixels == Pixels{1, 2, 3, 4});
+    CHECK(read_png(folder, {.colour = 4, .lines = {0, 1, '\xff', 2, '\xff', 0, 3, '\xff', 4, '\xff'}}).pixels == Pixels{1, 2, 3, 4});
+    CHECK(read_png(folder, {.colour = 3, .lines = {0, 0, 1, 0, 1, 0}, .before = chunk("PLTE", "aaabbb")}).pixels == Pixels{'a', 'b', 'b', 'a'});
+}
+
 TEST_CASE("PNG images that are damaged or not grey are refused with their name and the reason")
 {
     const TempFolder folder;
     const std::string file = (folder / "a.png").string() + ": ";
     const auto check_refused = [&](const PngText& png, const std::string& reason) { CHECK_THROWS_WITH(read_png(folder, png), file + reason); };
-    check_refused({.colour = 2, .lines = std::string(14, '\0')}, "has 3 channels, needs 1 (grey)");
-    check_refused({.colour = 4, .lines = std::string(10, '\0')}, "has 2 channels, needs 1 (grey)");
-    check_refused({.colour = 6, .lines = std::string(18, '\0')}, "has 4 channels, needs 1 (grey)");
-    check_refused({.colour = 3, .lines = std::string(6, '\0'), .before = chunk("PLTE", "abcdef")}, "has a palette, needs 1 channel (grey)");
+    check_refused({.colour = 2, .lines = {0, 7, 7, 7, 8, 8, 8, 0, 9, 9, 9, 9, 9, 8}}, "has a pixel that is coloured (column 1, row 1), needs to be a grey image");
+    check_refused({.colour = 4, .lines = {0, 7, '\xff', 8, '\xfe', 0, 9, '\xff', 9, '\xff'}}, "has a pixel that is transparent (column 1, row 0), needs to be a grey image");
+    check_refused({.colour = 6, .lines = std::string(18, '\0')}, "has a pixel that is transparent (column 0, row 0), needs to be a grey image");
+    check_refused({.colour = 3, .lines = std::string(6, '\0'), .before = chunk("PLTE", "abcdef")}, "has a pixel that is coloured (column 0, row 0), needs to be a grey image");
     check_refused({.lines = {0, 1, 2}}, "is a damaged PNG image: Not enough image data");
     check_refused({.cols = 0, .lines = {0, 0}}, "is a damaged PNG image: Invalid IHDR data");
     check_refused({.cols = 1000000, .rows = 1000000, .lines = {0}}, "has 1000000 x 1000000 pixels, needs at most 1073741824");

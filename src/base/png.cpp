@@ -9,6 +9,7 @@
 #include <libdeflate.h>
 #include <png.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -177,6 +178,27 @@ Bytes read_samples(Reader& reader, const std::string& file)
 
 std::uint16_t sample(const Bytes& data, std::size_t i, bool wide) { return wide ? std::uint16_t(data[2 * i] * 256 + data[2 * i + 1]) : data[i]; }
 
+/// Of an image that is stored in colours, or with transparency, but has none.
+GreyImage grey_of(const ColourImage& image, const std::string& file)
+{
+    GreyImage grey{image.rows, image.cols, double(image.largest), {}};
+    grey.pixels.reserve(image.samples.size() / std::size_t(image.channels));
+    const bool has_alpha = image.channels % 2 == 0;
+    const std::size_t colours = std::size_t(image.channels - has_alpha);
+    for (std::size_t i = 0; i < image.samples.size(); i += std::size_t(image.channels)) {
+        const std::uint16_t* const pixel = &image.samples[i];
+        const auto refuse = [&](const char* what) {
+            const std::size_t at = grey.pixels.size(), cols = std::size_t(image.cols);
+            throw FileError(file, "has a pixel that is " + std::string(what) + " (column " + std::to_string(at % cols) + ", row " +
+                                      std::to_string(at / cols) + "), needs to be a grey image");
+        };
+        if (std::any_of(pixel + 1, pixel + colours, [&](std::uint16_t value) { return value != pixel[0]; })) refuse("coloured");
+        if (has_alpha && pixel[colours] != image.largest) refuse("transparent");
+        grey.pixels.push_back(pixel[0]);
+    }
+    return grey;
+}
+
 }  // namespace
 
 GreyImage read_grey_png(const std::filesystem::path& path, std::uint64_t most)
@@ -184,8 +206,7 @@ GreyImage read_grey_png(const std::filesystem::path& path, std::uint64_t most)
     const std::string bytes = read_file(path), file = path.string();
     Reader reader(bytes);
     require(reader.read_header(), reader, file);
-    if (reader.has_palette()) throw FileError(file, "has a palette, needs 1 channel (grey)");
-    if (reader.channels() != 1) throw FileError(file, "has " + std::to_string(reader.channels()) + " channels, needs 1 (grey)");
+    if (reader.has_palette() || reader.channels() != 1) return grey_of(read_colour_png(path, most), file);
     check_size(reader, file, most);
     require(reader.prepare(false), reader, file);
     const Bytes data = read_samples(reader, file);

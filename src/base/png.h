@@ -12,7 +12,7 @@ namespace spawnfield {
 bool is_png(std::string_view start);  ///< its first 8 bytes or more
 
 /// 1 to 16 bits, interlaced or not; pixels of fewer than 8 bits are spread over 0 .. 255. Gamma and transparency are not
-/// applied. Throws FileError; for more than `most` pixels before any is read.
+/// applied. Of images stored in colours all pixels need to be grey, and opaque. Throws FileError; for more than `most` pixels before any is read.
 GreyImage read_grey_png(const std::filesystem::path& file, std::uint64_t most = max_pixels);
 
 /// 1 to 4 channels: grey or red, green, blue, then alpha.

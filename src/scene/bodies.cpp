@@ -1,8 +1,10 @@
 #include "scene/bodies.h"
 
 #include "base/number.h"
+#include "geometry/sphere_mesh.h"
 #include "scene/extrusion.h"
-#include "scene/heightmap.h"
+#include "scene/gazebo_heights.h"
+#include "scene/ground_rules.h"
 #include "scene/mesh.h"
 #include "scene/pieces.h"
 
@@ -11,9 +13,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 namespace spawnfield {
@@ -25,116 +25,17 @@ using Kind = CollisionGeometry::Kind;
 constexpr std::array kind_names{"box", "sphere", "cylinder", "capsule", "ellipsoid", "plane", "mesh", "heightmap", "polyline", "unknown"};
 constexpr double beyond_bounds = 50;  // m that planes go on, for what hangs over the map's rim: more than any robot's reach
 
-/// What stands for ground in most worlds; a name matches from the start of one of its words on.
-constexpr std::array ground_names{"ground*", "terrain*", "floor*", "road*", "street*", "sidewalk*", "pavement*", "asphalt*", "bridge*", "ramp*"};
-
-/// Whether the glob matches the name from a word's start: "GroundB_01" in "warehouse_GroundB_01".
-bool matches_from_a_word(const std::string& glob, const std::string& name)
+/// A closed mesh around the ellipsoid of these half axes.
+FileMesh ellipsoid_mesh(const SphereMesh& sphere, const Vec3& radii)
 {
-    for (std::size_t start = 0; start < name.size(); ++start) {
-        const bool is_start = start == 0 || !std::isalnum(static_cast<unsigned char>(name[start - 1]));
-        if (is_start && matches(glob, name.substr(start))) return true;
-    }
-    return false;
-}
-
-bool matches_body(const std::string& glob, const CollisionBody& body)
-{
-    return matches(glob, scoped_name(body)) ||
-           std::any_of(body.names.begin(), body.names.end(), [&](const std::string& name) { return matches(glob, name); });
-}
-
-/// The default rules, with what they decided.
-class GroundRules {
-public:
-    GroundRules()
-    {
-        rules_.push_back({"plane", Label::Terrain, 0});
-        rules_.push_back({"heightmap", Label::Terrain, 0});
-        for (const char* const name : ground_names) rules_.push_back({std::string("name ") + name, Label::Terrain, 0});
-        rules_.push_back({"all else", Label::Obstacle, 0});
-    }
-
-    Label label_of(const CollisionBody& body)
-    {
-        for (std::size_t r = 0; r < rules_.size(); ++r)
-            if (holds(r, body)) {
-                ++rules_[r].count;
-                return rules_[r].label;
-            }
-        return Label::Obstacle;
-    }
-
-    bool has_ground() const { return rules_.back().count == 0 || std::any_of(rules_.begin(), rules_.end() - 1, [](const NameRule& r) { return r.count > 0; }); }
-    std::vector<NameRule> take() { return std::move(rules_); }
-
-private:
-    bool holds(std::size_t rule, const CollisionBody& body) const
-    {
-        if (rule == 0) return body.geometry.kind == Kind::Plane;
-        if (rule == 1) return body.geometry.kind == Kind::Heightmap;
-        if (rule + 1 == rules_.size()) return true;
-        return std::any_of(body.names.begin(), body.names.end(), [&](const std::string& name) { return matches_from_a_word(ground_names[rule - 2], name); });
-    }
-
-    std::vector<NameRule> rules_;
-};
-
-/// A closed mesh around the ellipsoid: rings of latitude, corners so far out that the faces stay outside of it.
-FileMesh ellipsoid_mesh(const Vec3& radii, int rings, int around)
-{
-    const double out = 1 / (std::cos(std::numbers::pi / (2 * rings)) * std::cos(std::numbers::pi / around));
     FileMesh mesh;
     mesh.materials.push_back("");
     FileMesh::Node& node = mesh.nodes.emplace_back();
     node.name = "ellipsoid";
-    const auto add = [&](double latitude, double longitude) {
-        const Vec3 unit(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
-        node.vertices.push_back(out * unit.cwiseProduct(radii));
-    };
-    add(-std::numbers::pi / 2, 0);
-    for (int ring = 1; ring < rings; ++ring)
-        for (int k = 0; k < around; ++k) add(std::numbers::pi * (double(ring) / rings - 0.5), 2 * std::numbers::pi * k / around);
-    add(std::numbers::pi / 2, 0);
-    const auto corner = [&](int ring, int k) {
-        return ring == 0 ? 0u : ring == rings ? std::uint32_t(node.vertices.size() - 1) : std::uint32_t(1 + (ring - 1) * around + k % around);
-    };
-    for (int ring = 0; ring < rings; ++ring)
-        for (int k = 0; k < around; ++k) {
-            if (ring > 0) node.triangles.push_back({corner(ring, k), corner(ring, k + 1), corner(ring + 1, k)});
-            if (ring + 1 < rings) node.triangles.push_back({corner(ring, k + 1), corner(ring + 1, k + 1), corner(ring + 1, k)});
-        }
+    for (const Vec3& vertex : sphere.vertices) node.vertices.push_back(vertex.cwiseProduct(radii));
+    node.triangles = sphere.triangles;
     node.materials.assign(node.triangles.size(), 0);
     return mesh;
-}
-
-/// Heights as Gazebo has them: the brightest pixel lies size.z above black, however bright it is
-/// (gazebo::common::ImageHeightmap, HeightmapShape); between pixels, `sampling` - 1 samples are interpolated bilinearly.
-Heightmap gazebo_heights(const fs::path& file, const CollisionGeometry& geometry)
-{
-    std::vector<std::string> ignored;
-    const GreyImage image = read_height_file(file, {}, false, ignored).image;
-    if (image.rows < 2 || image.cols < 2) throw FileError(file.string(), "has " + std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels, needs at least 2 x 2");
-    if (image.largest == 0) throw FileError(file.string(), "has float pixels: a <heightmap> needs an image of 8 or 16 bits; bake the elevation model itself");
-    const double brightest = *std::max_element(image.pixels.begin(), image.pixels.end());
-    const double scale = brightest > 0 ? geometry.size.z() / brightest : 0;
-    const int s = int(geometry.sampling);
-    const std::uint64_t wanted = (std::uint64_t(image.rows - 1) * s + 1) * (std::uint64_t(image.cols - 1) * s + 1);
-    if (wanted > max_heights) throw FileError(file.string(), "has " + std::to_string(wanted) + " samples with <sampling> " + std::to_string(s) + ", needs at most " + std::to_string(max_heights));
-    Heightmap map;
-    map.size = {geometry.size.x(), geometry.size.y()};
-    map.rows = (image.rows - 1) * s + 1;
-    map.cols = (image.cols - 1) * s + 1;
-    map.heights.reserve(wanted);
-    const auto pixel = [&](int row, int col) { return image.pixels[std::size_t(std::min(row, image.rows - 1)) * image.cols + std::min(col, image.cols - 1)]; };
-    for (int row = 0; row < map.rows; ++row)
-        for (int col = 0; col < map.cols; ++col) {
-            const double v = double(row % s) / s, u = double(col % s) / s;
-            const double upper = pixel(row / s, col / s) * (1 - u) + pixel(row / s, col / s + 1) * u;
-            const double lower = pixel(row / s + 1, col / s) * (1 - u) + pixel(row / s + 1, col / s + 1) * u;
-            map.heights.push_back(scale * (upper * (1 - v) + lower * v));
-        }
-    return map;
 }
 
 /// The part of the infinite plane z = 0 of `pose` that lies in the box: a convex polygon's corners, none if they do not meet.
@@ -249,12 +150,7 @@ private:
 
     std::uint32_t add_part(const CollisionBody& body, Label label)
     {
-        Part part;
-        part.name = scoped_name(body);
-        part.kind = kind_names[std::size_t(body.geometry.kind)];
-        part.label = label;
-        scene_.parts.push_back(std::move(part));
-        return std::uint32_t(scene_.parts.size() - 1);
+        return spawnfield::add_part(scene_, scoped_name(body), kind_names[std::size_t(body.geometry.kind)], label);
     }
 
     void append_body(const CollisionBody& body, Label label)
@@ -303,11 +199,11 @@ private:
 
     void append_ellipsoid(const CollisionBody& body, std::uint32_t part)
     {
-        constexpr int rings = 48, around = 96;
-        append_mesh_body(body, part, ellipsoid_mesh(body.geometry.size, rings, around), Vec3::Ones());
-        const double out = 1 / (std::cos(std::numbers::pi / (2 * rings)) * std::cos(std::numbers::pi / around)) - 1;
+        constexpr int rounds = 4;  // 5,120 triangles, within a thousandth of the ellipsoid
+        const SphereMesh sphere = mesh_around_unit_sphere(rounds);
+        append_mesh_body(body, part, ellipsoid_mesh(sphere, body.geometry.size), Vec3::Ones());
         ++ellipsoids_;
-        ellipsoid_growth_ = std::max(ellipsoid_growth_, out * body.geometry.size.maxCoeff());
+        ellipsoid_growth_ = std::max(ellipsoid_growth_, (sphere.vertices[0].norm() - 1) * body.geometry.size.maxCoeff());
     }
 
     void tell_ellipsoids()

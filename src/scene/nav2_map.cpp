@@ -222,15 +222,7 @@ void append_walls(Scene& scene, std::uint32_t part, const Nav2Map& map, double h
 
 void append_nav2_map(Scene& scene, const Nav2Map& map, Label floor, Label walls, double wall_height)
 {
-    const auto add = [&](const char* name, const char* kind, Label label) {
-        Part part;
-        part.name = name;
-        part.kind = kind;
-        part.label = label;
-        scene.parts.push_back(std::move(part));
-        return std::uint32_t(scene.parts.size() - 1);
-    };
-    const std::uint32_t floor_part = add("floor", "map", floor), wall_part = add("walls", "map", walls);
+    const std::uint32_t floor_part = add_part(scene, "floor", "map", floor), wall_part = add_part(scene, "walls", "map", walls);
     if (floor != Label::Ignore) append_floor(scene, floor_part, map);
     if (walls != Label::Ignore) append_walls(scene, wall_part, map, wall_height);
 }

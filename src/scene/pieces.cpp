@@ -60,6 +60,16 @@ FacePieces find_pieces(const std::vector<Triangle>& faces)
     return pieces;
 }
 
+std::uint32_t add_part(Scene& scene, const std::string& name, const std::string& kind, Label label)
+{
+    Part part;
+    part.name = name;
+    part.kind = kind;
+    part.label = label;
+    scene.parts.push_back(std::move(part));
+    return static_cast<std::uint32_t>(scene.parts.size() - 1);
+}
+
 void append_sheet(Scene& scene, std::uint32_t part, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                   bool sides_up)
 {

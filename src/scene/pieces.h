@@ -2,6 +2,8 @@
 
 #include <spawnfield/scene.h>
 
+#include <string>
+
 namespace spawnfield {
 
 /// Faces joined over shared edges.
@@ -12,6 +14,9 @@ struct FacePieces {
 
 /// Connected components over edges of welded faces. O(faces log faces).
 FacePieces find_pieces(const std::vector<Triangle>& faces);
+
+/// Appends a part without geometry; its number.
+std::uint32_t add_part(Scene& scene, const std::string& name, const std::string& kind, Label label);
 
 /// Appends one piece without thickness: triangles index `vertices`, which are in the scene's frame.
 void append_sheet(Scene& scene, std::uint32_t part, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,

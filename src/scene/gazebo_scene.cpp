@@ -1,0 +1,58 @@
+#include "scene/gazebo_scene.h"
+
+#include "robot/urdf.h"
+#include "scene/bodies.h"
+#include "scene/label_rules.h"
+#include "scene/sdf_world.h"
+
+#include <spawnfield/error.h>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+void tell_some(const fs::path& file, const Names& names, const std::string& what, Scene& scene)
+{
+    if (!names.empty()) scene.notices.push_back(file.string() + ": " + std::to_string(names.size()) + " " + what + ": " + first_of(names, 5));
+}
+
+void tell_guessed(const fs::path& file, const ModelPaths& paths, Scene& scene)
+{
+    Names guessed;
+    for (const fs::path& folder : paths.guessed()) guessed.push_back(folder.string());
+    tell_some(file, guessed, guessed.size() == 1 ? "folder of models was found above the file (--model-path names others)" : "folders of models were found above the file (--model-path names others)", scene);
+}
+
+}  // namespace
+
+Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
+{
+    ModelPaths paths(options.model_paths, file);
+    SdfWorld world = read_sdf_world(file, paths);
+    if (world.model_count == 0)
+        throw FileError(file.string(), "has no models, so nothing to stand on; what is spawned into it at run time has to be in the file");
+    Scene scene;
+    scene.name = world.name.empty() || world.name == "default" ? file.stem().string() : world.name;
+    scene.notices = std::move(world.notices);
+    append_bodies(scene, file, std::move(world.bodies), paths, options, std::move(world.missing));
+    tell_some(file, world.bare_models, world.bare_models.size() == 1 ? "model has no collision and is not there for a robot" : "models have no collision and are not there for a robot", scene);
+    if (world.actor_count > 0) scene.notices.push_back(file.string() + ": <actor>: " + std::to_string(world.actor_count) + " left out, as they move");
+    if (world.road_count > 0) scene.notices.push_back(file.string() + ": <road>: " + std::to_string(world.road_count) + " left out, as they are only seen");
+    tell_guessed(file, paths, scene);
+    return scene;
+}
+
+Scene read_urdf_scene(const fs::path& file, const SceneOptions& options)
+{
+    ModelPaths paths(options.model_paths, file);
+    UrdfModel model = read_urdf_model(file, {});
+    Scene scene;
+    scene.name = model.name;
+    scene.notices = std::move(model.notices);
+    append_bodies(scene, file, std::move(model.bodies), paths, options, {});
+    tell_guessed(file, paths, scene);
+    return scene;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,164 @@
+#include "scene/scene_yaml.h"
+
+#include "scene/heightmap.h"
+#include "scene/label_rules.h"
+#include "scene/octomap_part.h"
+#include "scene/pieces.h"
+#include "scene/yaml_map.h"
+
+#include <spawnfield/error.h>
+
+#include <set>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+Label read_label(const YamlMap& map, const std::string& fallback)
+{
+    const std::string label = map.one_of("label", {"terrain", "obstacle", "water", "ignore"}, fallback);
+    for (const Label candidate : {Label::Terrain, Label::Obstacle, Label::Water})
+        if (label == to_string(candidate)) return candidate;
+    return Label::Ignore;
+}
+
+FaceRule read_rule(const YamlMap& rule)
+{
+    rule.only({"node", "material", "label"});
+    if (rule.has("node") == rule.has("material")) rule.fail("needs one of node, material");
+    if (!rule.has("label")) rule.fail("label", "is missing");
+    const bool by_node = rule.has("node");
+    return {rule.text(by_node ? "node" : "material"), by_node, !by_node, read_label(rule, "")};
+}
+
+/// A rule that matches nothing is most often a slip of the pen.
+void tell_idle_rules(const YamlMap& part, const std::vector<FaceRule>& rules, const MeshNames& names, Scene& scene)
+{
+    for (const FaceRule& rule : rules) {
+        if (rule.node && rule.material) continue;  // from the caller; told when all parts are read
+        if (matches_one(rule.pattern, rule.node ? names.nodes : names.materials)) continue;
+        scene.notices.push_back(part.file() + ": " + part.place() + ": labels: " + (rule.node ? "node" : "material") + " \"" +
+                                rule.pattern + "\" matches nothing");
+    }
+}
+
+/// Reads a file that the part names; what is wrong with it is told with part and key.
+template <class Read>
+void in_part(const YamlMap& map, const std::string& key, Read read)
+{
+    const std::string file = map.text(key);
+    try {
+        read(file);
+    } catch (const FileError& error) {
+        map.fail(key, std::string("cannot be used: ") + error.what());
+    }
+}
+
+MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
+{
+    MeshOptions mesh;
+    mesh.pose = part.pose();
+    mesh.scale = part.scale();
+    mesh.up = part.has("up") ? part.one_of("up", {"y", "z"}, "z")[0] : char{0};
+    const std::string solid = part.one_of("solid", {"auto", "true", "false"}, "auto");
+    mesh.solid = solid == "auto" ? MeshOptions::Solid::Auto : solid == "true" ? MeshOptions::Solid::Yes : MeshOptions::Solid::No;
+    mesh.sides_up = part.one_of("sides", {"both", "up"}, "both") == "up";
+    mesh.rules = face_rules(options.labels);
+    if (part.has("labels"))
+        for (const YAML::Node& rule : part.list("labels"))
+            mesh.rules.push_back(read_rule({rule, part.file(), part.place() + ": labels"}));
+    return mesh;
+}
+
+/// What the parts of a scene.yaml have in common.
+struct SceneFile {
+    fs::path folder;
+    const SceneOptions& options;
+    MeshFiles meshes;
+    Names names;  ///< that label rules of the options can match
+
+    void add(const Names& more)
+    {
+        if (!options.labels.empty()) add_names(more, names);  // a scene may have 100,000 names
+    }
+};
+
+void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
+{
+    const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
+                                      {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels", "unknown"});
+    if (kind == "mesh") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "mesh", "up", "scale", "solid", "sides", "labels"});
+    else if (kind == "plane") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "plane", "sides"});
+    else if (kind == "heightmap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "heightmap", "sides"});
+    else if (kind == "octomap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "octomap", "unknown"});
+    else map.only({"name", "label", "xyz", "rpy", "rpy_deg", kind.c_str()});
+
+    Label label = read_label(map, "obstacle");
+    const std::string name = map.text("name");
+    if (kind != "mesh") {
+        file.add({name});
+        label = label_by_name(name, file.options.labels, label);
+    }
+    const std::uint32_t part = add_part(scene, name, kind, label);
+    if (kind == "mesh") {
+        const MeshOptions mesh = read_mesh_options(map, file.options);
+        in_part(map, "mesh", [&](const auto& path) {
+            const MeshNames found = append_mesh(scene, part, *file.meshes.read(file.folder / path), mesh);
+            tell_idle_rules(map, mesh.rules, found, scene);
+            file.add(found.nodes);
+            file.add(found.materials);
+        });
+    } else if (label == Label::Ignore) {
+        return;
+    } else if (kind == "plane") {
+        const auto size = map.positive_pair("plane");
+        append_plane(scene, part, size[0], size[1], map.pose(), map.one_of("sides", {"both", "up"}, "both") == "up");
+    } else if (kind == "heightmap") {
+        const HeightmapOptions heightmap = read_heightmap_options(map.map("heightmap"));
+        const bool up = map.one_of("sides", {"both", "up"}, "both") == "up";
+        in_part(map.map("heightmap"), "file", [&](const auto& path) {
+            const Heightmap found = read_heightmap(file.folder / path, heightmap);
+            append_heightmap(scene, part, found, map.pose(), up);
+            place_scene(scene, found, map.pose(), map.file() + ": " + map.place());
+        });
+    } else if (kind == "octomap") {
+        const Unknown given = map.one_of("unknown", {"free", "blocked"}, "free") == "blocked" ? Unknown::Blocked : Unknown::Free;
+        in_part(map, "octomap", [&](const auto& path) {
+            append_octomap(scene, part, file.folder / path, map.pose(), file.options.unknown.value_or(given));
+        });
+    } else {
+        scene.primitives.push_back({read_shape(map, kind), part, label});
+        scene.parts[part].solid_pieces = 1;
+    }
+}
+
+}  // namespace
+
+Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
+{
+    const YamlMap root = read_yaml(file, "spawnfield-scene/1");
+    root.only({"format", "name", "parts"});
+    Scene scene;
+    scene.name = root.text("name", file.stem().string());
+    std::set<std::string> part_names;
+    SceneFile common{file.parent_path(), options, {}, {}};
+    for (const YAML::Node& node : root.list("parts"))
+        if (node.IsMap() && node["mesh"] && node["mesh"].IsScalar()) common.meshes.expect(common.folder / node["mesh"].Scalar());
+    std::size_t number = 0;
+    for (const YAML::Node& node : root.list("parts")) {
+        ++number;
+        const YamlMap unnamed(node, file.string(), "part " + std::to_string(number));
+        const std::string name = unnamed.text("name");
+        const YamlMap map(node, file.string(), "part \"" + name + "\"");
+        if (!part_names.insert(name).second) map.fail("name", "is given to an earlier part too, needs to be unique");
+        read_part(map, common, scene);
+        if (scene.parts.back().name != name && !part_names.insert(scene.parts.back().name).second)
+            map.fail("octomap", "has unknown space, but its part's name \"" + scene.parts.back().name + "\" is given to another part");
+    }
+    if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
+    tell_idle_rules(file, options.labels, common.names, scene);
+    return scene;
+}
+
+}  // namespace spawnfield

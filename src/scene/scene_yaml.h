@@ -1,0 +1,12 @@
+#pragma once
+
+#include <spawnfield/scene.h>
+
+#include <filesystem>
+
+namespace spawnfield {
+
+/// A scene.yaml (docs/input-files.md) with the files that its parts name. Throws FileError.
+Scene read_scene_yaml(const std::filesystem::path& file, const SceneOptions& options);
+
+}  // namespace spawnfield
