@@ -80,7 +80,8 @@ TEST_CASE("an experiment of rasters has the counts of raster at each step, run a
 {
     const Arena arena;
     const std::string options[] = {"--dims 2 --offset 0.3 --yaw 0.4", "--dims 3 --bounds -5,-5,-1,5,5,3 --max-height 0.5",
-                                   "--dims 3 --snap --layers top --offset 0.2", "--dims 3 --no-height-check --bounds 0,0,0,3,3,2", "--dims 2 --exhaustive"};
+                                   "--dims 3 --snap --layers top --offset 0.2", "--dims 3 --no-height-check --bounds 0,0,0,3,3,2", "--dims 2 --exhaustive",
+                                   "--dims 2 --region -5,-5,3,4 --keep-out -1,-1,1,1"};
     for (const std::string& option : options) {
         INFO(option);
         const ProgramRun run = arena("experiment map --steps 0.7:1.3:0.3 --runs 2 -o out " + option + husky);
@@ -153,7 +154,7 @@ TEST_CASE("an experiment's table has a row per step with mean and sample varianc
 TEST_CASE("an experiment of searches has the counts of search at each seed")
 {
     const Arena arena;
-    const std::string draws = "map -n 15 --min-distance 0.5 --max-failures 5000 --bounds -9,-9,-0.1,9,9,1 --yaw 0.3" + husky;
+    const std::string draws = "map -n 15 --min-distance 0.5 --max-failures 5000 --bounds -9,-9,-0.1,9,9,1 --yaw 0.3 --keep-out -3,-3,3,3" + husky;
     const nlohmann::json told = summary(arena, "experiment --search --seed 7 --runs 3 -o out " + draws);
     CHECK(told["command"] == "experiment");
     CHECK(told["seed"] == 7);

@@ -254,6 +254,7 @@ TEST_CASE("spawns as JSON have quaternions of unit length, names, their settings
     map.bounds = {Vec3(-1, -2, -3), Vec3(4, 5, 6)};
     Robot robot;
     robot.name = "rover";
+    robot.joints = {{"arm", 0.5}};
     SampleOptions options;
     options.count = 4;
     options.min_distance = 0.25;
@@ -265,6 +266,8 @@ TEST_CASE("spawns as JSON have quaternions of unit length, names, their settings
     const auto json = nlohmann::json::parse(spawns_json(robots, list, map, robot, options));
     CHECK(json["map"]["hash"] == "0123456789abcdef");
     CHECK(json["robot"] == "rover");
+    CHECK(json["joints"] == nlohmann::json{{"arm", 0.5}});
+    CHECK_FALSE(json.contains("mesh_parts"));
     CHECK(json["command"] == "sample");
     CHECK(json["version"] == version());
     const auto& settings = json["settings"];

@@ -32,20 +32,22 @@ struct MeshFit {
 };
 
 /// A rigid body: the union of convex parts, in its own frame, whose origin is the pose that commands take and give.
+/// Where a joint stands.
+struct JointPosition {
+    std::string joint;
+    double value = 0;  ///< rad of revolute and continuous joints, m of prismatic ones
+};
+
 struct Robot {
     std::string name;
     std::vector<RobotPart> parts;   ///< at least one
     std::vector<Vec3> contacts;     ///< where wheels or feet touch the ground; may be empty
     std::vector<std::string> notices;
-    std::vector<MeshFit> meshes = {};  ///< one for each mesh collision
+    std::vector<MeshFit> meshes = {};        ///< one for each mesh collision
+    std::vector<JointPosition> joints = {};  ///< RobotOptions::joints, as it was read
+    int mesh_parts = 1;                      ///< RobotOptions::mesh_parts, as it was read
 
     Bounds bounds() const;
-};
-
-/// Where a joint stands.
-struct JointPosition {
-    std::string joint;
-    double value = 0;  ///< rad of revolute and continuous joints, m of prismatic ones
 };
 
 struct RobotOptions {

@@ -244,6 +244,8 @@ Json json_head(const std::string& command, const Map& map, const Robot& robot, J
     out["command"] = command;
     out["map"] = {{"name", map.name}, {"hash", map.hash}};
     if (!robot.name.empty()) out["robot"] = robot.name;
+    for (const auto& [joint, value] : robot.joints) out["joints"][joint] = value;
+    if (robot.mesh_parts != 1) out["mesh_parts"] = robot.mesh_parts;
     if (!settings.is_null()) out["settings"] = std::move(settings);
     out["frame"] = "metres, radians, x forward, y left, z up (REP-103)";
     out["quaternion_order"] = "xyzw";

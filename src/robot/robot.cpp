@@ -153,6 +153,8 @@ Robot load_robot(const std::string& robot, const RobotOptions& options)
         return box_robot(robot);
     }
     Robot out = read_robot(robot, options);
+    out.joints = options.joints;
+    out.mesh_parts = options.mesh_parts;
     for (std::string& text : growth_notices(out)) out.notices.push_back(robot + ": " + std::move(text));
     return out;
 }

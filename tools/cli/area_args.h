@@ -4,7 +4,7 @@
 
 namespace spawnfield::cli {
 
-/// Where poses are wanted: of `sample`, `search`, `raster` and `heatmap`.
+/// Where poses are wanted: of `sample`, `search`, `raster`, `heatmap` and `experiment`.
 struct AreaArgs {
     std::vector<std::string> regions, keep_outs;
 };

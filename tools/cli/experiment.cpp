@@ -84,8 +84,12 @@ public:
     {
         OutputFolder folder(args_.out, holds_only(experiment_files, "former experiment"));
         session_ = open_session(args_);
-        if (args_.search) tell_if_off_map(args_, session_->map, "--bounds", search_.bounds);
-        else tell_about(args_, *session_, raster_);
+        if (args_.search) {
+            tell_if_off_map(args_, session_->map, "--bounds", search_.bounds);
+            tell_about_area(args_, session_->map, search_.area);
+        } else {
+            tell_about(args_, *session_, raster_);
+        }
         summary_.lap("load");
         std::vector<ExperimentRun> runs = args_.search ? run_searches() : run_rasters();
         summary_.lap("query");
@@ -105,6 +109,7 @@ private:
     {
         search_ = search_options(args_, args_.draws, args_.bounds, "experiment");
         search_.yaw = parse_finite("--yaw", args_.yaw, "rad");
+        search_.area = read_area(args_, args_.area);
         search_.exact_time = &summary_.exact_time;
     }
 
@@ -171,7 +176,8 @@ private:
         summary_.finish();
         if (short_runs_ == 0) return done;
         notice(args_, counted(short_runs_, "run") + " of " + std::to_string(args_.runs) + " found fewer than " + std::to_string(search_.count) +
-                          " spawns; a smaller --min-distance, more --max-failures or wider --bounds may give more");
+                          " spawns; a smaller --min-distance, more --max-failures or a wider " +
+                          (search_.area.is_everywhere() ? "--bounds" : "--region") + " may give more");
         return fewer_found;
     }
 

@@ -1,4 +1,3 @@
-#include "area_args.h"
 #include "raster_args.h"
 #include "thesis_output.h"
 
@@ -11,7 +10,6 @@ namespace spawnfield::cli {
 namespace {
 
 struct RasterCommandArgs : RasterArgs {
-    AreaArgs area;
     double step = 0, step_z = 0;
     bool write_aerial = false;
     std::string format = "csv", out, heatmap;
@@ -34,7 +32,6 @@ RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
     options.step = parse_positive("--step", args.step);
     if (command.count("--step-z") > 0) options.step_z = parse_positive("--step-z", args.step_z);
     check_write_aerial(args, command, options);
-    options.area = read_area(args, args.area);
     return options;
 }
 
@@ -68,7 +65,6 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     const auto session = open_session(args);
     tell_about(args, *session, options);
-    tell_about_area(args, session->map, options.area);
     summary.lap("load");
     const RasterResult result = raster(session->map, *session->checker, options);
     summary.lap("query");
@@ -101,7 +97,6 @@ void add_raster(CLI::App& app, Run& run)
     command.get_option("--dims")->required();
     command.add_option("--step", args->step, "Between columns, m")->required();
     command.add_option("--step-z", args->step_z, "Between heights, m (default: --step)");
-    add_area(command, args->area);
     command.add_flag("--write-aerial", args->write_aerial, "3D: write aerial poses too; with --format thesis those off the terrain, in 2D as well");
     command.add_option("--format", args->format, "csv, or thesis: a folder of Valid_Locations.txt and the like in Unity's frame (default csv)")
         ->check(CLI::IsMember({"csv", "thesis"}));

@@ -28,6 +28,7 @@ void add_raster_query(CLI::App& command, RasterArgs& args)
     command.add_option("--offset", args.offset, "Of the robot's origin above its layer in 2D and with --snap, m (default 0.1)");
     command.add_option("--yaw", args.yaw, "Of all poses, rad (default 0)");
     command.add_option("--bounds", args.bounds, "x0,y0,z0,x1,y1,z1 in m; 2D takes x0,y0,x1,y1 too and leaves z aside (default: the map's)");
+    add_area(command, args.area);
     command.add_option("--layers,--layer", args.layers, "all, top, bottom, or N from the top (0 first)");
     command.add_flag("--no-height-check", args.no_height_check, "3D: collisions alone, at every pose");
     command.add_flag("--snap", args.snap, "3D: a pose on every layer, --offset above it, in place of the lowest step at or above it");
@@ -47,12 +48,14 @@ RasterOptions raster_options(const RasterArgs& args, const CLI::App& command)
     options.snap = args.snap;
     if (args.snap) check_snap(args);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, args.dims == 2);
+    options.area = read_area(args, args.area);
     return options;
 }
 
 void tell_about(const RasterArgs& args, const Session& session, const RasterOptions& options)
 {
     tell_if_off_map(args, session.map, "--bounds", options.bounds);
+    tell_about_area(args, session.map, options.area);
     tell_if_no_layer(args, session.map, options.layers);
     if (options.dims == 2 || options.snap) tell_if_in_ground(args, session.robot, options.offset);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli.h"
+#include "area_args.h"
 
 namespace spawnfield::cli {
 
@@ -8,6 +8,7 @@ namespace spawnfield::cli {
 struct RasterArgs : QueryArgs {
     int dims = 2;
     double offset = 0.1, yaw = 0;
+    AreaArgs area;
     std::string bounds, layers = "all";
     bool no_height_check = false, snap = false;
 };

@@ -6,13 +6,16 @@ namespace spawnfield::cli {
 
 Settings query_settings(const std::string& command, const QueryArgs& args, const Session& session)
 {
-    return {{"Command", command},
-            {"Version", version()},
-            {"Map", session.map.name},
-            {"Map hash", session.map.hash},
-            {"Robot", session.robot.name},
-            {"Collision", args.collision},
-            {"Exhaustive", args.exhaustive ? "yes" : "no"}};
+    Settings out{{"Command", command},
+                 {"Version", version()},
+                 {"Map", session.map.name},
+                 {"Map hash", session.map.hash},
+                 {"Robot", session.robot.name}};
+    for (const auto& [joint, value] : session.robot.joints) out.emplace_back("Joint " + joint + " (rad or m)", number(value));
+    if (session.robot.mesh_parts != 1) out.emplace_back("Mesh parts", std::to_string(session.robot.mesh_parts));
+    out.emplace_back("Collision", args.collision);
+    out.emplace_back("Exhaustive", args.exhaustive ? "yes" : "no");
+    return out;
 }
 
 std::unique_ptr<OutputFolder> thesis_folder(const std::string& out)
