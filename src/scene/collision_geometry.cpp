@@ -2,6 +2,8 @@
 
 #include <spawnfield/error.h>
 
+#include <algorithm>
+
 namespace spawnfield {
 
 using Kind = CollisionGeometry::Kind;
@@ -25,6 +27,12 @@ std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pos
     case Kind::Ellipsoid: return size[0] == size[1] && size[1] == size[2] ? std::optional(Shape{ShapeKind::Sphere, Vec3(size[0], 0, 0), pose}) : std::nullopt;
     default: return {};
     }
+}
+
+bool has_submesh(const FileMesh& mesh, const CollisionGeometry& geometry)
+{
+    return geometry.submesh.empty() ||
+           std::any_of(mesh.nodes.begin(), mesh.nodes.end(), [&](const FileMesh::Node& node) { return node.name == geometry.submesh; });
 }
 
 FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, const std::string& file)

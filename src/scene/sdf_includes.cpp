@@ -1,6 +1,7 @@
 #include "scene/sdf_includes.h"
 
 #include "base/text.h"
+#include "scene/sdf_numbers.h"
 
 #include <spawnfield/error.h>
 
@@ -18,6 +19,7 @@ public:
 
     void visit(const fs::path& file, const tinyxml2::XMLDocument& document)
     {
+        check_numbers(file, *document.RootElement());
         stack_.push_back(fs::weakly_canonical(file));
         for_each_element(*document.RootElement(), [&](const Xml& include) {
             if (std::string(include.Name()) != "include") return;

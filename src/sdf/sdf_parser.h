@@ -28,11 +28,28 @@ private:
     sdf::ParserConfig config_;
 };
 
+/// What an error of libsdformat means here.
+enum class SdfErrorKind {
+    Frames,     ///< poses are wrong, or lost, where frames are not understood
+    Unknown,    ///< an element that SDF does not know, and nobody reads
+    Duplicate,  ///< a second thing of a name, which libsdformat leaves out
+    Harmless,   ///< about mass or age, not about where collisions are
+    Repeated,   ///< of what is told in another way
+    Other
+};
+SdfErrorKind kind_of(const sdf::Error& error);
+
 /// File, line, element and words of an error, without what it has not.
 std::string words_of(const sdf::Error& error, const std::string& file);
 
 Vec3 vector_of(const ignition::math::Vector3d& v);
 Pose pose_of(const ignition::math::Pose3d& pose);
+
+/// What nobody collides with, by its <surface>: volumes for triggers and decoration.
+bool touches_nothing(const sdf::Collision& collision);
+
+/// <geometry> without a shape, or with <empty/>.
+bool is_empty(const sdf::Geometry& geometry);
 
 /// Where a collision stands, for complaints.
 struct SdfPlace {
@@ -41,7 +58,7 @@ struct SdfPlace {
     std::optional<int> line;
 };
 
-/// Throws FileError for sizes that are no numbers > 0 or beyond 1000 km.
+/// Throws FileError for more than one shape, for sizes that are no numbers > 0 or beyond 1000 km.
 CollisionGeometry geometry_of(const sdf::Geometry& geometry, const SdfPlace& place);
 
 }  // namespace spawnfield
