@@ -9,6 +9,7 @@
 #include <spawnfield/column.h>
 #include <spawnfield/error.h>
 #include <spawnfield/geometry.h>
+#include <spawnfield/robot.h>
 #include <spawnfield/scene.h>
 
 #include <Eigen/Geometry>
@@ -335,6 +336,19 @@ TEST_CASE("what SDF does not know, or nothing touches, is told, with the file's 
     CHECK(lost.parts.size() == 1);
 }
 
+TEST_CASE("a file that is named as one of libsdformat's own is read, not that one")
+{
+    const TempFolder folder;
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    for (const char* const name : {"model.sdf", "world.sdf", "frame.sdf"}) {
+        folder.write(name, "<sdf version='1.9'>" + model_of("mine", unit_box) + "</sdf>");
+        CHECK(places(load_scene(name)).contains("mine::l::c"));
+        CHECK(load_robot(name).name == "mine");
+    }
+    fs::current_path(before);
+}
+
 TEST_CASE("COLLADA in SDF has its unit, but keeps its axes")
 {
     const TempFolder folder;
@@ -462,8 +476,12 @@ TEST_CASE("faulty worlds are refused with file, line and element")
     CHECK(has(refusal(folder.write("empty.world", "")), "is empty"));
     CHECK(has(refusal(folder.write("other.sdf", "<mujoco/>")), "line 1: <mujoco> stands where"));
     CHECK(has(refusal(folder.write("noversion.sdf", "<sdf><world name='w'/></sdf>")), "line 1: <sdf> has no version"));
+    CHECK(has(refusal(folder.write("version.sdf", "<sdf version='abc'><world name='w'/></sdf>")), "line 1: <sdf> has version \"abc\", needs such as version=\"1.6\""));
+    const std::string only_lost = refusal(folder.write("lost.sdf", world_of(model_of("a", "<mesh><uri>nothere.dae</uri></mesh>"))));
+    CHECK(has(only_lost, "has no geometry: all of it is ignored, missing or without collision"));
+    CHECK(has(only_lost, "nothere.dae is found nowhere"));
     CHECK(has(refusal(folder.write("two.sdf", "<sdf version='1.9'><world name='a'/><world name='b'/></sdf>")), "has 2 worlds, needs one"));
-    CHECK(has(refusal(folder / "models"), "does not exist"));
+    CHECK(has(refusal(folder / "nowhere"), "does not exist"));
     fs::create_directories(folder / "hollow");
     CHECK(has(refusal(folder / "hollow"), "is a folder without model.config"));
 }
@@ -478,6 +496,18 @@ TEST_CASE("models that include each other in a circle are refused, with the circ
     CHECK(has(message, "egg/model.sdf: line 2: <include> <uri> model://hen"));
     CHECK(has(message, "leads back to itself"));
     CHECK(has(message, "hen/model.sdf includes "));
+}
+
+TEST_CASE("models that include the next one twice, and so on, are refused before they are built")
+{
+    const TempFolder folder;
+    constexpr int doublings = 40;
+    for (int i = 0; i < doublings; ++i) {
+        const std::string next = std::to_string(i + 1), include = "<include><uri>model://m" + next + "</uri><name>";
+        write_model(folder, "m" + std::to_string(i), "<model name='m'>" + include + "a</name></include>" + include + "b</name></include></model>");
+    }
+    write_model(folder, "m" + std::to_string(doublings), "<model name='m'><link name='l'>" + collision(unit_box) + "</link></model>");
+    CHECK(has(refusal_of(folder, ground + "<include><uri>model://m0</uri></include>"), "is the one with which all includes come to more than 100000"));
 }
 
 TEST_CASE("the real worlds hold what an independent reader finds in them")

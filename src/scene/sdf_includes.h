@@ -1,37 +1,14 @@
 #pragma once
 
+#include "base/xml.h"
 #include "scene/model_paths.h"
 
-#include <tinyxml2.h>
-
 #include <map>
-#include <memory>
 
 namespace spawnfield {
 
-/// SDF files as XML: for what libsdformat does not look at, or would not come back from.
-using Xml = tinyxml2::XMLElement;
-
 /// A file that is XML and says that it is SDF. Throws FileError with the line.
 std::unique_ptr<tinyxml2::XMLDocument> read_sdf_xml(const std::filesystem::path& file);
-
-std::string text_of(const Xml& parent, const char* name);  ///< of its first child of that name, trimmed; "" if there is none
-std::string line_of(const Xml& element);                   ///< "line 3: "
-
-/// `name` is null: every child.
-template <class Visit>
-void for_each_child(const Xml& parent, const char* name, const Visit& visit)
-{
-    for (const Xml* child = parent.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name)) visit(*child);
-}
-
-/// The element and all that is in it.
-template <class Visit>
-void for_each_element(const Xml& element, const Visit& visit)
-{
-    visit(element);
-    for_each_child(element, nullptr, [&](const Xml& child) { for_each_element(child, visit); });
-}
 
 /// The file that an <include> of this <uri> in a file of `folder` means; nothing if it is nowhere. Throws FileError for a folder
 /// that is no model's.

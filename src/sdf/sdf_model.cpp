@@ -17,7 +17,7 @@ public:
     SdfContent read(const std::optional<std::string>& text)
     {
         sdf::Root root;
-        sdf::Errors errors = text ? root.LoadSdfString(*text, session_.config()) : root.Load(file_.string(), session_.config());
+        sdf::Errors errors = text ? root.LoadSdfString(*text, session_.config()) : root.Load(path_for_libsdformat(file_), session_.config());
         if (root.WorldCount() == 0 && root.Model() == nullptr) {
             if (!errors.empty()) throw FileError(words_of(errors[0], file_.string()), "cannot be read as SDF");
             throw FileError(file_.string(), "has no <world> and no <model>, needs one of them");
@@ -136,7 +136,7 @@ private:
 
 SdfContent sdf_module::read_file(const fs::path& file, ModelPaths& paths, const std::optional<std::string>& text)
 {
-    return SdfReader(file, paths).read(text);
+    return without_foreign_exceptions(file, [&] { return SdfReader(file, paths).read(text); });
 }
 
 }  // namespace spawnfield

@@ -165,10 +165,12 @@ SdfErrorKind kind_of(const sdf::Error& error)
     return words == "Failed to load a world." || words == "Failed to load a model." ? SdfErrorKind::Repeated : SdfErrorKind::Other;
 }
 
+std::string path_for_libsdformat(const fs::path& file) { return fs::absolute(file).string(); }
+
 std::string words_of(const sdf::Error& error, const std::string& file)
 {
     std::string out = error.FilePath().value_or(file);
-    if (out.empty() || out.front() == '<') out = file;  // text that was given has a name in brackets
+    if (out.empty() || out.front() == '<' || out == path_for_libsdformat(file)) out = file;  // text that was given has a name in brackets
     if (error.LineNumber()) out += ": line " + std::to_string(*error.LineNumber());
     if (error.XmlPath()) out += ": " + *error.XmlPath();
     const SdfErrorKind kind = kind_of(error);

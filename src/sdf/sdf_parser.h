@@ -3,6 +3,8 @@
 #include "scene/collision_geometry.h"
 #include "scene/model_paths.h"
 
+#include <spawnfield/error.h>
+
 #include <sdf/sdf.hh>
 
 #include <memory>
@@ -38,6 +40,26 @@ enum class SdfErrorKind {
     Other
 };
 SdfErrorKind kind_of(const sdf::Error& error);
+
+/// What libsdformat itself throws (of numbers in attributes, mostly) becomes a FileError.
+template <class Read>
+auto without_foreign_exceptions(const std::filesystem::path& file, const Read& read)
+{
+    try {
+        return read();
+    } catch (const FileError&) {
+        throw;
+    } catch (const ArgumentError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw FileError(file.string(), std::string("cannot be read as SDF: a number in it, or in what it includes, is none (") + error.what() + ")");
+    }
+}
+
+/// A relative "model.sdf" or "world.sdf" it would take for the file of that name in its own folder, the description of <model>.
+std::string path_for_libsdformat(const std::filesystem::path& file);
 
 /// File, line, element and words of an error, without what it has not.
 std::string words_of(const sdf::Error& error, const std::string& file);

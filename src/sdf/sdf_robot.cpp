@@ -38,7 +38,7 @@ public:
         check_includes(file_, *read_sdf_xml(file_), paths_);
         const SdfSession session(paths_, file_.parent_path());
         sdf::Root root;
-        check(root.Load(file_.string(), session.config()));
+        check(root.Load(path_for_libsdformat(file_), session.config()));
         if (root.Model() == nullptr)
             throw FileError(file_.string(), root.WorldCount() > 0 ? "holds a <world>, needs a <model> to be a robot" : "has no <model>");
         const sdf::Model& model = *root.Model();
@@ -184,6 +184,9 @@ private:
 
 }  // namespace
 
-Robot sdf_module::read_robot(const fs::path& file_or_folder, const RobotOptions& options) { return SdfReader(file_or_folder, options).read(); }
+Robot sdf_module::read_robot(const fs::path& file_or_folder, const RobotOptions& options) 
+{
+    return without_foreign_exceptions(file_or_folder, [&] { return SdfReader(file_or_folder, options).read(); });
+}
 
 }  // namespace spawnfield
