@@ -1,6 +1,10 @@
 #include "catch.h"
+#include "mesh_text.h"
+#include "scene_text.h"
 #include "temp_folder.h"
 
+#include <spawnfield/error.h>
+#include <spawnfield/robot.h>
 #include <spawnfield/scene.h>
 
 #include <assimp/Exporter.hpp>
@@ -10,6 +14,7 @@
 #include <cctype>
 
 using namespace spawnfield;
+using Catch::Contains;
 
 namespace {
 
@@ -32,6 +37,19 @@ void check_wedge(const std::filesystem::path& file, const Vec3& size)
     CHECK(scene.triangles.size() == 4);
     REQUIRE(scene.pieces.size() == 1);
     CHECK(scene.pieces[0].solid);
+}
+
+std::string notices_of(const Scene& scene)
+{
+    std::string all;
+    for (const std::string& notice : scene.notices) all += notice + "\n";
+    return all;
+}
+
+/// glTF of a box of 4 x 2 x 1, as text, with these members in its root.
+std::string gltf_with(const std::string& members)
+{
+    return replaced(mesh_text::gltf({{.name = "crate", .mesh = hand::box({4, 2, 1})}}), "{", "{" + members);
 }
 
 }  // namespace
@@ -91,4 +109,68 @@ TEST_CASE("a mesh in millimetres or on its side gets a notice, a plausible one g
     CHECK(has(notices("tiny.obj", {0.1, 0.2, 0.01}, {}), "which is small"));
     CHECK(has(notices("lying.obj", {100, 1, 80}, {}), "most of its faces look along y, few up: does it lie on its side? --up y or z"));
     CHECK(!has(notices("lying.obj", {100, 1, 80}, {.up = 'y'}), "side"));
+}
+
+TEST_CASE("glTF that needs an extension about geometry is refused, about looks it is not")
+{
+    const TempFolder folder;
+    const auto needs = [&](const std::string& extension) { return folder.write("a.gltf", gltf_with("\"extensionsRequired\": [\"" + extension + "\"],")); };
+    CHECK_THROWS_WITH(load_scene(needs("KHR_mesh_quantization")), Contains("a.gltf: needs the glTF extension KHR_mesh_quantization") && Contains("gltfpack -noq"));
+    CHECK_THROWS_WITH(load_scene(needs("EXT_mesh_gpu_instancing")), Contains("needs the glTF extension EXT_mesh_gpu_instancing"));
+    CHECK_THROWS_WITH(load_scene(needs("KHR_draco_mesh_compression")), Contains("needs the glTF extension KHR_draco_mesh_compression") && Contains("gltf-transform copy"));
+    CHECK_THROWS_WITH(load_scene(needs("FOO_bar")), Contains("needs the glTF extension FOO_bar (extensionsRequired), which is not known here"));
+    CHECK_THROWS_AS(load_scene(needs("FOO_bar")), FileError);
+    for (const char* extension : {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual", "EXT_texture_webp"})
+        CHECK(load_scene(needs(extension)).triangles.size() == 12);
+    CHECK(load_scene(folder.write("used.gltf", gltf_with("\"extensionsUsed\": [\"FOO_bar\"],"))).triangles.size() == 12);
+}
+
+TEST_CASE("glTF with instances or positions that are no floats is refused, required or not")
+{
+    const TempFolder folder;
+    const std::string plain = gltf_with("");
+    const std::string instances = replaced(plain, "\"name\":\"crate\"", "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{}}},\"name\":\"crate\"");
+    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", instances)), Contains("node \"crate\": has instances by EXT_mesh_gpu_instancing"));
+    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", replaced(plain, "\"componentType\":5126", "\"componentType\":5123"))),
+                      Contains("has positions that are no floats, by KHR_mesh_quantization"));
+    folder.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: a.gltf}]\n");
+    CHECK_THROWS_WITH(load_robot((folder / "robot.yaml").string()), Contains("KHR_mesh_quantization"));
+}
+
+TEST_CASE("glTF with a vertex index beyond its vertices is refused")
+{
+    const TempFolder folder;
+    hand::Mesh mesh = hand::box({4, 2, 1});
+    mesh.triangles[5][1] = 8;  // of vertices 0 .. 7
+    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", mesh_text::gltf({{.mesh = mesh}}))), Contains("1 of its 12 triangles have a vertex index beyond their vertices"));
+}
+
+TEST_CASE("morph targets count by the weights of their mesh; skins and a node's own weights are told")
+{
+    const TempFolder folder;
+    const std::string plain = mesh_text::gltf({{.name = "crate", .mesh = hand::box({4, 2, 1})}});
+    const std::string attributes = "\"attributes\":{\"POSITION\":0}";
+    const auto with = [&](const std::string& weights) {  // its target moves each corner by itself: all is twice as large at 1
+        return replaced(plain, "{\"primitives\":[{" + attributes, "{" + weights + "\"primitives\":[{" + attributes + ",\"targets\":[{\"POSITION\":0}]");
+    };
+    const auto size = [&](const std::string& text) {
+        const Bounds bounds = load_scene(folder.write("a.gltf", text), {.up = 'z'}).bounds();
+        return Vec3(bounds.max - bounds.min);
+    };
+    CHECK((size(with("\"weights\":[1],")) - Vec3(8, 4, 2)).norm() < 1e-5);
+    CHECK((size(with("\"weights\":[0.5],")) - Vec3(6, 3, 1.5)).norm() < 1e-5);
+    CHECK((size(with("\"weights\":[0],")) - Vec3(4, 2, 1)).norm() < 1e-5);
+    CHECK((size(with("")) - Vec3(4, 2, 1)).norm() < 1e-5);
+    CHECK(load_scene(folder / "a.gltf").notices.size() == 1);  // that all is terrain
+    const std::string posed = replaced(with("\"weights\":[1],"), "\"name\":\"crate\"", "\"weights\":[0],\"name\":\"crate\"");
+    CHECK_THAT(notices_of(load_scene(folder.write("a.gltf", posed))), Contains("a.gltf: node \"crate\": a node's own weights of morph targets do not count"));
+    const std::string skinned = replaced(plain, "\"name\":\"crate\"", "\"skin\":0,\"name\":\"crate\"");
+    const std::string skin = replaced(skinned, "\"materials\"", "\"skins\":[{\"joints\":[0]}],\"materials\"");
+    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", skin)), Contains("skin 0: has no inverseBindMatrices for all of its joints"));
+    const std::string matrices = replaced(skin, "\"joints\":[0]", "\"joints\":[0],\"inverseBindMatrices\":2");  // an accessor over the corners' first 64 bytes
+    const std::string accessor = ",{\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"MAT4\"}],\"bufferViews\"";
+    folder.write("a.gltf", replaced(matrices, "],\"bufferViews\"", accessor));
+    CHECK_THAT(notices_of(load_scene(folder / "a.gltf")), Contains("node \"crate\": the joints of a skin do not count"));
+    folder.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: a.gltf}]\n");
+    CHECK_THAT(load_robot((folder / "robot.yaml").string()).notices[0], Contains("a.gltf: node \"crate\": the joints of a skin do not count"));
 }
