@@ -137,6 +137,35 @@ TEST_CASE("glTF with instances or positions that are no floats is refused, requi
     CHECK_THROWS_WITH(load_robot((folder / "robot.yaml").string()), Contains("KHR_mesh_quantization"));
 }
 
+TEST_CASE("3DS has its own axes again: up turns those")
+{
+    const TempFolder folder;
+    Assimp::Importer importer;
+    const aiScene* const scene = importer.ReadFile(folder.write("wedge.obj", wedge).string(), 0);
+    REQUIRE(scene != nullptr);
+    REQUIRE(Assimp::Exporter().Export(scene, "3ds", (folder / "a.3ds").string()) == AI_SUCCESS);
+    const auto bounds = [&](char up) { return load_scene(folder / "a.3ds", {.up = up}).bounds(); };
+    for (const char up : {char{0}, 'z'}) {
+        CHECK((bounds(up).min - Vec3(0, 0, 0)).norm() < 1e-6);
+        CHECK((bounds(up).max - Vec3(4, 2, 1)).norm() < 1e-6);
+    }
+    CHECK((bounds('y').min - Vec3(0, -1, 0)).norm() < 1e-6);  // (x, y, z) to (x, -z, y)
+    CHECK((bounds('y').max - Vec3(4, 0, 2)).norm() < 1e-6);
+    folder.write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: a, mesh: a.3ds, up: y, scale: [1, 10, 100]}]\n");
+    CHECK((load_scene(folder / "scene.yaml").bounds().min - Vec3(0, -100, 0)).norm() < 1e-4);  // scale comes first, on the file's axes
+}
+
+TEST_CASE("DXF, which assimp turns too, is read on its own axes")
+{
+    const TempFolder folder;
+    std::string text = "0\nSECTION\n2\nENTITIES\n0\n3DFACE\n8\n0\n";
+    for (const auto& [codes, corner] : {std::pair{0, "000"}, std::pair{1, "400"}, std::pair{2, "021"}, std::pair{3, "021"}})
+        for (int axis = 0; axis < 3; ++axis) text += std::to_string(10 * (axis + 1) + codes) + "\n" + corner[axis] + "\n";
+    const Bounds bounds = load_scene(folder.write("a.dxf", text + "0\nENDSEC\n0\nEOF\n")).bounds();
+    CHECK((bounds.min - Vec3(0, 0, 0)).norm() < 1e-6);
+    CHECK((bounds.max - Vec3(4, 2, 1)).norm() < 1e-6);
+}
+
 TEST_CASE("glTF with a vertex index beyond its vertices is refused")
 {
     const TempFolder folder;

@@ -72,6 +72,20 @@ Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
     return metres;
 }
 
+/// 3DS, ASE and DXF are z up, and assimp 5.2 turns them to y up: (x, y, z) to (x, z, -y).
+bool is_turned_by_assimp(const std::string& extension)
+{
+    return extension == ".3ds" || extension == ".prj" || extension == ".ase" || extension == ".ask" || extension == ".dxf";
+}
+
+/// Turns it back, to the file's own axes.
+Mat4 turned_back()
+{
+    Mat4 out;
+    out << 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1;
+    return out;
+}
+
 /// Faces of one node with its vertices welded: equal coordinates, as the file gives them, are one vertex.
 class NodeWelder {
 public:
@@ -194,8 +208,9 @@ FileMesh read_mesh(const std::filesystem::path& file)
         const std::string up = collada_up_axis(file);
         mesh.up = up == "Z_UP" ? 'z' : up == "X_UP" ? 'x' : 'y';
     }
-    if (extension == ".3ds") mesh.up = 'y';  // z up in the file; assimp turns it
-    const Mat4 metres = extension == ".fbx" ? take_fbx_frame(*scene, mesh) : Mat4::Identity();
+    const Mat4 metres = extension == ".fbx"              ? take_fbx_frame(*scene, mesh)
+                        : is_turned_by_assimp(extension) ? turned_back()
+                                                         : Mat4(Mat4::Identity());
     Collector{*scene, file.string(), is_gltf}.visit(*scene->mRootNode, metres, mesh);
     if (mesh.nodes.empty()) throw FileError(file.string(), "has no triangles, needs at least one");
     return mesh;
