@@ -1,5 +1,6 @@
 #include "catch.h"
 #include "mesh_text.h"
+#include "scene/obj_text.h"
 #include "scene_text.h"
 #include "temp_folder.h"
 
@@ -44,6 +45,11 @@ std::string notices_of(const Scene& scene)
     std::string all;
     for (const std::string& notice : scene.notices) all += notice + "\n";
     return all;
+}
+
+std::size_t count(const Scene& scene, Label label)
+{
+    return std::size_t(std::count(scene.triangle_labels.begin(), scene.triangle_labels.end(), label));
 }
 
 /// glTF of a box of 4 x 2 x 1, as text, with these members in its root.
@@ -164,6 +170,43 @@ TEST_CASE("DXF, which assimp turns too, is read on its own axes")
     const Bounds bounds = load_scene(folder.write("a.dxf", text + "0\nENDSEC\n0\nEOF\n")).bounds();
     CHECK((bounds.min - Vec3(0, 0, 0)).norm() < 1e-6);
     CHECK((bounds.max - Vec3(4, 2, 1)).norm() < 1e-6);
+}
+
+TEST_CASE("a name that comes back in an OBJ has its faces, and a name may have blanks")
+{
+    const TempFolder folder;
+    const std::string corners = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 5 0 1\nv 9 0 1\nv 9 4 1\nv 5 4 1\nv 0 5 2\nv 4 5 2\nv 4 9 2\nv 0 9 2\n";
+    const std::vector<LabelRule> rules{{"road*", Label::Terrain}, {"my road", Label::Terrain}, {"*", Label::Obstacle}};
+    const auto terrain = [&](const std::string& text) { return count(load_scene(folder.write("a.obj", corners + text), {.labels = rules}), Label::Terrain); };
+    const std::string first = "f 1 2 3 4\n", wall = "f 9 10 11 12\n", last = "f 5 6 7 8\n";
+    CHECK(terrain("o road\n" + first + "o wall\n" + wall + "o road\n" + last) == 4);
+    CHECK(terrain("g road\n" + first + "g wall\n" + wall + "g road\n" + last) == 4);
+    CHECK(terrain("g road\n" + first + "o wall\n" + wall + "g road\n" + last) == 4);  // o does not end the group, for assimp
+    CHECK(terrain("o road\n" + first + "g wall\n" + wall + "o road\n" + last) == 4);
+    CHECK(terrain("o wall\n" + first + "o road\n" + wall + "o wall\n" + last) == 2);
+    CHECK(terrain("o my road\r\n" + first + "o my wall\n" + wall + "o my road \n" + last) == 4);
+    CHECK(notices_of(load_scene(folder / "a.obj", {.labels = {{"my wall", Label::Water}}})).find("matches no") == std::string::npos);
+}
+
+TEST_CASE("faces under one name that is told again stay one piece")
+{
+    const TempFolder folder;
+    const Scene scene = load_scene(folder.write("a.obj", replaced(wedge, "f 1 2 4\n", "f 1 2 4\no wedge\n")));
+    REQUIRE(scene.pieces.size() == 1);
+    CHECK(scene.pieces[0].solid);
+}
+
+TEST_CASE("OBJ numbers may begin with a point, lines with a blank")
+{
+    const TempFolder folder;
+    const Scene scene = load_scene(folder.write("a.obj", "v 0 .25 -.5\nv 4 .25 +.5\nv 4 4. .5\nvt .5 .5\nvn .0 .0 1\nf 1/1/1 2/1/1 3/1/1\n"));
+    CHECK((scene.bounds().min - Vec3(0, 0.25, -0.5)).norm() == 0);
+    CHECK((scene.bounds().max - Vec3(4, 4, 0.5)).norm() == 0);
+    CHECK(readable_obj("v 1.5 .5 -.5\n# a .5\nf 1 2 3\n").text == "v 1.5 0.5 -0.5\n# a .5\nf 1 2 3\n");
+    CHECK(readable_obj("v 1 \\\n .5 .5\nf 1 2 3").text == "v 1 \\\n 0.5 0.5\nf 1 2 3");
+    CHECK(readable_obj("").text.empty());
+    CHECK(readable_obj(" v 1 1 1\n\tf 1 2 3\n \n").text == "v 1 1 1\nf 1 2 3\n\n");
+    CHECK(load_scene(folder.write("indented.obj", "o a\n  v 0 0 0\n  v 4 0 0\n  v 4 4 0\n\tf 1 2 3\n")).triangles.size() == 1);
 }
 
 TEST_CASE("glTF with a vertex index beyond its vertices is refused")

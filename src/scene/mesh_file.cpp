@@ -1,11 +1,15 @@
+#include "base/input_file.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/gltf_file.h"
 #include "scene/mesh.h"
+#include "scene/obj_text.h"
 
 #include <spawnfield/error.h>
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/metadata.h>
 #include <assimp/postprocess.h>
@@ -40,6 +44,22 @@ Mat4 matrix_of(const aiMatrix4x4& m)
     out << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
     return out;
 }
+
+/// The disk, but for one file, which has this text. The text must outlive it.
+class RespeltFile : public Assimp::DefaultIOSystem {
+public:
+    RespeltFile(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
+
+    Assimp::IOStream* Open(const char* file, const char* mode) override
+    {
+        if (file != file_) return DefaultIOSystem::Open(file, mode);
+        return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
+    }
+
+private:
+    const std::string file_;
+    const std::string& text_;
+};
 
 /// The text of COLLADA's <up_axis>; "Y_UP" where the file has none (COLLADA 1.4.1 specification, asset).
 std::string collada_up_axis(const std::filesystem::path& file)
@@ -150,13 +170,14 @@ struct Collector {
     const aiScene& scene;
     std::string file;
     bool morphs = false;  ///< by their meshes' default weights
+    const ObjText& obj;   ///< has the names of nodes, where the file is an OBJ
 
     void visit(const aiNode& node, const Mat4& parent, FileMesh& out) const
     {
         const Mat4 transform = parent * matrix_of(node.mTransformation);
         if (node.mNumMeshes > 0) {
             FileMesh::Node collected;
-            collected.name = node.mName.C_Str();
+            collected.name = obj_name(obj, node.mName.C_Str());
             NodeWelder welder(collected, transform, file);
             for (unsigned m = 0; m < node.mNumMeshes; ++m) {
                 const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
@@ -188,7 +209,9 @@ FileMesh read_mesh(const std::filesystem::path& file)
     const std::string extension = lower_case(file.extension().string());
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};
+    const ObjText obj = extension == ".obj" ? readable_obj(read_file(file)) : ObjText{};
     Assimp::Importer importer;
+    if (extension == ".obj") importer.SetIOHandler(new RespeltFile(file.string(), obj.text));  // which the importer owns
     // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids
@@ -211,7 +234,7 @@ FileMesh read_mesh(const std::filesystem::path& file)
     const Mat4 metres = extension == ".fbx"              ? take_fbx_frame(*scene, mesh)
                         : is_turned_by_assimp(extension) ? turned_back()
                                                          : Mat4(Mat4::Identity());
-    Collector{*scene, file.string(), is_gltf}.visit(*scene->mRootNode, metres, mesh);
+    Collector{*scene, file.string(), is_gltf, obj}.visit(*scene->mRootNode, metres, mesh);
     if (mesh.nodes.empty()) throw FileError(file.string(), "has no triangles, needs at least one");
     return mesh;
 }
