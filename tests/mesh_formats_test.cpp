@@ -246,3 +246,14 @@ TEST_CASE("morph targets count by the weights of their mesh; skins and a node's 
     folder.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: a.gltf}]\n");
     CHECK_THAT(load_robot((folder / "robot.yaml").string()).notices[0], Contains("a.gltf: node \"crate\": the joints of a skin do not count"));
 }
+
+TEST_CASE("a mesh of more than 1 km with walls gets a notice, hills get none")
+{
+    const TempFolder folder;
+    const auto notices = [&](const Vec3& size) { return notices_of(load_scene(folder.write("a.obj", mesh_text::obj(hand::box(size))))); };
+    CHECK_THAT(notices({12000, 9000, 3000}), Contains("is 12000 x 9000 x 3000 m and has a wall of 3000 m height: is it in millimetres? --scale 0.001 makes it metres"));
+    CHECK_THAT(notices({12000, 9000, 830}), !Contains("millimetres"));  // as high as the highest tower
+    CHECK_THAT(notices({12, 9, 3}), !Contains("millimetres"));
+    const std::string slope = "v 0 0 0\nv 9000 0 0\nv 0 100 3000\nf 1 2 3\n";
+    CHECK_THAT(notices_of(load_scene(folder.write("slope.obj", slope))), !Contains("millimetres"));
+}
