@@ -12,6 +12,8 @@
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
 
+#include <zlib.h>
+
 #include <cctype>
 
 using namespace spawnfield;
@@ -56,6 +58,59 @@ std::size_t count(const Scene& scene, Label label)
 std::string gltf_with(const std::string& members)
 {
     return replaced(mesh_text::gltf({{.name = "crate", .mesh = hand::box({4, 2, 1})}}), "{", "{" + members);
+}
+
+std::string little_endian(std::uint64_t value, int bytes)
+{
+    std::string out;
+    for (int k = 0; k < bytes; ++k) out += char(value >> 8 * k & 255);
+    return out;
+}
+
+std::string deflated(const std::string& text)
+{
+    std::string out(text.size() + 100, '\0');
+    z_stream stream{};
+    REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = uInt(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = uInt(out.size());
+    REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
+    out.resize(stream.total_out);
+    deflateEnd(&stream);
+    return out;
+}
+
+/// A ZIP archive of these files, packed.
+std::string zip(const std::vector<std::pair<std::string, std::string>>& files)
+{
+    std::string out, directory;
+    for (const auto& [name, text] : files) {
+        const std::string packed = deflated(text);
+        const std::string common = little_endian(20, 2) + little_endian(0, 2) + little_endian(8, 2) + little_endian(0, 4) +
+                                   little_endian(crc32(0, reinterpret_cast<const Bytef*>(text.data()), uInt(text.size())), 4) +
+                                   little_endian(packed.size(), 4) + little_endian(text.size(), 4) + little_endian(name.size(), 2) + little_endian(0, 2);
+        directory += "PK\1\2" + little_endian(20, 2) + common + little_endian(0, 2) + little_endian(0, 2) + little_endian(0, 2) + little_endian(0, 4) +
+                     little_endian(out.size(), 4) + name;
+        out += "PK\3\4" + common + name + packed;
+    }
+    const std::string count = little_endian(files.size(), 2);
+    const std::size_t start = out.size();
+    return out + directory + "PK\5\6" + little_endian(0, 4) + count + count + little_endian(directory.size(), 4) + little_endian(start, 4) + little_endian(0, 2);
+}
+
+/// A 3MF package of the wedge, with these attributes of its <model>.
+std::string package_3mf(const std::string& attributes)
+{
+    return zip({{"[Content_Types].xml", "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>"},
+                {"_rels/.rels", "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship Id=\"a\" "
+                                "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\" Target=\"/3D/3dmodel.model\"/></Relationships>"},
+                {"3D/3dmodel.model", "<?xml version=\"1.0\"?><model " + attributes + " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
+                                     "<object id=\"1\" type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"4\" y=\"0\" z=\"0\"/>"
+                                     "<vertex x=\"0\" y=\"2\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/>"
+                                     "<triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles>"
+                                     "</mesh></object></resources><build><item objectid=\"1\"/></build></model>"}});
 }
 
 }  // namespace
@@ -256,4 +311,31 @@ TEST_CASE("a mesh of more than 1 km with walls gets a notice, hills get none")
     CHECK_THAT(notices({12, 9, 3}), !Contains("millimetres"));
     const std::string slope = "v 0 0 0\nv 9000 0 0\nv 0 100 3000\nf 1 2 3\n";
     CHECK_THAT(notices_of(load_scene(folder.write("slope.obj", slope))), !Contains("millimetres"));
+}
+
+TEST_CASE("3MF and AMF are read in their unit, millimetres where they tell none")
+{
+    const TempFolder folder;
+    check_wedge(folder.write("none.3mf", package_3mf("")), 0.001 * Vec3(4, 2, 1));
+    check_wedge(folder.write("mm.3mf", package_3mf("unit=\"millimeter\"")), 0.001 * Vec3(4, 2, 1));
+    check_wedge(folder.write("m.3MF", package_3mf("xml:lang=\"en\" requiredunits=\"\" unit = 'meter'")), Vec3(4, 2, 1));
+    const auto amf = [&](const std::string& unit) {
+        std::string text = "<?xml version=\"1.0\"?>\n<amf" + unit + "><object id=\"0\"><mesh><vertices>";
+        for (const std::string corner : {"000", "400", "020", "001"})
+            text += "<vertex><coordinates><x>" + corner.substr(0, 1) + "</x><y>" + corner.substr(1, 1) + "</y><z>" + corner.substr(2) + "</z></coordinates></vertex>";
+        text += "</vertices><volume>";
+        for (const std::string face : {"021", "013", "032", "123"})
+            text += "<triangle><v1>" + face.substr(0, 1) + "</v1><v2>" + face.substr(1, 1) + "</v2><v3>" + face.substr(2) + "</v3></triangle>";
+        return folder.write("a.amf", text + "</volume></mesh></object></amf>\n");
+    };
+    check_wedge(amf(" unit=\"feet\""), 0.3048 * Vec3(4, 2, 1));
+    check_wedge(amf(" version=\"1.1\""), 0.001 * Vec3(4, 2, 1));
+    check_wedge(folder.write("in.3mf", package_3mf("unit=\"inch\"")), 0.0254 * Vec3(4, 2, 1));
+    CHECK_THROWS_WITH(load_scene(folder.write("bad.3mf", package_3mf("unit=\"mile\""))), Contains("its unit is \"mile\", needs one of micron, millimeter"));
+    const std::string good = package_3mf("unit=\"meter\"");
+    for (std::size_t size = 0; size < good.size(); size += 7)  // cut anywhere: a result or a FileError
+        try {
+            load_scene(folder.write("cut.3mf", good.substr(0, size)));
+        } catch (const FileError&) {
+        }
 }

@@ -4,6 +4,7 @@
 #include "scene/gltf_file.h"
 #include "scene/mesh.h"
 #include "scene/obj_text.h"
+#include "scene/printing_units.h"
 
 #include <spawnfield/error.h>
 
@@ -76,6 +77,13 @@ std::string collada_up_axis(const std::filesystem::path& file)
     return axis;
 }
 
+Mat4 scaled(double factor)
+{
+    Mat4 out = Mat4::Identity();
+    out.topLeftCorner<3, 3>() *= factor;
+    return out;
+}
+
 /// FBX tells its unit (cm for each, 1 where it tells none) and its up axis as metadata, which assimp 5.2 hands over as they are.
 /// Source: Autodesk, FBX SDK, FbxSystemUnit and FbxAxisSystem.
 Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
@@ -87,9 +95,7 @@ Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
         scene.mMetaData->Get("UpAxis", up);
     }
     mesh.up = up == 0 ? 'x' : up == 2 ? 'z' : 'y';
-    Mat4 metres = Mat4::Identity();
-    metres.topLeftCorner<3, 3>() *= double(centimetres) / 100;
-    return metres;
+    return scaled(double(centimetres) / 100);
 }
 
 /// 3DS, ASE and DXF are z up, and assimp 5.2 turns them to y up: (x, y, z) to (x, z, -y).
@@ -233,6 +239,8 @@ FileMesh read_mesh(const std::filesystem::path& file)
     }
     const Mat4 metres = extension == ".fbx"              ? take_fbx_frame(*scene, mesh)
                         : is_turned_by_assimp(extension) ? turned_back()
+                        : extension == ".3mf"            ? scaled(metres_per_unit_of_3mf(file))
+                        : extension == ".amf"            ? scaled(metres_per_unit_of_amf(file))
                                                          : Mat4(Mat4::Identity());
     Collector{*scene, file.string(), is_gltf, obj}.visit(*scene->mRootNode, metres, mesh);
     if (mesh.nodes.empty()) throw FileError(file.string(), "has no triangles, needs at least one");
