@@ -86,6 +86,7 @@ void append_mesh_part(Robot& robot, const YamlMap& map, const std::filesystem::p
         const char up = given_up != 0 ? given_up : mesh.up;
         for (FileMesh::Node& node : mesh.nodes)
             for (Vec3& vertex : node.vertices) vertex = turned_up(vertex.cwiseProduct(scale), up);
+        robot.notices.insert(robot.notices.end(), mesh.notices.begin(), mesh.notices.end());
         append_mesh(robot, {map.text("name", ""), file, placed(std::move(mesh.nodes), Vec3::Ones(), map.pose())}, mesh_parts);
     } catch (const std::domain_error& error) {
         map.fail("mesh", "cannot be used: " + file.string() + ": its convex hull has no volume: " + error.what());

@@ -40,6 +40,7 @@ FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, con
     if (geometry.submesh.empty()) return mesh;
     FileMesh out;
     out.materials = mesh.materials;
+    out.notices = mesh.notices;
     std::string names;
     for (const FileMesh::Node& node : mesh.nodes) {
         if (node.name == geometry.submesh) out.nodes.push_back(node);
