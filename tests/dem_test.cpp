@@ -186,6 +186,40 @@ TEST_CASE("feet become metres, and it is told")
     CHECK(load_scene(write(folder, {.metadata = item + "metre</Item></GDALMetadata>"})).bounds().max.z() == 6);
 }
 
+TEST_CASE("the unit of x and y is that of the EPSG code where no key tells it, and nothing is assumed")
+{
+    const TempFolder folder;
+    // As GDAL 3.6 writes EPSG:2263+6360 and, with GEOTIFF_VERSION=1.1, EPSG:2263: units as gdalinfo tells them.
+    const auto [code, unit] = GENERATE(std::pair{2263, 1200.0 / 3937}, std::pair{2222, 0.3048}, std::pair{25832, 1.0}, std::pair{3035, 1.0},
+                                       std::pair{2193, 1.0}, std::pair{3167, 20.116756}, std::pair{7405, 1.0});
+    CAPTURE(code);
+    const Scene scene = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}})}));
+    CHECK(scene.bounds().max.x() == Approx(2 * unit).epsilon(1e-12));
+    CHECK(scene.bounds().max.y() == Approx(2.5 * unit).epsilon(1e-12));
+    check_origin(scene, 500003, 4000005, "EPSG:" + std::to_string(code));
+    CHECK_FALSE(tells(scene, "taken as metres"));
+    CHECK(tells(scene, "x and y are in units of ") == (unit != 1));
+    // A key of its own wins, as with GDAL.
+    CHECK(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}, {3076, 9001}})})).bounds().max.x() == 2);
+}
+
+TEST_CASE("EPSG codes that tell no unit are refused with what to do")
+{
+    const TempFolder folder;
+    const auto check_refused = [&](int code, const std::string& reason) {
+        CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}})})), (folder / "a.tif").string() + ": " + reason);
+    };
+    check_refused(4326, "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres such "
+                        "as the UTM zone's");
+    CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 4978}})})), Contains("(geocentric, EPSG:4978)"));
+    for (const int code : {30000, 5703})  // none, heights alone
+        check_refused(code, "is in EPSG:" + std::to_string(code) + ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives "
+                            "it another, or tell its spacing in metres with the key cell");
+    SceneOptions options;
+    options.heightmap = "cell: 3";
+    CHECK(load_scene(folder / "a.tif", options).bounds().max.x() == 3);
+}
+
 TEST_CASE("words of the survey are told where it has no EPSG code")
 {
     const TempFolder folder;

@@ -1,5 +1,6 @@
 #include "base/geotiff.h"
 
+#include "base/coordinate_system.h"
 #include "base/number.h"
 #include "base/tiff.h"
 
@@ -122,6 +123,13 @@ private:
     const std::string& file_;
 };
 
+/// "EPSG:32611"; empty if the key is not there or says that the system is the file's own.
+std::string epsg_code(const GeoKeys& keys, GeoKey key)
+{
+    const unsigned code = keys.number(key).value_or(0);
+    return code == 0 || code == user_defined ? "" : "EPSG:" + std::to_string(code);
+}
+
 std::optional<double> metres_of(unsigned unit)
 {
     switch (unit) {
@@ -166,31 +174,42 @@ void refuse_degrees(const GeoKeys& keys, const std::string& file)
 {
     const unsigned type = keys.number(model_type).value_or(1);
     if (type != 2 && type != 3) return;
-    const unsigned code = keys.number(geodetic_crs).value_or(user_defined);
-    throw FileError(file, std::string("is in ") + (type == 2 ? "degrees (geographic" : "coordinates of the whole globe (geocentric") +
-                              (code == user_defined ? "" : ", EPSG:" + std::to_string(code)) +
-                              "), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres such as the UTM zone's");
+    refuse_globe(file, type == 3, epsg_code(keys, geodetic_crs));
+}
+
+/// m; of a file that has no ProjLinearUnitsGeoKey.
+double unit_by_system(const GeoKeys& keys, const std::string& file, std::vector<std::string>& notices)
+{
+    using Place = CoordinateSystem::Place;
+    const std::string code = epsg_code(keys, projected_crs);
+    if (code.empty()) {
+        notices.push_back(file + ": does not tell the unit of x and y, which are taken as metres");
+        return 1;
+    }
+    const std::optional<CoordinateSystem> found = coordinate_system(code);
+    if (found && (found->place == Place::Degrees || found->place == Place::Globe)) refuse_globe(file, found->place == Place::Globe, code);
+    if (!found || found->place != Place::Plane)
+        throw FileError(file, "is in " + code + ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives it "
+                              "another, or tell its spacing in metres with the key cell");
+    return found->unit;
 }
 
 double linear_unit(const GeoKeys& keys, const std::string& file, std::vector<std::string>& notices)
 {
     const auto code = keys.number(linear_units);
-    if (!code) {
-        notices.push_back(file + ": does not tell the unit of x and y, which are taken as metres");
-        return 1;
-    }
-    const std::optional<double> size = *code == user_defined ? keys.real(linear_unit_size) : metres_of(*code);
+    const std::optional<double> size = !code                   ? unit_by_system(keys, file, notices)
+                                       : *code == user_defined ? keys.real(linear_unit_size)
+                                                               : metres_of(*code);
     if (!size || !std::isfinite(*size) || !(*size > 0))
         throw FileError(file, "has x and y in unit " + std::to_string(*code) +
                                   " (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, 9003); reproject it with gdalwarp -t_srs");
-    if (*size != 1) notices.push_back(file + ": x and y are in units of " + number(*size) + " m and were converted to metres");
+    tell_unit(file, "x and y", *size, notices);
     return *size;
 }
 
 std::string crs_of(const GeoKeys& keys)
 {
-    const unsigned code = keys.number(projected_crs).value_or(0);
-    if (code != 0 && code != user_defined) return "EPSG:" + std::to_string(code);
+    if (const std::string code = epsg_code(keys, projected_crs); !code.empty()) return code;
     std::string words = keys.text(projected_citation);
     if (words.empty()) words = keys.text(citation);
     std::erase_if(words, [](unsigned char c) { return c < ' ' || c > '~'; });
@@ -275,7 +294,7 @@ double height_unit(const GeoTags& tags, const std::string& file, std::vector<std
     if (!unit)
         throw FileError(file, "has heights in unit " + (code ? std::to_string(*code) + " (VerticalUnitsGeoKey)" : "\"" + type + "\"") +
                                   ", needs metres (9001), kilometres (9036) or feet (9002, 9003)");
-    if (*unit != 1) notices.push_back(file + ": heights are in units of " + number(*unit) + " m and were converted to metres");
+    tell_unit(file, "heights", *unit, notices);
     return *unit;
 }
 

@@ -24,7 +24,8 @@ bool is_georeferenced(const GeoTags& tags);
 /// From ModelPixelScale and the first ModelTiepoint, or ModelTransformation, and the GeoKeys.
 ///
 /// Pixels that are areas (GTRasterType 1, the default) have their heights at the centres, points (2) at the corners. Adds notices on
-/// what is assumed. Throws FileError for degrees, rotation, images that are mirrored, units other than metres, kilometres and feet.
+/// what is assumed. Their unit is ProjLinearUnitsGeoKey's, else that of the coordinate system by its EPSG code. Throws FileError for
+/// degrees, rotation, images that are mirrored, other linear units than metres, kilometres and feet, codes that PROJ does not know.
 /// Source: OGC GeoTIFF Standard 1.1 (19-008r4), and GeoTIFF 1.8.2 for the keys.
 GeoFrame geo_frame(const GeoTags& tags, const std::string& file, std::vector<std::string>& notices);
 
