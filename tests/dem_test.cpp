@@ -110,6 +110,7 @@ bool tells(const Scene& scene, const std::string& text)
     return std::any_of(scene.notices.begin(), scene.notices.end(), [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
 }
 
+const std::string item = "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">";
 const std::string grid_head = "ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 5\n";
 
 }  // namespace
@@ -181,7 +182,6 @@ TEST_CASE("feet become metres, and it is told")
     const Scene unknown = load_scene(write(folder, {.keys = keys_of({{1024, 1}})}));
     CHECK(unknown.bounds().max.x() == 2);
     CHECK(tells(unknown, "does not tell the unit of x and y, which are taken as metres"));
-    const std::string item = "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">";
     CHECK(load_scene(write(folder, {.metadata = item + "ft</Item></GDALMetadata>"})).bounds().max.z() == Approx(6 * 0.3048));
     CHECK(load_scene(write(folder, {.metadata = item + "metre</Item></GDALMetadata>"})).bounds().max.z() == 6);
 }
@@ -201,6 +201,45 @@ TEST_CASE("the unit of x and y is that of the EPSG code where no key tells it, a
     CHECK(tells(scene, "x and y are in units of ") == (unit != 1));
     // A key of its own wins, as with GDAL.
     CHECK(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}, {3076, 9001}})})).bounds().max.x() == 2);
+}
+
+TEST_CASE("heights have the unit of their vertical system's EPSG code")
+{
+    const TempFolder folder;
+    const auto [code, unit] = GENERATE(std::pair{8228, 0.3048}, std::pair{6360, 1200.0 / 3937}, std::pair{5703, 1.0}, std::pair{5730, 1.0}, std::pair{4979, 1.0});
+    CAPTURE(code);
+    const Scene scene = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, code}})}));
+    CHECK(scene.bounds().max.x() == 2);
+    CHECK(scene.bounds().min.z() == Approx(unit).epsilon(1e-12));
+    CHECK(scene.bounds().max.z() == Approx(6 * unit).epsilon(1e-12));
+    CHECK(tells(scene, "heights are in units of ") == (unit != 1));
+    CHECK(scene.notices.size() == (unit == 1 ? 1 : 2));
+}
+
+TEST_CASE("where the units of heights disagree the first that GDAL takes counts, and it is told")
+{
+    const TempFolder folder;
+    const bool by_band = GENERATE(false, true);
+    const std::string metadata = by_band ? item + "m</Item></GDALMetadata>" : "";
+    const Scene scene = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}, {4099, 9001}}), .metadata = metadata}));
+    CHECK(scene.bounds().max.z() == Approx(by_band ? 6 : 6 * 1200.0 / 3937));
+    CHECK(tells(scene, by_band ? "says that heights are in units of 1 m by \"m\", and of 0.30480060960121924 m by EPSG:6360 (VerticalGeoKey); they are taken by the first"
+                               : "m by EPSG:6360 (VerticalGeoKey), and of 1 m by 9001 (VerticalUnitsGeoKey); they are taken by the first"));
+    CHECK_FALSE(tells(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}}), .metadata = item + "ft</Item></GDALMetadata>"})), "says that"));
+    // A system that nobody knows does no harm where the unit is told.
+    CHECK(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 5199}, {4099, 9002}})})).bounds().max.z() == Approx(6 * 0.3048));
+}
+
+TEST_CASE("depths are heights turned round, and it is told")
+{
+    const TempFolder folder;
+    const GeoFile geo{.heights = {1, 2, -9999, 4, 5, 6}, .keys = keys_of({{1024, 1}, {3072, 32633}, {4096, 5336}}), .no_data = "-9999"};
+    const Scene scene = load_scene(write(folder, geo));
+    CHECK(scene.bounds().min.z() == -6);
+    CHECK(scene.bounds().max.z() == -1);
+    CHECK(height(scene, -2, 2.5) == -1);
+    CHECK(scene.triangles.size() == 3);
+    CHECK(tells(scene, "has depths by EPSG:5336 (VerticalGeoKey), which counts downwards; the heights are their negatives"));
 }
 
 TEST_CASE("EPSG codes that tell no unit are refused with what to do")
@@ -260,6 +299,7 @@ TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
 {
     const TempFolder folder;
     const std::string start = (folder / "a.tif").string() + ": ";
+    const std::string known_units = ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they are";
     const auto check_refused = [&](const GeoFile& geo, const std::string& reason) { CHECK_THROWS_WITH(load_scene(write(folder, geo)), start + reason); };
     check_refused({.keys = keys_of({{1024, 2}, {2048, 4326}})},
                   "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres "
@@ -278,7 +318,9 @@ TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
     check_refused({.keys = keys_of({{1024, 1}, {3076, 9005}})},
                   "has x and y in unit 9005 (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, 9003); reproject it with gdalwarp -t_srs");
     check_refused({.keys = keys_of({{1024, 1}, {3076, 9001}, {4099, 9010}})},
-                  "has heights in unit 9010 (VerticalUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, 9003)");
+                  "has heights in unit 9010 (VerticalUnitsGeoKey)" + known_units);
+    check_refused({.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 5199}})}, "has heights in unit EPSG:5199 (VerticalGeoKey)" + known_units);
+    check_refused({.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 3855}}), .metadata = item + "cm</Item></GDALMetadata>"}, "has heights in unit \"cm\"" + known_units);
     check_refused({.keys = keys_of({{1024, 1}, {1025, 5}})}, "has GTRasterTypeGeoKey 5, needs 1 (pixels are areas) or 2 (points)");
     check_refused({.keys = {1, 1, 0, 2, 1024, 0, 1, 1}}, "has a GeoKeyDirectory that is cut short");
     check_refused({.no_data = "none"}, "has a GDAL_NODATA of \"none\", needs a number");

@@ -32,6 +32,7 @@ enum GeoKey : std::uint16_t {
     projected_citation = 3073,
     linear_units = 3076,
     linear_unit_size = 3077,
+    vertical_crs = 4096,
     vertical_units = 4099,
 };
 
@@ -235,6 +236,52 @@ void refuse_scaled(const GeoTags& tags, const std::string& file)
     }
 }
 
+/// What one place of a file says of the unit of its heights.
+struct UnitWord {
+    std::string place;              ///< for complaints
+    std::optional<double> metres;   ///< < 0 of depths; nothing: a unit that is not known
+};
+
+UnitWord unit_of_band(const std::string& type)
+{
+    UnitWord word{"\"" + type + "\"", {}};
+    if (type == "m" || type == "metre" || type == "meter" || type == "metres" || type == "meters" || type == "Meter") word.metres = 1;
+    if (type == "ft" || type == "foot" || type == "feet" || type == "Foot") word.metres = metres_of(9002);
+    if (type == "sft" || type == "us-ft" || type == "US survey foot") word.metres = metres_of(9003);
+    return word;
+}
+
+UnitWord unit_of_system(const std::string& code)
+{
+    const std::optional<CoordinateSystem> found = coordinate_system(code);
+    return {code + " (VerticalGeoKey)", found ? found->height_unit : std::nullopt};
+}
+
+/// All that the file says, in the order in which GDAL 3.6 believes it; a system that PROJ does not know comes last.
+std::vector<UnitWord> height_units(const GeoTags& tags, const std::string& file)
+{
+    const GeoKeys keys(tags, file);
+    std::vector<UnitWord> words;
+    if (const std::string type = metadata_item(tags.metadata, "unittype"); !type.empty()) words.push_back(unit_of_band(type));
+    const std::string system = epsg_code(keys, vertical_crs);
+    const UnitWord by_system = system.empty() ? UnitWord{} : unit_of_system(system);
+    if (by_system.metres) words.push_back(by_system);
+    if (const auto code = keys.number(vertical_units)) words.push_back({std::to_string(*code) + " (VerticalUnitsGeoKey)", metres_of(*code)});
+    if (!system.empty() && !by_system.metres) words.push_back(by_system);
+    return words;
+}
+
+/// Of the units by which heights are not taken.
+void tell_other_units(const std::vector<UnitWord>& words, const std::string& file, std::vector<std::string>& notices)
+{
+    constexpr double feet_apart = 1e-5;  // relative: the two feet are 2e-6 apart, and often taken for each other
+    const double unit = std::abs(*words[0].metres);
+    for (const UnitWord& word : words)
+        if (word.metres && std::abs(std::abs(*word.metres) - unit) > feet_apart * unit)
+            notices.push_back(file + ": says that heights are in units of " + number(unit) + " m by " + words[0].place + ", and of " +
+                              number(std::abs(*word.metres)) + " m by " + word.place + "; they are taken by the first");
+}
+
 }  // namespace
 
 void register_geo_tags() { parent_extender = TIFFSetTagExtender(extend_tags); }
@@ -284,18 +331,18 @@ std::optional<double> no_data_value(const GeoTags& tags, const std::string& file
 double height_unit(const GeoTags& tags, const std::string& file, std::vector<std::string>& notices)
 {
     refuse_scaled(tags, file);
-    const auto code = GeoKeys(tags, file).number(vertical_units);
-    const std::string type = metadata_item(tags.metadata, "unittype");
-    std::optional<double> unit = 1;
-    if (code) unit = metres_of(*code);
-    else if (type == "ft" || type == "foot" || type == "feet" || type == "Foot") unit = metres_of(9002);
-    else if (type == "sft" || type == "us-ft" || type == "US survey foot") unit = metres_of(9003);
-    else if (!type.empty() && type != "m" && type != "metre" && type != "meter" && type != "metres" && type != "meters" && type != "Meter") unit = {};
-    if (!unit)
-        throw FileError(file, "has heights in unit " + (code ? std::to_string(*code) + " (VerticalUnitsGeoKey)" : "\"" + type + "\"") +
-                                  ", needs metres (9001), kilometres (9036) or feet (9002, 9003)");
-    tell_unit(file, "heights", *unit, notices);
-    return *unit;
+    const std::vector<UnitWord> words = height_units(tags, file);
+    if (words.empty()) return 1;
+    if (!words[0].metres)
+        throw FileError(file, "has heights in unit " + words[0].place +
+                                  ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they are");
+    const double unit = std::abs(*words[0].metres);
+    tell_other_units(words, file, notices);
+    tell_unit(file, "heights", unit, notices);
+    const auto depths = std::find_if(words.begin(), words.end(), [](const UnitWord& word) { return word.metres.value_or(1) < 0; });
+    if (depths == words.end()) return unit;
+    notices.push_back(file + ": has depths by " + depths->place + ", which counts downwards; the heights are their negatives");
+    return -unit;
 }
 
 }  // namespace spawnfield

@@ -32,8 +32,9 @@ GeoFrame geo_frame(const GeoTags& tags, const std::string& file, std::vector<std
 /// GDAL_NODATA; NaN is one too. Throws FileError if it is no number.
 std::optional<double> no_data_value(const GeoTags& tags, const std::string& file);
 
-/// m per unit of the heights: VerticalUnitsGeoKey, or the unit type in GDAL's metadata; else 1. Throws FileError for other units, and
-/// for heights that are stored with a scale or an offset.
+/// m per unit of the heights, < 0 for depths: the unit type in GDAL's metadata, else that of the vertical system by its EPSG code, else
+/// VerticalUnitsGeoKey, else 1. Adds notices where they disagree. Throws FileError for other units, and for heights that are stored with a
+/// scale or an offset.
 double height_unit(const GeoTags& tags, const std::string& file, std::vector<std::string>& notices);
 
 /// Tells libtiff the types of these tags; open_tiff calls it.
