@@ -41,6 +41,7 @@ struct GeoFile {
     Doubles scale{2, 5, 0}, tie{0, 0, 0, 500000, 4000010, 0}, transformation{}, doubles{};
     Keys keys = utm;
     std::string ascii = "", no_data = "", metadata = "";
+    int photometric = PHOTOMETRIC_MINISBLACK;
 };
 
 template <class T>
@@ -62,7 +63,7 @@ std::filesystem::path write(const TempFolder& folder, const GeoFile& geo, const 
     const auto rows = std::uint32_t(geo.heights.size()) / geo.cols;
     for (const auto& [tag, value] : {std::pair<std::uint32_t, std::uint32_t>{TIFFTAG_IMAGEWIDTH, geo.cols}, {TIFFTAG_IMAGELENGTH, rows},
                                      {TIFFTAG_BITSPERSAMPLE, geo.bits}, {TIFFTAG_SAMPLEFORMAT, geo.format}, {TIFFTAG_SAMPLESPERPIXEL, 1},
-                                     {TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK}, {TIFFTAG_ROWSPERSTRIP, 1}})
+                                     {TIFFTAG_PHOTOMETRIC, geo.photometric}, {TIFFTAG_ROWSPERSTRIP, 1}})
         TIFFSetField(tiff.get(), tag, value);
     set(tiff.get(), 33550, geo.scale);
     set(tiff.get(), 33922, geo.tie);
@@ -293,6 +294,29 @@ TEST_CASE("heights that are no data are no terrain")
     check_hole(load_scene(plain, options));
     CHECK_THROWS_WITH(load_scene(write(folder, {.heights = {0, 0, 0, 0, 0, 0}, .no_data = "0"})),
                       (folder / "a.tif").string() + ": has no heights: every pixel is NaN or no-data");
+}
+
+TEST_CASE("values are values where 0 is white, but of a plain picture white is high")
+{
+    const TempFolder folder;
+    const Doubles heights{1, 2, 65535, 4, 5, 6};
+    const GeoFile survey{.heights = heights, .bits = 16, .format = SAMPLEFORMAT_UINT, .no_data = "65535", .photometric = PHOTOMETRIC_MINISWHITE};
+    const Scene scene = load_scene(write(folder, survey));
+    CHECK(scene.bounds().min.z() == 1);
+    CHECK(scene.bounds().max.z() == 6);
+    CHECK(height(scene, -2, 2.5) == 1);
+    CHECK(scene.triangles.size() == 3);
+    SceneOptions options;
+    options.heightmap = "z: [0, 655.35]";
+    CHECK(load_scene(folder / "a.tif", options).bounds().max.z() == Approx(0.06));
+    GeoFile picture = survey;
+    picture.scale = picture.tie = {};
+    picture.keys = {};
+    options.heightmap = "cell: 1, z: [0, 655.35]";
+    const Scene white = load_scene(write(folder, picture), options);
+    CHECK(white.triangles.size() == 3);  // no-data is as it is stored
+    CHECK(white.bounds().max.z() == Approx(655.34));
+    CHECK(height(white, -1, 0.5) == Approx(655.34));
 }
 
 TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")

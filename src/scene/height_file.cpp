@@ -42,6 +42,13 @@ void refuse_likely_degrees(const HeightFile& found, const std::string& file)
                               " IN OUT.tif), or tell its spacing in metres with the key cell");
 }
 
+/// As a viewer shows it: what is white in it is high.
+void turn_round(HeightFile& found)
+{
+    found.is_turned = true;
+    for (double& pixel : found.image.pixels) pixel = found.image.largest - pixel;
+}
+
 HeightFile read_geotiff(const std::filesystem::path& file, bool wants_frame, std::vector<std::string>& notices)
 {
     HeightFile out;
@@ -49,6 +56,7 @@ HeightFile read_geotiff(const std::filesystem::path& file, bool wants_frame, std
     const GeoTags tags = read_geo_tags(file);
     out.no_data = no_data_value(tags, file.string());
     out.height_unit = height_unit(tags, file.string(), notices);
+    if (out.image.zero_is_white && !is_georeferenced(tags)) turn_round(out);
     if (tags.has_mask) notices.push_back(file.string() + ": has a mask, which is not looked at; gdal_translate -a_nodata makes it a no-data value");
     if (!wants_frame || !is_georeferenced(tags)) return out;
     out.frame = geo_frame(tags, file.string(), notices);

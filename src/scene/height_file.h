@@ -21,6 +21,7 @@ struct HeightFile {
     GreyImage image;
     std::optional<GeoFrame> frame;  ///< where the file tells it, and it was asked for
     std::optional<double> no_data;  ///< pixels of this value have no height; NaN ones never have
+    bool is_turned = false;         ///< the file stores largest - pixel; no_data is as it stores it
     double height_unit = 1;         ///< m; < 0: the pixels are depths
 };
 

@@ -60,7 +60,8 @@ std::vector<double> metres(HeightFile& found, const HeightmapOptions& options)
     const double largest = found.image.largest;
     for (double& z : heights) {
         // Of floats the text of the value may have fewer digits than the pixels.
-        if (none && (z == *none || (std::isfinite(z) && float(z) == float(*none)))) z = std::numeric_limits<double>::quiet_NaN();
+        const double stored = found.is_turned ? largest - z : z;
+        if (none && (stored == *none || (std::isfinite(stored) && float(stored) == float(*none)))) z = std::numeric_limits<double>::quiet_NaN();
         else z = options.z ? (*options.z)[0] + z / largest * ((*options.z)[1] - (*options.z)[0]) : z * found.height_unit;
     }
     return heights;
