@@ -246,5 +246,11 @@ TEST_CASE("a nav2 map bakes as it is, and robots stand where it is free")
         CHECK(values[std::size_t(row * 40 + col)] == 254);
     }
     CHECK(run_program(folder, "bake map.yaml -o map2 --wall-height 0.5 --scale 2").status == 2);
+    for (const std::string height : {"0", "-1"}) {  // 0 is not "not given"
+        const ProgramRun refused = run_program(folder, "bake map.yaml -o map2 --wall-height " + height);
+        CHECK(refused.status == 2);
+        CHECK_THAT(refused.err, Contains("--wall-height is " + height + ", needs > 0"));
+    }
+    CHECK(run_program(folder, "info " SPAWNFIELD_SOURCE "/maps/training/scene.yaml --wall-height 0").status == 2);
     CHECK(run_program(folder, "bake room.pgm -o map2").status == 4);
 }
