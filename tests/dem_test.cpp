@@ -407,6 +407,71 @@ TEST_CASE("an ESRI ASCII grid is read whatever its header's case and order")
     check_origin(scene, 500007.5, 4000005, "");
 }
 
+namespace {
+
+/// As GDAL 3.6 writes them beside an ESRI ASCII grid, but for the parameters that no unit hangs on.
+const std::string gcs_of_prj = "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],PRIMEM[\"Greenwich\",0.0],"
+                               "UNIT[\"Degree\",0.0174532925199433]]";
+
+std::string prj(const std::string& unit)
+{
+    return "PROJCS[\"Plan\"," + gcs_of_prj + ",PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"False_Easting\",500000.0],PARAMETER[\"False_Northing\",0.0],"
+           "PARAMETER[\"Central_Meridian\",9.0],PARAMETER[\"Scale_Factor\",0.9996],PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[" + unit + "]]";
+}
+
+std::string vertical_prj(const std::string& direction, const std::string& unit)
+{
+    return ",VERTCS[\"Ups\",VDATUM[\"Here\"],PARAMETER[\"Vertical_Shift\",0.0],PARAMETER[\"Direction\"," + direction + "],UNIT[" + unit + "]]";
+}
+
+const std::string survey_foot = "\"US survey foot\",0.304800609601219";
+
+}  // namespace
+
+TEST_CASE("a .prj beside a grid tells its units")
+{
+    const TempFolder folder;
+    const std::filesystem::path file = folder.write("a.asc", grid_head + "1 2 3\n4 5 6\n");
+    const std::string name = GENERATE("a.prj", "a.PRJ");
+    constexpr double foot = 1200.0 / 3937;
+    folder.write(name, prj(survey_foot));
+    const Scene feet = load_scene(file);
+    CHECK(feet.bounds().max.x() == Approx(5 * foot));
+    CHECK(feet.bounds().max.z() == 6);
+    check_origin(feet, 500007.5, 4000005, "Plan");
+    CHECK(feet.origin->unit == Approx(foot));
+    CHECK(tells(feet, "a.asc: x and y are in units of 0.30480060960121"));
+    folder.write(name, prj("\"Meter\",1.0") + vertical_prj("1.0", survey_foot));
+    const Scene high = load_scene(file);
+    CHECK(high.bounds().max.x() == 5);
+    CHECK(high.bounds().max.z() == Approx(6 * foot));
+    CHECK(tells(high, "a.asc: heights are in units of 0.30480060960121"));
+    folder.write(name, prj("\"Meter\",1.0") + vertical_prj("-1.0", "\"Meter\",1.0"));
+    const Scene deep = load_scene(file);
+    CHECK(deep.bounds().min.z() == -6);
+    CHECK(tells(deep, "has depths by Plan + Ups"));
+    folder.write(name, prj("\"Meter\",1.0"));
+    CHECK(load_scene(file).notices.size() == 1);  // where it lies
+}
+
+TEST_CASE("a .prj of degrees is refused, and one that nobody reads is told")
+{
+    const TempFolder folder;
+    const std::filesystem::path file = folder.write("a.asc", grid_head + "1 2 3\n4 5 6\n");
+    folder.write("a.prj", gcs_of_prj);
+    CHECK_THROWS_WITH(load_scene(file), file.string() + ": is in degrees (geographic, WGS 84), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE "
+                                                        "is a projection in metres such as the UTM zone's");
+    SceneOptions options;
+    options.heightmap = "cell: 3";
+    CHECK(load_scene(file, options).bounds().max.x() == 3);
+    for (const std::string text : {"Projection UTM\nZone 33\nUnits METERS\n", "", "PROJCS[\"Plan\""}) {
+        folder.write("a.prj", text);
+        const Scene scene = load_scene(file);
+        CHECK(scene.bounds().max.x() == 5);
+        CHECK(tells(scene, "a.prj: is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres"));
+    }
+}
+
 TEST_CASE("cells of a grid may be longer one way, and holes are -9999 or what it says")
 {
     const TempFolder folder;

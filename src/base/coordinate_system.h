@@ -14,7 +14,7 @@ struct CoordinateSystem {
         Degrees,  ///< longitude and latitude
         Globe     ///< x, y and z from the Earth's centre
     };
-    std::string name;                   ///< in the register's or the file's own words
+    std::string name;                   ///< in the register's or the file's own words, printable ASCII
     Place place = Place::None;
     double unit = 1;                    ///< m, of x and y on a plane
     std::optional<double> height_unit;  ///< m; < 0 where it counts downwards (depths); nothing: it has no heights
@@ -28,6 +28,9 @@ std::optional<CoordinateSystem> coordinate_system(const std::string& definition)
 
 /// Adds the notice that `what` ("heights") was converted; none for metres.
 void tell_unit(const std::string& file, const std::string& what, double unit, std::vector<std::string>& notices);
+
+/// The same for heights; and if `unit` is < 0, that by `place`, which says so, they are depths.
+void tell_height_unit(const std::string& file, double unit, const std::string& place, std::vector<std::string>& notices);
 
 /// Throws the FileError of a file in coordinates that are no lengths on a plane; `name` ("EPSG:4326") may be empty.
 [[noreturn]] void refuse_globe(const std::string& file, bool is_geocentric, const std::string& name);

@@ -336,13 +336,12 @@ double height_unit(const GeoTags& tags, const std::string& file, std::vector<std
     if (!words[0].metres)
         throw FileError(file, "has heights in unit " + words[0].place +
                                   ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they are");
-    const double unit = std::abs(*words[0].metres);
     tell_other_units(words, file, notices);
-    tell_unit(file, "heights", unit, notices);
     const auto depths = std::find_if(words.begin(), words.end(), [](const UnitWord& word) { return word.metres.value_or(1) < 0; });
-    if (depths == words.end()) return unit;
-    notices.push_back(file + ": has depths by " + depths->place + ", which counts downwards; the heights are their negatives");
-    return -unit;
+    const bool is_depth = depths != words.end();
+    const double unit = std::abs(*words[0].metres) * (is_depth ? -1 : 1);
+    tell_height_unit(file, unit, is_depth ? depths->place : words[0].place, notices);
+    return unit;
 }
 
 }  // namespace spawnfield

@@ -100,6 +100,7 @@ std::optional<CoordinateSystem> crs_module::find_system(const std::string& defin
     std::optional<CoordinateSystem> found = describe(context.get(), system.get());
     const char* const name = proj_get_name(system.get());
     if (found && name != nullptr) found->name = name;
+    if (found) std::erase_if(found->name, [](unsigned char c) { return c < ' ' || c > '~'; });
     return found;
 }
 

@@ -1,5 +1,6 @@
 #include "scene/height_file.h"
 
+#include "base/coordinate_system.h"
 #include "base/geotiff.h"
 #include "base/input_file.h"
 #include "base/number.h"
@@ -64,15 +65,46 @@ HeightFile read_geotiff(const std::filesystem::path& file, bool wants_frame, std
     return out;
 }
 
-HeightFile read_ascii_grid(const std::filesystem::path& file, bool wants_frame)
+/// What a .prj beside the file tells; nothing if there is none.
+std::optional<CoordinateSystem> system_beside(const std::filesystem::path& file, std::vector<std::string>& notices)
+{
+    constexpr std::uintmax_t most = 65536;  // bytes; a .prj has one or two thousand
+    for (const char* extension : {".prj", ".PRJ"}) {
+        const std::filesystem::path prj = std::filesystem::path(file).replace_extension(extension);
+        if (!std::filesystem::is_regular_file(prj)) continue;
+        std::optional<CoordinateSystem> found;
+        if (std::filesystem::file_size(prj) <= most) found = coordinate_system(read_file(prj));
+        if (!found) notices.push_back(prj.string() + ": is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres");
+        return found;
+    }
+    return std::nullopt;
+}
+
+void use_system(HeightFile& found, const CoordinateSystem& system, bool wants_frame, const std::string& file, std::vector<std::string>& notices)
+{
+    using Place = CoordinateSystem::Place;
+    if (system.height_unit) {
+        found.height_unit = *system.height_unit;
+        tell_height_unit(file, found.height_unit, system.name, notices);
+    }
+    if (!wants_frame) return;
+    if (system.place == Place::Degrees || system.place == Place::Globe) refuse_globe(file, system.place == Place::Globe, system.name);
+    found.frame->is_projected = system.place == Place::Plane;
+    found.frame->unit = system.unit;
+    found.frame->crs = system.name;
+    tell_unit(file, "x and y", system.unit, notices);
+}
+
+HeightFile read_ascii_grid(const std::filesystem::path& file, bool wants_frame, std::vector<std::string>& notices)
 {
     AsciiGrid grid = parse_ascii_grid(read_file(file), file.string(), max_heights);
     HeightFile out;
     out.image = std::move(grid.image);
     out.no_data = grid.no_data;
     out.frame = grid.frame;
-    if (wants_frame) refuse_likely_degrees(out, file.string());
-    else out.frame.reset();
+    if (const auto system = system_beside(file, notices)) use_system(out, *system, wants_frame, file.string(), notices);
+    if (wants_frame && !out.frame->is_projected) refuse_likely_degrees(out, file.string());
+    if (!wants_frame) out.frame.reset();
     return out;
 }
 
@@ -126,7 +158,7 @@ HeightFile read_height_file(const std::filesystem::path& file, const std::option
     if (raw) return read_raw(file, *raw);
     const std::string start = start_of(file);
     if (is_tiff(start)) return read_geotiff(file, wants_frame, notices);
-    if (is_ascii_grid(start)) return read_ascii_grid(file, wants_frame);
+    if (is_ascii_grid(start)) return read_ascii_grid(file, wants_frame, notices);
     if (is_png(start)) return {read_grey_png(file, max_heights), {}, {}, 1};
     if (file.extension() == ".asc") parse_ascii_grid(start, file.string(), max_heights);  // says what is wrong with its header
     throw FileError(file.string(), "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout told with the key raw");
