@@ -558,6 +558,16 @@ TEST_CASE("images and raw numbers need to be told what they are")
     CHECK(load("relief.png", "size: [49, 36], z: [537.36, 543.81]").bounds().max == Vec3(24.5, 18, 543.81));
 }
 
+TEST_CASE("nobody asks whether an elevation model is in millimetres or lies on its side")
+{
+    const TempFolder folder;
+    const Scene steep = load_scene(folder.write("a.asc", grid_head + "0 0 0\n900 900 900\n"));
+    CHECK(steep.notices.size() == 1);  // where it lies
+    const Scene wide = load_scene(folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 30000\n1 2 3\n4 5 6\n"));
+    CHECK(wide.notices.size() == 1);
+    CHECK(load_parts(folder, "  - {name: a, label: terrain, heightmap: {file: a.asc, cell: 0.001}}\n").notices.empty());
+}
+
 TEST_CASE("an elevation model by itself takes labels, but nothing that is for meshes")
 {
     const TempFolder folder;
