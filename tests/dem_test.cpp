@@ -243,6 +243,16 @@ TEST_CASE("depths are heights turned round, and it is told")
     CHECK(tells(scene, "has depths by EPSG:5336 (VerticalGeoKey), which counts downwards; the heights are their negatives"));
 }
 
+TEST_CASE("tiles are in the same unit whichever way they tell it")
+{
+    const TempFolder folder;
+    write(folder, {.keys = keys_of({{1024, 1}, {3072, 2263}, {3076, 9003}})}, "w.tif");
+    write(folder, {.tie = {0, 0, 0, 500004, 4000010, 0}, .keys = keys_of({{1024, 1}, {3072, 2263}})}, "e.tif");
+    const std::string origin = ", origin: [500005, 4000005]}}\n";
+    const Scene scene = load_parts(folder, "  - {name: w, label: terrain, heightmap: {file: w.tif" + origin + "  - {name: e, label: terrain, heightmap: {file: e.tif" + origin);
+    CHECK_FALSE(tells(scene, "an earlier part"));
+}
+
 TEST_CASE("EPSG codes that tell no unit are refused with what to do")
 {
     const TempFolder folder;
@@ -687,7 +697,7 @@ TEST_CASE("a map keeps where its elevation model lies, and info tells it")
     folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 556440.25\nyllcorner 5394932.125\ncellsize 5\nNODATA_value 0\n1 2 3\n4 5 6\n");
     const ProgramRun run = run_program(folder, "bake a.asc -o map --resolution 0.5");
     CHECK(run.status == 0);
-    CHECK_THAT(run.err, Contains("notice: a.asc: x 556447.75, y 5394937.125 is at 0, 0 of the scene; heights are kept\n"));
+    CHECK_THAT(run.err, Contains("notice: a.asc: x 556447.75, y 5394937.125 is at 0, 0 of the scene; z is not shifted\n"));
     const Map map = read_map(folder / "map");
     REQUIRE(map.origin);
     CHECK(map.origin->x == 556447.75);

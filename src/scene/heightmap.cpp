@@ -168,12 +168,12 @@ void place_scene(Scene& scene, const Heightmap& map, const Pose& pose, const std
     origin.y -= pose.position.y() / origin.unit;
     if (!scene.origin) {
         scene.origin = origin;
-        scene.notices.push_back(file + ": " + place_words(origin) + " is at 0, 0 of the scene; heights are kept");
+        scene.notices.push_back(file + ": " + place_words(origin) + " is at 0, 0 of the scene; z is not shifted");
         return;
     }
-    constexpr double tolerance = 1e-3;  // m
+    constexpr double tolerance = 1e-3, digits = 1e-12;  // m; relative, as one unit is written with more or fewer digits
     const double apart = std::hypot(origin.x - scene.origin->x, origin.y - scene.origin->y) * origin.unit;
-    if (apart > tolerance || origin.unit != scene.origin->unit || origin.crs != scene.origin->crs)
+    if (apart > tolerance || std::abs(origin.unit - scene.origin->unit) > digits * origin.unit || origin.crs != scene.origin->crs)
         scene.notices.push_back(file + ": " + place_words(origin) + " is at 0, 0 of the scene, but an earlier part has " + place_words(*scene.origin) +
                                 " there: they do not lie to each other as in their files (the key origin, the same for all, does that)");
 }
