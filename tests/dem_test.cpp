@@ -295,6 +295,20 @@ TEST_CASE("heights that are no data are no terrain")
     check_hole(load_scene(write(folder, {.heights = {1, 2, hole, 4, 5, 6}, .no_data = "nan"})));
     // Text and pixel differ by rounding: GDAL writes the float's decimals, others fewer.
     check_hole(load_scene(write(folder, {.heights = {1, 2, -3.4028234663852886e38, 4, 5, 6}, .no_data = "-3.4028235e+38"})));
+    // A value that no float holds was stored as infinite; a double holds it.
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const GeoFile beyond{.heights = {1, 2, -infinite, 4, 5, 6}, .no_data = "-1e+100"};
+    check_hole(load_scene(write(folder, beyond)));
+    const auto check_infinite = [&](GeoFile geo) { CHECK_THROWS_WITH(load_scene(write(folder, geo)), Contains("row 0, column 2 is infinite")); };
+    GeoFile wrong = beyond;
+    wrong.heights[2] = infinite;
+    check_infinite(wrong);
+    wrong = beyond;
+    wrong.bits = 64;
+    check_infinite(wrong);
+    wrong = beyond;
+    wrong.no_data = "-9999";
+    check_infinite(wrong);
     const std::filesystem::path plain = write(folder, {.heights = heights});
     const Scene deep = load_scene(plain);
     CHECK(deep.bounds().min.z() == -9999);

@@ -131,6 +131,7 @@ GreyImage read_grey_tiff(const std::filesystem::path& file, std::uint64_t most)
     check(found, file.string(), most);
     GreyImage image{int(found.rows), int(found.cols), !has_white(found) ? 0.0 : found.bits == 8 ? 255.0 : 65535.0, {}};
     image.zero_is_white = has_white(found) && found.photometric == PHOTOMETRIC_MINISWHITE;
+    image.is_float32 = is_float(found) && found.bits == 32;
     const bool tiled = TIFFIsTiled(tiff.get());
     const tmsize_t piece = tiled ? TIFFTileSize(tiff.get()) : TIFFScanlineSize(tiff.get());
     const std::size_t wanted = tiled ? std::size_t(found.tile_rows) * found.tile_cols : found.cols;

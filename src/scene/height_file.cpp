@@ -143,7 +143,7 @@ HeightFile read_raw(const std::filesystem::path& file, const RawLayout& raw)
     case RawLayout::Type::Uint8: out.image.largest = 255; out.image.pixels = pixels_of<std::uint8_t>(bytes); break;
     case RawLayout::Type::Uint16: out.image.largest = 65535; out.image.pixels = pixels_of<std::uint16_t>(bytes); break;
     case RawLayout::Type::Int16: out.image.pixels = pixels_of<std::int16_t>(bytes); break;
-    case RawLayout::Type::Float32: out.image.pixels = pixels_of<float>(bytes); break;
+    case RawLayout::Type::Float32: out.image.is_float32 = true; out.image.pixels = pixels_of<float>(bytes); break;
     case RawLayout::Type::Float64: out.image.pixels = pixels_of<double>(bytes); break;
     }
     return out;

@@ -52,6 +52,15 @@ void check_complete(const HeightFile& found, const HeightmapOptions& options, co
     if (options.origin && !has_place) throw FileError(file, key(options, "origin", "[X, Y]") + " is for a file that tells where it lies, without size and cell");
 }
 
+/// Whether a pixel, as it is stored, is the no-data value.
+bool is_none(double pixel, double none, bool is_float32)
+{
+    if (pixel == none) return true;
+    // Beyond a float's range the value was stored as infinite.
+    if (std::isinf(pixel)) return is_float32 && std::abs(none) > double(std::numeric_limits<float>::max()) && std::signbit(pixel) == std::signbit(none);
+    return float(pixel) == float(none);  // its text may have fewer digits than the pixels
+}
+
 /// NaN where there is no height, metres elsewhere.
 std::vector<double> metres(HeightFile& found, const HeightmapOptions& options)
 {
@@ -59,9 +68,7 @@ std::vector<double> metres(HeightFile& found, const HeightmapOptions& options)
     const std::optional<double> none = options.no_data ? options.no_data : found.no_data;
     const double largest = found.image.largest;
     for (double& z : heights) {
-        // Of floats the text of the value may have fewer digits than the pixels.
-        const double stored = found.is_turned ? largest - z : z;
-        if (none && (stored == *none || (std::isfinite(stored) && float(stored) == float(*none)))) z = std::numeric_limits<double>::quiet_NaN();
+        if (none && is_none(found.is_turned ? largest - z : z, *none, found.image.is_float32)) z = std::numeric_limits<double>::quiet_NaN();
         else z = options.z ? (*options.z)[0] + z / largest * ((*options.z)[1] - (*options.z)[0]) : z * found.height_unit;
     }
     return heights;
