@@ -313,6 +313,9 @@ TEST_CASE("heights that are no data are no terrain")
     const Scene deep = load_scene(plain);
     CHECK(deep.bounds().min.z() == -9999);
     CHECK(tells(deep, "the lowest height is -9999 m, which often means no data; if so: --heightmap 'nodata: -9999'"));
+    for (const int system : {8228, 5336})  // feet, depths
+        CHECK(tells(load_scene(write(folder, {.heights = heights, .keys = keys_of({{1024, 1}, {3072, 26910}, {4096, system}})}, "b.tif")),
+                    "the lowest value is -9999, which often means no data; if so: --heightmap 'nodata: -9999'"));
     SceneOptions options;
     options.heightmap = "nodata: -9999";
     check_hole(load_scene(plain, options));

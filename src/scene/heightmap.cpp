@@ -82,17 +82,28 @@ void check_heights(const Heightmap& map, const std::string& file)
                                       " is infinite, needs a finite height or NaN (no ground)");
 }
 
+/// A value of the file, the lowest, that is likely meant as no data; nothing if there is none. `unit` is that of the heights, < 0 of depths.
+std::optional<double> likely_no_data(const std::vector<double>& heights, double unit)
+{
+    std::optional<double> lowest;  // but for its unit
+    for (const double z : heights)
+        if (!std::isnan(z) && (!lowest || (unit < 0 ? z > *lowest : z < *lowest))) lowest = z;
+    for (const double usual : {-9999.0, -32768.0, -32767.0})
+        if (lowest == usual * unit) return usual;
+    return lowest && *lowest / unit < -1e30 ? std::optional(*lowest / unit) : std::nullopt;
+}
+
 /// Tells of holes, and of what may have been meant as one.
-void tell_holes(Heightmap& map, const HeightmapOptions& options, const std::string& file)
+void tell_holes(Heightmap& map, double unit, const HeightmapOptions& options, const std::string& file)
 {
     const std::size_t all = map.heights.size();
     const auto holes = std::size_t(std::count_if(map.heights.begin(), map.heights.end(), [](double z) { return std::isnan(z); }));
     if (holes == all) throw FileError(file, "has no heights: every pixel is NaN or no-data");
     if (holes > 0) map.notices.push_back(file + ": " + std::to_string(holes) + " of " + std::to_string(all) + " heights are missing (no-data); there is no terrain");
     if (options.z) return;
-    const double lowest = *std::min_element(map.heights.begin(), map.heights.end(), [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
-    if (lowest == -9999 || lowest == -32768 || lowest == -32767 || lowest < -1e30)
-        map.notices.push_back(file + ": the lowest height is " + number(lowest) + " m, which often means no data; if so: " + key(options, "nodata", number(lowest)));
+    if (const auto lowest = likely_no_data(map.heights, unit))
+        map.notices.push_back(file + ": the lowest " + (unit == 1 ? "height is " + number(*lowest) + " m" : "value is " + number(*lowest)) +
+                              ", which often means no data; if so: " + key(options, "nodata", number(*lowest)));
 }
 
 std::string place_words(const GeoOrigin& origin)
@@ -162,7 +173,7 @@ Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptio
     else use_frame(map, *found.frame, options);
     map.heights = metres(found, options);
     check_heights(map, file.string());
-    tell_holes(map, options, file.string());
+    tell_holes(map, found.height_unit, options, file.string());
     return map;
 }
 
