@@ -105,6 +105,7 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
                   : sdf  ? read_sdf_scene(file, options)
                   : urdf ? read_urdf_scene(file, options)
                          : read_bare_scene(file, options);
+    const auto is_mesh_part = [](const Part& part) { return part.kind == "mesh"; };
     const auto is_octomap_part = [](const Part& part) { return part.kind == "octomap"; };
     if (options.unknown && std::none_of(scene.parts.begin(), scene.parts.end(), is_octomap_part))
         scene.notices.push_back(file.string() + ": has no OctoMap, so --unknown has no effect");
@@ -113,6 +114,7 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     const Remedies remedies = yaml     ? Remedies{"scale of its part:", "up of its part"}
                               : gazebo ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}
                                        : Remedies{"--scale", "--up y or z"};
+    if (std::none_of(scene.parts.begin(), scene.parts.end(), is_mesh_part)) return scene;  // nothing else is scaled or turned by the user
     for (std::string& doubt : doubts_about(scene, file.string(), remedies)) scene.notices.push_back(std::move(doubt));
     return scene;
 }
