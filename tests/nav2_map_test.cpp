@@ -211,6 +211,7 @@ TEST_CASE("maps that make no sense are refused by file, key and line")
     check_refused("full.pgm", usual, "has no free cell (3 x 1); are negate and the thresholds right?");
     check_refused("a.pgm", "origin: [0, 0, 0]\n", "resolution is missing");
     check_refused("a.pgm", "resolution: 0\norigin: [0, 0, 0]\n", "resolution is 0, needs > 0 (line 2)");
+    check_refused("a.pgm", "resolution: 1e300\norigin: [0, 0, 0]\n", "resolution is 1e+300, needs at most 1000 m (line 2)");
     check_refused("a.pgm", "resolution: 1\n", "origin is missing");
     check_refused("a.pgm", "resolution: 1\norigin: [0, 0]\n", "origin has 2 numbers, needs 3 (line 3)");
     check_refused("a.pgm", "resolution: 1\norigin: [0, 0, 0]\nnegate: 2\n", "negate is \"2\", needs 0 or 1 (line 4)");

@@ -1,9 +1,11 @@
 #include <spawnfield/error.h>
 #include <spawnfield/output_folder.h>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace spawnfield {
 
@@ -26,6 +28,9 @@ void refuse_foreign(const fs::path& target, const std::function<std::string(cons
     const std::string reason = objection(target);
     if (!reason.empty()) throw OutputError(target.string(), reason + "; choose another name or remove it");
 }
+
+/// At one blow, so that there is a target at any moment; false where the file system cannot.
+bool exchange(const fs::path& a, const fs::path& b) { return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0; }
 
 }  // namespace
 
@@ -50,8 +55,15 @@ OutputFolder::~OutputFolder()
 void OutputFolder::commit(const std::function<void(const Path& old, const Path& now)>& keep)
 {
     std::error_code error, ignored;
-    if (fs::exists(target_)) fs::rename(target_, old_, error);
-    if (!error) fs::rename(folder_, target_, error);
+    if (!fs::exists(target_)) {
+        fs::rename(folder_, target_, error);
+    } else if (exchange(folder_, target_)) {
+        fs::rename(folder_, old_, error);
+        if (error) exchange(folder_, target_);
+    } else {
+        fs::rename(target_, old_, error);
+        if (!error) fs::rename(folder_, target_, error);
+    }
     if (error) {
         if (fs::exists(old_)) fs::rename(old_, target_, ignored);
         throw OutputError(target_.string(), "cannot be written: " + error.message());

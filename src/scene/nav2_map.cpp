@@ -166,6 +166,7 @@ Nav2Map read_nav2_map(const std::filesystem::path& file)
     Nav2Map out;
     tell_unknown_keys(map, out.notices);
     out.resolution = map.positive("resolution");
+    if (out.resolution > 1000) map.fail("resolution", "is " + number(out.resolution) + ", needs at most 1000 m");
     const Vec3 origin = map.vector("origin");
     out.x = origin.x();
     out.y = origin.y();
