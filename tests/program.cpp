@@ -20,8 +20,8 @@ ProgramRun run(const TempFolder& folder, const std::string& before, const std::s
 
 ProgramRun run_program(const TempFolder& folder, const std::string& arguments) { return run(folder, "", arguments); }
 
-ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds)
+ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds, const std::string& signal)
 {
     // In the foreground only the program is told: a group's members are told twice, and the second Ctrl-C ends it at once.
-    return run(folder, "timeout --foreground --preserve-status --signal=INT --kill-after=30 " + std::to_string(seconds), arguments);
+    return run(folder, "timeout --foreground --preserve-status --signal=" + signal + " --kill-after=30 " + std::to_string(seconds), arguments);
 }

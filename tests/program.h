@@ -11,5 +11,5 @@ struct ProgramRun {
 /// `spawnfield ARGUMENTS` in the folder, by a shell, without a terminal.
 ProgramRun run_program(const TempFolder& folder, const std::string& arguments);
 
-/// The same; Ctrl-C comes after `seconds`, and a hard end half a minute later.
-ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds);
+/// The same; the signal (Ctrl-C) comes after `seconds`, and a hard end half a minute later.
+ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds, const std::string& signal = "INT");
