@@ -1,6 +1,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/mesh.h"
+#include "scene/mesh_checks.h"
 
 #include <spawnfield/error.h>
 
@@ -139,7 +140,12 @@ FileMesh read_mesh(const std::filesystem::path& file)
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+    check_mesh_file(file, importer);
+    const aiScene* scene = importer.ReadFile(file.string(), 0);
+    if (scene != nullptr) {
+        check_mesh_scene(*scene, file.string());
+        scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
+    }
     if (scene == nullptr || scene->mRootNode == nullptr)
         throw FileError(file.string(), std::string("cannot be read as a mesh: ") + importer.GetErrorString());
 
