@@ -52,6 +52,21 @@ const std::string ply_head = "ply\nformat ascii 1.0\ncomment a square\nelement v
                              "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
 const std::string ply_square = ply_head + "0 0 0\n4 0 0\n4 3 0\n0 3 0\n3 0 1 2\n3 0 2 3\n";
 
+/// One triangle; `nodes` stand in the scene beside the node that holds it.
+std::string collada(const std::string& nodes = "", const std::string& library = "")
+{
+    return "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n"
+           "<asset><unit meter=\"1\"/><up_axis>Z_UP</up_axis></asset>\n<library_geometries><geometry id=\"g\"><mesh>\n"
+           "<source id=\"s\"><float_array id=\"a\" count=\"9\">0 0 0 5 0 0 5 5 0</float_array>\n"
+           "<technique_common><accessor source=\"#a\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/>"
+           "<param name=\"Z\" type=\"float\"/></accessor></technique_common></source>\n"
+           "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#s\"/></vertices>\n"
+           "<polylist count=\"1\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><vcount>3</vcount>\n<p>0 1 2</p></polylist>\n"
+           "</mesh></geometry></library_geometries>\n<library_nodes>" + library + "</library_nodes>\n"
+           "<library_visual_scenes><visual_scene id=\"vs\">\n<node id=\"n\"><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix><instance_geometry url=\"#g\"/></node>\n" +
+           nodes + "</visual_scene></library_visual_scenes>\n<scene><instance_visual_scene url=\"#vs\"/></scene></COLLADA>\n";
+}
+
 template <class T>
 std::string bytes_of_value(T value, bool big)
 {
@@ -152,4 +167,48 @@ TEST_CASE("PLY files are read or refused wherever they are cut or altered")
     check_harmed(folder, "a.ply", ply_square);
     check_harmed(folder, "a.ply", binary_square(false));
     check_harmed(folder, "a.ply", binary_square(true));
+}
+
+TEST_CASE("COLLADA nodes that hold themselves, stand too deep or come to too many are refused")
+{
+    const TempFolder folder;
+    const auto said = [&](const std::string& nodes, const std::string& library = "") { return complaint(folder, "a.dae", collada(nodes, library)); };
+    const auto node = [](int id, const std::string& inside) { return "<node id=\"n" + std::to_string(id) + "\">" + inside + "</node>\n"; };
+    const auto instance = [](int id) { return "<instance_node url=\"#n" + std::to_string(id) + "\"/>"; };
+    CHECK(said(node(1, instance(1))) == "line 14: <node> \"n1\" holds itself: a circle of <instance_node>");
+    CHECK(said(instance(1), node(1, instance(2)) + node(2, node(3, instance(1)))) == "line 11: <node> \"n1\" holds itself: a circle of <instance_node>");
+    CHECK(said("<node id=\"a\" name=\"n1\">" + instance(1) + "</node>", node(1, "")) == "");  // the library's node, not the one of that name
+    CHECK(said("<node id=\"a\" name=\"n1\">" + instance(1) + "</node>") == "line 14: <node> \"n1\" holds itself: a circle of <instance_node>");
+    const auto chain = [&](int length, int times) {
+        std::string library;
+        for (int i = 1; i < length; ++i) {
+            std::string inside;
+            for (int t = 0; t < times; ++t) inside += instance(i + 1);
+            library += node(i, inside);
+        }
+        return library + node(length, "<instance_geometry url=\"#g\"/>");
+    };
+    CHECK(said(node(0, instance(1)), chain(450, 1)) == "");
+    CHECK(said(node(0, instance(1)), chain(20000, 1)) == "line 509: <node> \"n499\" is nested more than 500 deep, by <instance_node> too; merge nodes");
+    CHECK(said(node(0, instance(1)), chain(5, 4)) == "");
+    CHECK(said(node(0, instance(1)), chain(28, 2)) ==
+          "line 19: <node> \"n9\" comes to more than 1000000 nodes by its <instance_node>s; merge nodes, or instance fewer");
+    std::string open, close;
+    for (int i = 0; i < 20000; ++i) open += "<node>", close += "</node>";
+    CHECK(said(open + close) == "line 14: elements are nested more than 100 deep; merge nodes");
+    CHECK(complaint(folder, "a.zae", "PK").starts_with("is a packed COLLADA file"));
+}
+
+TEST_CASE("few bytes that come to too many triangles are refused")
+{
+    const TempFolder folder;
+    std::string text = collada(), numbers, sizes, indices;  // 300 triangles in each of 400000 nodes
+    for (int i = 0; i < 300; ++i) sizes += "3 ", indices += "0 1 2 ";
+    text = replaced(replaced(replaced(text, "polylist count=\"1\"", "polylist count=\"300\""), "<vcount>3", "<vcount>" + sizes), "<p>0 1 2", "<p>" + indices);
+    std::string thousand, library;
+    for (int i = 0; i < 1000; ++i) thousand += "<instance_geometry url=\"#g\"/>";
+    for (int i = 0; i < 400; ++i) library += "<instance_node url=\"#many\"/>";
+    text = replaced(replaced(text, "<library_nodes>", "<library_nodes><node id=\"many\">" + thousand + "</node>"), "<node id=\"n\">", "<node id=\"n\">" + library);
+    CHECK(complaint(folder, "a.dae", text) ==
+          "its nodes repeat 300 triangles to more than 100000000, needs fewer; leave instances out, or bake parts of it");
 }

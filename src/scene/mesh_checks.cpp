@@ -2,6 +2,7 @@
 
 #include "base/bytes.h"
 #include "base/text.h"
+#include "scene/collada_check.h"
 #include "scene/ply_file.h"
 
 #include <spawnfield/error.h>
@@ -10,12 +11,16 @@
 #include <assimp/importerdesc.h>
 
 #include <algorithm>
-#include <memory>
+#include <numeric>
+#include <vector>
 
 namespace spawnfield {
 namespace {
 
 constexpr unsigned most_corners = 32767;  // assimp's own limit (AI_MAX_FACE_INDICES); its polygon cutter takes the square of it
+
+constexpr unsigned most_depth = 1000;     // of nodes, which readers visit recursively
+constexpr std::uint64_t most_triangles = 100000000;
 
 constexpr aiImporterDesc ply_description{"spawnfield's reader of PLY", "", "", "", aiImporterFlags_SupportBinaryFlavour, 0, 0, 0, 0, "ply"};
 
@@ -55,14 +60,59 @@ private:
     const PlyMesh mesh_;
 };
 
-void replace_importers(Assimp::Importer& importer, std::unique_ptr<Assimp::BaseImporter> with)
+void take_ply(std::string_view bytes, const std::string& file, Assimp::Importer& importer)
 {
+    PlyMesh mesh = parse_ply(bytes, file);
+    if (mesh.face_ends.empty()) throw FileError(file, "has no triangles, needs at least one");
     for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
         Assimp::BaseImporter* const old = importer.GetImporter(i);
         importer.UnregisterLoader(old);
         delete old;
     }
-    importer.RegisterLoader(with.release());
+    importer.RegisterLoader(new PlyImporter(std::move(mesh)));  // the importer deletes it
+}
+
+/// How many triangles its faces come to. Throws unless faces have corners, and these are vertices.
+std::uint64_t checked_triangles(const aiMesh& mesh, unsigned index, const std::string& file)
+{
+    const auto fault = [&](unsigned face, const std::string& what) {
+        const std::string name = mesh.mName.length > 0 ? "mesh \"" + std::string(mesh.mName.C_Str()) + "\"" : "mesh " + std::to_string(index + 1);
+        return FileError(file, name + ": face " + std::to_string(face + 1) + " of " + std::to_string(mesh.mNumFaces) + " has " + what);
+    };
+    std::uint64_t triangles = 0;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+        const aiFace& face = mesh.mFaces[f];
+        if (face.mNumIndices < 1 || face.mNumIndices > most_corners)
+            throw fault(f, std::to_string(face.mNumIndices) + " corners, needs 3 .. " + std::to_string(most_corners) + "; cut it into triangles");
+        for (unsigned c = 0; c < face.mNumIndices; ++c)
+            if (face.mIndices[c] >= mesh.mNumVertices)
+                throw fault(f, "the corner " + std::to_string(face.mIndices[c]) + ", needs one of the " + std::to_string(mesh.mNumVertices) + " vertices");
+        triangles += face.mNumIndices > 2 ? face.mNumIndices - 2 : 0;
+    }
+    return triangles;
+}
+
+/// A node for each instance of a mesh: few bytes of a file can come to any number of triangles.
+void check_instances(const aiScene& scene, const std::vector<std::uint64_t>& triangles, const std::string& file)
+{
+    const std::uint64_t in_file = std::accumulate(triangles.begin(), triangles.end(), std::uint64_t(0));
+    std::uint64_t all = 0;
+    struct Entry {
+        const aiNode* node;
+        unsigned depth;
+    };
+    std::vector<Entry> open{{scene.mRootNode, 1}};
+    while (!open.empty() && open.back().node != nullptr) {
+        const auto [node, depth] = open.back();
+        open.pop_back();
+        if (depth > most_depth)
+            throw FileError(file, "node \"" + std::string(node->mName.C_Str()) + "\" is nested more than " + std::to_string(most_depth) + " deep; merge nodes");
+        for (unsigned m = 0; m < node->mNumMeshes; ++m) all += triangles.at(node->mMeshes[m]);
+        if (all > std::max(most_triangles, in_file))
+            throw FileError(file, "its nodes repeat " + std::to_string(in_file) + " triangles to more than " + std::to_string(most_triangles) +
+                                      ", needs fewer; leave instances out, or bake parts of it");
+        for (unsigned c = 0; c < node->mNumChildren; ++c) open.push_back({node->mChildren[c], depth + 1});
+    }
 }
 
 }  // namespace
@@ -70,29 +120,17 @@ void replace_importers(Assimp::Importer& importer, std::unique_ptr<Assimp::BaseI
 void check_mesh_file(const std::filesystem::path& file, Assimp::Importer& importer)
 {
     const Bytes bytes = map_file(file);
-    if (lower_case(file.extension().string()) != ".ply" && !is_ply(bytes.view)) return;
-    PlyMesh mesh = parse_ply(bytes.view, file.string());
-    if (mesh.face_ends.empty()) throw FileError(file.string(), "has no triangles, needs at least one");
-    replace_importers(importer, std::make_unique<PlyImporter>(std::move(mesh)));
+    const std::string extension = lower_case(file.extension().string());
+    if (extension == ".zae") throw FileError(file.string(), "is a packed COLLADA file, which is not looked into; unpack it (unzip) and give the .dae in it");
+    if (is_collada(bytes.view, extension)) check_collada(bytes.view, file.string());
+    if (extension == ".ply" || is_ply(bytes.view)) take_ply(bytes.view, file.string(), importer);
 }
 
 void check_mesh_scene(const aiScene& scene, const std::string& file)
 {
-    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-        const aiMesh& mesh = *scene.mMeshes[m];
-        const auto fault = [&](unsigned face, const std::string& what) {
-            const std::string name = mesh.mName.length > 0 ? "mesh \"" + std::string(mesh.mName.C_Str()) + "\"" : "mesh " + std::to_string(m + 1);
-            return FileError(file, name + ": face " + std::to_string(face + 1) + " of " + std::to_string(mesh.mNumFaces) + " has " + what);
-        };
-        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-            const aiFace& face = mesh.mFaces[f];
-            if (face.mNumIndices < 1 || face.mNumIndices > most_corners)
-                throw fault(f, std::to_string(face.mNumIndices) + " corners, needs 3 .. " + std::to_string(most_corners) + "; cut it into triangles");
-            for (unsigned c = 0; c < face.mNumIndices; ++c)
-                if (face.mIndices[c] >= mesh.mNumVertices)
-                    throw fault(f, "the corner " + std::to_string(face.mIndices[c]) + ", needs one of the " + std::to_string(mesh.mNumVertices) + " vertices");
-        }
-    }
+    std::vector<std::uint64_t> triangles;  // of each mesh
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) triangles.push_back(checked_triangles(*scene.mMeshes[m], m, file));
+    check_instances(scene, triangles, file);
 }
 
 }  // namespace spawnfield
