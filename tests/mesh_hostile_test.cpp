@@ -199,6 +199,43 @@ TEST_CASE("COLLADA nodes that hold themselves, stand too deep or come to too man
     CHECK(complaint(folder, "a.zae", "PK").starts_with("is a packed COLLADA file"));
 }
 
+TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by line and element")
+{
+    const TempFolder folder;
+    CHECK(complaint(folder, "a.dae", collada()) == "");
+    const auto said = [&](const std::string& from, const std::string& to) { return complaint(folder, "a.dae", replaced(collada(), from, to)); };
+    const std::string whole = ", needs whole numbers of 0 .. 2147483647 with spaces between";
+    CHECK(said("<p>0 1 2", "<p>0 1,5 2") == "line 9: <p> has \"1,5\"" + whole);
+    CHECK(said("<p>0 1 2", "<p>0 -1 2") == "line 9: <p> has \"-1\"" + whole);
+    CHECK(said("<p>0 1 2", "<p>0 1.5 2") == "line 9: <p> has \"1.5\"" + whole);
+    CHECK(said("<p>0 1 2", "<p>0 x 2") == "line 9: <p> has \"x\"" + whole);
+    CHECK(said("<p>0 1 2", "<p>0 99999999999999999999 2") == "line 9: <p> has \"99999999999999999999\"" + whole);
+    CHECK(said("<p>0 1 2", "<p>0 1") == "line 8: <polylist> has 2 numbers in <p>, needs 3 for its 1 faces");
+    CHECK(said("<vcount>3", "<vcount>2") == "line 8: <polylist> has 3 numbers in <p>, needs 2 for its 1 faces");
+    CHECK(said("<vcount>3", "<vcount>0") == "line 8: <vcount> has \"0\", needs whole numbers of 1 .. 2147483647 with spaces between");
+    CHECK(said("<vcount>3", "<vcount>3 3") == "line 8: <polylist> has count 1, but 2 numbers in <vcount>; is the file damaged?");
+    CHECK(said("polylist count=\"1\"", "polylist count=\"-1\"") == "line 8: <polylist> has count \"-1\", needs a whole number of 0 .. 2147483647");
+    CHECK(said("offset=\"0\"", "offset=\"4294967295\"") == "line 8: <input> has offset \"4294967295\", needs a whole number of 0 .. 255");
+    CHECK(said("0 0 0 5", "0 0 a 5") == "line 5: <float_array> has \"a\", needs numbers with spaces between");
+    CHECK(said("0 0 0 5", "0,5 0 0 5") == "line 5: <float_array> has \"0,5\", needs numbers with spaces between");
+    CHECK(said("0 0 0 5", "0 0 5") == "line 5: <float_array> has count 9, but holds 8; is the file damaged?");
+    CHECK(said("count=\"9\"", "count=\"8\"") == "line 5: <float_array> has count 8, but holds 9; is the file damaged?");
+    CHECK(said("stride=\"3\"", "stride=\"4\"") == "line 6: <accessor> takes 11 values (offset + (count - 1) stride + params) of \"#a\", which has 9");
+    CHECK(said("0 0 0 1</matrix>", "0 0 1</matrix>") == "line 13: <matrix> has 15 numbers, needs 16");
+    CHECK(said("0 0 0 1</matrix>", "0 0 0 1e</matrix>") == "line 13: <matrix> has \"1e\", needs numbers with spaces between");
+    CHECK(said("</mesh>", "</mush>").starts_with("cannot be read as a mesh: line 4: no valid XML (xml error mismatched element); is it cut short?"));
+    std::string strip = replaced(replaced(collada(), "<polylist", "<tristrips"), "</polylist", "</tristrips");
+    strip = replaced(strip, "<vcount>3</vcount>", "");
+    CHECK(complaint(folder, "a.dae", strip) == "");
+    CHECK(complaint(folder, "a.dae", replaced(strip, "<p>0 1 2", "<p>0 1")) == "line 9: <p> has 2 numbers, needs 1 for each corner and 3 corners or more");
+}
+
+TEST_CASE("COLLADA files are read or refused wherever they are cut or altered")
+{
+    const TempFolder folder;
+    check_harmed(folder, "a.dae", collada("<node name=\"b\"><instance_node url=\"#l\"/></node>", "<node id=\"l\"><instance_geometry url=\"#g\"/></node>"));
+}
+
 TEST_CASE("few bytes that come to too many triangles are refused")
 {
     const TempFolder folder;

@@ -1,6 +1,7 @@
 #include "scene/collada_check.h"
 
 #include "base/text.h"
+#include "scene/collada_numbers.h"
 
 #include <spawnfield/error.h>
 
@@ -124,6 +125,7 @@ void check_collada(std::string_view bytes, const std::string& file)
         throw FileError(file, "cannot be read as a mesh: " + line + "no valid XML (" + name + "); is it cut short?");
     }
     for (const Xml* root = document.FirstChildElement(); root != nullptr; root = root->NextSiblingElement()) {
+        check_collada_numbers(*root, file);
         NodeCheck(*root, file).visit(*root);
     }
 }
