@@ -230,6 +230,16 @@ TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by 
     CHECK(complaint(folder, "a.dae", replaced(strip, "<p>0 1 2", "<p>0 1")) == "line 9: <p> has 2 numbers, needs 1 for each corner and 3 corners or more");
 }
 
+TEST_CASE("a COLLADA unit that is no length is refused")
+{
+    const TempFolder folder;
+    for (const char* bad : {"0", "-1", "abc", "nan", "", "1,5", "1e999"})
+        CHECK(complaint(folder, "a.dae", replaced(collada(), "meter=\"1\"", "meter=\"" + std::string(bad) + "\"")) ==
+              "line 3: <unit> has meter \"" + std::string(bad) + "\", needs a number > 0: the metres in a unit");
+    CHECK(complaint(folder, "a.dae", replaced(collada(), "meter=\"1\"", "meter=\" 0.01 \"")) == "");
+    CHECK(complaint(folder, "a.dae", replaced(collada(), "<unit meter=\"1\"/>", "")) == "");
+}
+
 TEST_CASE("COLLADA files are read or refused wherever they are cut or altered")
 {
     const TempFolder folder;

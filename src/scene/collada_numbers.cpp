@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <unordered_map>
@@ -62,7 +63,8 @@ public:
 private:
     void visit(const Xml& element)  // recursive: tinyxml2 has limited the depth
     {
-        if (is(element, "float_array")) check_array(element, true);
+        if (is(element, "unit")) check_unit(element);
+        else if (is(element, "float_array")) check_array(element, true);
         else if (is(element, "Name_array") || is(element, "IDREF_array")) check_array(element, false);
         else if (is(element, "accessor")) accessors_.push_back(&element);
         else if (is(element, "vertex_weights")) check_weights(element);
@@ -127,6 +129,14 @@ private:
             ++count;
         });
         return count;
+    }
+
+    void check_unit(const Xml& unit) const
+    {
+        const char* const text = unit.Attribute("meter");
+        double metres = 0;
+        if (text != nullptr && (!parse_number(trimmed(text), metres) || !(metres > 0) || !std::isfinite(metres)))
+            throw fault(unit, "has meter " + quoted(text) + ", needs a number > 0: the metres in a unit");
     }
 
     void check_array(const Xml& array, bool of_numbers)
