@@ -67,6 +67,17 @@ std::string collada(const std::string& nodes = "", const std::string& library = 
            nodes + "</visual_scene></library_visual_scenes>\n<scene><instance_visual_scene url=\"#vs\"/></scene></COLLADA>\n";
 }
 
+/// One triangle in meshes[0]; `nodes` and the scene's nodes as JSON.
+std::string gltf(const std::string& nodes, const std::string& scene = "0", const std::string& more = "")
+{
+    return "{\"asset\": {\"version\": \"2.0\"}, " + more + "\"scene\": 0, \"scenes\": [{\"nodes\": [" + scene + "]}], \"nodes\": [" + nodes +
+           "], \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1}]}],\n\"buffers\": [{\"byteLength\": 44, \"uri\": "
+           "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACgQAAAAAAAAAAAAAAAAAAAAAAAAKDAAAABAAIAAAA=\"}],\n"
+           "\"bufferViews\": [{\"buffer\": 0, \"byteOffset\": 0, \"byteLength\": 36}, {\"buffer\": 0, \"byteOffset\": 36, \"byteLength\": 6}],\n"
+           "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\", \"min\": [0, 0, -5], \"max\": [5, 0, 0]},\n"
+           "{\"bufferView\": 1, \"componentType\": 5123, \"count\": 3, \"type\": \"SCALAR\"}]}\n";
+}
+
 template <class T>
 std::string bytes_of_value(T value, bool big)
 {
@@ -244,6 +255,47 @@ TEST_CASE("COLLADA files are read or refused wherever they are cut or altered")
 {
     const TempFolder folder;
     check_harmed(folder, "a.dae", collada("<node name=\"b\"><instance_node url=\"#l\"/></node>", "<node id=\"l\"><instance_geometry url=\"#g\"/></node>"));
+}
+
+TEST_CASE("glTF nodes that are no trees, and JSON that is nested too deep, are refused")
+{
+    const TempFolder folder;
+    const auto said = [&](const std::string& nodes, const std::string& scene = "0") { return complaint(folder, "a.gltf", gltf(nodes, scene)); };
+    CHECK(said("{\"mesh\": 0}") == "");
+    CHECK(said("{\"children\": [1, 2]}, {\"mesh\": 0}, {\"mesh\": 0, \"extras\": {\"children\": [0]}}") == "");
+    CHECK(said("{\"mesh\": 0, \"children\": [0]}") == "scenes[0].nodes has nodes[0], which is a child of nodes[0], needs nodes without a parent");
+    CHECK(said("{\"mesh\": 0}, {\"children\": [2]}, {\"children\": [1]}") == "nodes[1] is below itself: a circle of children");
+    CHECK(said("{\"mesh\": 0, \"children\": [1, 1]}, {\"mesh\": 0}") ==
+          "nodes[1] is a child of nodes[0] and again of nodes[0], needs one parent; give each parent a node of its own");
+    CHECK(said("{\"children\": [2]}, {\"children\": [2]}, {\"mesh\": 0}", "0, 1").starts_with("nodes[2] is a child of nodes[0] and again of nodes[1], "));
+    CHECK(said("{\"mesh\": 0}", "0, 0") == "scenes[0].nodes has nodes[0] twice, needs it once");
+    CHECK(said("{\"mesh\": 0}", "1") == "scenes[0].nodes has \"1\", which is none of the 1 nodes");
+    CHECK(said("{\"mesh\": 0, \"children\": [-1]}") == "nodes[0].children has \"-1\", which is none of the 1 nodes");
+    const auto chain = [](int length) {
+        std::string nodes;
+        for (int i = 1; i < length; ++i) nodes += "{\"children\": [" + std::to_string(i) + "]}, ";
+        return nodes + "{\"mesh\": 0}";
+    };
+    CHECK(said(chain(500)) == "");
+    CHECK(said(chain(20000)) == "nodes[500] is nested more than 500 deep; merge nodes");
+    const std::string twice = replaced(gltf("{\"mesh\": 0}"), "\"meshes\"", "\"nodes\": [], \"meshes\"");
+    CHECK(complaint(folder, "a.gltf", twice) == "has \"nodes\" twice, needs it once");
+    const auto nested = [](int depth) { return "\"extras\": " + std::string(depth, '[') + std::string(depth, ']') + ", "; };
+    CHECK(complaint(folder, "a.gltf", gltf("{\"mesh\": 0}", "0", nested(199))) == "");
+    CHECK(complaint(folder, "a.gltf", gltf("{\"mesh\": 0}", "0", nested(200))) == "its JSON is nested more than 200 deep, in \"extras\"");
+    CHECK(complaint(folder, "a.gltf", std::string(200000, '[')) == "its JSON is nested more than 200 deep");
+    CHECK(complaint(folder, "a.gltf", gltf("{\"mesh\": 0},")).starts_with("cannot be read as a mesh: no valid JSON: parse error at line 1, column "));
+    std::string binary = "glTF";
+    const std::string json = gltf("{\"mesh\": 0, \"children\": [0]}");
+    for (const std::size_t word : {std::size_t(2), json.size() + 20, json.size(), std::size_t(0x4e4f534a)}) binary += bytes_of_value(std::uint32_t(word), false);
+    CHECK(complaint(folder, "a.glb", binary + json).starts_with("scenes[0].nodes has nodes[0], which is a child"));
+    CHECK(complaint(folder, "a.glb", binary + json.substr(1)).starts_with("ends within its JSON ("));
+}
+
+TEST_CASE("glTF files are read or refused wherever they are cut or altered")
+{
+    const TempFolder folder;
+    check_harmed(folder, "a.gltf", gltf("{\"children\": [1, 2]}, {\"mesh\": 0}, {\"mesh\": 0}"));
 }
 
 TEST_CASE("few bytes that come to too many triangles are refused")

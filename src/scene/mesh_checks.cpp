@@ -3,6 +3,7 @@
 #include "base/bytes.h"
 #include "base/text.h"
 #include "scene/collada_check.h"
+#include "scene/gltf_check.h"
 #include "scene/ply_file.h"
 
 #include <spawnfield/error.h>
@@ -122,6 +123,7 @@ void check_mesh_file(const std::filesystem::path& file, Assimp::Importer& import
     const Bytes bytes = map_file(file);
     const std::string extension = lower_case(file.extension().string());
     if (extension == ".zae") throw FileError(file.string(), "is a packed COLLADA file, which is not looked into; unpack it (unzip) and give the .dae in it");
+    if (extension == ".gltf" || extension == ".glb") check_gltf(bytes.view, file.string());  // assimp goes by the ending, too
     if (is_collada(bytes.view, extension)) check_collada(bytes.view, file.string());
     if (extension == ".ply" || is_ply(bytes.view)) take_ply(bytes.view, file.string(), importer);
 }
