@@ -235,6 +235,14 @@ TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by 
     CHECK(said("0 0 0 1</matrix>", "0 0 1</matrix>") == "line 13: <matrix> has 15 numbers, needs 16");
     CHECK(said("0 0 0 1</matrix>", "0 0 0 1e</matrix>") == "line 13: <matrix> has \"1e\", needs numbers with spaces between");
     CHECK(said("</mesh>", "</mush>").starts_with("cannot be read as a mesh: line 4: no valid XML (xml error mismatched element); is it cut short?"));
+    const auto effect = [&](const char* color) {
+        return complaint(folder, "a.dae", replaced(collada(), "<library_nodes>", "<library_effects><effect id=\"e\"><profile_COMMON><technique sid=\"t\"><phong>"
+                                                  "<diffuse><color>" + std::string(color) + "</color></diffuse></phong></technique></profile_COMMON></effect>"
+                                                  "</library_effects><library_nodes>"));
+    };
+    CHECK(effect("1 0 0 1") == "");
+    CHECK(effect("1 0 0") == "line 11: <color> has 3 numbers, needs 4");
+    CHECK(effect("1 0 0x10 1") == "line 11: <color> has \"0x10\", needs numbers with spaces between");
     std::string strip = replaced(replaced(collada(), "<polylist", "<tristrips"), "</polylist", "</tristrips");
     strip = replaced(strip, "<vcount>3</vcount>", "");
     CHECK(complaint(folder, "a.dae", strip) == "");
