@@ -41,6 +41,7 @@ struct GeoFile {
     Doubles scale{2, 5, 0}, tie{0, 0, 0, 500000, 4000010, 0}, transformation{}, doubles{};
     Keys keys = utm;
     std::string ascii = "", no_data = "", metadata = "";
+    int photometric = PHOTOMETRIC_MINISBLACK;
 };
 
 template <class T>
@@ -62,7 +63,7 @@ std::filesystem::path write(const TempFolder& folder, const GeoFile& geo, const 
     const auto rows = std::uint32_t(geo.heights.size()) / geo.cols;
     for (const auto& [tag, value] : {std::pair<std::uint32_t, std::uint32_t>{TIFFTAG_IMAGEWIDTH, geo.cols}, {TIFFTAG_IMAGELENGTH, rows},
                                      {TIFFTAG_BITSPERSAMPLE, geo.bits}, {TIFFTAG_SAMPLEFORMAT, geo.format}, {TIFFTAG_SAMPLESPERPIXEL, 1},
-                                     {TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK}, {TIFFTAG_ROWSPERSTRIP, 1}})
+                                     {TIFFTAG_PHOTOMETRIC, geo.photometric}, {TIFFTAG_ROWSPERSTRIP, 1}})
         TIFFSetField(tiff.get(), tag, value);
     set(tiff.get(), 33550, geo.scale);
     set(tiff.get(), 33922, geo.tie);
@@ -110,6 +111,7 @@ bool tells(const Scene& scene, const std::string& text)
     return std::any_of(scene.notices.begin(), scene.notices.end(), [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
 }
 
+const std::string item = "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">";
 const std::string grid_head = "ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 5\n";
 
 }  // namespace
@@ -181,9 +183,91 @@ TEST_CASE("feet become metres, and it is told")
     const Scene unknown = load_scene(write(folder, {.keys = keys_of({{1024, 1}})}));
     CHECK(unknown.bounds().max.x() == 2);
     CHECK(tells(unknown, "does not tell the unit of x and y, which are taken as metres"));
-    const std::string item = "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">";
     CHECK(load_scene(write(folder, {.metadata = item + "ft</Item></GDALMetadata>"})).bounds().max.z() == Approx(6 * 0.3048));
     CHECK(load_scene(write(folder, {.metadata = item + "metre</Item></GDALMetadata>"})).bounds().max.z() == 6);
+}
+
+TEST_CASE("the unit of x and y is that of the EPSG code where no key tells it, and nothing is assumed")
+{
+    const TempFolder folder;
+    // As GDAL 3.6 writes EPSG:2263+6360 and, with GEOTIFF_VERSION=1.1, EPSG:2263: units as gdalinfo tells them.
+    const auto [code, unit] = GENERATE(std::pair{2263, 1200.0 / 3937}, std::pair{2222, 0.3048}, std::pair{25832, 1.0}, std::pair{3035, 1.0},
+                                       std::pair{2193, 1.0}, std::pair{3167, 20.116756}, std::pair{7405, 1.0});
+    CAPTURE(code);
+    const Scene scene = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}})}));
+    CHECK(scene.bounds().max.x() == Approx(2 * unit).epsilon(1e-12));
+    CHECK(scene.bounds().max.y() == Approx(2.5 * unit).epsilon(1e-12));
+    check_origin(scene, 500003, 4000005, "EPSG:" + std::to_string(code));
+    CHECK_FALSE(tells(scene, "taken as metres"));
+    CHECK(tells(scene, "x and y are in units of ") == (unit != 1));
+    // A key of its own wins, as with GDAL.
+    CHECK(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}, {3076, 9001}})})).bounds().max.x() == 2);
+}
+
+TEST_CASE("heights have the unit of their vertical system's EPSG code")
+{
+    const TempFolder folder;
+    const auto [code, unit] = GENERATE(std::pair{8228, 0.3048}, std::pair{6360, 1200.0 / 3937}, std::pair{5703, 1.0}, std::pair{5730, 1.0}, std::pair{4979, 1.0});
+    CAPTURE(code);
+    const Scene scene = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, code}})}));
+    CHECK(scene.bounds().max.x() == 2);
+    CHECK(scene.bounds().min.z() == Approx(unit).epsilon(1e-12));
+    CHECK(scene.bounds().max.z() == Approx(6 * unit).epsilon(1e-12));
+    CHECK(tells(scene, "heights are in units of ") == (unit != 1));
+    CHECK(scene.notices.size() == (unit == 1 ? 1 : 2));
+}
+
+TEST_CASE("where the units of heights disagree the first that GDAL takes counts, and it is told")
+{
+    const TempFolder folder;
+    const bool by_band = GENERATE(false, true);
+    const std::string metadata = by_band ? item + "m</Item></GDALMetadata>" : "";
+    const Scene scene = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}, {4099, 9001}}), .metadata = metadata}));
+    CHECK(scene.bounds().max.z() == Approx(by_band ? 6 : 6 * 1200.0 / 3937));
+    CHECK(tells(scene, by_band ? "says that heights are in units of 1 m by \"m\", and of 0.30480060960121924 m by EPSG:6360 (VerticalGeoKey); they are taken by the first"
+                               : "m by EPSG:6360 (VerticalGeoKey), and of 1 m by 9001 (VerticalUnitsGeoKey); they are taken by the first"));
+    CHECK_FALSE(tells(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}}), .metadata = item + "ft</Item></GDALMetadata>"})), "says that"));
+    // A system that nobody knows does no harm where the unit is told.
+    CHECK(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 5199}, {4099, 9002}})})).bounds().max.z() == Approx(6 * 0.3048));
+}
+
+TEST_CASE("depths are heights turned round, and it is told")
+{
+    const TempFolder folder;
+    const GeoFile geo{.heights = {1, 2, -9999, 4, 5, 6}, .keys = keys_of({{1024, 1}, {3072, 32633}, {4096, 5336}}), .no_data = "-9999"};
+    const Scene scene = load_scene(write(folder, geo));
+    CHECK(scene.bounds().min.z() == -6);
+    CHECK(scene.bounds().max.z() == -1);
+    CHECK(height(scene, -2, 2.5) == -1);
+    CHECK(scene.triangles.size() == 3);
+    CHECK(tells(scene, "has depths by EPSG:5336 (VerticalGeoKey), which counts downwards; the heights are their negatives"));
+}
+
+TEST_CASE("tiles are in the same unit whichever way they tell it")
+{
+    const TempFolder folder;
+    write(folder, {.keys = keys_of({{1024, 1}, {3072, 2263}, {3076, 9003}})}, "w.tif");
+    write(folder, {.tie = {0, 0, 0, 500004, 4000010, 0}, .keys = keys_of({{1024, 1}, {3072, 2263}})}, "e.tif");
+    const std::string origin = ", origin: [500005, 4000005]}}\n";
+    const Scene scene = load_parts(folder, "  - {name: w, label: terrain, heightmap: {file: w.tif" + origin + "  - {name: e, label: terrain, heightmap: {file: e.tif" + origin);
+    CHECK_FALSE(tells(scene, "an earlier part"));
+}
+
+TEST_CASE("EPSG codes that tell no unit are refused with what to do")
+{
+    const TempFolder folder;
+    const auto check_refused = [&](int code, const std::string& reason) {
+        CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}})})), (folder / "a.tif").string() + ": " + reason);
+    };
+    check_refused(4326, "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres such "
+                        "as the UTM zone's");
+    CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 4978}})})), Contains("(geocentric, EPSG:4978)"));
+    for (const int code : {30000, 5703})  // none, heights alone
+        check_refused(code, "is in EPSG:" + std::to_string(code) + ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives "
+                            "it another, or tell its spacing in metres with the key cell");
+    SceneOptions options;
+    options.heightmap = "cell: 3";
+    CHECK(load_scene(folder / "a.tif", options).bounds().max.x() == 3);
 }
 
 TEST_CASE("words of the survey are told where it has no EPSG code")
@@ -211,10 +295,27 @@ TEST_CASE("heights that are no data are no terrain")
     check_hole(load_scene(write(folder, {.heights = {1, 2, hole, 4, 5, 6}, .no_data = "nan"})));
     // Text and pixel differ by rounding: GDAL writes the float's decimals, others fewer.
     check_hole(load_scene(write(folder, {.heights = {1, 2, -3.4028234663852886e38, 4, 5, 6}, .no_data = "-3.4028235e+38"})));
+    // A value that no float holds was stored as infinite; a double holds it.
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const GeoFile beyond{.heights = {1, 2, -infinite, 4, 5, 6}, .no_data = "-1e+100"};
+    check_hole(load_scene(write(folder, beyond)));
+    const auto check_infinite = [&](GeoFile geo) { CHECK_THROWS_WITH(load_scene(write(folder, geo)), Contains("row 0, column 2 is infinite")); };
+    GeoFile wrong = beyond;
+    wrong.heights[2] = infinite;
+    check_infinite(wrong);
+    wrong = beyond;
+    wrong.bits = 64;
+    check_infinite(wrong);
+    wrong = beyond;
+    wrong.no_data = "-9999";
+    check_infinite(wrong);
     const std::filesystem::path plain = write(folder, {.heights = heights});
     const Scene deep = load_scene(plain);
     CHECK(deep.bounds().min.z() == -9999);
     CHECK(tells(deep, "the lowest height is -9999 m, which often means no data; if so: --heightmap 'nodata: -9999'"));
+    for (const int system : {8228, 5336})  // feet, depths
+        CHECK(tells(load_scene(write(folder, {.heights = heights, .keys = keys_of({{1024, 1}, {3072, 26910}, {4096, system}})}, "b.tif")),
+                    "the lowest value is -9999, which often means no data; if so: --heightmap 'nodata: -9999'"));
     SceneOptions options;
     options.heightmap = "nodata: -9999";
     check_hole(load_scene(plain, options));
@@ -222,10 +323,34 @@ TEST_CASE("heights that are no data are no terrain")
                       (folder / "a.tif").string() + ": has no heights: every pixel is NaN or no-data");
 }
 
+TEST_CASE("values are values where 0 is white, but of a plain picture white is high")
+{
+    const TempFolder folder;
+    const Doubles heights{1, 2, 65535, 4, 5, 6};
+    const GeoFile survey{.heights = heights, .bits = 16, .format = SAMPLEFORMAT_UINT, .no_data = "65535", .photometric = PHOTOMETRIC_MINISWHITE};
+    const Scene scene = load_scene(write(folder, survey));
+    CHECK(scene.bounds().min.z() == 1);
+    CHECK(scene.bounds().max.z() == 6);
+    CHECK(height(scene, -2, 2.5) == 1);
+    CHECK(scene.triangles.size() == 3);
+    SceneOptions options;
+    options.heightmap = "z: [0, 655.35]";
+    CHECK(load_scene(folder / "a.tif", options).bounds().max.z() == Approx(0.06));
+    GeoFile picture = survey;
+    picture.scale = picture.tie = {};
+    picture.keys = {};
+    options.heightmap = "cell: 1, z: [0, 655.35]";
+    const Scene white = load_scene(write(folder, picture), options);
+    CHECK(white.triangles.size() == 3);  // no-data is as it is stored
+    CHECK(white.bounds().max.z() == Approx(655.34));
+    CHECK(height(white, -1, 0.5) == Approx(655.34));
+}
+
 TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
 {
     const TempFolder folder;
     const std::string start = (folder / "a.tif").string() + ": ";
+    const std::string known_units = ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they are";
     const auto check_refused = [&](const GeoFile& geo, const std::string& reason) { CHECK_THROWS_WITH(load_scene(write(folder, geo)), start + reason); };
     check_refused({.keys = keys_of({{1024, 2}, {2048, 4326}})},
                   "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres "
@@ -244,7 +369,9 @@ TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
     check_refused({.keys = keys_of({{1024, 1}, {3076, 9005}})},
                   "has x and y in unit 9005 (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, 9003); reproject it with gdalwarp -t_srs");
     check_refused({.keys = keys_of({{1024, 1}, {3076, 9001}, {4099, 9010}})},
-                  "has heights in unit 9010 (VerticalUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, 9003)");
+                  "has heights in unit 9010 (VerticalUnitsGeoKey)" + known_units);
+    check_refused({.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 5199}})}, "has heights in unit EPSG:5199 (VerticalGeoKey)" + known_units);
+    check_refused({.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 3855}}), .metadata = item + "cm</Item></GDALMetadata>"}, "has heights in unit \"cm\"" + known_units);
     check_refused({.keys = keys_of({{1024, 1}, {1025, 5}})}, "has GTRasterTypeGeoKey 5, needs 1 (pixels are areas) or 2 (points)");
     check_refused({.keys = {1, 1, 0, 2, 1024, 0, 1, 1}}, "has a GeoKeyDirectory that is cut short");
     check_refused({.no_data = "none"}, "has a GDAL_NODATA of \"none\", needs a number");
@@ -305,6 +432,71 @@ TEST_CASE("an ESRI ASCII grid is read whatever its header's case and order")
     CHECK(height(scene, -5, 2.5) == 1);
     CHECK(height(scene, 5, -2.5) == 6);
     check_origin(scene, 500007.5, 4000005, "");
+}
+
+namespace {
+
+/// As GDAL 3.6 writes them beside an ESRI ASCII grid, but for the parameters that no unit hangs on.
+const std::string gcs_of_prj = "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],PRIMEM[\"Greenwich\",0.0],"
+                               "UNIT[\"Degree\",0.0174532925199433]]";
+
+std::string prj(const std::string& unit)
+{
+    return "PROJCS[\"Plan\"," + gcs_of_prj + ",PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"False_Easting\",500000.0],PARAMETER[\"False_Northing\",0.0],"
+           "PARAMETER[\"Central_Meridian\",9.0],PARAMETER[\"Scale_Factor\",0.9996],PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[" + unit + "]]";
+}
+
+std::string vertical_prj(const std::string& direction, const std::string& unit)
+{
+    return ",VERTCS[\"Ups\",VDATUM[\"Here\"],PARAMETER[\"Vertical_Shift\",0.0],PARAMETER[\"Direction\"," + direction + "],UNIT[" + unit + "]]";
+}
+
+const std::string survey_foot = "\"US survey foot\",0.304800609601219";
+
+}  // namespace
+
+TEST_CASE("a .prj beside a grid tells its units")
+{
+    const TempFolder folder;
+    const std::filesystem::path file = folder.write("a.asc", grid_head + "1 2 3\n4 5 6\n");
+    const std::string name = GENERATE("a.prj", "a.PRJ");
+    constexpr double foot = 1200.0 / 3937;
+    folder.write(name, prj(survey_foot));
+    const Scene feet = load_scene(file);
+    CHECK(feet.bounds().max.x() == Approx(5 * foot));
+    CHECK(feet.bounds().max.z() == 6);
+    check_origin(feet, 500007.5, 4000005, "Plan");
+    CHECK(feet.origin->unit == Approx(foot));
+    CHECK(tells(feet, "a.asc: x and y are in units of 0.30480060960121"));
+    folder.write(name, prj("\"Meter\",1.0") + vertical_prj("1.0", survey_foot));
+    const Scene high = load_scene(file);
+    CHECK(high.bounds().max.x() == 5);
+    CHECK(high.bounds().max.z() == Approx(6 * foot));
+    CHECK(tells(high, "a.asc: heights are in units of 0.30480060960121"));
+    folder.write(name, prj("\"Meter\",1.0") + vertical_prj("-1.0", "\"Meter\",1.0"));
+    const Scene deep = load_scene(file);
+    CHECK(deep.bounds().min.z() == -6);
+    CHECK(tells(deep, "has depths by Plan + Ups"));
+    folder.write(name, prj("\"Meter\",1.0"));
+    CHECK(load_scene(file).notices.size() == 1);  // where it lies
+}
+
+TEST_CASE("a .prj of degrees is refused, and one that nobody reads is told")
+{
+    const TempFolder folder;
+    const std::filesystem::path file = folder.write("a.asc", grid_head + "1 2 3\n4 5 6\n");
+    folder.write("a.prj", gcs_of_prj);
+    CHECK_THROWS_WITH(load_scene(file), file.string() + ": is in degrees (geographic, WGS 84), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE "
+                                                        "is a projection in metres such as the UTM zone's");
+    SceneOptions options;
+    options.heightmap = "cell: 3";
+    CHECK(load_scene(file, options).bounds().max.x() == 3);
+    for (const std::string text : {"Projection UTM\nZone 33\nUnits METERS\n", "", "PROJCS[\"Plan\""}) {
+        folder.write("a.prj", text);
+        const Scene scene = load_scene(file);
+        CHECK(scene.bounds().max.x() == 5);
+        CHECK(tells(scene, "a.prj: is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres"));
+    }
 }
 
 TEST_CASE("cells of a grid may be longer one way, and holes are -9999 or what it says")
@@ -391,6 +583,16 @@ TEST_CASE("images and raw numbers need to be told what they are")
                           "of values 0 and 65535)");
     std::filesystem::copy_file(*shared / "dem/river/relief.png", folder / "relief.png");
     CHECK(load("relief.png", "size: [49, 36], z: [537.36, 543.81]").bounds().max == Vec3(24.5, 18, 543.81));
+}
+
+TEST_CASE("nobody asks whether an elevation model is in millimetres or lies on its side")
+{
+    const TempFolder folder;
+    const Scene steep = load_scene(folder.write("a.asc", grid_head + "0 0 0\n900 900 900\n"));
+    CHECK(steep.notices.size() == 1);  // where it lies
+    const Scene wide = load_scene(folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 30000\n1 2 3\n4 5 6\n"));
+    CHECK(wide.notices.size() == 1);
+    CHECK(load_parts(folder, "  - {name: a, label: terrain, heightmap: {file: a.asc, cell: 0.001}}\n").notices.empty());
 }
 
 TEST_CASE("an elevation model by itself takes labels, but nothing that is for meshes")
@@ -512,7 +714,7 @@ TEST_CASE("a map keeps where its elevation model lies, and info tells it")
     folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 556440.25\nyllcorner 5394932.125\ncellsize 5\nNODATA_value 0\n1 2 3\n4 5 6\n");
     const ProgramRun run = run_program(folder, "bake a.asc -o map --resolution 0.5");
     CHECK(run.status == 0);
-    CHECK_THAT(run.err, Contains("notice: a.asc: x 556447.75, y 5394937.125 is at 0, 0 of the scene; heights are kept\n"));
+    CHECK_THAT(run.err, Contains("notice: a.asc: x 556447.75, y 5394937.125 is at 0, 0 of the scene; z is not shifted\n"));
     const Map map = read_map(folder / "map");
     REQUIRE(map.origin);
     CHECK(map.origin->x == 556447.75);

@@ -89,6 +89,22 @@ void check_harmed(const TempFolder& folder, const std::string& name, const std::
 
 }  // namespace
 
+TEST_CASE("a scene that lies beyond where distances are exact is refused with its part")
+{
+    const TempFolder folder;
+    const auto refused = [&](const std::string& part) {
+        return folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n  - {name: floor, label: terrain, box: [1, 1, 1]}\n  - {name: far, " + part + "}\n");
+    };
+    const std::string far = (folder / "scene.yaml").string() + ": part \"far\" reaches from ";
+    for (const char* const part : {"box: [1, 1, 1], xyz: [0, 0, 1e16]", "box: [1e300, 1, 1]", "capsule: {radius: 1e200, length: 1}", "sphere: 1, xyz: [-1.1e7, 0, 0]"})
+        CHECK_THROWS_WITH(load_scene(refused(part)), Catch::StartsWith(far) && Catch::Contains("needs to lie within 1e+07 m of 0, 0, 0"));
+    CHECK(load_scene(refused("sphere: 1, xyz: [5e6, 0, 0]")).primitives.size() == 2);
+    CHECK_THROWS_AS(load_scene(refused("sphere: 1"), {.bounds = {Vec3(-1e8, 0, 0), Vec3(1, 1, 1)}}), ArgumentError);
+    fs::create_symlink(folder / "a.yaml", folder / "b.yaml");
+    fs::create_symlink(folder / "b.yaml", folder / "a.yaml");
+    CHECK_THROWS_WITH(load_scene(folder / "a.yaml"), (folder / "a.yaml").string() + ": cannot be reached: Too many levels of symbolic links");
+}
+
 TEST_CASE("every mistake in a scene file is told by file, part, key, value and limit")
 {
     const TempFolder folder;

@@ -126,6 +126,14 @@ TEST_CASE("a robot stands on the corners of what is low of it, unless its file t
     REQUIRE(box.size() == 4);
     for (const Vec3& contact : box) CHECK(contact.cwiseAbs().isApprox(Vec3(0.5, 0.3, 0.02), 1e-12));
 
+    // Corners that lie on a line but for rounding are none, on either side.
+    Robot cart;
+    for (const double x : {-0.256, 0.256})
+        for (const double y : {-0.285, 0.285}) cart.parts.push_back(robot_of({ShapeKind::Cylinder, {0.165, 0.1143, 0}, pose_at(x, y, 0.165, 0, M_PI / 2)}).parts[0]);
+    const std::vector<Vec3> wheels = contacts_of(cart);
+    CHECK(wheels.size() == 4);
+    for (const Vec3& wheel : wheels) CHECK((wheel.cwiseAbs() - wheels[0].cwiseAbs()).norm() < 1e-9);
+
     const Polygon2 ball = lowest_footprint(robot_of({ShapeKind::Sphere, {0.5, 0, 0}, pose_at(1, 0, 0.7)}));
     CHECK(extent(ball, {1, 0}) == Approx(1 + std::sqrt(0.25 - 0.48 * 0.48)));
     CHECK(extent(ball, {0, -1}) == Approx(std::sqrt(0.25 - 0.48 * 0.48)));

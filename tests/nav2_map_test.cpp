@@ -179,7 +179,12 @@ TEST_CASE("what a map leaves open is told")
     CHECK(many == std::vector<std::string>{file + "the key layers is not looked at", file + "occupied_thresh is missing, taken as 0.65",
                                            file + "negate has no effect in mode raw, as in nav2", file + "walls are 2 m high (--wall-height sets it)"});
     const std::vector<std::string> grey = notices("resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n");
-    CHECK(grey[0] == file + "1 pixels of 205, which map savers write for unknown, are free by free_thresh 0.25 (below 0.196 they are unknown)");
+    const std::string free_grey = file + "1 pixels of 205, which map savers write for unknown, are free";
+    CHECK(grey[0] == free_grey + " by free_thresh 0.25 (below 0.196 they are unknown)");
+    write_png(folder, "b.png", cv::Mat(1, 1, CV_8UC4, cv::Scalar(205, 205, 205, 255)));  // with alpha 217.5: 0.147
+    const auto of_alpha = [&](const std::string& keys) { return load_scene(write_yaml(folder, "b.png", keys)).notices[0]; };
+    CHECK(of_alpha(usual) == free_grey + ", as mode trinary counts alpha as a fourth colour (as nav2 does; without the alpha channel they are not)");
+    CHECK(of_alpha("resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n") == grey[0]);
 }
 
 TEST_CASE("maps that make no sense are refused by file, key and line")
@@ -246,5 +251,11 @@ TEST_CASE("a nav2 map bakes as it is, and robots stand where it is free")
         CHECK(values[std::size_t(row * 40 + col)] == 254);
     }
     CHECK(run_program(folder, "bake map.yaml -o map2 --wall-height 0.5 --scale 2").status == 2);
+    for (const std::string height : {"0", "-1"}) {  // 0 is not "not given"
+        const ProgramRun refused = run_program(folder, "bake map.yaml -o map2 --wall-height " + height);
+        CHECK(refused.status == 2);
+        CHECK_THAT(refused.err, Contains("--wall-height is " + height + ", needs > 0"));
+    }
+    CHECK(run_program(folder, "info " SPAWNFIELD_SOURCE "/maps/training/scene.yaml --wall-height 0").status == 2);
     CHECK(run_program(folder, "bake room.pgm -o map2").status == 4);
 }

@@ -383,6 +383,15 @@ TEST_CASE("CSV polygons end at empty lines or where their name changes")
     CHECK(read("x,y,z\n0,0,7\n4,0,7\n4,4,7\n").polygons.size() == 1);
 }
 
+TEST_CASE("CSV regions of spreadsheets, with a byte order mark and quotes, are read")
+{
+    const TempFolder folder;
+    const Region region = read_region(folder.write("a.csv", "\xEF\xBB\xBF\"x\",\"y\",\"note\"\r\n\"0\",\"0\",\"a, b\"\r\n\"2\",\"0\",\r\n\"2\",\"3\",\r\n"));
+    REQUIRE(region.polygons.size() == 1);
+    CHECK(region.polygons[0][0].size() == 3);
+    CHECK(region.polygons[0][0][2] == Vec2(2, 3));
+}
+
 TEST_CASE("a nav2 map is the region of its free cells, or a keep-out of its occupied ones, at any yaw")
 {
     const TempFolder folder;

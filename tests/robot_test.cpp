@@ -268,7 +268,11 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
          "link \"a\": <mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file"},
         {link_of("a", "<mesh filename=\"flat.obj\"/>"), "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
                                                          ": its convex hull has no volume: its points lie in a plane"},
-        {"<link", "is no valid URDF: Error reading Attributes."},
+        {"<link", "line 3: is no valid XML (xml error parsing element): is a tag left open or misspelt?"},
+        {link_of("a", small_box + "<sphere radius=\"9\"/>"), "line 3: <geometry> holds 2 shapes, needs one; give each a <collision> of its own"},
+        {link_of("a", small_box) + link_of("b", small_box) +
+             "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0\" quat_xyzw=\"0 0 1 0\"/></joint>",
+         "line 5: <origin quat_xyzw> is not read, and a part would stand unturned; write it as rpy"},
         {link_of("a", small_box) + link_of("b", small_box), "is no valid URDF: Failed to find root link: Two root links found: [a] and [b]"},
         {link_of("a", "<box size=\"1 x 1\"/>"), "is no valid URDF: Unable to parse component [x] to a double (while parsing a vector value)"},
         {link_of("a", "<box size=\"1 nan 1\"/>"), "is no valid URDF: Unable to parse component [nan] to a double (while parsing a vector value)"},
@@ -377,6 +381,27 @@ TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not kno
     REQUIRE(robot.notices.size() == 2);
     CHECK(robot.notices[0] == file + "\"bend\": l.obj counts as its convex hull, 72 m3, 50 % more than the mesh");
     CHECK(robot.notices[1] == file + "open.obj counts as its convex hull, 1 m3; how much more than the mesh is not known, as that is not watertight or overlaps itself");
+}
+
+TEST_CASE("a robot beyond all measure is refused, a chain longer than the call stack is not")
+{
+    CHECK_THROWS_WITH(load_robot("box:1e10,1,1"), "box:1e10,1,1: reaches 5e+09 m from its origin, needs at most 1000 m; is it in other units than metres?");
+    CHECK(load_robot("box:2000,1,1@0,0,0.5").parts.size() == 1);
+    const TempFolder folder;
+    const std::string box = "<collision><geometry><box size='1 1 1'/></geometry></collision>";
+    std::string chain = "<robot name='snake'>\n<link name='l0'>" + box + "</link>";
+    constexpr int links = 20000;
+    for (int i = 1; i <= links; ++i)
+        chain += "<link name='l" + std::to_string(i) + "'/><joint name='j" + std::to_string(i) + "' type='fixed'><origin xyz='0.01 0 0'/><parent link='l" +
+                 std::to_string(i - 1) + "'/><child link='l" + std::to_string(i) + "'/></joint>";
+    chain += "<link name='tail'>" + box + "</link><joint name='t' type='fixed'><parent link='l" + std::to_string(links) + "'/><child link='tail'/></joint></robot>";
+    CHECK(load_robot(folder.write("snake.urdf", chain).string()).bounds().max.x() == Approx(200.5));
+    CHECK_THROWS_WITH(load_robot(folder.write("torn.urdf", "<robot name='a'>\n<link name='b'>\n</robot>").string()),
+                      (folder / "torn.urdf").string() + ": line 2: is no valid XML (xml error mismatched element): is a tag left open or misspelt?");
+    std::string deep = "<robot name='a'>";
+    for (int i = 0; i < 50000; ++i) deep += "<a>";
+    CHECK_THROWS_WITH(load_robot(folder.write("deep.urdf", deep).string()), Catch::Contains("elements may be nested 500 deep"));
+    CHECK(load_robot(folder.write("BIG.URDF", "<robot name='a'><link name='l'>" + box + "</link></robot>").string()).parts.size() == 1);
 }
 
 TEST_CASE("real robots have the bounds that their sources tell")

@@ -9,6 +9,7 @@
 #include <spawnfield/column.h>
 #include <spawnfield/error.h>
 #include <spawnfield/geometry.h>
+#include <spawnfield/robot.h>
 #include <spawnfield/scene.h>
 
 #include <Eigen/Geometry>
@@ -277,6 +278,77 @@ TEST_CASE("a heightmap's brightest pixel is its size high, and sampling interpol
     CHECK(std::abs(layers_at(heights(2), 95, 2.5)[0] - ((0 + 1000 + 3000 + 20000) / 4.0 / 20000 * 40 - 5)) < 1e-9);
 }
 
+TEST_CASE("an elevation model as <heightmap> keeps its lowest height, and is stretched to its size")
+{
+    const TempFolder folder;
+    folder.write("worlds/dem.asc", "ncols 5\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n"
+                                   "100 120 140 160 180\n100 120 140 160 180\n100 120 -9 160 180\n100 120 140 160 180\n100 120 140 160 180\n");
+    const auto load = [&](const std::string& size_z, const std::string& sampling) {
+        return load_world(folder, model_of("h", "<heightmap><uri>dem.asc</uri><size>16 16 " + size_z + "</size><sampling>" + sampling + "</sampling></heightmap>"));
+    };
+    for (const auto& [size_z, share] : {std::pair{"80", 1.0}, std::pair{"20", 0.25}})
+        for (const char* const sampling : {"1", "2"}) {
+            const Scene scene = load(size_z, sampling);
+            CHECK(std::abs(layers_at(scene, -8, 7)[0] - 100) < 1e-9);
+            CHECK(std::abs(layers_at(scene, 8, 7)[0] - (100 + 80 * share)) < 1e-9);
+            CHECK(std::abs(layers_at(scene, -6, 8)[0] - (100 + 10 * share)) < 1e-9);
+            CHECK(layers_at(scene, 0, 0).empty());  // there is no height
+            CHECK(layers_at(scene, -4, 4).size() == 1);
+            CHECK(has_notice(scene, "dem.asc: is taken as an elevation model"));
+            CHECK_FALSE(has_notice(scene, "2^n + 1"));
+        }
+    folder.write("worlds/dem.asc", "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3 4\n1 2 3 4\n1 2 3 4\n");
+    CHECK(has_notice(load("3", "1"), "is 4 x 3 pixels large; Gazebo draws it anew to a square of 2^n + 1"));
+}
+
+TEST_CASE("what SDF does not know, or nothing touches, is told, with the file's own lines")
+{
+    const TempFolder folder;
+    write_model(folder, "crate", "<model name='crate'>\n<link name='l'>" + collision(unit_box) + "<colision name='d'/></link></model>");
+    const std::string world = ground + "\n<include>\n<uri>model://crate</uri>\n</include>\n<!-- two\nlines -->\n<modle name='b'/>\n" +
+                              "<model name='a'>\n<link name='l'>" + collision(unit_box) + "\n" + collision(unit_box, "c", "<pose>3 0 0 0 0 0</pose>") +
+                              "\n<collision name='hollow'><geometry/></collision></link></model>";
+    const Scene scene = load_world(folder, world);
+    CAPTURE(scene.notices);
+    CHECK(has_notice(scene, "test.world: line 9: /sdf/world[@name=\"test\"]/modle[@name=\"b\"]: is no element that SDF has at this place"));
+    CHECK(has_notice(scene, "model.sdf: line 2: /sdf/model[@name=\"crate\"]/link[@name=\"l\"]/colision[@name=\"d\"]: is no element"));
+    CHECK(has_notice(scene, "collision with name[c] already exists. It is left out"));
+    CHECK(has_notice(scene, "<collision>: 1 without a shape left out"));
+    CHECK(scene.parts.size() == 3);
+    CHECK(has(refusal_of(folder, world, {.strict = true}), "already exists"));
+
+    const auto with_surface = [&](const std::string& contact) {
+        return load_world(folder, ground + "<model name='zone'><link name='l'><collision name='c'><geometry>" + unit_box + "</geometry><surface><contact>" + contact +
+                                      "</contact></surface></collision></link></model>");
+    };
+    for (const char* const contact : {"<collide_bitmask>0x00</collide_bitmask>", "<collide_without_contact>1</collide_without_contact>"}) {
+        const Scene zone = with_surface(contact);
+        CHECK(zone.parts.size() == 1);
+        CHECK(has_notice(zone, "<collision>: 1 left out, as by <collide_bitmask> or <collide_without_contact> nothing touches them"));
+    }
+    CHECK(with_surface("<collide_bitmask>0x01</collide_bitmask>").parts.size() == 2);
+
+    const fs::path both = folder.write("worlds/both.sdf", "<sdf version='1.9'><world name='w'>" + ground + "</world>\n" + model_of("beside", unit_box) + "</sdf>");
+    CHECK(has_notice(load_scene(both), "line 2: <model> stands beside <world>: it is left out"));
+    folder.write("worlds/wedge.obj", mesh_text::obj(mesh_text::box(Vec3(0, 0, 0), Vec3(1, 1, 1))));
+    const Scene lost = load_world(folder, ground + model_of("m", "<mesh><uri>wedge.obj</uri><submesh><name>none</name></submesh></mesh>"));
+    CHECK(has_notice(lost, "\"m::l::c\": <submesh> \"none\" is no node of "));
+    CHECK(lost.parts.size() == 1);
+}
+
+TEST_CASE("a file that is named as one of libsdformat's own is read, not that one")
+{
+    const TempFolder folder;
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    for (const char* const name : {"model.sdf", "world.sdf", "frame.sdf"}) {
+        folder.write(name, "<sdf version='1.9'>" + model_of("mine", unit_box) + "</sdf>");
+        CHECK(places(load_scene(name)).contains("mine::l::c"));
+        CHECK(load_robot(name).name == "mine");
+    }
+    fs::current_path(before);
+}
+
 TEST_CASE("COLLADA in SDF has its unit, but keeps its axes")
 {
     const TempFolder folder;
@@ -320,6 +392,15 @@ TEST_CASE("what is ground is found by rules, and --label comes first")
     for (const NameRule& rule : told.rules)  // what the options decided, no rule did
         if (rule.what == "name sidewalk*" || rule.what == "name floor*") CHECK(rule.count == 0);
     CHECK(has_notice(told, "label \"nothing*\" matches no model, link, collision, node or material"));
+
+    const std::string furniture = "name of these with light, lamp, sign, block, barrier, rail, cone, post or pole";
+    const Scene street = load_world(folder, ground + model_of("street_light", unit_box) + model_of("bridgeRailing", unit_box) + model_of("roadblock_2", unit_box) +
+                                                model_of("bridge_2", unit_box) + model_of("road_design", unit_box));
+    const std::map<std::string, std::string> on_street = {{"ground_plane::l::c", "terrain"}, {"street_light::l::c", "obstacle"}, {"bridgeRailing::l::c", "obstacle"},
+                                                          {"roadblock_2::l::c", "obstacle"}, {"bridge_2::l::c", "terrain"}, {"road_design::l::c", "terrain"}};
+    CHECK(labels(street) == on_street);
+    for (const NameRule& rule : street.rules)
+        if (rule.what == furniture) CHECK(rule.count == 3);
 
     const Scene unnamed = load_world(folder, model_of("rock", unit_box));
     CHECK(labels(unnamed)["rock::l::c"] == "terrain");
@@ -376,22 +457,31 @@ TEST_CASE("faulty worlds are refused with file, line and element")
     };
     expect("<model name='a'><link></model>", {"line 3", "is no valid XML"});
     expect(ground + "<include><name>x</name></include>", {"line 3: <include>: has no <uri>"});
-    expect(model_of("a", "<box><size>1 x 1</size></box>"), {"line 3", "size"});
+    expect(model_of("a", "<box><size>1 x 1</size></box>"), {"line 3: <box> <size>: \"x\" is no finite number"});
+    expect(model_of("a", "<sphere><radius>1,5</radius></sphere>"), {"line 3: <sphere> <radius>: \"1,5\" is no finite number"});
+    expect("\n" + model_of("a", "<box><size>1 2 3 4</size></box>"), {"line 4: <box> <size>: has 4 numbers, needs 3"});
+    expect(model_of("a", "<cylinder><radius>1</radius></cylinder>"), {"line 3: <cylinder>: has no <length>"});
+    expect(model_of("a", "<heightmap><uri>a.png</uri><size>4 4 -1</size></heightmap>"), {"\"a::l::c\": <heightmap> <size> is -1, needs > 0 and at most 1000 km (line 3)"});
+    expect(model_of("a", unit_box + "\n<sphere><radius>1</radius></sphere>"), {"\"a::l::c\": <geometry> holds <box>, <sphere>, needs one shape"});
     expect(model_of("a", "<box><size>1 -1 1</size></box>"), {"\"a::l::c\": <box> <size> is -1, needs > 0"});
     expect(model_of("a", "<sphere><radius>0</radius></sphere>"), {"<sphere> <radius> is 0, needs > 0"});
     expect(model_of("a", "<box><size>1 1e12 1</size></box>"), {"<box> <size> is 1e+12, needs > 0 and at most 1000 km"});
     expect(model_of("a", "<plane><normal>0 0 0</normal></plane>"), {"<plane> <normal> is (0, 0, 0), needs a direction"});
     expect(model_of("a", unit_box, "<pose relative_to='nobody'>0 0 0 0 0 0</pose>"), {"nobody"});
     expect(model_of("a", unit_box, "<pose>0 0 0 0 0</pose>"), {"line 3", "pose"});
-    expect(model_of("a", unit_box, "<pose>inf 0 0 0 0 0</pose>"), {"a"});
+    expect(model_of("a", unit_box, "<pose>inf 0 0 0 0 0</pose>"), {"line 3: <model> <pose>: \"inf\" is no finite number"});
     expect("<population name='crowd'><model_count>3</model_count></population>", {"line 3: <population> \"crowd\" is not expanded here"});
     expect("", {"has no models"});
     CHECK(has(refusal(folder.write("bare.world", "hello")), "is no valid XML"));
     CHECK(has(refusal(folder.write("empty.world", "")), "is empty"));
     CHECK(has(refusal(folder.write("other.sdf", "<mujoco/>")), "line 1: <mujoco> stands where"));
     CHECK(has(refusal(folder.write("noversion.sdf", "<sdf><world name='w'/></sdf>")), "line 1: <sdf> has no version"));
+    CHECK(has(refusal(folder.write("version.sdf", "<sdf version='abc'><world name='w'/></sdf>")), "line 1: <sdf> has version \"abc\", needs such as version=\"1.6\""));
+    const std::string only_lost = refusal(folder.write("lost.sdf", world_of(model_of("a", "<mesh><uri>nothere.dae</uri></mesh>"))));
+    CHECK(has(only_lost, "has no geometry: all of it is ignored, missing or without collision"));
+    CHECK(has(only_lost, "nothere.dae is found nowhere"));
     CHECK(has(refusal(folder.write("two.sdf", "<sdf version='1.9'><world name='a'/><world name='b'/></sdf>")), "has 2 worlds, needs one"));
-    CHECK(has(refusal(folder / "models"), "does not exist"));
+    CHECK(has(refusal(folder / "nowhere"), "does not exist"));
     fs::create_directories(folder / "hollow");
     CHECK(has(refusal(folder / "hollow"), "is a folder without model.config"));
 }
@@ -406,6 +496,18 @@ TEST_CASE("models that include each other in a circle are refused, with the circ
     CHECK(has(message, "egg/model.sdf: line 2: <include> <uri> model://hen"));
     CHECK(has(message, "leads back to itself"));
     CHECK(has(message, "hen/model.sdf includes "));
+}
+
+TEST_CASE("models that include the next one twice, and so on, are refused before they are built")
+{
+    const TempFolder folder;
+    constexpr int doublings = 40;
+    for (int i = 0; i < doublings; ++i) {
+        const std::string next = std::to_string(i + 1), include = "<include><uri>model://m" + next + "</uri><name>";
+        write_model(folder, "m" + std::to_string(i), "<model name='m'>" + include + "a</name></include>" + include + "b</name></include></model>");
+    }
+    write_model(folder, "m" + std::to_string(doublings), "<model name='m'><link name='l'>" + collision(unit_box) + "</link></model>");
+    CHECK(has(refusal_of(folder, ground + "<include><uri>model://m0</uri></include>"), "is the one with which all includes come to more than 100000"));
 }
 
 TEST_CASE("the real worlds hold what an independent reader finds in them")

@@ -206,6 +206,13 @@ TEST_CASE("a file that is no world, or whose names are taken, is refused with it
     CHECK_THAT(refused(world_text, "c"), Contains("has no world \"c\", only \"yard\""));
     CHECK(refused("<sdf>\n<world name='a'>\n<model name='cart_1'/></world></sdf>") == "a.world: line 2: <world> has a \"cart_1\" already; give the robots other names");
     CHECK_THAT(refused("<sdf><world name='a'><include><name>cart_1</name><uri>model://x</uri></include></world></sdf>"), Contains("has a \"cart_1\" already"));
+    const TempFolder folder;
+    folder.write("models/cart/model.sdf", "<sdf version='1.6'><model name='cart_1'/></sdf>");
+    CHECK_THAT(message_of([&] {
+                   sdf_world(robots, {.uri = "model://cart", .world_text = "<sdf><world name='a'><include><uri>model://cart</uri></include></world></sdf>",
+                                      .model_paths = {folder / "models"}});
+               }),
+               Contains("has a \"cart_1\" already"));
     CHECK_FALSE(message_of([&] { sdf_world(robots, {}); }).empty());
     for (std::size_t size = 1; size < world_text.size(); ++size)  // cut anywhere, it is refused or whole
         if (const std::string message = refused(world_text.substr(0, size)); message.empty()) CHECK(size >= world_text.find("</sdf>") + 6);
@@ -354,6 +361,32 @@ TEST_CASE("the commands of each simulator's page work as they are written")
         CHECK(std::count(script.begin(), script.end(), '\n') >= 2);
         CHECK(run_program(folder, "--version && set -e && PATH=$PWD:$PATH\n" + script).status == 0);
     }
+}
+
+TEST_CASE("what a simulator would add to a pose, or not know, is refused or told")
+{
+    const Arena arena;
+    const std::string link = "<link name='base'><collision name='c'><geometry><box><size>0.3 0.2 0.1</size></box></geometry></collision></link>"
+                             "<link name='arm'><collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision></link>"
+                             "<joint name='hinge' type='revolute'><parent>base</parent><child>arm</child><axis><xyz>0 0 1</xyz></axis></joint>";
+    arena.write("frame.sdf", "<sdf version='1.9'><model name='m' placement_frame='arm'>" + link + "</model></sdf>");
+    arena.write("posed.sdf", "<sdf version='1.9'><model name='m'><pose>0 0 7 0 0 0.4</pose>" + link + "</model></sdf>");
+    arena.write("plain/model.sdf", "<sdf version='1.9'><model name='m'>" + link + "</model></sdf>");
+    arena.write("plain/model.config", "<model><sdf>model.sdf</sdf></model>");
+    const auto run = [&](const std::string& arguments) { return arena("sample map -n 2 --offset 1 --max-height 2 " + arguments); };
+    const ProgramRun frame = run("--robot frame.sdf --format sdf"), posed = run("--robot posed.sdf --format ros1-launch");
+    CHECK(frame.status == 2);
+    CHECK_THAT(frame.err, Contains("frame.sdf has placement_frame=\"arm\""));
+    CHECK(posed.status == 2);
+    CHECK_THAT(posed.err, Contains("posed.sdf has a <pose> of its own, which gazebo_ros adds"));
+    CHECK(run("--robot posed.sdf --format sdf").status == 0);
+    CHECK(run("--robot frame.sdf --format ros2-launch-py").status == 0);
+    const ProgramRun folder = run("--robot plain --format ros1-launch --joints hinge=0.25");
+    CHECK(folder.status == 0);
+    CHECK_THAT(folder.out, Contains("-sdf -file " + (arena / "plain/model.sdf").string()) && Contains(" -J hinge 0.25"));
+    CHECK(folder.err.find("says nothing about joints") == std::string::npos);
+    CHECK_THAT(run("--robot plain --format sdf --joints hinge=0.25").err, Contains("notice: --format sdf says nothing about joints"));
+    CHECK(run("--robot plain --format sdf --robot-file 'a/$(x)/b.urdf'").status == 2);
 }
 
 TEST_CASE("what a format lacks or cannot use is told before all work")

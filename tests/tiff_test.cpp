@@ -102,13 +102,16 @@ TEST_CASE("integers with a sign, and those of 32 bits, stand for themselves")
     CHECK(read_grey_tiff(write_tiff(folder, {.bits = 32}, far)).pixels == Pixels{4294967290, 4294967291, 4294967292, 4294967293, 4294967294, 4294967295});
 }
 
-TEST_CASE("a TIFF image whose 0 is white is turned round, so that white is high")
+TEST_CASE("a TIFF image whose 0 is white has the values that it stores, and says so")
 {
     const TempFolder folder;
     const auto pixel = [](std::uint32_t row, std::uint32_t col) { return double(row * 3 + col); };
-    CHECK(read_grey_tiff(write_tiff(folder, {.bits = 8, .photometric = PHOTOMETRIC_MINISWHITE}, pixel)).pixels == Pixels{255, 254, 253, 252, 251, 250});
-    CHECK(read_grey_tiff(write_tiff(folder, {.photometric = PHOTOMETRIC_MINISWHITE}, pixel)).pixels ==
-          Pixels{65535, 65534, 65533, 65532, 65531, 65530});
+    const auto [bits, format] = GENERATE(std::pair{8, SAMPLEFORMAT_UINT}, std::pair{16, SAMPLEFORMAT_UINT}, std::pair{16, SAMPLEFORMAT_INT},
+                                         std::pair{32, SAMPLEFORMAT_UINT}, std::pair{32, SAMPLEFORMAT_IEEEFP});
+    const GreyImage image = read_grey_tiff(write_tiff(folder, {.bits = bits, .format = format, .photometric = PHOTOMETRIC_MINISWHITE}, pixel));
+    CHECK(image.pixels == Pixels{0, 1, 2, 3, 4, 5});
+    CHECK(image.zero_is_white == (image.largest > 0));  // what has no white is no picture
+    CHECK_FALSE(read_grey_tiff(write_tiff(folder, {.bits = 8}, pixel)).zero_is_white);
 }
 
 TEST_CASE("TIFF images that are damaged or no grey heights are refused with their name and the reason")

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <spawnfield/frames.h>
+#include <spawnfield/robot.h>
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +40,7 @@ struct LaunchOptions {
     std::string file = {};   ///< URDF, or SDF if it ends in .sdf; XML takes $(find …) and $(find-pkg-share …) in it. Or else
     std::string topic = {};  ///< ROS 2: topic, ROS 1: parameter, in the robot's namespace, that tells the robot's description
     std::string world = {};  ///< ROS 2: name of Gazebo's world; empty: the first that runs
+    std::vector<JointPosition> joints = {};  ///< ROS 1: where joints stand (spawn_model -J)
 };
 
 /// roslaunch (ROS 1, gazebo_ros spawn_model): a <group ns> for each robot. A URDF becomes robot_description of the group.
@@ -49,11 +52,21 @@ std::string ros1_launch(std::span<const RobotStart> robots, const LaunchOptions&
 std::string ros2_launch_py(std::span<const RobotStart> robots, const LaunchOptions& options);
 std::string ros2_launch_xml(std::span<const RobotStart> robots, const LaunchOptions& options);
 
+/// What simulators add to, or put in the place of, the pose that a robot is given: of the model in an SDF file.
+struct ModelPlacement {
+    std::string frame = {};  ///< its placement_frame: <include> puts this frame there, and not the model's own
+    bool has_pose = false;   ///< it has a <pose> that is not 0: gazebo_ros (ROS 1) adds it
+};
+
+/// Of an SDF file or a model's folder; nothing for any other file. Throws FileError.
+ModelPlacement model_placement(const std::filesystem::path& file);
+
 struct SdfWorldOptions {
     std::string uri = {};            ///< of the robot's model: model://husky, or a file; SDF or URDF
     std::string world_name = {};     ///< of a world made anew (default "spawns"); with `world_text`: which of its worlds, if many
     std::string world_text = {};     ///< an SDF file, whose world gets the robots; empty: a new world with nothing else
-    std::string world_file = "SDF";  ///< its name, for messages
+    std::string world_file = "SDF";  ///< its name, for messages, and for what its includes are relative to
+    std::vector<std::filesystem::path> model_paths = {};  ///< where else models that it includes are looked for
 };
 
 /// An SDF world (1.7 if it is new) with an <include> for each robot, at the end of what is there.

@@ -1,5 +1,6 @@
 #include "base/geotiff.h"
 
+#include "base/coordinate_system.h"
 #include "base/number.h"
 #include "base/tiff.h"
 
@@ -31,6 +32,7 @@ enum GeoKey : std::uint16_t {
     projected_citation = 3073,
     linear_units = 3076,
     linear_unit_size = 3077,
+    vertical_crs = 4096,
     vertical_units = 4099,
 };
 
@@ -122,6 +124,13 @@ private:
     const std::string& file_;
 };
 
+/// "EPSG:32611"; empty if the key is not there or says that the system is the file's own.
+std::string epsg_code(const GeoKeys& keys, GeoKey key)
+{
+    const unsigned code = keys.number(key).value_or(0);
+    return code == 0 || code == user_defined ? "" : "EPSG:" + std::to_string(code);
+}
+
 std::optional<double> metres_of(unsigned unit)
 {
     switch (unit) {
@@ -166,31 +175,42 @@ void refuse_degrees(const GeoKeys& keys, const std::string& file)
 {
     const unsigned type = keys.number(model_type).value_or(1);
     if (type != 2 && type != 3) return;
-    const unsigned code = keys.number(geodetic_crs).value_or(user_defined);
-    throw FileError(file, std::string("is in ") + (type == 2 ? "degrees (geographic" : "coordinates of the whole globe (geocentric") +
-                              (code == user_defined ? "" : ", EPSG:" + std::to_string(code)) +
-                              "), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres such as the UTM zone's");
+    refuse_globe(file, type == 3, epsg_code(keys, geodetic_crs));
+}
+
+/// m; of a file that has no ProjLinearUnitsGeoKey.
+double unit_by_system(const GeoKeys& keys, const std::string& file, std::vector<std::string>& notices)
+{
+    using Place = CoordinateSystem::Place;
+    const std::string code = epsg_code(keys, projected_crs);
+    if (code.empty()) {
+        notices.push_back(file + ": does not tell the unit of x and y, which are taken as metres");
+        return 1;
+    }
+    const std::optional<CoordinateSystem> found = coordinate_system(code);
+    if (found && (found->place == Place::Degrees || found->place == Place::Globe)) refuse_globe(file, found->place == Place::Globe, code);
+    if (!found || found->place != Place::Plane)
+        throw FileError(file, "is in " + code + ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives it "
+                              "another, or tell its spacing in metres with the key cell");
+    return found->unit;
 }
 
 double linear_unit(const GeoKeys& keys, const std::string& file, std::vector<std::string>& notices)
 {
     const auto code = keys.number(linear_units);
-    if (!code) {
-        notices.push_back(file + ": does not tell the unit of x and y, which are taken as metres");
-        return 1;
-    }
-    const std::optional<double> size = *code == user_defined ? keys.real(linear_unit_size) : metres_of(*code);
+    const std::optional<double> size = !code                   ? unit_by_system(keys, file, notices)
+                                       : *code == user_defined ? keys.real(linear_unit_size)
+                                                               : metres_of(*code);
     if (!size || !std::isfinite(*size) || !(*size > 0))
         throw FileError(file, "has x and y in unit " + std::to_string(*code) +
                                   " (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, 9003); reproject it with gdalwarp -t_srs");
-    if (*size != 1) notices.push_back(file + ": x and y are in units of " + number(*size) + " m and were converted to metres");
+    tell_unit(file, "x and y", *size, notices);
     return *size;
 }
 
 std::string crs_of(const GeoKeys& keys)
 {
-    const unsigned code = keys.number(projected_crs).value_or(0);
-    if (code != 0 && code != user_defined) return "EPSG:" + std::to_string(code);
+    if (const std::string code = epsg_code(keys, projected_crs); !code.empty()) return code;
     std::string words = keys.text(projected_citation);
     if (words.empty()) words = keys.text(citation);
     std::erase_if(words, [](unsigned char c) { return c < ' ' || c > '~'; });
@@ -214,6 +234,52 @@ void refuse_scaled(const GeoTags& tags, const std::string& file)
         if (text.empty() || (parse_number(text, value) && value == none)) continue;
         throw FileError(file, std::string("has heights with a ") + role + " of " + text + ", needs plain ones; gdal_translate -unscale -ot Float32 makes them");
     }
+}
+
+/// What one place of a file says of the unit of its heights.
+struct UnitWord {
+    std::string place;              ///< for complaints
+    std::optional<double> metres;   ///< < 0 of depths; nothing: a unit that is not known
+};
+
+UnitWord unit_of_band(const std::string& type)
+{
+    UnitWord word{"\"" + type + "\"", {}};
+    if (type == "m" || type == "metre" || type == "meter" || type == "metres" || type == "meters" || type == "Meter") word.metres = 1;
+    if (type == "ft" || type == "foot" || type == "feet" || type == "Foot") word.metres = metres_of(9002);
+    if (type == "sft" || type == "us-ft" || type == "US survey foot") word.metres = metres_of(9003);
+    return word;
+}
+
+UnitWord unit_of_system(const std::string& code)
+{
+    const std::optional<CoordinateSystem> found = coordinate_system(code);
+    return {code + " (VerticalGeoKey)", found ? found->height_unit : std::nullopt};
+}
+
+/// All that the file says, in the order in which GDAL 3.6 believes it; a system that PROJ does not know comes last.
+std::vector<UnitWord> height_units(const GeoTags& tags, const std::string& file)
+{
+    const GeoKeys keys(tags, file);
+    std::vector<UnitWord> words;
+    if (const std::string type = metadata_item(tags.metadata, "unittype"); !type.empty()) words.push_back(unit_of_band(type));
+    const std::string system = epsg_code(keys, vertical_crs);
+    const UnitWord by_system = system.empty() ? UnitWord{} : unit_of_system(system);
+    if (by_system.metres) words.push_back(by_system);
+    if (const auto code = keys.number(vertical_units)) words.push_back({std::to_string(*code) + " (VerticalUnitsGeoKey)", metres_of(*code)});
+    if (!system.empty() && !by_system.metres) words.push_back(by_system);
+    return words;
+}
+
+/// Of the units by which heights are not taken.
+void tell_other_units(const std::vector<UnitWord>& words, const std::string& file, std::vector<std::string>& notices)
+{
+    constexpr double feet_apart = 1e-5;  // relative: the two feet are 2e-6 apart, and often taken for each other
+    const double unit = std::abs(*words[0].metres);
+    for (const UnitWord& word : words)
+        if (word.metres && std::abs(std::abs(*word.metres) - unit) > feet_apart * unit)
+            notices.push_back(file + ": says that heights are in units of " + number(unit) + " m by " + words[0].place + ", and of " +
+                              number(std::abs(*word.metres)) + " m by " + word.place + "; they are taken by the first");
 }
 
 }  // namespace
@@ -265,18 +331,17 @@ std::optional<double> no_data_value(const GeoTags& tags, const std::string& file
 double height_unit(const GeoTags& tags, const std::string& file, std::vector<std::string>& notices)
 {
     refuse_scaled(tags, file);
-    const auto code = GeoKeys(tags, file).number(vertical_units);
-    const std::string type = metadata_item(tags.metadata, "unittype");
-    std::optional<double> unit = 1;
-    if (code) unit = metres_of(*code);
-    else if (type == "ft" || type == "foot" || type == "feet" || type == "Foot") unit = metres_of(9002);
-    else if (type == "sft" || type == "us-ft" || type == "US survey foot") unit = metres_of(9003);
-    else if (!type.empty() && type != "m" && type != "metre" && type != "meter" && type != "metres" && type != "meters" && type != "Meter") unit = {};
-    if (!unit)
-        throw FileError(file, "has heights in unit " + (code ? std::to_string(*code) + " (VerticalUnitsGeoKey)" : "\"" + type + "\"") +
-                                  ", needs metres (9001), kilometres (9036) or feet (9002, 9003)");
-    if (*unit != 1) notices.push_back(file + ": heights are in units of " + number(*unit) + " m and were converted to metres");
-    return *unit;
+    const std::vector<UnitWord> words = height_units(tags, file);
+    if (words.empty()) return 1;
+    if (!words[0].metres)
+        throw FileError(file, "has heights in unit " + words[0].place +
+                                  ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they are");
+    tell_other_units(words, file, notices);
+    const auto depths = std::find_if(words.begin(), words.end(), [](const UnitWord& word) { return word.metres.value_or(1) < 0; });
+    const bool is_depth = depths != words.end();
+    const double unit = std::abs(*words[0].metres) * (is_depth ? -1 : 1);
+    tell_height_unit(file, unit, is_depth ? depths->place : words[0].place, notices);
+    return unit;
 }
 
 }  // namespace spawnfield

@@ -71,10 +71,7 @@ double value(const Layout& l, const std::byte* bytes)
 {
     if (l.format == SAMPLEFORMAT_IEEEFP) return l.bits == 32 ? value<float>(bytes) : value<double>(bytes);
     if (is_signed(l)) return l.bits == 8 ? value<std::int8_t>(bytes) : l.bits == 16 ? value<std::int16_t>(bytes) : value<std::int32_t>(bytes);
-    if (l.bits == 32) return value<std::uint32_t>(bytes);
-    const double white = l.bits == 8 ? 255 : 65535;
-    const double stored = l.bits == 8 ? value<std::uint8_t>(bytes) : value<std::uint16_t>(bytes);
-    return l.photometric == PHOTOMETRIC_MINISWHITE ? white - stored : stored;
+    return l.bits == 8 ? value<std::uint8_t>(bytes) : l.bits == 16 ? value<std::uint16_t>(bytes) : value<std::uint32_t>(bytes);
 }
 
 /// Adds the pixels of rows from .. to, line after line. Returns false if they cannot be decoded.
@@ -133,6 +130,8 @@ GreyImage read_grey_tiff(const std::filesystem::path& file, std::uint64_t most)
     const Layout found = layout(tiff.get());
     check(found, file.string(), most);
     GreyImage image{int(found.rows), int(found.cols), !has_white(found) ? 0.0 : found.bits == 8 ? 255.0 : 65535.0, {}};
+    image.zero_is_white = has_white(found) && found.photometric == PHOTOMETRIC_MINISWHITE;
+    image.is_float32 = is_float(found) && found.bits == 32;
     const bool tiled = TIFFIsTiled(tiff.get());
     const tmsize_t piece = tiled ? TIFFTileSize(tiff.get()) : TIFFScanlineSize(tiff.get());
     const std::size_t wanted = tiled ? std::size_t(found.tile_rows) * found.tile_cols : found.cols;

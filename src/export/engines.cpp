@@ -1,3 +1,4 @@
+#include "base/csv.h"
 #include "base/number.h"
 #include "export/text.h"
 

@@ -44,12 +44,14 @@ std::string ros1_launch(std::span<const RobotStart> robots, const LaunchOptions&
     check("ros1_launch", options);
     const bool is_sdf = options.file.ends_with(".sdf"), has_parameter = !options.file.empty() && !is_sdf;
     const std::string source = is_sdf ? "-sdf -file " + argument(options.file) : "-urdf -param " + argument(has_parameter ? "robot_description" : options.topic);
+    std::string joints;
+    for (const auto& [joint, value] : options.joints) joints += " -J " + argument(joint) + " " + plain_number(value);
     std::string text = "<?xml version=\"1.0\"?>\n<!-- " + made_by(robots.size()) + ": m, rad, x forward, y left, z up (REP-103) -->\n<launch>\n";
     for (const RobotStart& robot : robots) {
         text += "  <group" + attribute("ns", xml_escaped(robot.name_space)) + ">\n";
         if (has_parameter) text += "    <param name=\"robot_description\"" + attribute("textfile", xml_escaped(options.file)) + "/>\n";
         text += "    <node name=\"spawn_model\" pkg=\"gazebo_ros\" type=\"spawn_model\" output=\"screen\"" +
-                attribute("args", source + " -model " + argument(robot.name) + " " + pose_arguments(robot)) + "/>\n  </group>\n";
+                attribute("args", source + " -model " + argument(robot.name) + " " + pose_arguments(robot) + joints) + "/>\n  </group>\n";
     }
     return text + "</launch>\n";
 }

@@ -1,14 +1,18 @@
+#include "base/text.h"
+#include "base/xml.h"
 #include "export/text.h"
+#include "scene/sdf_includes.h"
 
 #include <spawnfield/error.h>
-
-#include <tinyxml2.h>
+#include <spawnfield/scene.h>
 
 #include <set>
+#include <sstream>
 
 namespace spawnfield {
 namespace {
 
+namespace fs = std::filesystem;
 using tinyxml2::XMLElement;
 
 void add_text(XMLElement& parent, const char* name, const std::string& text) { parent.InsertNewChildElement(name)->SetText(text.c_str()); }
@@ -27,15 +31,26 @@ const char* attribute_of(const XMLElement& element, const char* name)
     return value == nullptr ? "" : value;
 }
 
-/// Names in the world's own scope: of models, lights and the like, and those that includes are given.
-std::set<std::string> names_in(const XMLElement& world)
+/// Of the model that an <include> without <name> brings; empty if it is found nowhere.
+std::string name_of_included(const XMLElement& include, const SdfWorldOptions& options, ModelPaths& paths)
 {
+    const fs::path file = included_file(text_of(include, "uri"), fs::path(options.world_file).parent_path(), paths);
+    if (file.empty()) return "";
+    const auto document = read_xml(file, "a model");
+    const XMLElement* const model = document->RootElement()->FirstChildElement("model");
+    return attribute_of(model != nullptr ? *model : *document->RootElement(), "name");  // a URDF's root is the robot
+}
+
+/// Names in the world's own scope: of models, lights and the like, and those that includes are given or bring.
+std::set<std::string> names_in(const XMLElement& world, const SdfWorldOptions& options)
+{
+    ModelPaths paths(options.model_paths, options.world_file);
     std::set<std::string> names;
     for (const XMLElement* child = world.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
         const XMLElement* const given = child->FirstChildElement("name");
         const bool is_include = std::string_view(child->Name()) == "include";
-        const char* const name = !is_include ? attribute_of(*child, "name") : given != nullptr ? given->GetText() : nullptr;
-        if (name != nullptr && *name != '\0') names.insert(name);
+        const std::string name = !is_include ? attribute_of(*child, "name") : given != nullptr ? text_of(*child, "name") : name_of_included(*child, options, paths);
+        if (!name.empty()) names.insert(name);
     }
     return names;
 }
@@ -131,7 +146,7 @@ std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& op
 {
     tinyxml2::XMLDocument document;
     const FoundWorld found = parse_world(document, options.world_text, options);
-    std::set<std::string> taken = names_in(*found.element);
+    std::set<std::string> taken = names_in(*found.element, options);
     for (const RobotStart& robot : robots)
         if (!taken.insert(robot.name).second)
             throw FileError(options.world_file, "line " + std::to_string(found.element->GetLineNum()) + ": <world> has a \"" + robot.name +
@@ -139,7 +154,7 @@ std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& op
     for (const RobotStart& robot : robots) add_robot(*found.element, robot, options.uri);
     const std::string text = inserted(robots, options, found.index);
     tinyxml2::XMLDocument again;
-    if (!text.empty() && names_in(*parse_world(again, text, options).element) == names_in(*found.element)) return text;
+    if (!text.empty() && names_in(*parse_world(again, text, options).element, options) == names_in(*found.element, options)) return text;
     return printed(document);
 }
 
@@ -156,6 +171,19 @@ std::string sdf_world(std::span<const RobotStart> robots, const SdfWorldOptions&
     world.InsertNewComment((" " + made_by(robots.size()) + ": m, rad, x forward, y left, z up (REP-103) ").c_str());
     for (const RobotStart& robot : robots) add_robot(world, robot, options.uri);
     return printed(document);
+}
+
+ModelPlacement model_placement(const fs::path& path)
+{
+    const fs::path file = scene_file_of(path);
+    if (lower_case(file.extension().string()) != ".sdf") return {};
+    const auto document = read_sdf_xml(file);
+    const XMLElement* const model = document->RootElement()->FirstChildElement("model");
+    if (model == nullptr) return {};
+    std::istringstream numbers(text_of(*model, "pose"));
+    bool has_pose = false;
+    for (double value = 0; numbers >> value;) has_pose = has_pose || value != 0;
+    return {attribute_of(*model, "placement_frame"), has_pose};
 }
 
 }  // namespace spawnfield

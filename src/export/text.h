@@ -18,9 +18,6 @@ std::string shell_quoted(std::string_view word);
 /// A literal.
 std::string python_quoted(std::string_view text);
 
-/// A field of a CSV file (RFC 4180).
-std::string csv_quoted(std::string_view text);
-
 /// "x y z r p y" in m and rad.
 std::string spaced(const RobotStart& robot);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace spawnfield {
 namespace {
@@ -68,6 +69,37 @@ void add_below(const std::vector<Vec3>& corners, double z, Polygon2& out)
     }
 }
 
+double distance_to_line(const Vec2& p, const Vec2& from, const Vec2& to)
+{
+    const double length = (to - from).norm();
+    return length > 0 ? std::abs(cross(to - from, p - from)) / length : (p - from).norm();
+}
+
+/// Without the corners that lie on the line between others but for rounding: they would weigh on one side of a symmetric robot
+/// and not on the other. Goes round from the corner farthest out, which is none of those.
+Polygon2 without_flat_corners(const Polygon2& hull)
+{
+    if (hull.size() < 4) return hull;
+    const std::size_t n = hull.size();
+    const Vec2 mean = std::accumulate(hull.begin(), hull.end(), Vec2(Vec2::Zero())) / double(n);
+    const auto is_nearer = [&](const Vec2& a, const Vec2& b) { return (a - mean).norm() < (b - mean).norm(); };
+    const std::size_t first = std::size_t(std::max_element(hull.begin(), hull.end(), is_nearer) - hull.begin());
+    const auto corner = [&](std::size_t k) -> const Vec2& { return hull[(first + k) % n]; };
+    const auto are_flat = [&](std::size_t from, std::size_t to) {  // all between them
+        for (std::size_t k = from + 1; k < to; ++k)
+            if (distance_to_line(corner(k), corner(from), corner(to)) > least_spread) return false;
+        return true;
+    };
+    Polygon2 out;
+    for (std::size_t at = 0; at < n;) {
+        out.push_back(corner(at));
+        std::size_t next = at + 1;
+        while (next < n && are_flat(at, next + 1)) ++next;
+        at = next;
+    }
+    return out;
+}
+
 }  // namespace
 
 bool span_area(std::span<const Vec3> points)
@@ -91,7 +123,7 @@ Polygon2 lowest_footprint(const Robot& robot)
     const double z = robot.bounds().min.z() + contact_depth;
     Polygon2 points;
     for (const RobotPart& part : robot.parts) add_below(corners_of(part, z), z, points);
-    return convex_hull(std::move(points));
+    return without_flat_corners(convex_hull(std::move(points)));
 }
 
 std::vector<Vec3> contacts_of(const Robot& robot)

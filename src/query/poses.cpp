@@ -1,3 +1,4 @@
+#include "base/csv.h"
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -14,36 +15,6 @@
 
 namespace spawnfield {
 namespace {
-
-/// Fields of one CSV line (RFC 4180: quotes around a field, doubled within).
-std::vector<std::string> split_line(const std::string& line)
-{
-    std::vector<std::string> fields(1);
-    bool quoted = false;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (line[i] == '"') {
-            if (quoted && i + 1 < line.size() && line[i + 1] == '"') fields.back() += line[++i];
-            else quoted = !quoted;
-        } else if (line[i] == ',' && !quoted) {
-            fields.emplace_back();
-        } else {
-            fields.back() += line[i];
-        }
-    }
-    for (std::string& field : fields) {
-        const auto first = field.find_first_not_of(" \t"), last = field.find_last_not_of(" \t");
-        field = first == std::string::npos ? "" : field.substr(first, last - first + 1);
-    }
-    return fields;
-}
-
-std::string quoted_if_needed(const std::string& text)
-{
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-    return out + "\"";
-}
 
 bool is_pose_column(const std::string& name)
 {
@@ -95,7 +66,7 @@ public:
             std::string line = text.substr(start, end - start);
             start = end + 1;
             ++line_;
-            if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // byte order mark
+            if (line_ == 1 && line.starts_with(byte_order_mark)) line.erase(0, 3);  // byte order mark
             if (!line.empty() && line.back() == '\r') line.pop_back();
             if (line.find_first_not_of(" \t") == std::string::npos) continue;
             if (!has_header) {
@@ -106,7 +77,7 @@ public:
                 continue;
             }
             if (std::count(line.begin(), line.end(), '"') % 2 != 0) fail("has a quote that is not closed");
-            table.poses.push_back(read_pose(split_line(line), columns));
+            table.poses.push_back(read_pose(csv_fields(line), columns));
             table.rows.push_back(std::move(line));
         }
         if (!has_header) throw FileError(file_, "is empty, needs a header x,y,z,roll,pitch,yaw");
@@ -117,7 +88,7 @@ public:
 private:
     PoseColumns read_header(const std::string& line) const
     {
-        const auto names = split_line(line);
+        const auto names = csv_fields(line);
         const auto find = [&](const std::string& name) {
             const auto at = std::find(names.begin(), names.end(), name);
             if (at != names.end() && std::find(at + 1, names.end(), name) != names.end()) fail("column " + name + " is given twice");
@@ -141,7 +112,7 @@ private:
     /// A name that is known but for its case is read as any other: not at all.
     void tell_other_case(const std::string& header, PoseTable& table) const
     {
-        for (const std::string& name : split_line(header)) {
+        for (const std::string& name : csv_fields(header)) {
             const std::string lower = lower_case(name);
             if (name == lower || !is_pose_column(lower)) continue;
             table.notices.push_back(file_ + ": column " + name + " is carried along, not read: names are lower case (" + lower + ")");
@@ -297,11 +268,11 @@ std::vector<Spawn> spawns_of(const PoseTable& table)
 
 std::vector<std::string> column_of(const PoseTable& table, const std::string& name)
 {
-    const std::vector<std::string> names = split_line(table.header);
+    const std::vector<std::string> names = csv_fields(table.header);
     const auto at = std::find(names.begin(), names.end(), name);
     if (at == names.end()) return {};
     std::vector<std::string> out;
-    for (const std::string& row : table.rows) out.push_back(split_line(row)[std::size_t(at - names.begin())]);
+    for (const std::string& row : table.rows) out.push_back(csv_fields(row)[std::size_t(at - names.begin())]);
     return out;
 }
 
@@ -320,7 +291,7 @@ std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::
 
 std::vector<std::string> replaced_columns(const PoseTable& table)
 {
-    std::vector<std::string> names = split_line(table.header);
+    std::vector<std::string> names = csv_fields(table.header);
     std::erase_if(names, [](const std::string& name) { return !is_verdict_column(name); });
     return names;
 }
@@ -328,7 +299,7 @@ std::vector<std::string> replaced_columns(const PoseTable& table)
 std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const std::vector<Part>& parts)
 {
     std::vector<std::uint8_t> replaced;
-    for (const std::string& name : split_line(table.header)) replaced.push_back(is_verdict_column(name));
+    for (const std::string& name : csv_fields(table.header)) replaced.push_back(is_verdict_column(name));
     std::string text;
     append_fields(text, table.header, replaced);
     text += "verdict,ground,height_above,hit\n";
@@ -340,7 +311,7 @@ std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& j
         if (judged.ground) append_numbers(text, {judged.ground->height, table.poses[i].position.z() - judged.ground->height});
         else text += ',';
         text += ',';
-        if (judged.hit) text += judged.hit->part == CollisionHit::occupancy ? "occupancy" : quoted_if_needed(parts[judged.hit->part].name);
+        if (judged.hit) text += judged.hit->part == CollisionHit::occupancy ? "occupancy" : csv_quoted(parts[judged.hit->part].name);
         text += '\n';
     }
     return text;
@@ -380,7 +351,7 @@ std::string robots_csv(std::span<const RobotStart> robots)
     const bool named = !robots.empty() && !robots[0].name.empty();
     std::string text = named ? "name,x,y,z,roll,pitch,yaw\n" : "x,y,z,roll,pitch,yaw\n";
     for (const RobotStart& robot : robots) {
-        if (named) text += quoted_if_needed(robot.name) + ',';
+        if (named) text += csv_quoted(robot.name) + ',';
         append_numbers(text, {robot.position.x(), robot.position.y(), robot.position.z(), robot.rpy.roll, robot.rpy.pitch, robot.rpy.yaw});
         text += '\n';
     }

@@ -1,3 +1,4 @@
+#include "base/csv.h"
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/polygon2.h"
@@ -145,17 +146,6 @@ void read_geojson(const std::string& text, const std::string& file, Region& out)
 
 // ---- CSV ----
 
-std::vector<std::string> fields_of(std::string_view line)
-{
-    std::vector<std::string> out;
-    for (std::size_t start = 0;;) {
-        const std::size_t comma = line.find(',', start);
-        out.push_back(trimmed(line.substr(start, comma == std::string_view::npos ? comma : comma - start)));
-        if (comma == std::string_view::npos) return out;
-        start = comma + 1;
-    }
-}
-
 class CsvPolygons {
 public:
     CsvPolygons(const std::string& file, Region& out) : file_(file), out_(out) {}
@@ -166,7 +156,7 @@ public:
         const std::string trim = trimmed(text);
         if (trim.empty()) return close();
         if (trim[0] == '#') return;
-        const std::vector<std::string> fields = fields_of(trim);
+        const std::vector<std::string> fields = csv_fields(trim);
         double number_there = 0;
         if (first_ && !parse_number(fields[0], number_there)) return header(fields);
         first_ = false;
@@ -224,7 +214,7 @@ private:
 void read_csv(const std::string& text, const std::string& file, Region& out)
 {
     CsvPolygons reader(file, out);
-    for (std::size_t start = 0; start < text.size();) {
+    for (std::size_t start = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0; start < text.size();) {
         const std::size_t end = std::min(text.find('\n', start), text.size());
         reader.line(std::string_view(text).substr(start, end - start));
         start = end + 1;

@@ -43,6 +43,7 @@ void append_mesh_body(Robot& robot, const CollisionBody& body, ModelPaths& paths
     try {
         // As Gazebo takes COLLADA: its <unit> counts, its <up_axis> does not.
         const FileMesh mesh = submesh_of(read_mesh(found), geometry, found.string());
+        robot.notices.insert(robot.notices.end(), mesh.notices.begin(), mesh.notices.end());
         append_mesh(robot, {body.names[1], found, placed(mesh.nodes, geometry.size, body.pose)}, most_parts);
     } catch (const std::domain_error& error) {
         fail(body, file, "<mesh> cannot be used: " + found.string() + ": its convex hull has no volume: " + error.what());

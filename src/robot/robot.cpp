@@ -1,4 +1,5 @@
 #include "base/number.h"
+#include "base/text.h"
 #include "robot/mesh_parts.h"
 #include "robot/sdf_robot.h"
 #include "robot/urdf.h"
@@ -85,6 +86,7 @@ void append_mesh_part(Robot& robot, const YamlMap& map, const std::filesystem::p
         const char up = given_up != 0 ? given_up : mesh.up;
         for (FileMesh::Node& node : mesh.nodes)
             for (Vec3& vertex : node.vertices) vertex = turned_up(vertex.cwiseProduct(scale), up);
+        robot.notices.insert(robot.notices.end(), mesh.notices.begin(), mesh.notices.end());
         append_mesh(robot, {map.text("name", ""), file, placed(std::move(mesh.nodes), Vec3::Ones(), map.pose())}, mesh_parts);
     } catch (const std::domain_error& error) {
         map.fail("mesh", "cannot be used: " + file.string() + ": its convex hull has no volume: " + error.what());
@@ -127,7 +129,7 @@ constexpr const char* known_kinds = "a robot.yaml, a .urdf, an SDF model (.sdf o
 Robot read_robot(const std::string& robot, const RobotOptions& options)
 {
     const std::filesystem::path file = robot;
-    const std::string extension = file.extension().string();
+    const std::string extension = lower_case(file.extension().string());
     if (std::filesystem::is_directory(file)) return read_sdf_robot(file, options);
     if (!std::filesystem::is_regular_file(file)) throw FileError(robot, std::string("does not exist; a robot is ") + known_kinds);
     if (extension == ".urdf") return read_urdf(file, options);
@@ -140,6 +142,16 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
     return read_robot_yaml(file, options.mesh_parts);
 }
 
+/// The largest machines that drive are 200 m long; far beyond, distances have no 1e-6 m left.
+void check_reach(const Robot& robot, const std::string& text)
+{
+    constexpr double most = 1000;  // m
+    const Bounds box = robot.bounds();
+    const double reach = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+    if (reach <= most) return;
+    throw FileError(text, "reaches " + number(reach) + " m from its origin, needs at most " + number(most) + " m; is it in other units than metres?");
+}
+
 }  // namespace
 
 Robot load_robot(const std::string& robot, const RobotOptions& options)
@@ -150,9 +162,12 @@ Robot load_robot(const std::string& robot, const RobotOptions& options)
     if (robot.starts_with("box:")) {
         if (!options.joints.empty())
             throw ArgumentError("load_robot", "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
-        return box_robot(robot);
+        Robot box = box_robot(robot);
+        check_reach(box, robot);
+        return box;
     }
     Robot out = read_robot(robot, options);
+    check_reach(out, robot);
     out.joints = options.joints;
     out.mesh_parts = options.mesh_parts;
     for (std::string& text : growth_notices(out)) out.notices.push_back(robot + ": " + std::move(text));

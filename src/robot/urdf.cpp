@@ -1,6 +1,8 @@
 #include "robot/urdf.h"
 
+#include "base/input_file.h"
 #include "base/number.h"
+#include "base/xml.h"
 #include "robot/body_parts.h"
 #include "robot/joints.h"
 
@@ -11,8 +13,6 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 namespace spawnfield {
 namespace {
@@ -93,15 +93,12 @@ public:
 
     UrdfModel read()
     {
-        std::ifstream stream(file_, std::ios::binary);
-        if (!stream || !std::filesystem::is_regular_file(file_))
-            throw FileError(file_.string(), "does not exist; is the path right?");
-        std::stringstream text;
-        text << stream.rdbuf();
-        if (text.str().find("<xacro:") != std::string::npos)
+        const std::string text = read_file(file_);
+        if (text.find("<xacro:") != std::string::npos)
             throw FileError(file_.string(), "holds xacro macros; expand them first: xacro " + file_.filename().string() + " > robot.urdf");
+        check_xml();
         UrdfdomErrors errors;
-        const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text.str());
+        const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
         // urdfdom goes on with a link that it could not read to its end, and that would make the robot smaller.
         if (!errors.first().empty()) throw FileError(file_.string(), "is no valid URDF: " + errors.first());
         if (!model || !model->getRoot()) throw FileError(file_.string(), "is no valid URDF");
@@ -109,24 +106,50 @@ public:
         std::vector<Joint> joints;
         for (const auto& entry : model->joints_) joints.push_back(joint_of(*entry.second));
         positions_ = joint_positions(file_.string(), joints, joints_, out_.notices);
-        add_link(*model->getRoot(), {});
+        add_links(*model->getRoot());
         if (out_.bodies.empty()) throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
         return std::move(out_);
     }
 
 private:
-    void add_link(const urdf::Link& link, const Pose& robot_from_link)
+    /// Faults of which urdfdom tells no line, or nothing at all.
+    void check_xml() const
+    {
+        const auto document = read_xml(file_, "a <robot> element");
+        for_each_element(*document->RootElement(), [&](const Xml& element) {
+            const std::string name = element.Name();
+            const auto refuse = [&](const std::string& what) { throw FileError(file_.string(), line_of(element) + what); };
+            if (name == "origin" && element.Attribute("quat_xyzw") != nullptr && element.Attribute("rpy") == nullptr)
+                refuse("<origin quat_xyzw> is not read, and a part would stand unturned; write it as rpy");
+            if (name != "geometry" || element.Parent() == nullptr || std::string(element.Parent()->Value()) != "collision") return;
+            std::size_t shapes = 0;
+            for_each_child(element, nullptr, [&](const Xml&) { ++shapes; });
+            if (shapes > 1) refuse("<geometry> holds " + std::to_string(shapes) + " shapes, needs one; give each a <collision> of its own");
+        });
+    }
+
+    /// From the root on, each before those that hang on it. A chain may be longer than the call stack.
+    void add_links(const urdf::Link& root)
+    {
+        std::vector<std::pair<const urdf::Link*, Pose>> left{{&root, {}}};
+        while (!left.empty()) {
+            const auto [link, robot_from_link] = left.back();
+            left.pop_back();
+            add_collisions(*link, robot_from_link);
+            for (auto joint = link->child_joints.rbegin(); joint != link->child_joints.rend(); ++joint)
+                for (const auto& child : link->child_links)
+                    if (child->name == (*joint)->child_link_name)
+                        left.emplace_back(child.get(), robot_from_link * pose_of((*joint)->parent_to_joint_origin_transform) * motion_of(*link, **joint));
+        }
+    }
+
+    void add_collisions(const urdf::Link& link, const Pose& robot_from_link)
     {
         for (const auto& collision : link.collision_array) {
             if (!collision || !collision->geometry) fail(link, "has a <collision> without geometry");
             require_positive(link, *collision->geometry);
             out_.bodies.push_back({{out_.name, link.name, collision->name}, robot_from_link * pose_of(collision->origin),
                                    geometry_of(*collision->geometry, file_.parent_path())});
-        }
-        for (const auto& joint : link.child_joints) {
-            for (const auto& child : link.child_links)
-                if (child->name == joint->child_link_name)
-                    add_link(*child, robot_from_link * pose_of(joint->parent_to_joint_origin_transform) * motion_of(link, *joint));
         }
     }
 

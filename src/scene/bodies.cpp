@@ -167,13 +167,17 @@ private:
         try {
             if (geometry.kind == Kind::Heightmap) {
                 const Pose middle = body.pose * Pose{geometry.position, Mat3::Identity()};
-                if (label != Label::Ignore) append_heightmap(scene_, part, gazebo_heights(files_.at(&body), geometry), middle, true);
+                if (label == Label::Ignore) return;
+                const Heightmap found = gazebo_heights(files_.at(&body), geometry);
+                append_heightmap(scene_, part, found, middle, true);
+                for (const std::string& text : found.notices) scene_.notices.push_back(files_.at(&body).string() + ": " + text);
             } else if (geometry.kind == Kind::Polyline) {
                 append_mesh_body(body, part, extruded(geometry.outlines, geometry.size[0]), Vec3::Ones());
             } else if (geometry.kind == Kind::Ellipsoid) {
                 append_ellipsoid(body, part);
             } else {
                 const auto mesh = meshes_.read(files_.at(&body));
+                if (!has_submesh(*mesh, geometry)) return leave_out_part(body, "<submesh> \"" + geometry.submesh + "\" is no node of " + files_.at(&body).string());
                 if (geometry.submesh.empty()) append_mesh_body(body, part, *mesh, geometry.size);
                 else append_mesh_body(body, part, submesh_of(*mesh, geometry, files_.at(&body).string()), geometry.size);
             }
@@ -182,6 +186,13 @@ private:
         } catch (const FileError& error) {
             throw FileError(file_.string(), "\"" + scoped_name(body) + "\": " + error.what());
         }
+    }
+
+    /// The part that was added last.
+    void leave_out_part(const CollisionBody& body, const std::string& why)
+    {
+        scene_.parts.pop_back();
+        missing_.push_back(file_.string() + ": \"" + scoped_name(body) + "\": " + why + ": it is left out");
     }
 
     void append_mesh_body(const CollisionBody& body, std::uint32_t part, const FileMesh& mesh, const Vec3& scale)

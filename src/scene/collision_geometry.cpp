@@ -2,6 +2,8 @@
 
 #include <spawnfield/error.h>
 
+#include <algorithm>
+
 namespace spawnfield {
 
 using Kind = CollisionGeometry::Kind;
@@ -27,11 +29,18 @@ std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pos
     }
 }
 
+bool has_submesh(const FileMesh& mesh, const CollisionGeometry& geometry)
+{
+    return geometry.submesh.empty() ||
+           std::any_of(mesh.nodes.begin(), mesh.nodes.end(), [&](const FileMesh::Node& node) { return node.name == geometry.submesh; });
+}
+
 FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, const std::string& file)
 {
     if (geometry.submesh.empty()) return mesh;
     FileMesh out;
     out.materials = mesh.materials;
+    out.notices = mesh.notices;
     std::string names;
     for (const FileMesh::Node& node : mesh.nodes) {
         if (node.name == geometry.submesh) out.nodes.push_back(node);

@@ -38,6 +38,9 @@ std::string scoped_name(const CollisionBody& body);
 /// Of a box, sphere, cylinder or capsule, and of an ellipsoid that is a sphere.
 std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pose);
 
+/// Whether the mesh has the node that the geometry names, or the geometry names none.
+bool has_submesh(const FileMesh& mesh, const CollisionGeometry& geometry);
+
 /// What of its file a mesh geometry means: all, or the nodes of its submesh, with the middle of their box moved to the origin if
 /// it is to be centred. Throws FileError.
 FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, const std::string& file);

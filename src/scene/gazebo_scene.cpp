@@ -37,8 +37,13 @@ Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
     scene.notices = std::move(world.notices);
     append_bodies(scene, file, std::move(world.bodies), paths, options, std::move(world.missing));
     tell_some(file, world.bare_models, world.bare_models.size() == 1 ? "model has no collision and is not there for a robot" : "models have no collision and are not there for a robot", scene);
-    if (world.actor_count > 0) scene.notices.push_back(file.string() + ": <actor>: " + std::to_string(world.actor_count) + " left out, as they move");
-    if (world.road_count > 0) scene.notices.push_back(file.string() + ": <road>: " + std::to_string(world.road_count) + " left out, as they are only seen");
+    const auto tell_count = [&](const char* element, std::size_t count, const char* what) {
+        if (count > 0) scene.notices.push_back(file.string() + ": <" + element + ">: " + std::to_string(count) + what);
+    };
+    tell_count("collision", world.hollow, " without a shape left out");
+    tell_count("collision", world.untouchable, " left out, as by <collide_bitmask> or <collide_without_contact> nothing touches them");
+    tell_count("actor", world.actor_count, " left out, as they move");
+    tell_count("road", world.road_count, " left out, as they are only seen");
     tell_guessed(file, paths, scene);
     return scene;
 }

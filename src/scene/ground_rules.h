@@ -8,7 +8,8 @@ namespace spawnfield {
 bool matches_body(const std::string& glob, const CollisionBody& body);
 
 /// By which the collisions of an SDF or URDF world are labelled where the user says nothing: planes, heightmaps and what is
-/// named as ground are terrain, all else is an obstacle. Counts what each rule decides.
+/// named as ground are terrain, but for names such as street_light and floor_lamp; all else is an obstacle. Counts what each
+/// rule decides.
 class GroundRules {
 public:
     GroundRules();
@@ -21,8 +22,6 @@ public:
     std::vector<NameRule> take() { return std::move(rules_); }
 
 private:
-    bool holds(std::size_t rule, const CollisionBody& body) const;
-
     std::vector<NameRule> rules_;
 };
 

@@ -1,5 +1,6 @@
 #include "scene/height_file.h"
 
+#include "base/coordinate_system.h"
 #include "base/geotiff.h"
 #include "base/input_file.h"
 #include "base/number.h"
@@ -42,6 +43,13 @@ void refuse_likely_degrees(const HeightFile& found, const std::string& file)
                               " IN OUT.tif), or tell its spacing in metres with the key cell");
 }
 
+/// As a viewer shows it: what is white in it is high.
+void turn_round(HeightFile& found)
+{
+    found.is_turned = true;
+    for (double& pixel : found.image.pixels) pixel = found.image.largest - pixel;
+}
+
 HeightFile read_geotiff(const std::filesystem::path& file, bool wants_frame, std::vector<std::string>& notices)
 {
     HeightFile out;
@@ -49,6 +57,7 @@ HeightFile read_geotiff(const std::filesystem::path& file, bool wants_frame, std
     const GeoTags tags = read_geo_tags(file);
     out.no_data = no_data_value(tags, file.string());
     out.height_unit = height_unit(tags, file.string(), notices);
+    if (out.image.zero_is_white && !is_georeferenced(tags)) turn_round(out);
     if (tags.has_mask) notices.push_back(file.string() + ": has a mask, which is not looked at; gdal_translate -a_nodata makes it a no-data value");
     if (!wants_frame || !is_georeferenced(tags)) return out;
     out.frame = geo_frame(tags, file.string(), notices);
@@ -56,15 +65,46 @@ HeightFile read_geotiff(const std::filesystem::path& file, bool wants_frame, std
     return out;
 }
 
-HeightFile read_ascii_grid(const std::filesystem::path& file, bool wants_frame)
+/// What a .prj beside the file tells; nothing if there is none.
+std::optional<CoordinateSystem> system_beside(const std::filesystem::path& file, std::vector<std::string>& notices)
+{
+    constexpr std::uintmax_t most = 65536;  // bytes; a .prj has one or two thousand
+    for (const char* extension : {".prj", ".PRJ"}) {
+        const std::filesystem::path prj = std::filesystem::path(file).replace_extension(extension);
+        if (!std::filesystem::is_regular_file(prj)) continue;
+        std::optional<CoordinateSystem> found;
+        if (std::filesystem::file_size(prj) <= most) found = coordinate_system(read_file(prj));
+        if (!found) notices.push_back(prj.string() + ": is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres");
+        return found;
+    }
+    return std::nullopt;
+}
+
+void use_system(HeightFile& found, const CoordinateSystem& system, bool wants_frame, const std::string& file, std::vector<std::string>& notices)
+{
+    using Place = CoordinateSystem::Place;
+    if (system.height_unit) {
+        found.height_unit = *system.height_unit;
+        tell_height_unit(file, found.height_unit, system.name, notices);
+    }
+    if (!wants_frame) return;
+    if (system.place == Place::Degrees || system.place == Place::Globe) refuse_globe(file, system.place == Place::Globe, system.name);
+    found.frame->is_projected = system.place == Place::Plane;
+    found.frame->unit = system.unit;
+    found.frame->crs = system.name;
+    tell_unit(file, "x and y", system.unit, notices);
+}
+
+HeightFile read_ascii_grid(const std::filesystem::path& file, bool wants_frame, std::vector<std::string>& notices)
 {
     AsciiGrid grid = parse_ascii_grid(read_file(file), file.string(), max_heights);
     HeightFile out;
     out.image = std::move(grid.image);
     out.no_data = grid.no_data;
     out.frame = grid.frame;
-    if (wants_frame) refuse_likely_degrees(out, file.string());
-    else out.frame.reset();
+    if (const auto system = system_beside(file, notices)) use_system(out, *system, wants_frame, file.string(), notices);
+    if (wants_frame && !out.frame->is_projected) refuse_likely_degrees(out, file.string());
+    if (!wants_frame) out.frame.reset();
     return out;
 }
 
@@ -103,7 +143,7 @@ HeightFile read_raw(const std::filesystem::path& file, const RawLayout& raw)
     case RawLayout::Type::Uint8: out.image.largest = 255; out.image.pixels = pixels_of<std::uint8_t>(bytes); break;
     case RawLayout::Type::Uint16: out.image.largest = 65535; out.image.pixels = pixels_of<std::uint16_t>(bytes); break;
     case RawLayout::Type::Int16: out.image.pixels = pixels_of<std::int16_t>(bytes); break;
-    case RawLayout::Type::Float32: out.image.pixels = pixels_of<float>(bytes); break;
+    case RawLayout::Type::Float32: out.image.is_float32 = true; out.image.pixels = pixels_of<float>(bytes); break;
     case RawLayout::Type::Float64: out.image.pixels = pixels_of<double>(bytes); break;
     }
     return out;
@@ -118,7 +158,7 @@ HeightFile read_height_file(const std::filesystem::path& file, const std::option
     if (raw) return read_raw(file, *raw);
     const std::string start = start_of(file);
     if (is_tiff(start)) return read_geotiff(file, wants_frame, notices);
-    if (is_ascii_grid(start)) return read_ascii_grid(file, wants_frame);
+    if (is_ascii_grid(start)) return read_ascii_grid(file, wants_frame, notices);
     if (is_png(start)) return {read_grey_png(file, max_heights), {}, {}, 1};
     if (file.extension() == ".asc") parse_ascii_grid(start, file.string(), max_heights);  // says what is wrong with its header
     throw FileError(file.string(), "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout told with the key raw");

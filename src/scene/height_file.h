@@ -21,7 +21,8 @@ struct HeightFile {
     GreyImage image;
     std::optional<GeoFrame> frame;  ///< where the file tells it, and it was asked for
     std::optional<double> no_data;  ///< pixels of this value have no height; NaN ones never have
-    double height_unit = 1;         ///< m
+    bool is_turned = false;         ///< the file stores largest - pixel; no_data is as it stores it
+    double height_unit = 1;         ///< m; < 0: the pixels are depths
 };
 
 /// A bake takes about bake_bytes of memory for each height, so that more than max_heights fit into nobody's; from many_heights on it is told.

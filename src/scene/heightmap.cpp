@@ -52,6 +52,15 @@ void check_complete(const HeightFile& found, const HeightmapOptions& options, co
     if (options.origin && !has_place) throw FileError(file, key(options, "origin", "[X, Y]") + " is for a file that tells where it lies, without size and cell");
 }
 
+/// Whether a pixel, as it is stored, is the no-data value.
+bool is_none(double pixel, double none, bool is_float32)
+{
+    if (pixel == none) return true;
+    // Beyond a float's range the value was stored as infinite.
+    if (std::isinf(pixel)) return is_float32 && std::abs(none) > double(std::numeric_limits<float>::max()) && std::signbit(pixel) == std::signbit(none);
+    return float(pixel) == float(none);  // its text may have fewer digits than the pixels
+}
+
 /// NaN where there is no height, metres elsewhere.
 std::vector<double> metres(HeightFile& found, const HeightmapOptions& options)
 {
@@ -59,8 +68,7 @@ std::vector<double> metres(HeightFile& found, const HeightmapOptions& options)
     const std::optional<double> none = options.no_data ? options.no_data : found.no_data;
     const double largest = found.image.largest;
     for (double& z : heights) {
-        // Of floats the text of the value may have fewer digits than the pixels.
-        if (none && (z == *none || (std::isfinite(z) && float(z) == float(*none)))) z = std::numeric_limits<double>::quiet_NaN();
+        if (none && is_none(found.is_turned ? largest - z : z, *none, found.image.is_float32)) z = std::numeric_limits<double>::quiet_NaN();
         else z = options.z ? (*options.z)[0] + z / largest * ((*options.z)[1] - (*options.z)[0]) : z * found.height_unit;
     }
     return heights;
@@ -74,17 +82,28 @@ void check_heights(const Heightmap& map, const std::string& file)
                                       " is infinite, needs a finite height or NaN (no ground)");
 }
 
+/// A value of the file, the lowest, that is likely meant as no data; nothing if there is none. `unit` is that of the heights, < 0 of depths.
+std::optional<double> likely_no_data(const std::vector<double>& heights, double unit)
+{
+    std::optional<double> lowest;  // but for its unit
+    for (const double z : heights)
+        if (!std::isnan(z) && (!lowest || (unit < 0 ? z > *lowest : z < *lowest))) lowest = z;
+    for (const double usual : {-9999.0, -32768.0, -32767.0})
+        if (lowest == usual * unit) return usual;
+    return lowest && *lowest / unit < -1e30 ? std::optional(*lowest / unit) : std::nullopt;
+}
+
 /// Tells of holes, and of what may have been meant as one.
-void tell_holes(Heightmap& map, const HeightmapOptions& options, const std::string& file)
+void tell_holes(Heightmap& map, double unit, const HeightmapOptions& options, const std::string& file)
 {
     const std::size_t all = map.heights.size();
     const auto holes = std::size_t(std::count_if(map.heights.begin(), map.heights.end(), [](double z) { return std::isnan(z); }));
     if (holes == all) throw FileError(file, "has no heights: every pixel is NaN or no-data");
     if (holes > 0) map.notices.push_back(file + ": " + std::to_string(holes) + " of " + std::to_string(all) + " heights are missing (no-data); there is no terrain");
     if (options.z) return;
-    const double lowest = *std::min_element(map.heights.begin(), map.heights.end(), [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
-    if (lowest == -9999 || lowest == -32768 || lowest == -32767 || lowest < -1e30)
-        map.notices.push_back(file + ": the lowest height is " + number(lowest) + " m, which often means no data; if so: " + key(options, "nodata", number(lowest)));
+    if (const auto lowest = likely_no_data(map.heights, unit))
+        map.notices.push_back(file + ": the lowest " + (unit == 1 ? "height is " + number(*lowest) + " m" : "value is " + number(*lowest)) +
+                              ", which often means no data; if so: " + key(options, "nodata", number(*lowest)));
 }
 
 std::string place_words(const GeoOrigin& origin)
@@ -154,7 +173,7 @@ Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptio
     else use_frame(map, *found.frame, options);
     map.heights = metres(found, options);
     check_heights(map, file.string());
-    tell_holes(map, options, file.string());
+    tell_holes(map, found.height_unit, options, file.string());
     return map;
 }
 
@@ -167,12 +186,12 @@ void place_scene(Scene& scene, const Heightmap& map, const Pose& pose, const std
     origin.y -= pose.position.y() / origin.unit;
     if (!scene.origin) {
         scene.origin = origin;
-        scene.notices.push_back(file + ": " + place_words(origin) + " is at 0, 0 of the scene; heights are kept");
+        scene.notices.push_back(file + ": " + place_words(origin) + " is at 0, 0 of the scene; z is not shifted");
         return;
     }
-    constexpr double tolerance = 1e-3;  // m
+    constexpr double tolerance = 1e-3, digits = 1e-12;  // m; relative, as one unit is written with more or fewer digits
     const double apart = std::hypot(origin.x - scene.origin->x, origin.y - scene.origin->y) * origin.unit;
-    if (apart > tolerance || origin.unit != scene.origin->unit || origin.crs != scene.origin->crs)
+    if (apart > tolerance || std::abs(origin.unit - scene.origin->unit) > digits * origin.unit || origin.crs != scene.origin->crs)
         scene.notices.push_back(file + ": " + place_words(origin) + " is at 0, 0 of the scene, but an earlier part has " + place_words(*scene.origin) +
                                 " there: they do not lie to each other as in their files (the key origin, the same for all, does that)");
 }

@@ -105,6 +105,8 @@ MeshNames append_mesh(Scene& scene, std::uint32_t part, const FileMesh& mesh, co
             appender.add_piece(faces[piece], labels, pieces.open_edges[piece]);
         names.nodes.push_back(node.name);
     }
+    for (const std::string& notice : mesh.notices)
+        if (std::find(scene.notices.begin(), scene.notices.end(), notice) == scene.notices.end()) scene.notices.push_back(notice);
     return names;
 }
 

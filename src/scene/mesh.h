@@ -38,10 +38,11 @@ struct FileMesh {
     std::vector<Node> nodes;
     std::vector<std::string> materials;
     char up = 'z';  ///< what the format says
+    std::vector<std::string> notices;  ///< of what the file holds and is not read; begin with the file
 };
 
-/// Any format assimp reads. Throws FileError for a file that is missing, malformed, without triangles, or that has
-/// coordinates which are no finite numbers.
+/// Any format assimp reads. Throws FileError for a file that is missing, malformed, without triangles, that has coordinates which are no
+/// finite numbers, or a glTF of which assimp would read less or other geometry than it has (scene/gltf_file.h).
 FileMesh read_mesh(const std::filesystem::path& file);
 
 /// Reads each file once for all parts that name it, and keeps it only until the last of them has it.
@@ -70,7 +71,7 @@ struct MeshNames {
     std::vector<std::string> nodes, materials;
 };
 
-/// Appends the mesh's faces to the scene as pieces of `part`.
+/// Appends the mesh's faces to the scene as pieces of `part`, and its notices that the scene has not yet.
 MeshNames append_mesh(Scene& scene, std::uint32_t part, const FileMesh& mesh, const MeshOptions& options);
 
 /// A horizontal rectangle of the given side lengths around the pose's origin.

@@ -1,11 +1,17 @@
+#include "base/input_file.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "scene/gltf_file.h"
 #include "scene/mesh.h"
 #include "scene/mesh_checks.h"
+#include "scene/obj_text.h"
+#include "scene/printing_units.h"
 
 #include <spawnfield/error.h>
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/metadata.h>
 #include <assimp/postprocess.h>
@@ -41,6 +47,22 @@ Mat4 matrix_of(const aiMatrix4x4& m)
     return out;
 }
 
+/// The disk, but for one file, which has this text. The text must outlive it.
+class RespeltFile : public Assimp::DefaultIOSystem {
+public:
+    RespeltFile(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
+
+    Assimp::IOStream* Open(const char* file, const char* mode) override
+    {
+        if (file != file_) return DefaultIOSystem::Open(file, mode);
+        return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
+    }
+
+private:
+    const std::string file_;
+    const std::string& text_;
+};
+
 /// The text of COLLADA's <up_axis>; "Y_UP" where the file has none (COLLADA 1.4.1 specification, asset).
 std::string collada_up_axis(const std::filesystem::path& file)
 {
@@ -56,6 +78,13 @@ std::string collada_up_axis(const std::filesystem::path& file)
     return axis;
 }
 
+Mat4 scaled(double factor)
+{
+    Mat4 out = Mat4::Identity();
+    out.topLeftCorner<3, 3>() *= factor;
+    return out;
+}
+
 /// FBX tells its unit (cm for each, 1 where it tells none) and its up axis as metadata, which assimp 5.2 hands over as they are.
 /// Source: Autodesk, FBX SDK, FbxSystemUnit and FbxAxisSystem.
 Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
@@ -67,9 +96,21 @@ Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
         scene.mMetaData->Get("UpAxis", up);
     }
     mesh.up = up == 0 ? 'x' : up == 2 ? 'z' : 'y';
-    Mat4 metres = Mat4::Identity();
-    metres.topLeftCorner<3, 3>() *= double(centimetres) / 100;
-    return metres;
+    return scaled(double(centimetres) / 100);
+}
+
+/// 3DS, ASE and DXF are z up, and assimp 5.2 turns them to y up: (x, y, z) to (x, z, -y).
+bool is_turned_by_assimp(const std::string& extension)
+{
+    return extension == ".3ds" || extension == ".prj" || extension == ".ase" || extension == ".ask" || extension == ".dxf";
+}
+
+/// Turns it back, to the file's own axes.
+Mat4 turned_back()
+{
+    Mat4 out;
+    out << 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1;
+    return out;
 }
 
 /// Faces of one node with its vertices welded: equal coordinates, as the file gives them, are one vertex.
@@ -80,13 +121,14 @@ public:
     {
     }
 
-    void add(const aiMesh& mesh)
+    /// The mesh's faces with these vertices of it.
+    void add(const aiMesh& mesh, const aiVector3D* vertices)
     {
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
             const aiFace& face = mesh.mFaces[f];
             if (face.mNumIndices != 3) continue;
             Triangle triangle{};
-            for (int corner = 0; corner < 3; ++corner) triangle[corner] = vertex(mesh.mVertices[face.mIndices[corner]]);
+            for (int corner = 0; corner < 3; ++corner) triangle[corner] = vertex(vertices[face.mIndices[corner]]);
             if (mirrored_) std::swap(triangle[1], triangle[2]);
             if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
             node_.triangles.push_back(triangle);
@@ -116,17 +158,54 @@ private:
     std::unordered_map<std::array<float, 3>, std::uint32_t, PointHash> index_;
 };
 
-void collect(const aiScene& scene, const aiNode& node, const Mat4& parent, const std::string& file, FileMesh& out)
+/// The vertices where the default weights of the morph targets put them; none if there are no such weights.
+/// Source: glTF 2.0, 3.7.2.2: position = base + sum of weight (target - base).
+std::vector<aiVector3D> morphed(const aiMesh& mesh)
 {
-    const Mat4 transform = parent * matrix_of(node.mTransformation);
-    if (node.mNumMeshes > 0) {
-        FileMesh::Node collected;
-        collected.name = node.mName.C_Str();
-        NodeWelder welder(collected, transform, file);
-        for (unsigned m = 0; m < node.mNumMeshes; ++m) welder.add(*scene.mMeshes[node.mMeshes[m]]);
-        if (!collected.triangles.empty()) out.nodes.push_back(std::move(collected));
+    std::vector<aiVector3D> out;
+    for (unsigned k = 0; k < mesh.mNumAnimMeshes; ++k) {
+        const aiAnimMesh& target = *mesh.mAnimMeshes[k];
+        if (target.mWeight == 0 || target.mVertices == nullptr || target.mNumVertices != mesh.mNumVertices) continue;
+        if (out.empty()) out.assign(mesh.mVertices, mesh.mVertices + mesh.mNumVertices);
+        for (unsigned v = 0; v < mesh.mNumVertices; ++v) out[v] += target.mWeight * (target.mVertices[v] - mesh.mVertices[v]);
     }
-    for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], transform, file, out);
+    return out;
+}
+
+/// Collects the nodes that have faces, with the transforms of those above them.
+struct Collector {
+    const aiScene& scene;
+    std::string file;
+    bool morphs = false;  ///< by their meshes' default weights
+    const ObjText& obj;   ///< has the names of nodes, where the file is an OBJ
+
+    void visit(const aiNode& node, const Mat4& parent, FileMesh& out) const
+    {
+        const Mat4 transform = parent * matrix_of(node.mTransformation);
+        if (node.mNumMeshes > 0) {
+            FileMesh::Node collected;
+            collected.name = obj_name(obj, node.mName.C_Str());
+            NodeWelder welder(collected, transform, file);
+            for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+                const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
+                const std::vector<aiVector3D> moved = morphs ? morphed(mesh) : std::vector<aiVector3D>{};
+                welder.add(mesh, moved.empty() ? mesh.mVertices : moved.data());
+            }
+            if (!collected.triangles.empty()) out.nodes.push_back(std::move(collected));
+        }
+        for (unsigned c = 0; c < node.mNumChildren; ++c) visit(*node.mChildren[c], transform, out);
+    }
+};
+
+/// assimp leaves out faces of vertices that are not there, without a word.
+void check_triangles(const aiScene& scene, std::size_t expected, const std::string& file)
+{
+    std::size_t found = 0;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+        if (scene.mMeshes[m]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) found += scene.mMeshes[m]->mNumFaces;
+    if (found < expected)
+        throw FileError(file, std::to_string(expected - found) + " of its " + std::to_string(expected) +
+                                  " triangles have a vertex index beyond their vertices; the file is damaged: export it anew");
 }
 
 }  // namespace
@@ -135,12 +214,16 @@ FileMesh read_mesh(const std::filesystem::path& file)
 {
     if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
     const std::string extension = lower_case(file.extension().string());
+    const ObjText obj = extension == ".obj" ? readable_obj(read_file(file)) : ObjText{};
     Assimp::Importer importer;
+    check_mesh_file(file, importer);
+    const bool is_gltf = extension == ".gltf" || extension == ".glb";
+    GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};
+    if (extension == ".obj") importer.SetIOHandler(new RespeltFile(file.string(), obj.text));  // which the importer owns
     // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    check_mesh_file(file, importer);
     const aiScene* scene = importer.ReadFile(file.string(), 0);
     if (scene != nullptr) {
         check_mesh_scene(*scene, file.string());
@@ -151,14 +234,21 @@ FileMesh read_mesh(const std::filesystem::path& file)
 
     FileMesh mesh;
     for (unsigned m = 0; m < scene->mNumMaterials; ++m) mesh.materials.push_back(scene->mMaterials[m]->GetName().C_Str());
-    if (extension == ".gltf" || extension == ".glb") mesh.up = 'y';
+    if (is_gltf) {
+        check_triangles(*scene, gltf.triangles, file.string());
+        mesh.up = 'y';
+        mesh.notices = std::move(gltf.notices);
+    }
     if (extension == ".dae") {
         const std::string up = collada_up_axis(file);
         mesh.up = up == "Z_UP" ? 'z' : up == "X_UP" ? 'x' : 'y';
     }
-    if (extension == ".3ds") mesh.up = 'y';  // z up in the file; assimp turns it
-    const Mat4 metres = extension == ".fbx" ? take_fbx_frame(*scene, mesh) : Mat4::Identity();
-    collect(*scene, *scene->mRootNode, metres, file.string(), mesh);
+    const Mat4 metres = extension == ".fbx"              ? take_fbx_frame(*scene, mesh)
+                        : is_turned_by_assimp(extension) ? turned_back()
+                        : extension == ".3mf"            ? scaled(metres_per_unit_of_3mf(file))
+                        : extension == ".amf"            ? scaled(metres_per_unit_of_amf(file))
+                                                         : Mat4(Mat4::Identity());
+    Collector{*scene, file.string(), is_gltf, obj}.visit(*scene->mRootNode, metres, mesh);
     if (mesh.nodes.empty()) throw FileError(file.string(), "has no triangles, needs at least one");
     return mesh;
 }

@@ -2,10 +2,9 @@
 
 #include "base/number.h"
 #include "base/text.h"
+#include "base/xml.h"
 
 #include <spawnfield/error.h>
-
-#include <tinyxml2.h>
 
 #include <cstdlib>
 
@@ -98,19 +97,16 @@ fs::path sdf_file_of(const fs::path& folder)
 {
     const fs::path config = folder / "model.config";
     if (fs::is_regular_file(config)) {
-        tinyxml2::XMLDocument document;
-        if (document.LoadFile(config.c_str()) != tinyxml2::XML_SUCCESS)
-            throw FileError(config.string(), "line " + std::to_string(document.ErrorLineNum()) + ": is no valid XML");
+        const auto document = read_xml(config, "a <model> element");
         std::string name;
         double highest = -1;
-        const tinyxml2::XMLElement* const model = document.RootElement();
-        for (const auto* sdf = model->FirstChildElement("sdf"); sdf != nullptr; sdf = sdf->NextSiblingElement("sdf")) {
-            const double version = sdf->DoubleAttribute("version", 0);
+        for_each_child(*document->RootElement(), "sdf", [&](const Xml& sdf) {
+            const double version = sdf.DoubleAttribute("version", 0);
             // Files of versions for old simulators are often listed without being there.
-            if (sdf->GetText() == nullptr || version <= highest || !fs::is_regular_file(folder / sdf->GetText())) continue;
+            if (sdf.GetText() == nullptr || version <= highest || !fs::is_regular_file(folder / sdf.GetText())) return;
             highest = version;
-            name = sdf->GetText();
-        }
+            name = sdf.GetText();
+        });
         if (!name.empty()) return folder / name;
     }
     std::vector<fs::path> files;

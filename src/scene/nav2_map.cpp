@@ -123,15 +123,19 @@ void tell_unknown_keys(const YamlMap& map, std::vector<std::string>& notices)
         if (std::find(known.begin(), known.end(), key) == known.end()) notices.push_back(map.file() + ": the key " + key + " is not looked at");
 }
 
-/// Map savers write 205 for what is unknown; with free_thresh 0.25, as nav2's writes it too, it reads as free.
+/// Map savers write 205 for what is unknown; with free_thresh 0.25, as nav2's writes it too, it reads as free. So it does where alpha counts.
 void tell_grey(const Pixels& pixels, const Reading& reading, Nav2Map& map, const std::string& file)
 {
     if (reading.mode != "trinary" || pixels.largest != 255) return;
+    constexpr double unknown = 205;
     std::size_t grey = 0;
-    for (std::size_t i = 0; i < map.cells.size(); ++i) grey += pixels.mean[i] == 205 && map.cells[i] == Nav2Map::Cell::Free;
-    if (grey > 0)
-        map.notices.push_back(file + ": " + std::to_string(grey) + " pixels of 205, which map savers write for unknown, are free by free_thresh " +
-                              number(reading.free_thresh) + " (below 0.196 they are unknown)");
+    for (std::size_t i = 0; i < map.cells.size(); ++i) grey += pixels.mean[i] == unknown && map.cells[i] == Nav2Map::Cell::Free;
+    if (grey == 0) return;
+    const double occupancy = (reading.negate ? unknown : pixels.largest - unknown) / pixels.largest;
+    const bool by_threshold = cell_of(occupancy, reading) == Nav2Map::Cell::Free;
+    map.notices.push_back(file + ": " + std::to_string(grey) + " pixels of 205, which map savers write for unknown, are free" +
+                          (by_threshold ? " by free_thresh " + number(reading.free_thresh) + " (below 0.196 they are unknown)"
+                                        : ", as mode trinary counts alpha as a fourth colour (as nav2 does; without the alpha channel they are not)"));
 }
 
 }  // namespace

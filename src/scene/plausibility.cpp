@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 
 namespace spawnfield {
@@ -12,15 +13,24 @@ namespace {
 
 std::string metres(double value) { return value < 10 ? number(std::round(value * 1000) / 1000) : std::to_string(std::llround(value)); }
 
-/// Area of all faces as seen along x, y and z, m2.
-Vec3 seen_areas(const Scene& scene)
+struct Look {
+    Vec3 areas = Vec3::Zero();  ///< of all faces as seen along x, y and z, m2
+    double wall = 0;            ///< height of the highest upright face of a mesh, m
+};
+
+Look look_at(const Scene& scene)
 {
-    Vec3 sum = Vec3::Zero();
+    constexpr double upright = 0.01;  // sine of its slope against the vertical: half a degree, so no hillside
+    Look look;
     for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
         const auto [a, b, c] = corners_of(scene, t);
-        sum += (b - a).cross(c - a).cwiseAbs() / 2;
+        const Vec3 normal = (b - a).cross(c - a);
+        look.areas += normal.cwiseAbs() / 2;
+        const double height = std::max({a.z(), b.z(), c.z()}) - std::min({a.z(), b.z(), c.z()});
+        if (height <= look.wall || !(std::abs(normal.z()) < upright * normal.norm())) continue;
+        if (scene.parts[scene.pieces[scene.triangle_pieces[t]].part].kind == "mesh") look.wall = height;
     }
-    return sum;
+    return look;
 }
 
 }  // namespace
@@ -28,6 +38,7 @@ Vec3 seen_areas(const Scene& scene)
 std::vector<std::string> doubts_about(const Scene& scene, const std::string& file, const Remedies& remedies)
 {
     constexpr double large = 20000, small = 0.5;  // m across: no simulated world is larger, no robot's world smaller
+    constexpr double high = 1000;                 // m: nobody builds a wall as high, but 1 m in millimetres is
     std::vector<std::string> out;
     const Bounds bounds = scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds;
     const Vec3 size = bounds.max - bounds.min;
@@ -38,7 +49,11 @@ std::vector<std::string> doubts_about(const Scene& scene, const std::string& fil
                       (is_large ? "large: is it in millimetres? " : "small: is it in other units than metres? ") + remedies.scale +
                       (is_large ? " 0.001 makes it metres" : " 1000 makes it a thousand times larger"));
     }
-    const Vec3 seen = seen_areas(scene);
+    const Look look = look_at(scene);
+    if (across <= large && look.wall >= high)
+        out.push_back(file + ": is " + metres(size.x()) + " x " + metres(size.y()) + " x " + metres(size.z()) + " m and has a wall of " + metres(look.wall) +
+                      " m height: is it in millimetres? " + remedies.scale + " 0.001 makes it metres");
+    const Vec3& seen = look.areas;
     const double sideways = seen.head<2>().maxCoeff(), other = seen.head<2>().minCoeff();
     // Towers show as much along x as along y; what lies on its side shows most along one of them.
     if (sideways > 2 * seen.z() && sideways > 2 * other)

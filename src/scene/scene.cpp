@@ -1,3 +1,4 @@
+#include "base/number.h"
 #include "base/text.h"
 #include "scene/bare_scene.h"
 #include "scene/elements.h"
@@ -44,35 +45,76 @@ LabelCounts Scene::count_labels() const
     return counts;
 }
 
-fs::path scene_file_of(const fs::path& scene) { return fs::is_directory(scene) ? sdf_file_of(scene) : scene; }
+namespace {
+
+/// Coordinates as far out as UTM's; doubles have 1e-9 m there, the touch tolerance needs 1e-6 m.
+constexpr double farthest = 1e7;  // m
+
+/// False for what is no number, too.
+bool is_near(const Bounds& box) { return (box.min.array().abs() <= farthest).all() && (box.max.array().abs() <= farthest).all(); }
+
+/// Why there is nothing, where the notices tell.
+std::string first_reasons(const Scene& scene)
+{
+    std::string out;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, scene.notices.size()); ++i) out += "; " + scene.notices[i];
+    return out;
+}
+
+void check_extent(const Scene& scene, const std::string& file)
+{
+    for (std::uint32_t e = 0; e < element_count(scene); ++e) {
+        const Bounds box = element_bounds(scene, e);
+        if (is_near(box)) continue;
+        throw FileError(file, "part \"" + scene.parts[element_part(scene, e)].name + "\" reaches from " + to_string(box, 3) + ", needs to lie within " + number(farthest) +
+                                  " m of 0, 0, 0; are its units, its place or its scale wrong?");
+    }
+}
+
+}  // namespace
+
+fs::path scene_file_of(const fs::path& scene)
+{
+    std::error_code unreachable;  // a circle of links, say
+    return fs::is_directory(scene, unreachable) ? sdf_file_of(scene) : scene;
+}
 
 Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
 {
     if (!(options.scale > 0) || !std::isfinite(options.scale))
         throw ArgumentError("load_scene", "scale", options.scale, "> 0 m per unit");
+    if (!options.bounds.is_empty() && !is_near(options.bounds))
+        throw ArgumentError("load_scene", "bounds are " + to_string(options.bounds, 3) + ", need to lie within " + number(farthest) + " m of 0, 0, 0");
     const fs::path file = scene_file_of(scene_path);
-    if (!fs::is_regular_file(file)) throw FileError(file.string(), fs::exists(file) ? "is no file" : "does not exist; is the path right?");
+    std::error_code unreachable;
+    const fs::file_status status = fs::status(file, unreachable);
+    if (status.type() == fs::file_type::not_found) throw FileError(file.string(), "does not exist; is the path right?");
+    if (!fs::is_regular_file(status)) throw FileError(file.string(), unreachable ? "cannot be reached: " + unreachable.message() : "is no file");
     const std::string extension = lower_case(file.extension().string());
-    if ((extension == ".yaml" || extension == ".yml") && is_nav2_map(file)) return read_nav2_scene(file, options);
-    if (options.wall_height != 0) throw ArgumentError("load_scene", "wall_height is for a 2D map; " + file.string() + " is none");
-    const bool yaml = extension == ".yaml" || extension == ".yml", sdf = extension == ".sdf" || extension == ".world", urdf = extension == ".urdf";
+    const bool is_yaml = extension == ".yaml" || extension == ".yml", nav2 = is_yaml && is_nav2_map(file), yaml = is_yaml && !nav2;
+    if (!nav2 && options.wall_height != 0) throw ArgumentError("load_scene", "wall_height is for a 2D map; " + file.string() + " is none");
+    const bool sdf = extension == ".sdf" || extension == ".world", urdf = extension == ".urdf";
     const bool gazebo = sdf || urdf;
     if ((yaml || gazebo) && (options.up != 0 || options.scale != 1.0))
         throw ArgumentError("load_scene", "up and scale are for a bare mesh; " +
                                               (gazebo ? "Gazebo takes a world as it is" : "give them in " + file.string() + " (keys up, scale)"));
     if ((yaml || gazebo) && !options.heightmap.empty())
         throw ArgumentError("load_scene", "--heightmap is for an elevation model by itself" + (yaml ? "; give the keys in " + file.string() + " (heightmap)" : std::string()));
-    Scene scene = yaml   ? read_scene_yaml(file, options)
+    Scene scene = nav2   ? read_nav2_scene(file, options)
+                  : yaml ? read_scene_yaml(file, options)
                   : sdf  ? read_sdf_scene(file, options)
                   : urdf ? read_urdf_scene(file, options)
                          : read_bare_scene(file, options);
+    const auto is_mesh_part = [](const Part& part) { return part.kind == "mesh"; };
     const auto is_octomap_part = [](const Part& part) { return part.kind == "octomap"; };
     if (options.unknown && std::none_of(scene.parts.begin(), scene.parts.end(), is_octomap_part))
         scene.notices.push_back(file.string() + ": has no OctoMap, so --unknown has no effect");
-    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored" + std::string(gazebo ? ", missing or without collision" : ""));
+    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored" + std::string(gazebo ? ", missing or without collision" : "") + first_reasons(scene));
+    check_extent(scene, file.string());
     const Remedies remedies = yaml     ? Remedies{"scale of its part:", "up of its part"}
                               : gazebo ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}
                                        : Remedies{"--scale", "--up y or z"};
+    if (std::none_of(scene.parts.begin(), scene.parts.end(), is_mesh_part)) return scene;  // nothing else is scaled or turned by the user
     for (std::string& doubt : doubts_about(scene, file.string(), remedies)) scene.notices.push_back(std::move(doubt));
     return scene;
 }

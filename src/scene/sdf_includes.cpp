@@ -1,11 +1,11 @@
 #include "scene/sdf_includes.h"
 
-#include "base/text.h"
+#include "base/number.h"
+#include "scene/sdf_numbers.h"
 
 #include <spawnfield/error.h>
 
 #include <algorithm>
-#include <set>
 
 namespace spawnfield {
 namespace {
@@ -16,8 +16,12 @@ class IncludeWalk {
 public:
     explicit IncludeWalk(ModelPaths& paths) : paths_(paths) {}
 
-    void visit(const fs::path& file, const tinyxml2::XMLDocument& document)
+    /// How many includes the file comes to, all that they include counted.
+    std::size_t visit(const fs::path& file, const tinyxml2::XMLDocument& document)
     {
+        constexpr std::size_t most = 100000;  // for which libsdformat takes hours
+        std::size_t count = 0;
+        check_numbers(file, *document.RootElement());
         stack_.push_back(fs::weakly_canonical(file));
         for_each_element(*document.RootElement(), [&](const Xml& include) {
             if (std::string(include.Name()) != "include") return;
@@ -36,10 +40,16 @@ public:
                 for (auto link = again; link != stack_.end(); ++link) chain += link->string() + " includes ";
                 throw FileError(place + "<include> <uri> " + uri, "leads back to itself: " + chain + canonical.string());
             }
-            if (!visited_.insert(canonical).second || found.extension() == ".urdf") return;
-            visit(found, *read_sdf_xml(found));
+            const auto known = counts_.find(canonical);
+            const std::size_t within = known != counts_.end()          ? known->second
+                                       : found.extension() == ".urdf" ? 0
+                                                                      : visit(found, *read_sdf_xml(found));
+            counts_[canonical] = within;
+            count += 1 + within;
+            if (count > most) throw FileError(place + "<include> <uri> " + uri, "is the one with which all includes come to more than " + std::to_string(most));
         });
         stack_.pop_back();
+        return count;
     }
 
     MissingIncludes take() { return std::move(missing_); }
@@ -47,7 +57,7 @@ public:
 private:
     ModelPaths& paths_;
     std::vector<fs::path> stack_;  ///< from the first file to this one
-    std::set<fs::path> visited_;
+    std::map<fs::path, std::size_t> counts_;
     MissingIncludes missing_;
 };
 
@@ -55,35 +65,18 @@ private:
 
 std::unique_ptr<tinyxml2::XMLDocument> read_sdf_xml(const fs::path& file)
 {
-    auto document = std::make_unique<tinyxml2::XMLDocument>();
-    const auto refuse = [&](int line, const std::string& what) {
-        throw FileError(file.string(), (line > 0 ? "line " + std::to_string(line) + ": " : "") + what);
-    };
-    const tinyxml2::XMLError error = document->LoadFile(file.c_str());
-    if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED || error == tinyxml2::XML_ERROR_FILE_READ_ERROR)
-        refuse(0, "cannot be read");
-    if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT || (error == tinyxml2::XML_SUCCESS && document->RootElement() == nullptr))
-        refuse(0, "is empty, needs an <sdf> element");
-    if (error != tinyxml2::XML_SUCCESS) {
-        std::string name = lower_case(document->ErrorName());
-        std::replace(name.begin(), name.end(), '_', ' ');
-        refuse(document->ErrorLineNum(), "is no valid XML (" + name + "): is a tag left open or misspelt?");
-    }
+    auto document = read_xml(file, "an <sdf> element");
     const Xml& root = *document->RootElement();
     const std::string name = root.Name();
-    if (name == "robot") refuse(root.GetLineNum(), "<robot> is URDF; give the file the ending .urdf");
-    if (name != "sdf" && name != "gazebo") refuse(root.GetLineNum(), "<" + name + "> stands where <sdf version=\"…\"> needs to");
-    if (root.Attribute("version") == nullptr) refuse(root.GetLineNum(), "<" + name + "> has no version, needs such as version=\"1.6\"");
+    const auto refuse = [&](const std::string& what) { throw FileError(file.string(), line_of(root) + what); };
+    if (name == "robot") refuse("<robot> is URDF; give the file the ending .urdf");
+    if (name != "sdf" && name != "gazebo") refuse("<" + name + "> stands where <sdf version=\"…\"> needs to");
+    const char* const version = root.Attribute("version");
+    if (version == nullptr) refuse("<" + name + "> has no version, needs such as version=\"1.6\"");
+    double value = 0;
+    if (!parse_number(version, value) || !(value >= 1 && value < 3)) refuse("<" + name + "> has version \"" + version + "\", needs such as version=\"1.6\"");
     return document;
 }
-
-std::string text_of(const Xml& parent, const char* name)
-{
-    const Xml* const child = parent.FirstChildElement(name);
-    return child != nullptr && child->GetText() != nullptr ? trimmed(child->GetText()) : "";
-}
-
-std::string line_of(const Xml& element) { return "line " + std::to_string(element.GetLineNum()) + ": "; }
 
 fs::path included_file(const std::string& uri, const fs::path& folder, ModelPaths& paths)
 {

@@ -13,6 +13,9 @@ struct SdfContent {
     std::vector<CollisionBody> bodies;
     std::vector<std::string> bare_models;  ///< models that have no collision
     std::size_t model_count = 0;           ///< of the outermost models
+    std::size_t hollow = 0;                ///< collisions without a shape; they are left out
+    std::size_t untouchable = 0;           ///< collisions that touch nothing: a <collide_bitmask> of 0, or <collide_without_contact>; they are left out
+    std::vector<std::string> lost;         ///< what libsdformat leaves out
     std::vector<std::string> complaints;   ///< of libsdformat about what does not matter here, or not enough to end
     /// Of a file that holds a model: the model's own pose; its bodies' poses are seen from the model then.
     Pose pose;

@@ -2,6 +2,7 @@
 
 #include "base/number.h"
 #include "scene/sdf_includes.h"
+#include "scene/sdf_text.h"
 
 #include <spawnfield/error.h>
 
@@ -63,16 +64,18 @@ public:
     {
         const auto document = read_sdf_xml(file_);
         missing_ = check_includes(file_, *document, paths_);
-        Xml* const world = document->RootElement()->FirstChildElement("world");
+        const Xml* const world = document->RootElement()->FirstChildElement("world");
         if (world == nullptr) {
             read_lone_model();
         } else {
             refuse_population(*world);
             tell_state(*world);
+            if (const Xml* const model = document->RootElement()->FirstChildElement("model"))
+                out_.missing.push_back(file_.string() + ": " + line_of(*model) + "<model> stands beside <world>: it is left out; it belongs into it");
             for_each_child(*world, "actor", [&](const Xml&) { ++out_.actor_count; });
             for_each_child(*world, "road", [&](const Xml&) { ++out_.road_count; });
             const std::vector<const Xml*> includes = plain_includes(*world);
-            append(read_sdf_file(file_, paths_, text_without(*document, *world, includes)));
+            append(read_sdf_file(file_, paths_, text_for_libsdformat(*document, *world, includes)));
             for (const Xml* const include : includes) append_include(*include);
         }
         for (const auto& [uri, place] : missing_)
@@ -109,28 +112,21 @@ private:
         const auto known = models_.find(file);
         if (known != models_.end()) return known->second;
         SdfContent& model = models_[file] = read_sdf_file(file, paths_);
-        out_.notices.insert(out_.notices.end(), model.complaints.begin(), model.complaints.end());
+        tell(model);
         return model;
     }
 
     /// The document's text without the includes, and without what has no say in where things stand.
-    std::string text_without(tinyxml2::XMLDocument& document, Xml& world, const std::vector<const Xml*>& includes) const
+    std::string text_for_libsdformat(const tinyxml2::XMLDocument& document, const Xml& world, const std::vector<const Xml*>& includes) const
     {
-        tinyxml2::XMLDocument rest;
-        document.DeepCopy(&rest);
-        Xml* const copy = rest.RootElement()->FirstChildElement("world");
-        std::vector<Xml*> gone;
-        Xml* twin = copy->FirstChildElement();
-        for (const Xml* child = world.FirstChildElement(); child != nullptr; child = child->NextSiblingElement(), twin = twin->NextSiblingElement()) {
-            const std::string name = child->Name();
+        std::set<const Xml*> gone(includes.begin(), includes.end());
+        for_each_child(world, nullptr, [&](const Xml& child) {
+            const std::string name = child.Name();
             const bool idle = name == "actor" || name == "road" || name == "state" || name == "gui" || name == "plugin" || name == "light";
-            const bool lost = name == "include" && missing_.contains(text_of(*child, "uri"));
-            if (idle || lost || std::find(includes.begin(), includes.end(), child) != includes.end()) gone.push_back(twin);
-        }
-        for (Xml* const element : gone) copy->DeleteChild(element);
-        tinyxml2::XMLPrinter printer;
-        rest.Print(&printer);
-        return printer.CStr();
+            const bool lost = name == "include" && missing_.contains(text_of(child, "uri"));
+            if (idle || lost) gone.insert(&child);
+        });
+        return text_without(document, gone);
     }
 
     void append_include(const Xml& include)
@@ -156,7 +152,8 @@ private:
             body.pose = world_from_model * body.pose;
             out_.bodies.push_back(std::move(body));
         }
-        if (line == 0) out_.notices.insert(out_.notices.end(), model.complaints.begin(), model.complaints.end());
+        count_left_out(model);
+        if (line == 0) tell(model);
     }
 
     void append(SdfContent content)
@@ -168,7 +165,20 @@ private:
             out_.bodies.push_back(std::move(body));
         }
         for (std::string& name : content.bare_models) out_.bare_models.push_back(std::move(name));
-        for (std::string& complaint : content.complaints) out_.notices.push_back(std::move(complaint));
+        count_left_out(content);
+        tell(content);
+    }
+
+    void count_left_out(const SdfContent& content)
+    {
+        out_.hollow += content.hollow;
+        out_.untouchable += content.untouchable;
+    }
+
+    void tell(const SdfContent& content)
+    {
+        out_.notices.insert(out_.notices.end(), content.complaints.begin(), content.complaints.end());
+        out_.missing.insert(out_.missing.end(), content.lost.begin(), content.lost.end());
     }
 
     void refuse_population(const Xml& world) const

@@ -10,7 +10,8 @@ struct SdfWorld {
     std::vector<CollisionBody> bodies;     ///< in the world's frame; a lone model stands at its own <pose>
     std::vector<std::string> bare_models;  ///< models that have no collision
     std::size_t model_count = 0, actor_count = 0, road_count = 0;
-    std::vector<std::string> missing;      ///< includes that lead nowhere, a line each
+    std::size_t hollow = 0, untouchable = 0;  ///< as SdfContent
+    std::vector<std::string> missing;      ///< includes that lead nowhere and what libsdformat leaves out, a line each
     std::vector<std::string> notices;
 };
 

@@ -10,37 +10,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Poses are wrong, or lost, where frames are not understood.
-bool is_about_frames(sdf::ErrorCode code)
-{
-    switch (code) {
-    case sdf::ErrorCode::FRAME_ATTACHED_TO_INVALID:
-    case sdf::ErrorCode::FRAME_ATTACHED_TO_CYCLE:
-    case sdf::ErrorCode::POSE_RELATIVE_TO_INVALID:
-    case sdf::ErrorCode::POSE_RELATIVE_TO_CYCLE:
-    case sdf::ErrorCode::MODEL_PLACEMENT_FRAME_INVALID: return true;
-    default: return false;
-    }
-}
-
-bool is_of_no_account(const sdf::Error& error)
-{
-    // What is missing is told by who looked for it; that the world "failed to load" only repeats the errors before.
-    return error.Code() == sdf::ErrorCode::URI_LOOKUP || error.Code() == sdf::ErrorCode::URI_INVALID ||
-           error.Message() == "Failed to load a world." || error.Message() == "Failed to load a model.";
-}
-
 class SdfReader {
 public:
     SdfReader(const fs::path& file, ModelPaths& paths) : file_(file), session_(paths, file.parent_path()) {}
 
     SdfContent read(const std::optional<std::string>& text)
     {
-        has_text_ = text.has_value();
         sdf::Root root;
-        sdf::Errors errors = text ? root.LoadSdfString(*text, session_.config()) : root.Load(file_.string(), session_.config());
+        sdf::Errors errors = text ? root.LoadSdfString(*text, session_.config()) : root.Load(path_for_libsdformat(file_), session_.config());
         if (root.WorldCount() == 0 && root.Model() == nullptr) {
-            if (text && !errors.empty()) errors = sdf::Root().Load(file_.string(), session_.config());  // for the lines of the file itself
             if (!errors.empty()) throw FileError(words_of(errors[0], file_.string()), "cannot be read as SDF");
             throw FileError(file_.string(), "has no <world> and no <model>, needs one of them");
         }
@@ -55,12 +33,19 @@ public:
 private:
     void sort(const sdf::Errors& errors)
     {
-        std::size_t inertias = 0;
+        constexpr std::size_t most_unknown = 10;
+        std::size_t inertias = 0, unknown = 0;
         for (const sdf::Error& error : errors) {
-            if (is_about_frames(error.Code())) throw FileError(words_of(error, file_.string()), "no pose can be told");
+            const SdfErrorKind kind = kind_of(error);
+            const std::string words = words_of(error, file_.string());
+            if (kind == SdfErrorKind::Frames) throw FileError(words, "no pose can be told");
             if (error.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) ++inertias;
-            else if (!is_of_no_account(error)) content_.complaints.push_back(words_of(error, file_.string()));
+            else if (kind == SdfErrorKind::Duplicate) content_.lost.push_back(words);
+            else if (kind == SdfErrorKind::Unknown && ++unknown > most_unknown) continue;
+            else if (kind != SdfErrorKind::Repeated) content_.complaints.push_back(words);
         }
+        if (unknown > most_unknown)
+            content_.complaints.push_back(file_.string() + ": " + std::to_string(unknown - most_unknown) + " more elements that SDF does not have");
         if (inertias > 0)
             content_.complaints.push_back(file_.string() + ": " + std::to_string(inertias) + (inertias == 1 ? " link has" : " links have") +
                                           " an invalid <inertia>: it counts for nothing here, but Gazebo may refuse it");
@@ -110,17 +95,24 @@ private:
     {
         for (std::uint64_t c = 0; c < link.CollisionCount(); ++c) {
             const sdf::Collision& collision = *link.CollisionByIndex(c);
+            if (touches_nothing(collision)) {
+                ++content_.untouchable;
+                continue;
+            }
+            if (collision.Geom() == nullptr || is_empty(*collision.Geom())) {
+                ++content_.hollow;
+                continue;
+            }
             names_.push_back(collision.Name());
-            content_.bodies.push_back({names_, pose * resolved(collision.SemanticPose()), {}});
-            if (collision.Geom() != nullptr) content_.bodies.back().geometry = geometry_of(*collision.Geom(), place_of(collision));
+            content_.bodies.push_back({names_, pose * resolved(collision.SemanticPose()), geometry_of(*collision.Geom(), place_of(collision))});
             names_.pop_back();
         }
     }
 
     SdfPlace place_of(const sdf::Collision& collision) const
     {
-        // Lines of a text that stands for the file are others than the file's.
-        return {file_, scoped_name({names_, {}, {}}), has_text_ ? std::nullopt : collision.Element()->LineNumber()};
+        const std::string from = collision.Element()->FilePath();  // that of the include that it stands in; of a text, a name in brackets
+        return {from.empty() || from.front() == '<' ? file_ : fs::path(from), scoped_name({names_, {}, {}}), collision.Element()->LineNumber()};
     }
 
     Pose resolved(const sdf::SemanticPose& semantic) const
@@ -136,7 +128,6 @@ private:
 
     const fs::path file_;
     const SdfSession session_;
-    bool has_text_ = false;
     SdfContent content_;
     std::vector<std::string> names_;  ///< of what is being read, from the outermost model in
 };
@@ -145,7 +136,7 @@ private:
 
 SdfContent sdf_module::read_file(const fs::path& file, ModelPaths& paths, const std::optional<std::string>& text)
 {
-    return SdfReader(file, paths).read(text);
+    return without_foreign_exceptions(file, [&] { return SdfReader(file, paths).read(text); });
 }
 
 }  // namespace spawnfield

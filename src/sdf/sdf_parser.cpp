@@ -1,6 +1,7 @@
 #include "sdf/sdf_parser.h"
 
 #include "base/number.h"
+#include "base/text.h"
 
 #include <spawnfield/error.h>
 
@@ -28,6 +29,7 @@ public:
     {
         CollisionGeometry out;
         out.line = place_.line;
+        check_count(from.Element());
         switch (from.Type()) {
         case sdf::GeometryType::BOX: set(out, Kind::Box, "<box> <size>", vector_of(from.BoxShape()->Size())); break;
         case sdf::GeometryType::SPHERE: set(out, Kind::Sphere, "<sphere> <radius>", Vec3(from.SphereShape()->Radius(), 1, 1)); break;
@@ -51,6 +53,14 @@ public:
     }
 
 private:
+    void check_count(const sdf::ElementPtr& geometry) const
+    {
+        std::string shapes;
+        for (sdf::ElementPtr shape = geometry ? geometry->GetFirstElement() : nullptr; shape; shape = shape->GetNextElement(""))
+            if (const std::string name = "<" + shape->GetName() + ">"; shapes.find(name) == std::string::npos) shapes += (shapes.empty() ? "" : ", ") + name;
+        if (shapes.find(',') != std::string::npos) fail("<geometry> holds " + shapes + ", needs one shape; give each a <collision> of its own");
+    }
+
     void set(CollisionGeometry& out, Kind kind, const std::string& what, const Vec3& size) const
     {
         constexpr double largest = 1e6;  // m: beyond it, a slip of the pen
@@ -73,7 +83,7 @@ private:
 
     void set_heightmap(CollisionGeometry& out, const sdf::Heightmap& map) const
     {
-        set(out, Kind::Heightmap, "<heightmap> <size>", vector_of(map.Size()).cwiseAbs());
+        set(out, Kind::Heightmap, "<heightmap> <size>", vector_of(map.Size()));
         out.uri = map.Uri();
         out.folder = folder_of(map.FilePath());
         out.position = vector_of(map.Position());
@@ -121,7 +131,7 @@ SdfSession::SdfSession(ModelPaths& paths, const fs::path& folder) : lock_(one_at
 {
     const auto find = [&paths, folder](const std::string& uri) { return paths.find(uri, folder).string(); };
     config_.SetFindCallback(find);
-    config_.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
+    config_.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::ERR);
     sdf::setFindCallback(find);
     sdf::Console::Instance()->SetQuiet(true);
     console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
@@ -133,13 +143,40 @@ SdfSession::~SdfSession()
     sdf::setFindCallback([](const std::string&) { return std::string(); });
 }
 
+SdfErrorKind kind_of(const sdf::Error& error)
+{
+    switch (error.Code()) {
+    case sdf::ErrorCode::FRAME_ATTACHED_TO_INVALID:
+    case sdf::ErrorCode::FRAME_ATTACHED_TO_CYCLE:
+    case sdf::ErrorCode::POSE_RELATIVE_TO_INVALID:
+    case sdf::ErrorCode::POSE_RELATIVE_TO_CYCLE:
+    case sdf::ErrorCode::MODEL_PLACEMENT_FRAME_INVALID: return SdfErrorKind::Frames;
+    case sdf::ErrorCode::DUPLICATE_NAME: return SdfErrorKind::Duplicate;
+    case sdf::ErrorCode::LINK_INERTIA_INVALID:
+    case sdf::ErrorCode::ATTRIBUTE_DEPRECATED:
+    case sdf::ErrorCode::ELEMENT_DEPRECATED:
+    case sdf::ErrorCode::VERSION_DEPRECATED: return SdfErrorKind::Harmless;
+    case sdf::ErrorCode::URI_LOOKUP:
+    case sdf::ErrorCode::URI_INVALID: return SdfErrorKind::Repeated;  // what is missing is told by who looked for it
+    default: break;
+    }
+    const std::string words = error.Message();
+    if (words.find("not defined in SDF") != std::string::npos) return SdfErrorKind::Unknown;
+    return words == "Failed to load a world." || words == "Failed to load a model." ? SdfErrorKind::Repeated : SdfErrorKind::Other;
+}
+
+std::string path_for_libsdformat(const fs::path& file) { return fs::absolute(file).string(); }
+
 std::string words_of(const sdf::Error& error, const std::string& file)
 {
     std::string out = error.FilePath().value_or(file);
-    if (out.empty() || out.front() == '<') out = file;  // text that was given has a name in brackets
+    if (out.empty() || out.front() == '<' || out == path_for_libsdformat(file)) out = file;  // text that was given has a name in brackets
     if (error.LineNumber()) out += ": line " + std::to_string(*error.LineNumber());
     if (error.XmlPath()) out += ": " + *error.XmlPath();
-    out += ": " + error.Message();
+    const SdfErrorKind kind = kind_of(error);
+    if (kind == SdfErrorKind::Unknown) return out + ": is no element that SDF has at this place: it counts for nothing; is it misspelt?";
+    out += ": " + trimmed(error.Message());
+    if (kind == SdfErrorKind::Duplicate) out += " It is left out: give it a name of its own";
     if (error.Code() == sdf::ErrorCode::URI_LOOKUP) out += "; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell where models are";
     return out;
 }
@@ -154,6 +191,22 @@ Pose pose_of(const ignition::math::Pose3d& pose)
     for (unsigned row = 0; row < 3; ++row)
         for (unsigned col = 0; col < 3; ++col) out.rotation(row, col) = m(row, col);
     return out;
+}
+
+bool touches_nothing(const sdf::Collision& collision)
+{
+    const sdf::Surface* const surface = collision.Surface();
+    if (surface == nullptr || surface->Contact() == nullptr) return false;
+    const sdf::ElementPtr contact = surface->Contact()->Element();
+    const bool without = contact && contact->HasElement("collide_without_contact") && contact->Get<bool>("collide_without_contact");
+    return without || surface->Contact()->CollideBitmask() == 0;
+}
+
+bool is_empty(const sdf::Geometry& geometry)
+{
+    if (geometry.Type() != sdf::GeometryType::EMPTY) return false;
+    const sdf::ElementPtr shape = geometry.Element() ? geometry.Element()->GetFirstElement() : nullptr;
+    return !shape || shape->GetName() == "empty";
 }
 
 CollisionGeometry geometry_of(const sdf::Geometry& geometry, const SdfPlace& place) { return GeometryReader(place).read(geometry); }

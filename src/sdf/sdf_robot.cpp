@@ -15,18 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is about mass and age of the file, not about where collisions are.
-bool is_harmless(sdf::ErrorCode code)
-{
-    switch (code) {
-    case sdf::ErrorCode::LINK_INERTIA_INVALID:
-    case sdf::ErrorCode::ATTRIBUTE_DEPRECATED:
-    case sdf::ErrorCode::ELEMENT_DEPRECATED:
-    case sdf::ErrorCode::VERSION_DEPRECATED: return true;
-    default: return false;
-    }
-}
-
 Joint::Motion motion_of(sdf::JointType type)
 {
     switch (type) {
@@ -50,7 +38,7 @@ public:
         check_includes(file_, *read_sdf_xml(file_), paths_);
         const SdfSession session(paths_, file_.parent_path());
         sdf::Root root;
-        check(root.Load(file_.string(), session.config()));
+        check(root.Load(path_for_libsdformat(file_), session.config()));
         if (root.Model() == nullptr)
             throw FileError(file_.string(), root.WorldCount() > 0 ? "holds a <world>, needs a <model> to be a robot" : "has no <model>");
         const sdf::Model& model = *root.Model();
@@ -83,7 +71,12 @@ private:
         const sdf::Error* first = nullptr;
         std::size_t harmless = 0;
         for (const sdf::Error& error : errors) {
-            if (!is_harmless(error.Code())) throw FileError(words_of(error, file_.string()), "it is needed");
+            const SdfErrorKind kind = kind_of(error);
+            if (kind == SdfErrorKind::Unknown) {
+                robot_.notices.push_back(words_of(error, file_.string()));
+                continue;
+            }
+            if (kind != SdfErrorKind::Harmless) throw FileError(words_of(error, file_.string()), "it is needed");
             if (harmless++ == 0) first = &error;
         }
         if (first == nullptr) return;
@@ -169,6 +162,10 @@ private:
     {
         for (std::uint64_t k = 0; k < link.link->CollisionCount(); ++k) {
             const sdf::Collision& collision = *link.link->CollisionByIndex(k);
+            if (touches_nothing(collision)) {
+                robot_.notices.push_back(file_.string() + ": \"" + link.name + "::" + collision.Name() + "\" is left out: its <surface> says that it touches nothing");
+                continue;
+            }
             // A resolved pose of a collision is in its link's frame.
             const CollisionBody body{{robot_.name, link.name, collision.Name()}, link.robot_from_link * resolved(collision.SemanticPose(), ""),
                                      geometry_of(*collision.Geom(), {file_, link.name + "::" + collision.Name(), collision.Element()->LineNumber()})};
@@ -187,6 +184,9 @@ private:
 
 }  // namespace
 
-Robot sdf_module::read_robot(const fs::path& file_or_folder, const RobotOptions& options) { return SdfReader(file_or_folder, options).read(); }
+Robot sdf_module::read_robot(const fs::path& file_or_folder, const RobotOptions& options) 
+{
+    return without_foreign_exceptions(file_or_folder, [&] { return SdfReader(file_or_folder, options).read(); });
+}
 
 }  // namespace spawnfield

@@ -54,7 +54,7 @@ void add_bake(CLI::App& app, Run& run)
     auto args = std::make_shared<BakeArgs>();
     CLI::App& command = *app.add_subcommand("bake", "Make a map from a scene");
     command.add_option("scene", args->scene, "scene.yaml, a Gazebo world or model (.world, .sdf, a model's folder), a mesh (any format assimp reads), an OctoMap (.bt), an elevation model (.tif, .asc, .png, .raw) or a 2D map (map.yaml of nav2 or ROS)")->required();
-    command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")->required();
+    command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")->required()->check(not_empty());
     auto* resolution = command.add_option("--resolution", args->resolution, "Side of a terrain cell, m (default 0.1)");
     auto* occupancy = command.add_option("--occupancy-resolution", args->occupancy_resolution, "Side of a voxel, m (default 2.5 cells)");
     command.add_option("--bounds", args->bounds, "x0,y0,z0,x1,y1,z1 in m (default: the scene's)");

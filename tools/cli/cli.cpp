@@ -34,8 +34,8 @@ bool bar_shown = false;
 
 void catch_interrupts()
 {
-    std::signal(SIGINT, note_interrupt);
-    std::signal(SIGTERM, note_interrupt);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        if (std::signal(signal, note_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);  // as nohup wants it
 }
 
 bool was_interrupted() { return interrupt_seen; }
@@ -51,7 +51,7 @@ void add_common(CLI::App& command, CommonArgs& args)
 void add_query(CLI::App& command, QueryArgs& args)
 {
     command.add_option("map", args.map, "Map folder, from `spawnfield bake`")->required();
-    command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, an SDF model, or box:LX,LY,LZ[@x,y,z] (m)")->required();
+    command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, an SDF model, or box:LX,LY,LZ[@x,y,z] (m)")->required()->check(not_empty());
     add_robot_options(command, args);
     command.add_option("--max-height", args.max_height, "Most metres of the robot's origin above its ground (default 1)");
     command.add_option("--max-water-depth", args.max_water_depth, "Water higher than this above the ground does not count, m (default: all does)");
@@ -60,6 +60,11 @@ void add_query(CLI::App& command, QueryArgs& args)
         ->check(CLI::IsMember({"geometry", "octree"}));
     command.add_flag("--exhaustive", args.exhaustive, "Check every pose exactly, without the free-space mask: the same answers, slowly");
     add_common(command, args);
+}
+
+CLI::Validator not_empty()
+{
+    return {[](const std::string& text) { return text.empty() ? "is empty: is a shell's variable not set?" : ""; }, ""};
 }
 
 void refuse(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason)
@@ -148,6 +153,8 @@ Bounds parse_bounds(const std::string& option, const std::string& text, bool fla
         throw ArgumentError(option + " has " + std::to_string(v.size()) + " numbers, needs 6: x0,y0,z0,x1,y1,z1" +
                             (flat_allowed ? " (or 4: x0,y0,x1,y1)" : ""));
     }
+    for (const double value : v)
+        if (!(std::abs(value) <= 1e7)) throw bad_value(option, value, "numbers between -1e7 and 1e7, m");
     for (int axis = 0; axis < 3; ++axis)
         if (bounds.min[axis] > bounds.max[axis])
             throw bad_value(option + ": " + "xyz"[axis] + "1", bounds.max[axis],
@@ -193,6 +200,7 @@ double parse_positive(const std::string& option, double value)
 double parse_finite(const std::string& option, double value, const std::string& unit)
 {
     if (!std::isfinite(value)) throw bad_value(option, value, "a finite number, " + unit);
+    if (std::abs(value) > 1e7) throw bad_value(option, value, "at most 1e7 " + unit);  // as far as scenes reach
     return value;
 }
 

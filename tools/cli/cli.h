@@ -39,6 +39,9 @@ struct QueryArgs : CommonArgs, RobotArgs {
 };
 void add_query(CLI::App& command, QueryArgs& args);
 
+/// Of an option's text: not "", as of "$UNSET".
+CLI::Validator not_empty();
+
 /// Throws ArgumentError "--option REASON" if one of the options was given.
 void refuse(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason);
 

@@ -204,7 +204,7 @@ void add_experiment(CLI::App& app, const std::string& command_line, Run& run)
     command.add_flag("--search", args->search, "Random searches instead of rasters: seed --seed, the next one for each further run");
     add_draws(command, args->draws);
     add_max_failures(command, args->draws);
-    command.add_option("--out,-o", args->out, "Folder to write: experiment.csv, experiment.md; a former one is replaced")->required();
+    command.add_option("--out,-o", args->out, "Folder to write: experiment.csv, experiment.md; a former one is replaced")->required()->check(not_empty());
     command.footer("Example:\n"
                    "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --steps 0.5:2:0.5 --offset 0.5 --runs 3 -o /tmp/box_steps\n"
                    "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --search -n 20 --min-distance 1.5 --runs 5 -o /tmp/box_searches");

@@ -35,7 +35,7 @@ SceneOptions scene_options(const SceneArgs& args, const ModelPathArgs& paths)
     options.scale = parse_positive("--scale", args.scale);
     if (!args.unknown.empty()) options.unknown = args.unknown == "blocked" ? Unknown::Blocked : Unknown::Free;
     options.heightmap = args.heightmap;
-    if (args.wall_height != 0) options.wall_height = parse_positive("--wall-height", args.wall_height);
+    if (args.wall_height) options.wall_height = parse_positive("--wall-height", *args.wall_height);
     options.model_paths.assign(paths.model_paths.begin(), paths.model_paths.end());
     options.strict = args.strict;
     return options;

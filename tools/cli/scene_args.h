@@ -10,7 +10,8 @@ namespace spawnfield::cli {
 /// Options of whatever reads a scene: `bake` and `info`.
 struct SceneArgs {
     std::string up, heightmap, unknown;
-    double scale = 1, wall_height = 0;
+    double scale = 1;
+    std::optional<double> wall_height;
     std::vector<std::string> labels;
     bool strict = false;
 };

@@ -142,6 +142,7 @@ SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& comma
     : common_(common), args_(args), target_(std::move(target))
 {
     tell_idle_options(common, command, target_.format);
+    tell_joints();
     constexpr std::size_t enough = 1000;  // of the first names, to see whether the pattern is one
     std::vector<RobotStart> some(std::min(target_.count, enough));
     give_names(some);
@@ -179,11 +180,20 @@ void SimulatorOutput::check_rules(const std::string& option, std::span<const std
     check_ros_names(origin, name_spaces, is("ros1-launch") ? 1 : 2);
 }
 
+/// Poses are judged with the joints where --joints has them; few files can say so.
+void SimulatorOutput::tell_joints() const
+{
+    const bool says_so = is("ros1-launch") || is("json") || (is("mujoco") && !args_.joint_qpos.empty());
+    if (target_.joints.empty() || says_so) return;
+    notice(common_, "--format " + target_.format + " says nothing about joints: robots start with theirs at 0, unless you put them where --joints has them" +
+                        (is("mujoco") ? " (--joint-qpos)" : ""));
+}
+
 std::string SimulatorOutput::own_file() const
 {
     if (!args_.robot_file.empty()) return lasting_path("--robot-file", args_.robot_file);
     const bool is_file = target_.robot.ends_with(".urdf") || target_.robot.ends_with(".sdf");
-    const bool is_folder = is("sdf") && fs::is_regular_file(fs::path(target_.robot) / "model.config");
+    const bool is_folder = fs::is_regular_file(fs::path(target_.robot) / "model.config");
     return is_file || is_folder ? lasting_path("--robot", target_.robot) : "";
 }
 
@@ -195,6 +205,10 @@ void SimulatorOutput::settle_launch()
     launch_.topic = args_.topic;
     if (!args_.topic.empty() && !args_.robot_file.empty()) throw ArgumentError("--topic and --robot-file are both given; robots are made of one of them");
     if (args_.topic.empty()) launch_.file = own_file();
+    if (fs::is_directory(launch_.file)) launch_.file = scene_file_of(launch_.file).string();  // ROS spawns files
+    if (is("ros1-launch")) launch_.joints = target_.joints;
+    if (is("ros1-launch") && fs::exists(launch_.file) && model_placement(launch_.file).has_pose)
+        throw ArgumentError("--format ros1-launch: " + launch_.file + " has a <pose> of its own, which gazebo_ros adds to the one of each robot; take it away");
     if (launch_.topic.empty() && launch_.file.empty())
         throw ArgumentError("--format " + target_.format + " needs --robot-file FILE, a URDF or SDF to spawn, or --topic robot_description" + robot_is_neither());
     target_.format == "ros2-launch-py" ? ros2_launch_py({}, launch_) : ros1_launch({}, launch_);  // to be told of a bad file now
@@ -205,11 +219,17 @@ void SimulatorOutput::settle_sdf()
     if (!args_.robot_uri.empty() && !args_.robot_file.empty()) throw ArgumentError("--robot-uri and --robot-file are both given; robots are made of one of them");
     sdf_.uri = args_.robot_uri.empty() ? own_file() : args_.robot_uri;
     sdf_.world_name = args_.world_name;
+    if (sdf_.uri.find("$(") != std::string::npos)
+        throw ArgumentError("--format sdf: " + sdf_.uri + " has a $(…), which is for launch files; name the file itself, or --robot-uri");
+    if (fs::exists(sdf_.uri))
+        if (const std::string frame = model_placement(sdf_.uri).frame; !frame.empty())
+            throw ArgumentError("--format sdf: " + sdf_.uri + " has placement_frame=\"" + frame + "\": <include> would put that frame where the model's own was judged; take it away");
     if (sdf_.uri.empty())
         throw ArgumentError("--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF" + robot_is_neither());
     if (args_.world.empty()) return;
     sdf_.world_file = args_.world;
     sdf_.world_text = text_of_file(args_.world);
+    sdf_.model_paths = target_.model_paths;
     sdf_world({}, sdf_);  // to be told of a bad file now
     const std::string relative = first_relative_uri(sdf_.world_text);
     const bool is_beside = !target_.out.empty() && folder_of(target_.out) == folder_of(args_.world);

@@ -35,6 +35,8 @@ public:
         std::string format, out;  ///< `out` as -o has it
         std::string robot;        ///< as --robot has it
         std::size_t count = 1;    ///< of robots, at most
+        std::vector<JointPosition> joints = {};  ///< as the robot was judged
+        std::vector<std::filesystem::path> model_paths = {};
     };
     /// Throws ArgumentError, FileError; OutputError where a folder may not be replaced. Tells of options without effect.
     SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target);
@@ -54,6 +56,7 @@ private:
     void check_rules(const std::string& option, std::span<const std::string> names, std::span<const std::string> name_spaces) const;
     void settle_launch();
     void settle_sdf();
+    void tell_joints() const;
     std::string own_file() const;
     std::string robot_is_neither() const;
     std::string text_of(std::span<const RobotStart> robots) const;

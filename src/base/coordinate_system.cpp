@@ -1,0 +1,37 @@
+#include "base/coordinate_system.h"
+
+#include "base/module.h"
+#include "base/number.h"
+
+#include <spawnfield/error.h>
+
+#include <cmath>
+
+namespace spawnfield {
+
+std::optional<CoordinateSystem> coordinate_system(const std::string& definition)
+{
+    static const auto* const functions = static_cast<const crs_module::Functions*>(
+        module_symbol(SPAWNFIELD_CRS_MODULE, crs_module::symbol, "coordinate systems cannot be looked up"));
+    return functions->find(definition);
+}
+
+void tell_unit(const std::string& file, const std::string& what, double unit, std::vector<std::string>& notices)
+{
+    if (std::abs(unit) != 1) notices.push_back(file + ": " + what + " are in units of " + number(std::abs(unit)) + " m and were converted to metres");
+}
+
+void tell_height_unit(const std::string& file, double unit, const std::string& place, std::vector<std::string>& notices)
+{
+    tell_unit(file, "heights", unit, notices);
+    if (unit < 0) notices.push_back(file + ": has depths by " + place + ", which counts downwards; the heights are their negatives");
+}
+
+void refuse_globe(const std::string& file, bool is_geocentric, const std::string& name)
+{
+    throw FileError(file, std::string("is in ") + (is_geocentric ? "coordinates of the whole globe (geocentric" : "degrees (geographic") +
+                              (name.empty() ? "" : ", " + name) +
+                              "), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres such as the UTM zone's");
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,104 @@
+#include "scene/obj_text.h"
+
+#include "base/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cctype>
+
+namespace spawnfield {
+namespace {
+
+constexpr std::string_view own_name = "node:";
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+/// Goes through the lines and collects what has to be spelt otherwise.
+class ObjSpelling {
+public:
+    explicit ObjSpelling(std::string_view text) : text_(text) {}
+
+    ObjText take(std::string&& whole)
+    {
+        for (std::size_t start = 0; start < text_.size();) {
+            const std::size_t end = std::min(text_.find('\n', start), text_.size());
+            line(start, end);
+            start = end + 1;
+        }
+        if (copied_ == 0) return {std::move(whole), std::move(names_)};
+        out_.append(text_.substr(copied_));
+        return {std::move(out_), std::move(names_)};
+    }
+
+private:
+    void line(std::size_t start, std::size_t end)
+    {
+        if (!is_continued_) start = without_indent(start, end);
+        const std::string_view whole = text_.substr(start, end - start);
+        const char kind = is_continued_ ? kind_ : whole.size() > 1 && (is_blank(whole[1]) || whole[0] == 'v') ? whole[0] : ' ';
+        if (kind == 'v') point_numbers(start, end);
+        else if (!is_continued_ && (kind == 'o' || kind == 'g')) name(start, end);
+        const std::size_t last = whole.find_last_not_of('\r');
+        is_continued_ = last != std::string_view::npos && whole[last] == '\\';
+        kind_ = kind;
+    }
+
+    /// assimp drops lines that begin with a blank.
+    std::size_t without_indent(std::size_t start, std::size_t end)
+    {
+        const std::size_t first = std::min(text_.find_first_not_of(" \t", start), end);
+        if (first > start) replace(start, first, "");
+        return first;
+    }
+
+    void name(std::size_t start, std::size_t end)
+    {
+        const std::string found = trimmed(text_.substr(start + 1, end - start - 1));
+        if (found.empty() || found.back() == '\\') return;  // without a name assimp goes on as before
+        if (names_.empty() || found != current_) names_.push_back(found);
+        current_ = found;
+        replace(start + 2, end, std::string(own_name) + std::to_string(names_.size() - 1) + (text_[end - 1] == '\r' ? "\r" : ""));
+    }
+
+    void point_numbers(std::size_t start, std::size_t end)
+    {
+        for (std::size_t point = text_.find('.', start); point < end; point = text_.find('.', point + 1)) {
+            const char before = point > start ? text_[point - 1] : ' ';
+            const bool has_digit = point + 1 < end && std::isdigit(static_cast<unsigned char>(text_[point + 1]));
+            if (has_digit && (is_blank(before) || before == '-' || before == '+')) replace(point, point, "0");
+        }
+    }
+
+    void replace(std::size_t begin, std::size_t end, std::string_view with)
+    {
+        out_.append(text_.substr(copied_, begin - copied_));
+        out_.append(with);
+        copied_ = end;
+    }
+
+    const std::string_view text_;
+    std::string out_;
+    std::vector<std::string> names_;
+    std::string current_;        ///< of the last o or g; empty: none
+    std::size_t copied_ = 0;     ///< bytes of the text that are in out_, in their new spelling
+    bool is_continued_ = false;  ///< by a \ at the end of the line before
+    char kind_ = ' ';            ///< first letter of the line, 'v' also for vt and vn
+};
+
+}  // namespace
+
+ObjText readable_obj(std::string text)
+{
+    ObjSpelling spelling(text);
+    return spelling.take(std::move(text));
+}
+
+std::string obj_name(const ObjText& obj, const std::string& node)
+{
+    if (!node.starts_with(own_name)) return node;
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(node.data() + own_name.size(), node.data() + node.size(), index);
+    return error == std::errc{} && end == node.data() + node.size() && index < obj.names.size() ? obj.names[index] : node;
+}
+
+}  // namespace spawnfield
