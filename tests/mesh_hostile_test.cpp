@@ -300,6 +300,22 @@ TEST_CASE("glTF nodes that are no trees, and JSON that is nested too deep, are r
     CHECK(complaint(folder, "a.glb", binary + json.substr(1)).starts_with("ends within its JSON ("));
 }
 
+TEST_CASE("glTF primitives that repeat their accessors to no end are refused")
+{
+    const TempFolder folder;
+    const std::string primitive = "{\"attributes\": {\"POSITION\": 0}, \"indices\": 1}";
+    const auto repeated = [&](int times, const std::string& count) {
+        std::string all = primitive;
+        for (int i = 1; i < times; ++i) all += "," + primitive;
+        const std::string text = replaced(gltf("{\"mesh\": 0}"), primitive, all);
+        return complaint(folder, "a.gltf", replaced(text, "\"count\": 3, \"type\": \"VEC3\"", "\"count\": " + count + ", \"type\": \"VEC3\""));
+    };
+    CHECK(repeated(1000, "3") == "");
+    CHECK(repeated(1000, "1000000") ==
+          "its primitives come to more than 300000000 vertices and corners by their accessors, needs fewer; instance meshes by nodes, or bake parts of it");
+    CHECK(repeated(2, "18446744073709551615").starts_with("its primitives come to more than"));
+}
+
 TEST_CASE("glTF files are read or refused wherever they are cut or altered")
 {
     const TempFolder folder;

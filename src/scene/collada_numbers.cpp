@@ -32,13 +32,15 @@ std::string text_of(const Xml& element, const char* attribute)
 template <class Visit>
 void for_each_word(const Xml& element, const Visit& visit)
 {
-    constexpr std::string_view space = " \t\r\n";
-    const char* const text = element.GetText();
-    const std::string_view words = text == nullptr ? "" : text;
-    for (std::size_t at = words.find_first_not_of(space); at != std::string_view::npos; at = words.find_first_not_of(space, at)) {
-        const std::size_t start = at;
-        while (at < words.size() && space.find(words[at]) == std::string_view::npos) ++at;
-        visit(words.substr(start, at - start));
+    const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+    const char* at = element.GetText();
+    if (at == nullptr) return;
+    for (;;) {
+        while (is_space(*at)) ++at;
+        if (*at == '\0') return;
+        const char* const start = at;
+        while (*at != '\0' && !is_space(*at)) ++at;
+        visit(std::string_view(start, std::size_t(at - start)));
     }
 }
 

@@ -18,8 +18,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t most_nested = 200, most_depth = 500;
+constexpr std::uint64_t most_used = 300000000;  // 100 million triangles
 
-/// Nodes by the names that others call them: their place in the list, or the key in glTF 1.0.
+/// What the text tells of them; nodes go by the names that others call them: their place in the list, or the key in glTF 1.0.
 struct Nodes {
     struct Node {
         std::string name;
@@ -27,6 +28,8 @@ struct Nodes {
     };
     std::vector<Node> nodes;
     std::vector<std::vector<std::string>> scenes;  ///< the nodes that each of them begins with
+    std::vector<std::uint64_t> counts;             ///< of accessors (glTF 2.0)
+    std::vector<std::uint64_t> used;               ///< accessors of vertices and corners, once for each primitive that names them
 };
 
 /// Takes nodes and scenes out of the text as it goes by; the rest, mostly data, is not kept.
@@ -38,7 +41,13 @@ public:
     bool null() override { return value(""); }
     bool boolean(bool) override { return value(""); }
     bool number_integer(number_integer_t number) override { return value(std::to_string(number)); }
-    bool number_unsigned(number_unsigned_t number) override { return value(std::to_string(number)); }
+    bool number_unsigned(number_unsigned_t number) override
+    {
+        const auto in = [&](std::size_t depth, const char* key) { return open_.size() == depth && !open_.back().array && open_.back().key == key; };
+        if (in(3, "count") && is_in("accessors")) found_.counts.back() = number;
+        if ((in(5, "indices") || in(6, "POSITION")) && is_in("meshes")) found_.used.push_back(number);
+        return value(std::to_string(number));
+    }
     bool number_float(number_float_t, const string_t& text) override { return value(text); }
     bool string(string_t& text) override { return value(text); }
     bool binary(binary_t&) override { return true; }
@@ -76,6 +85,7 @@ private:
                                        (open_[0].array ? "" : ", in \"" + open_[0].key + "\""));
         if (!array && open_.size() == 2 && is_in("nodes")) found_.nodes.push_back({name_in(open_[1]), {}});
         if (!array && open_.size() == 2 && is_in("scenes")) found_.scenes.emplace_back();
+        if (!array && open_.size() == 2 && is_in("accessors")) found_.counts.push_back(0);
         open_.push_back({array, {}, 0});
         return true;
     }
@@ -182,6 +192,19 @@ private:
     std::vector<std::size_t> parents_;
 };
 
+/// assimp reads an accessor anew for each primitive that names it: few bytes of a file can come to any number of vertices.
+void check_used(const Nodes& found, const std::string& file)
+{
+    std::uint64_t left = most_used;
+    for (const std::uint64_t accessor : found.used) {
+        const std::uint64_t count = accessor < found.counts.size() ? found.counts[accessor] : 0;
+        if (count > left)
+            throw FileError(file, "its primitives come to more than " + std::to_string(most_used) + " vertices and corners by their accessors, needs fewer; "
+                                  "instance meshes by nodes, or bake parts of it");
+        left -= count;
+    }
+}
+
 /// The JSON of a binary file, which both versions have at the same place, or the file itself.
 std::string_view json_of(std::string_view bytes, const std::string& file)
 {
@@ -203,7 +226,9 @@ void check_gltf(std::string_view bytes, const std::string& file)
     const std::string_view json = json_of(bytes, file);
     NodeReader reader(file);
     Json::sax_parse(json.begin(), json.end(), &reader);
-    TreeCheck(reader.take(), file);
+    const Nodes found = reader.take();
+    TreeCheck(found, file);
+    check_used(found, file);
 }
 
 }  // namespace spawnfield
