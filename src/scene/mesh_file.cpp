@@ -3,6 +3,7 @@
 #include "base/text.h"
 #include "scene/gltf_file.h"
 #include "scene/mesh.h"
+#include "scene/mesh_checks.h"
 #include "scene/obj_text.h"
 #include "scene/printing_units.h"
 
@@ -213,16 +214,21 @@ FileMesh read_mesh(const std::filesystem::path& file)
 {
     if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
     const std::string extension = lower_case(file.extension().string());
-    const bool is_gltf = extension == ".gltf" || extension == ".glb";
-    GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};
     const ObjText obj = extension == ".obj" ? readable_obj(read_file(file)) : ObjText{};
     Assimp::Importer importer;
+    check_mesh_file(file, importer);
+    const bool is_gltf = extension == ".gltf" || extension == ".glb";
+    GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};
     if (extension == ".obj") importer.SetIOHandler(new RespeltFile(file.string(), obj.text));  // which the importer owns
     // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+    const aiScene* scene = importer.ReadFile(file.string(), 0);
+    if (scene != nullptr) {
+        check_mesh_scene(*scene, file.string());
+        scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
+    }
     if (scene == nullptr || scene->mRootNode == nullptr)
         throw FileError(file.string(), std::string("cannot be read as a mesh: ") + importer.GetErrorString());
 

@@ -1,0 +1,133 @@
+#include "scene/collada_check.h"
+
+#include "base/text.h"
+#include "scene/collada_numbers.h"
+
+#include <spawnfield/error.h>
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <unordered_map>
+
+namespace spawnfield {
+namespace {
+
+using Xml = tinyxml2::XMLElement;
+
+constexpr std::uint64_t most_nodes = 1000000;
+constexpr int most_depth = 500;
+
+bool is(const Xml& element, const char* name) { return std::strcmp(element.Name(), name) == 0; }
+
+std::string text_of(const Xml& element, const char* attribute)
+{
+    const char* const value = element.Attribute(attribute);
+    return value == nullptr ? "" : value;
+}
+
+/// What the nodes of the scene come to when each <instance_node> is replaced by what it names.
+class NodeCheck {
+public:
+    NodeCheck(const Xml& collada, const std::string& file) : file_(file)
+    {
+        for (const Xml* library = collada.FirstChildElement("library_nodes"); library != nullptr; library = library->NextSiblingElement("library_nodes"))
+            for (const Xml* node = library->FirstChildElement("node"); node != nullptr; node = node->NextSiblingElement("node"))
+                library_[text_of(*node, "id")] = node;
+        for (const Xml* library = collada.FirstChildElement("library_visual_scenes"); library != nullptr;
+             library = library->NextSiblingElement("library_visual_scenes"))
+            for (const Xml* scene = library->FirstChildElement("visual_scene"); scene != nullptr; scene = scene->NextSiblingElement("visual_scene"))
+                scenes_["#" + text_of(*scene, "id")] = scene;
+    }
+
+    void visit(const Xml& collada)
+    {
+        const Xml* const scene = collada.FirstChildElement("scene");
+        const Xml* const instance = scene == nullptr ? nullptr : scene->FirstChildElement("instance_visual_scene");
+        const auto root = instance == nullptr ? scenes_.end() : scenes_.find(text_of(*instance, "url"));
+        if (root == scenes_.end()) return;  // assimp says so
+        add_names(*root->second);
+        size_of(*root->second, 1);
+    }
+
+private:
+    struct Size {
+        std::uint64_t nodes = 0;  ///< with what hangs on them; 0: not known yet, we stand within it
+        int depth = 0;
+    };
+
+    FileError fault(const Xml& node, const std::string& what) const
+    {
+        const std::string name = node.Attribute("name") != nullptr ? text_of(node, "name") : text_of(node, "id");
+        return FileError(file_, "line " + std::to_string(node.GetLineNum()) + ": <" + node.Name() + "> \"" + name + "\" " + what);
+    }
+
+    void add_names(const Xml& node)
+    {
+        for (const char* attribute : {"name", "id"})
+            if (node.Attribute(attribute) != nullptr) named_.try_emplace(node.Attribute(attribute), &node);
+        for (const Xml* child = node.FirstChildElement("node"); child != nullptr; child = child->NextSiblingElement("node")) add_names(*child);
+    }
+
+    /// As assimp looks for it: a library's node of that id, else the scene's first node of that id or name.
+    const Xml* target_of(const Xml& instance) const
+    {
+        const std::string url = text_of(instance, "url"), name = url.empty() ? url : url.substr(1);
+        if (const auto found = library_.find(name); found != library_.end()) return found->second;
+        const auto found = named_.find(name);
+        return found == named_.end() ? nullptr : found->second;
+    }
+
+    Size size_of(const Xml& node, int depth)
+    {
+        if (depth > most_depth) throw fault(node, "is nested more than " + std::to_string(most_depth) + " deep, by <instance_node> too; merge nodes");
+        const auto [entry, is_new] = sizes_.try_emplace(&node);
+        if (!is_new && entry->second.nodes == 0) throw fault(node, "holds itself: a circle of <instance_node>");
+        if (!is_new && depth + entry->second.depth <= most_depth) return entry->second;
+        Size size{1, 1};
+        for (const Xml* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+            if (is(*child, "instance_geometry") || is(*child, "instance_controller")) ++size.nodes;
+            const Xml* const held = is(*child, "node") ? child : is(*child, "instance_node") ? target_of(*child) : nullptr;
+            if (held == nullptr) continue;
+            const Size of_held = size_of(*held, depth + 1);
+            size.nodes += of_held.nodes;
+            size.depth = std::max(size.depth, of_held.depth + 1);
+            if (size.nodes > most_nodes)
+                throw fault(node, "comes to more than " + std::to_string(most_nodes) + " nodes by its <instance_node>s; merge nodes, or instance fewer");
+        }
+        return sizes_[&node] = size;
+    }
+
+    const std::string& file_;
+    std::unordered_map<std::string, const Xml*> library_, scenes_, named_;
+    std::unordered_map<const Xml*, Size> sizes_;
+};
+
+}  // namespace
+
+bool is_collada(std::string_view bytes, const std::string& extension)
+{
+    return extension == ".dae" || bytes.substr(0, 4096).find("<COLLADA") != std::string_view::npos;
+}
+
+void check_collada(std::string_view bytes, const std::string& file)
+{
+    tinyxml2::XMLDocument document;
+    const tinyxml2::XMLError error = document.Parse(bytes.data(), bytes.size());
+    const std::string line = "line " + std::to_string(document.ErrorLineNum()) + ": ";
+    if (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED)
+        throw FileError(file, line + "elements are nested more than " + std::to_string(TINYXML2_MAX_ELEMENT_DEPTH) + " deep; merge nodes");
+    if (error != tinyxml2::XML_SUCCESS || bytes.find('\0') != std::string_view::npos) {
+        std::string name = error == tinyxml2::XML_SUCCESS ? "it holds a byte 0" : lower_case(document.ErrorName());
+        std::replace(name.begin(), name.end(), '_', ' ');
+        throw FileError(file, "cannot be read as a mesh: " + line + "no valid XML (" + name + "); is it cut short?");
+    }
+    for (const Xml* root = document.FirstChildElement(); root != nullptr; root = root->NextSiblingElement()) {
+        check_collada_numbers(*root, file);
+        NodeCheck(*root, file).visit(*root);
+    }
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,138 @@
+#include "scene/mesh_checks.h"
+
+#include "base/bytes.h"
+#include "base/text.h"
+#include "scene/collada_check.h"
+#include "scene/gltf_check.h"
+#include "scene/ply_file.h"
+
+#include <spawnfield/error.h>
+
+#include <assimp/BaseImporter.h>
+#include <assimp/importerdesc.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace spawnfield {
+namespace {
+
+constexpr unsigned most_corners = 32767;  // assimp's own limit (AI_MAX_FACE_INDICES); its polygon cutter takes the square of it
+
+constexpr unsigned most_depth = 1000;     // of nodes, which readers visit recursively
+constexpr std::uint64_t most_triangles = 100000000;
+
+constexpr aiImporterDesc ply_description{"spawnfield's reader of PLY", "", "", "", aiImporterFlags_SupportBinaryFlavour, 0, 0, 0, 0, "ply"};
+
+/// Gives assimp a mesh that is already read, so that polygons are cut into triangles like those of all other formats.
+class PlyImporter : public Assimp::BaseImporter {
+public:
+    explicit PlyImporter(PlyMesh mesh) : mesh_(std::move(mesh)) {}
+
+    bool CanRead(const std::string&, Assimp::IOSystem*, bool) const override { return true; }
+    const aiImporterDesc* GetInfo() const override { return &ply_description; }
+
+protected:
+    void InternReadFile(const std::string&, aiScene* scene, Assimp::IOSystem*) override
+    {
+        auto* const mesh = new aiMesh;  // the scene owns it, as all below
+        scene->mMeshes = new aiMesh*[1]{mesh};
+        scene->mNumMeshes = 1;
+        scene->mMaterials = new aiMaterial*[1]{new aiMaterial};
+        scene->mNumMaterials = 1;
+        scene->mRootNode = new aiNode;
+        scene->mRootNode->mMeshes = new unsigned[1]{0};
+        scene->mRootNode->mNumMeshes = 1;
+        mesh->mVertices = new aiVector3D[mesh_.vertices.size()];
+        mesh->mNumVertices = unsigned(mesh_.vertices.size());
+        for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) mesh->mVertices[v] = {mesh_.vertices[v][0], mesh_.vertices[v][1], mesh_.vertices[v][2]};
+        mesh->mFaces = new aiFace[mesh_.face_ends.size()];
+        mesh->mNumFaces = unsigned(mesh_.face_ends.size());
+        for (std::size_t f = 0, corner = 0; f < mesh_.face_ends.size(); corner = mesh_.face_ends[f++]) {
+            aiFace& face = mesh->mFaces[f];
+            face.mNumIndices = unsigned(mesh_.face_ends[f] - corner);
+            face.mIndices = new unsigned[face.mNumIndices];
+            std::copy_n(mesh_.corners.begin() + std::ptrdiff_t(corner), face.mNumIndices, face.mIndices);
+        }
+    }
+
+private:
+    const PlyMesh mesh_;
+};
+
+void take_ply(std::string_view bytes, const std::string& file, Assimp::Importer& importer)
+{
+    PlyMesh mesh = parse_ply(bytes, file);
+    if (mesh.face_ends.empty()) throw FileError(file, "has no triangles, needs at least one");
+    for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+        Assimp::BaseImporter* const old = importer.GetImporter(i);
+        importer.UnregisterLoader(old);
+        delete old;
+    }
+    importer.RegisterLoader(new PlyImporter(std::move(mesh)));  // the importer deletes it
+}
+
+/// How many triangles its faces come to. Throws unless faces have corners, and these are vertices.
+std::uint64_t checked_triangles(const aiMesh& mesh, unsigned index, const std::string& file)
+{
+    const auto fault = [&](unsigned face, const std::string& what) {
+        const std::string name = mesh.mName.length > 0 ? "mesh \"" + std::string(mesh.mName.C_Str()) + "\"" : "mesh " + std::to_string(index + 1);
+        return FileError(file, name + ": face " + std::to_string(face + 1) + " of " + std::to_string(mesh.mNumFaces) + " has " + what);
+    };
+    std::uint64_t triangles = 0;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+        const aiFace& face = mesh.mFaces[f];
+        if (face.mNumIndices < 1 || face.mNumIndices > most_corners)
+            throw fault(f, std::to_string(face.mNumIndices) + " corners, needs 3 .. " + std::to_string(most_corners) + "; cut it into triangles");
+        for (unsigned c = 0; c < face.mNumIndices; ++c)
+            if (face.mIndices[c] >= mesh.mNumVertices)
+                throw fault(f, "the corner " + std::to_string(face.mIndices[c]) + ", needs one of the " + std::to_string(mesh.mNumVertices) + " vertices");
+        triangles += face.mNumIndices > 2 ? face.mNumIndices - 2 : 0;
+    }
+    return triangles;
+}
+
+/// A node for each instance of a mesh: few bytes of a file can come to any number of triangles.
+void check_instances(const aiScene& scene, const std::vector<std::uint64_t>& triangles, const std::string& file)
+{
+    const std::uint64_t in_file = std::accumulate(triangles.begin(), triangles.end(), std::uint64_t(0));
+    std::uint64_t all = 0;
+    struct Entry {
+        const aiNode* node;
+        unsigned depth;
+    };
+    std::vector<Entry> open{{scene.mRootNode, 1}};
+    while (!open.empty() && open.back().node != nullptr) {
+        const auto [node, depth] = open.back();
+        open.pop_back();
+        if (depth > most_depth)
+            throw FileError(file, "node \"" + std::string(node->mName.C_Str()) + "\" is nested more than " + std::to_string(most_depth) + " deep; merge nodes");
+        for (unsigned m = 0; m < node->mNumMeshes; ++m) all += triangles.at(node->mMeshes[m]);
+        if (all > std::max(most_triangles, in_file))
+            throw FileError(file, "its nodes repeat " + std::to_string(in_file) + " triangles to more than " + std::to_string(most_triangles) +
+                                      ", needs fewer; leave instances out, or bake parts of it");
+        for (unsigned c = 0; c < node->mNumChildren; ++c) open.push_back({node->mChildren[c], depth + 1});
+    }
+}
+
+}  // namespace
+
+void check_mesh_file(const std::filesystem::path& file, Assimp::Importer& importer)
+{
+    const Bytes bytes = map_file(file);
+    const std::string extension = lower_case(file.extension().string());
+    if (extension == ".zae") throw FileError(file.string(), "is a packed COLLADA file, which is not looked into; unpack it (unzip) and give the .dae in it");
+    if (extension == ".gltf" || extension == ".glb") check_gltf(bytes.view, file.string());  // assimp goes by the ending, too
+    if (is_collada(bytes.view, extension)) check_collada(bytes.view, file.string());
+    if (extension == ".ply" || is_ply(bytes.view)) take_ply(bytes.view, file.string(), importer);
+}
+
+void check_mesh_scene(const aiScene& scene, const std::string& file)
+{
+    std::vector<std::uint64_t> triangles;  // of each mesh
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) triangles.push_back(checked_triangles(*scene.mMeshes[m], m, file));
+    check_instances(scene, triangles, file);
+}
+
+}  // namespace spawnfield
