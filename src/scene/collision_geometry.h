@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/mesh.h"
+#include "mesh/mesh_file.h"
 
 #include <array>
 

@@ -1,5 +1,7 @@
 #include "scene/ground_rules.h"
 
+#include "scene/glob.h"
+
 #include <algorithm>
 #include <cctype>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "scene/ply_file.h"
+#include "mesh/ply_file.h"
 
 #include "base/number.h"
 #include "base/text.h"

@@ -1,4 +1,4 @@
-#include "scene/printing_units.h"
+#include "mesh/printing_units.h"
 
 #include "base/input_file.h"
 #include "base/text.h"

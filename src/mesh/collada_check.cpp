@@ -1,7 +1,7 @@
-#include "scene/collada_check.h"
+#include "mesh/collada_check.h"
 
 #include "base/text.h"
-#include "scene/collada_numbers.h"
+#include "mesh/collada_numbers.h"
 
 #include <spawnfield/error.h>
 

@@ -1,10 +1,10 @@
-#include "scene/mesh_checks.h"
+#include "mesh/mesh_checks.h"
 
 #include "base/bytes.h"
 #include "base/text.h"
-#include "scene/collada_check.h"
-#include "scene/gltf_check.h"
-#include "scene/ply_file.h"
+#include "mesh/collada_check.h"
+#include "mesh/gltf_check.h"
+#include "mesh/ply_file.h"
 
 #include <spawnfield/error.h>
 

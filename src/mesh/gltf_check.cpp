@@ -1,4 +1,4 @@
-#include "scene/gltf_check.h"
+#include "mesh/gltf_check.h"
 
 #include <spawnfield/error.h>
 

@@ -1,4 +1,4 @@
-#include "scene/collada_numbers.h"
+#include "mesh/collada_numbers.h"
 
 #include "base/number.h"
 #include "base/text.h"

@@ -1,4 +1,4 @@
-#include "scene/gltf_file.h"
+#include "mesh/gltf_file.h"
 
 #include <spawnfield/error.h>
 

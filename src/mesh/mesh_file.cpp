@@ -1,11 +1,11 @@
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/gltf_file.h"
-#include "scene/mesh.h"
-#include "scene/mesh_checks.h"
-#include "scene/obj_text.h"
-#include "scene/printing_units.h"
+#include "mesh/gltf_file.h"
+#include "mesh/mesh_checks.h"
+#include "mesh/mesh_file.h"
+#include "mesh/obj_text.h"
+#include "mesh/printing_units.h"
 
 #include <spawnfield/error.h>
 

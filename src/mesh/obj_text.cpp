@@ -1,4 +1,4 @@
-#include "scene/obj_text.h"
+#include "mesh/obj_text.h"
 
 #include "base/text.h"
 
