@@ -95,7 +95,7 @@ TEST_CASE("info tells of a robot's links, meshes, footprint and contacts, and dr
     boxes(folder);
     const ProgramRun run = run_program(folder, "info robot.yaml --picture robot.png");
     CHECK(run.status == 0);
-    CHECK_THAT(run.out, Contains("  hull: box, from -1, -0.5, 0.15 to 1, 0.5, 0.65 m\n") && Contains("turns within 1.118") && Contains("contacts\n  none given"));
+    CHECK_THAT(run.out, Contains("  hull: box, from -1, -0.5, 0.15 to 1, 0.5, 0.65 m\n") && Contains("turns within 1.118") && Contains("contacts\n  none given") && Contains("lowest point\n  -1, "));
     CHECK(bytes_of(folder / "robot.png").starts_with("\x89PNG"));
     CHECK(run_program(folder, "info robot.yaml --picture none/robot.png").status == 1);
 }

@@ -91,6 +91,8 @@ Json robot_json(const Robot& robot)
     out["turning_radius"] = turning_radius(robot);
     out["contacts"] = Json::array();
     for (const Vec3& contact : robot.contacts) out["contacts"].push_back(json_of(contact));
+    if (const RobotContacts contacts = robot_contacts(robot); !contacts.given)
+        for (const Vec3& contact : contacts.points) out["contacts_taken"].push_back(json_of(contact));
     out["notices"] = robot.notices;
     return out;
 }
@@ -192,8 +194,9 @@ std::string robot_lines(const Json& robot)
     for (const Json& mesh : robot["meshes"]) out += mesh_line(mesh);
     out += "footprint\n  turns within " + metres(Json::array({robot["turning_radius"]})) + " m of its origin\n";
     out += "contacts\n";
-    if (robot["contacts"].empty()) out += "  none given: --max-slope takes the corners of what lies within 2 cm of the lowest point\n";
-    for (const Json& contact : robot["contacts"]) out += "  " + metres(contact) + " m\n";
+    const bool are_taken = robot.contains("contacts_taken");
+    if (are_taken) out += "  none given: --max-slope takes the corners of what lies within 2 cm of the lowest point\n";
+    for (const Json& contact : robot[are_taken ? "contacts_taken" : "contacts"]) out += "  " + metres(contact) + " m\n";
     return out;
 }
 
