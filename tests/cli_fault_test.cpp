@@ -173,6 +173,7 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
     desk.write("word.csv", "x,y,z\n1,2,3\n1,two,3\n");
     desk.write("column.csv", "x,z\n1,2\n");
     desk.write("upper.csv", "X,Y,Z\n1,2,3\n");
+    std::filesystem::create_symlink("/dev/zero", desk / "endless.yaml");
     desk.remember();
     const std::string keys = "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, scale, solid, "
                              "sides, labels, unknown";
@@ -189,6 +190,8 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
          "spawnfield: upper.csv: line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw; there is X, but names are lower case"},
         {"info typo.yaml", "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
         {"info none", "spawnfield: none: does not exist; is the path right?"},
+        {"info endless.yaml", "spawnfield: endless.yaml: is no file"},
+        {"bake endless.yaml -o new", "spawnfield: endless.yaml: is no file"},
         {"check map --poses none.csv -o out" + husky, "spawnfield: none.csv: is missing or cannot be read"},
         {"check map --poses word.csv -o out" + husky, "spawnfield: word.csv: line 3: column y is \"two\", needs a number"},
         {"check map --poses column.csv -o out" + husky, "spawnfield: column.csv: line 1: column y is missing, needs a header x,y,z,roll,pitch,yaw"},

@@ -200,8 +200,11 @@ std::string robot_lines(const Json& robot)
     return out;
 }
 
+/// Of a file; of anything else, as a pipe, which could be without end, nothing.
 std::string text_of(const fs::path& file)
 {
+    std::error_code unreachable;
+    if (!fs::is_regular_file(file, unreachable)) return "";
     std::ifstream stream(file);
     std::stringstream text;
     text << stream.rdbuf();
