@@ -104,6 +104,13 @@ std::string binary_square(bool big, const std::string& line_end = "\n")
 
 }  // namespace
 
+TEST_CASE("JSON that does not end as glTF does is not guessed at")
+{
+    const TempFolder folder;
+    CHECK_THROWS_WITH(load_scene(folder.write("region.geojson", std::string(200000, '['))),
+                      (folder / "region.geojson").string() + ": cannot be read as a mesh: is JSON, and \".geojson\" is no ending of glTF (.gltf, .glb)");
+}
+
 TEST_CASE("PLY is read in text and in either order of bytes, whatever else it holds")
 {
     const TempFolder folder;

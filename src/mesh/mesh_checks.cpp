@@ -122,6 +122,10 @@ void check_mesh_file(const std::filesystem::path& file, Assimp::Importer& import
 {
     const Bytes bytes = map_file(file);
     const std::string extension = lower_case(file.extension().string());
+    const std::size_t first = bytes.view.find_first_not_of(" \t\r\n");
+    const bool is_json = first != std::string_view::npos && (bytes.view[first] == '{' || bytes.view[first] == '[');
+    if (is_json && !importer.IsExtensionSupported(extension))  // assimp would try its reader of glTF, as deep as the text goes
+        throw FileError(file.string(), "cannot be read as a mesh: is JSON, and \"" + extension + "\" is no ending of glTF (.gltf, .glb)");
     if (extension == ".zae") throw FileError(file.string(), "is a packed COLLADA file, which is not looked into; unpack it (unzip) and give the .dae in it");
     if (extension == ".gltf" || extension == ".glb") check_gltf(bytes.view, file.string());  // assimp goes by the ending, too
     if (is_collada(bytes.view, extension)) check_collada(bytes.view, file.string());

@@ -211,6 +211,13 @@ std::string text_of(const fs::path& file)
     return text.str();
 }
 
+/// False for links that go round in circles, too.
+bool is_folder(const fs::path& path)
+{
+    std::error_code unreachable;
+    return fs::is_directory(path, unreachable);
+}
+
 /// An SDF model that can move, rather than a world or a piece of scenery.
 bool is_moving_model(const std::string& text)
 {
@@ -224,7 +231,7 @@ bool is_robot(const std::string& what, bool has_robot_options, bool has_scene_op
     const std::string extension = fs::path(what).extension().string();
     if (has_scene_options && !has_robot_options && !what.starts_with("box:") && extension != ".yaml" && extension != ".yml") return false;
     if (what.starts_with("box:") || extension == ".urdf" || extension == ".xacro") return true;
-    if (fs::is_directory(what)) {
+    if (is_folder(what)) {
         if (!fs::exists(fs::path(what) / "model.config")) return false;
         return has_robot_options || is_moving_model(text_of(fs::path(what) / "model.sdf"));
     }
@@ -243,7 +250,7 @@ int run_info(const InfoArgs& args, const CLI::App& command)
         return std::any_of(options.begin(), options.end(), [&](const std::string& option) { return command.count(option) > 0; });
     };
     const bool robot_given = is_robot(args.what, has_one_of(robot_options_of_info), has_one_of(scene_option_names));
-    if (fs::is_directory(args.what) && !robot_given && !fs::exists(fs::path(args.what) / "model.config")) {
+    if (is_folder(args.what) && !robot_given && !fs::exists(fs::path(args.what) / "model.config")) {
         refuse(command, scene_option_names, "is for a scene; " + args.what + " is a map's folder");
         refuse(command, robot_options_of_info, "is for a robot; " + args.what + " is a map's folder");
         refuse(command, {"--model-path"}, "is for a scene or a robot; " + args.what + " is a map's folder");
