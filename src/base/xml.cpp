@@ -5,6 +5,7 @@
 #include <spawnfield/error.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace spawnfield {
 
@@ -29,6 +30,14 @@ std::string text_of(const Xml& parent, const char* name)
     const Xml* const child = parent.FirstChildElement(name);
     return child != nullptr && child->GetText() != nullptr ? trimmed(child->GetText()) : "";
 }
+
+std::string attribute_of(const Xml& element, const char* name)
+{
+    const char* const value = element.Attribute(name);
+    return value == nullptr ? "" : value;
+}
+
+bool is_named(const Xml& element, const char* name) { return std::strcmp(element.Name(), name) == 0; }
 
 std::string line_of(const Xml& element) { return "line " + std::to_string(element.GetLineNum()) + ": "; }
 

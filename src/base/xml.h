@@ -16,6 +16,8 @@ std::unique_ptr<tinyxml2::XMLDocument> read_xml(const std::filesystem::path& fil
 
 std::string text_of(const Xml& parent, const char* name);  ///< of its first child of that name, trimmed; "" if there is none
 std::string line_of(const Xml& element);                   ///< "line 3: "
+std::string attribute_of(const Xml& element, const char* name);  ///< "" if it has none
+bool is_named(const Xml& element, const char* name);
 
 /// `name` is null: every child.
 template <class Visit>

@@ -25,12 +25,6 @@ void add_robot(XMLElement& world, const RobotStart& robot, const std::string& ur
     add_text(include, "pose", spaced(robot));
 }
 
-const char* attribute_of(const XMLElement& element, const char* name)
-{
-    const char* const value = element.Attribute(name);
-    return value == nullptr ? "" : value;
-}
-
 /// Of the model that an <include> without <name> brings; empty if it is found nowhere.
 std::string name_of_included(const XMLElement& include, const SdfWorldOptions& options, ModelPaths& paths)
 {

@@ -1,32 +1,20 @@
 #include "mesh/collada_check.h"
 
 #include "base/text.h"
+#include "base/xml.h"
 #include "mesh/collada_numbers.h"
 
 #include <spawnfield/error.h>
 
-#include <tinyxml2.h>
-
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <unordered_map>
 
 namespace spawnfield {
 namespace {
 
-using Xml = tinyxml2::XMLElement;
-
 constexpr std::uint64_t most_nodes = 1000000;
 constexpr int most_depth = 500;
-
-bool is(const Xml& element, const char* name) { return std::strcmp(element.Name(), name) == 0; }
-
-std::string text_of(const Xml& element, const char* attribute)
-{
-    const char* const value = element.Attribute(attribute);
-    return value == nullptr ? "" : value;
-}
 
 /// What the nodes of the scene come to when each <instance_node> is replaced by what it names.
 class NodeCheck {
@@ -35,18 +23,18 @@ public:
     {
         for (const Xml* library = collada.FirstChildElement("library_nodes"); library != nullptr; library = library->NextSiblingElement("library_nodes"))
             for (const Xml* node = library->FirstChildElement("node"); node != nullptr; node = node->NextSiblingElement("node"))
-                library_[text_of(*node, "id")] = node;
+                library_[attribute_of(*node, "id")] = node;
         for (const Xml* library = collada.FirstChildElement("library_visual_scenes"); library != nullptr;
              library = library->NextSiblingElement("library_visual_scenes"))
             for (const Xml* scene = library->FirstChildElement("visual_scene"); scene != nullptr; scene = scene->NextSiblingElement("visual_scene"))
-                scenes_["#" + text_of(*scene, "id")] = scene;
+                scenes_["#" + attribute_of(*scene, "id")] = scene;
     }
 
     void visit(const Xml& collada)
     {
         const Xml* const scene = collada.FirstChildElement("scene");
         const Xml* const instance = scene == nullptr ? nullptr : scene->FirstChildElement("instance_visual_scene");
-        const auto root = instance == nullptr ? scenes_.end() : scenes_.find(text_of(*instance, "url"));
+        const auto root = instance == nullptr ? scenes_.end() : scenes_.find(attribute_of(*instance, "url"));
         if (root == scenes_.end()) return;  // assimp says so
         add_names(*root->second);
         size_of(*root->second, 1);
@@ -60,7 +48,7 @@ private:
 
     FileError fault(const Xml& node, const std::string& what) const
     {
-        const std::string name = node.Attribute("name") != nullptr ? text_of(node, "name") : text_of(node, "id");
+        const std::string name = node.Attribute("name") != nullptr ? attribute_of(node, "name") : attribute_of(node, "id");
         return FileError(file_, "line " + std::to_string(node.GetLineNum()) + ": <" + node.Name() + "> \"" + name + "\" " + what);
     }
 
@@ -74,7 +62,7 @@ private:
     /// As assimp looks for it: a library's node of that id, else the scene's first node of that id or name.
     const Xml* target_of(const Xml& instance) const
     {
-        const std::string url = text_of(instance, "url"), name = url.empty() ? url : url.substr(1);
+        const std::string url = attribute_of(instance, "url"), name = url.empty() ? url : url.substr(1);
         if (const auto found = library_.find(name); found != library_.end()) return found->second;
         const auto found = named_.find(name);
         return found == named_.end() ? nullptr : found->second;
@@ -88,8 +76,8 @@ private:
         if (!is_new && depth + entry->second.depth <= most_depth) return entry->second;
         Size size{1, 1};
         for (const Xml* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
-            if (is(*child, "instance_geometry") || is(*child, "instance_controller")) ++size.nodes;
-            const Xml* const held = is(*child, "node") ? child : is(*child, "instance_node") ? target_of(*child) : nullptr;
+            if (is_named(*child, "instance_geometry") || is_named(*child, "instance_controller")) ++size.nodes;
+            const Xml* const held = is_named(*child, "node") ? child : is_named(*child, "instance_node") ? target_of(*child) : nullptr;
             if (held == nullptr) continue;
             const Size of_held = size_of(*held, depth + 1);
             size.nodes += of_held.nodes;

@@ -2,6 +2,7 @@
 
 #include "base/number.h"
 #include "base/text.h"
+#include "base/xml.h"
 
 #include <spawnfield/error.h>
 
@@ -9,24 +10,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <unordered_map>
 #include <vector>
 
 namespace spawnfield {
 namespace {
 
-using Xml = tinyxml2::XMLElement;
-
 constexpr std::uint64_t most_index = 2147483647;
-
-bool is(const Xml& element, const char* name) { return std::strcmp(element.Name(), name) == 0; }
-
-std::string text_of(const Xml& element, const char* attribute)
-{
-    const char* const value = element.Attribute(attribute);
-    return value == nullptr ? "" : value;
-}
 
 /// Words between white space.
 template <class Visit>
@@ -65,14 +55,14 @@ public:
 private:
     void visit(const Xml& element)  // recursive: tinyxml2 has limited the depth
     {
-        if (is(element, "unit")) check_unit(element);
-        else if (is(element, "float_array")) check_array(element, true);
-        else if (is(element, "Name_array") || is(element, "IDREF_array")) check_array(element, false);
-        else if (is(element, "accessor")) accessors_.push_back(&element);
-        else if (is(element, "vertex_weights")) check_weights(element);
-        else if (is(element, "color")) check_color(element);
+        if (is_named(element, "unit")) check_unit(element);
+        else if (is_named(element, "float_array")) check_array(element, true);
+        else if (is_named(element, "Name_array") || is_named(element, "IDREF_array")) check_array(element, false);
+        else if (is_named(element, "accessor")) accessors_.push_back(&element);
+        else if (is_named(element, "vertex_weights")) check_weights(element);
+        else if (is_named(element, "color")) check_color(element);
         else if (const Shape* const shape = shape_of(element)) check_shape(element, *shape);
-        else if (is(element, "node")) check_transforms(element);
+        else if (is_named(element, "node")) check_transforms(element);
         for (const Xml* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) visit(*child);
     }
 
@@ -85,7 +75,7 @@ private:
     {
         static constexpr std::array<Shape, 7> shapes{{{"triangles", 3, 0}, {"polylist", 0, 0}, {"polygons", 0, 1}, {"trifans", 0, 3},
                                                       {"tristrips", 0, 3}, {"lines", 0, 0}, {"linestrips", 0, 0}}};
-        const auto found = std::find_if(shapes.begin(), shapes.end(), [&](const Shape& shape) { return is(element, shape.name); });
+        const auto found = std::find_if(shapes.begin(), shapes.end(), [&](const Shape& shape) { return is_named(element, shape.name); });
         return found == shapes.end() ? nullptr : &*found;
     }
 
@@ -98,7 +88,7 @@ private:
     /// The attribute as a whole number; `usual` where there is none.
     std::uint64_t whole(const Xml& element, const char* attribute, std::uint64_t usual, std::uint64_t most = most_index) const
     {
-        const std::string text = text_of(element, attribute);
+        const std::string text = attribute_of(element, attribute);
         std::uint64_t value = usual;
         if (element.Attribute(attribute) != nullptr && (!parse_index(trimmed(text), value) || value > most))
             throw fault(element, std::string("has ") + attribute + " " + quoted(text) + ", needs a whole number of 0 .. " + std::to_string(most));
@@ -149,7 +139,7 @@ private:
         else for_each_word(array, [&](std::string_view) { ++found; });
         if (const std::uint64_t count = whole(array, "count", 0); count != found)
             throw fault(array, "has count " + std::to_string(count) + ", but holds " + std::to_string(found) + "; is the file damaged?");
-        sizes_[text_of(array, "id")] = found;
+        sizes_[attribute_of(array, "id")] = found;
     }
 
     void check_accessor(const Xml& accessor) const
@@ -157,7 +147,7 @@ private:
         const std::uint64_t count = whole(accessor, "count", 0), stride = whole(accessor, "stride", 1), offset = whole(accessor, "offset", 0);
         std::uint64_t params = 0;
         for (const Xml* param = accessor.FirstChildElement("param"); param != nullptr; param = param->NextSiblingElement("param")) ++params;
-        const std::string source = text_of(accessor, "source");
+        const std::string source = attribute_of(accessor, "source");
         const auto array = sizes_.find(source.empty() ? source : source.substr(1));
         if (array == sizes_.end() || count == 0) return;  // assimp looks for it, and says so if there is none
         const std::uint64_t needs = offset + (count - 1) * stride + std::max<std::uint64_t>(params, 1);
@@ -179,9 +169,9 @@ private:
         const std::uint64_t found = numbers(color);
         const Xml* const parent = color.Parent()->ToElement();
         const Xml* const above = parent == nullptr ? nullptr : parent->Parent()->ToElement();
-        if (above == nullptr || is(*above, "technique_common")) return;  // of a light, which has three
+        if (above == nullptr || is_named(*above, "technique_common")) return;  // of a light, which has three
         for (const char* name : of_material)
-            if (is(*parent, name) && found < 4) throw fault(color, "has " + std::to_string(found) + " numbers, needs 4");
+            if (is_named(*parent, name) && found < 4) throw fault(color, "has " + std::to_string(found) + " numbers, needs 4");
     }
 
     void check_shape(const Xml& element, const Shape& shape) const
@@ -191,7 +181,7 @@ private:
             stride = std::max(stride, 1 + whole(*input, "offset", 0, 255));
         const std::uint64_t faces = whole(element, "count", 0);
         std::uint64_t wanted = faces * shape.corners * stride, found = 0;
-        if (is(element, "polylist")) {
+        if (is_named(element, "polylist")) {
             Indices sizes;
             if (const Xml* const vcount = element.FirstChildElement("vcount")) sizes = indices(*vcount, 1);
             if (sizes.count != faces)
@@ -200,7 +190,7 @@ private:
             wanted = sizes.sum * stride;
         }
         check_corners(element, shape, stride, found);
-        const bool counted = shape.corners > 0 || is(element, "polylist");
+        const bool counted = shape.corners > 0 || is_named(element, "polylist");
         if (counted && found != wanted)
             throw fault(element, "has " + std::to_string(found) + " numbers in <p>, needs " + std::to_string(wanted) + " for its " + std::to_string(faces) +
                                      " faces");
@@ -210,8 +200,8 @@ private:
     void check_corners(const Xml& element, const Shape& shape, std::uint64_t stride, std::uint64_t& found) const
     {
         for (const Xml* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
-            if (is(*child, "h")) indices(*child);
-            if (is(*child, "p")) {
+            if (is_named(*child, "h")) indices(*child);
+            if (is_named(*child, "p")) {
                 const std::uint64_t count = indices(*child).count;
                 if (count % stride != 0 || count / stride < shape.least)
                     throw fault(*child, "has " + std::to_string(count) + " numbers, needs " + std::to_string(stride) + " for each corner and " +
@@ -229,7 +219,7 @@ private:
             {{"matrix", 16}, {"translate", 3}, {"rotate", 4}, {"scale", 3}, {"lookat", 9}, {"skew", 7}}};
         for (const Xml* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
             for (const auto& [name, size] : transforms)
-                if (is(*child, name))
+                if (is_named(*child, name))
                     if (const std::uint64_t found = numbers(*child); found != size)
                         throw fault(*child, "has " + std::to_string(found) + " numbers, needs " + std::to_string(size));
     }
@@ -241,6 +231,6 @@ private:
 
 }  // namespace
 
-void check_collada_numbers(const tinyxml2::XMLElement& root, const std::string& file) { NumberCheck(file).check(root); }
+void check_collada_numbers(const Xml& root, const std::string& file) { NumberCheck(file).check(root); }
 
 }  // namespace spawnfield

@@ -205,8 +205,9 @@ void check_used(const Nodes& found, const std::string& file)
     }
 }
 
-/// The JSON of a binary file, which both versions have at the same place, or the file itself.
-std::string_view json_of(std::string_view bytes, const std::string& file)
+}  // namespace
+
+std::string_view gltf_json(std::string_view bytes, const std::string& file)
 {
     constexpr std::size_t head = 20;
     if (!bytes.starts_with("glTF")) return bytes;
@@ -219,11 +220,9 @@ std::string_view json_of(std::string_view bytes, const std::string& file)
     return json.substr(0, json.find_last_not_of('\0') + 1);  // some fill up with zeros in place of spaces
 }
 
-}  // namespace
-
 void check_gltf(std::string_view bytes, const std::string& file)
 {
-    const std::string_view json = json_of(bytes, file);
+    const std::string_view json = gltf_json(bytes, file);
     NodeReader reader(file);
     Json::sax_parse(json.begin(), json.end(), &reader);
     const Nodes found = reader.take();

@@ -1,42 +1,21 @@
 #include "mesh/gltf_file.h"
 
+#include "base/bytes.h"
+#include "mesh/gltf_check.h"
+
 #include <spawnfield/error.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 namespace spawnfield {
 namespace {
 
 using nlohmann::json;
-
-static_assert(std::endian::native == std::endian::little, "a .glb counts in little-endian numbers");
-
-/// The JSON of a .gltf, or that of a .glb, which is its first chunk.
-std::string json_text(const std::filesystem::path& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    std::array<std::uint32_t, 5> head{};  // magic, version, length; the chunk's length and type
-    constexpr std::uint32_t gltf = 0x46546C67, json_chunk = 0x4E4F534A;
-    stream.read(reinterpret_cast<char*>(head.data()), sizeof head);
-    if (stream && head[0] == gltf) {
-        if (head[4] != json_chunk || head[3] > std::filesystem::file_size(file)) return {};
-        std::string text(head[3], '\0');
-        stream.read(text.data(), std::streamsize(text.size()));
-        return text;
-    }
-    stream.clear();
-    stream.seekg(0);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// The member or element; null if there is none or `of` has none: files are not to be trusted.
 const json& at(const json& of, const char* key)
@@ -172,7 +151,7 @@ std::string place_of(const std::vector<std::string>& nodes)
 
 GltfFacts examine_gltf(const std::filesystem::path& file)
 {
-    const json root = json::parse(json_text(file), nullptr, false);
+    const json root = json::parse(gltf_json(map_file(file).view, file.string()), nullptr, false);
     GltfFacts facts;
     if (!text_of(at(at(root, "asset"), "version")).starts_with("2")) return facts;
     check_required(root, file);

@@ -18,14 +18,15 @@ constexpr std::array ground_names{"ground*", "terrain*", "floor*", "road*", "str
 constexpr std::array furniture_names{"light*", "lamp*", "sign*", "block*", "barrier*", "rail*", "cone*", "post*", "pole*",
                                      "roadblock*", "roadsign*", "streetlight*", "streetlamp*", "floorlamp*", "rampart*"};
 
-bool is_letter(char c, bool upper) { return upper ? std::isupper(static_cast<unsigned char>(c)) : std::islower(static_cast<unsigned char>(c)); }
+/// Between "e" and "R" of "bridgeRailing".
+bool is_hump(unsigned char before, unsigned char after) { return std::islower(before) && std::isupper(after); }
 
 /// Whether the glob matches the name from a word's start: "GroundB_01" in "warehouse_GroundB_01".
 bool matches_from_a_word(const std::string& glob, const std::string& name, bool from_humps = false)
 {
     for (std::size_t start = 0; start < name.size(); ++start) {
         const bool is_start = start == 0 || !std::isalnum(static_cast<unsigned char>(name[start - 1])) ||
-                              (from_humps && is_letter(name[start - 1], false) && is_letter(name[start], true));
+                              (from_humps && is_hump(static_cast<unsigned char>(name[start - 1]), static_cast<unsigned char>(name[start])));
         if (is_start && matches(glob, name.substr(start))) return true;
     }
     return false;

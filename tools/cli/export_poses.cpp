@@ -6,7 +6,7 @@ namespace {
 void write(const ExportJob& job)
 {
     const ExportArgs& args = job.args;
-    export_poses(args, job.command, args.simulator, args.poses, {args.format, args.out, args.robot, 1, robot_options(args).joints, robot_options(args).model_paths}, job.session);
+    export_poses(args, job.command, args.simulator, args.poses, {args.format, args.out, args.robot, 1, robot_options(args)}, job.session);
 }
 
 ExportFormat row(const char* name, const char* about)

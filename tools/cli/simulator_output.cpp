@@ -184,7 +184,7 @@ void SimulatorOutput::check_rules(const std::string& option, std::span<const std
 void SimulatorOutput::tell_joints() const
 {
     const bool says_so = is("ros1-launch") || is("json") || (is("mujoco") && !args_.joint_qpos.empty());
-    if (target_.joints.empty() || says_so) return;
+    if (target_.reading.joints.empty() || says_so) return;
     notice(common_, "--format " + target_.format + " says nothing about joints: robots start with theirs at 0, unless you put them where --joints has them" +
                         (is("mujoco") ? " (--joint-qpos)" : ""));
 }
@@ -206,7 +206,7 @@ void SimulatorOutput::settle_launch()
     if (!args_.topic.empty() && !args_.robot_file.empty()) throw ArgumentError("--topic and --robot-file are both given; robots are made of one of them");
     if (args_.topic.empty()) launch_.file = own_file();
     if (fs::is_directory(launch_.file)) launch_.file = scene_file_of(launch_.file).string();  // ROS spawns files
-    if (is("ros1-launch")) launch_.joints = target_.joints;
+    if (is("ros1-launch")) launch_.joints = target_.reading.joints;
     if (is("ros1-launch") && fs::exists(launch_.file) && model_placement(launch_.file).has_pose)
         throw ArgumentError("--format ros1-launch: " + launch_.file + " has a <pose> of its own, which gazebo_ros adds to the one of each robot; take it away");
     if (launch_.topic.empty() && launch_.file.empty())
@@ -229,7 +229,7 @@ void SimulatorOutput::settle_sdf()
     if (args_.world.empty()) return;
     sdf_.world_file = args_.world;
     sdf_.world_text = text_of_file(args_.world);
-    sdf_.model_paths = target_.model_paths;
+    sdf_.model_paths = target_.reading.model_paths;
     sdf_world({}, sdf_);  // to be told of a bad file now
     const std::string relative = first_relative_uri(sdf_.world_text);
     const bool is_beside = !target_.out.empty() && folder_of(target_.out) == folder_of(args_.world);

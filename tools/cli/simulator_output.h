@@ -35,8 +35,7 @@ public:
         std::string format, out;  ///< `out` as -o has it
         std::string robot;        ///< as --robot has it
         std::size_t count = 1;    ///< of robots, at most
-        std::vector<JointPosition> joints = {};  ///< as the robot was judged
-        std::vector<std::filesystem::path> model_paths = {};
+        RobotOptions reading = {};  ///< how the robot that was judged is read
     };
     /// Throws ArgumentError, FileError; OutputError where a folder may not be replaced. Tells of options without effect.
     SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target);

@@ -96,7 +96,7 @@ int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Opti
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     if (folder) tell_idle_options(args, app, args.format);
     std::optional<SimulatorOutput> output;
-    if (!folder) output.emplace(args, app, args.simulator, SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args).joints, robot_options(args).model_paths});
+    if (!folder) output.emplace(args, app, args.simulator, SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args)});
     const auto session = open_session(args);
     tell(*session);
     summary.lap("load");
