@@ -1,4 +1,5 @@
 # Debian packages; tools/install-dependencies.sh names them.
+list(APPEND CMAKE_MODULE_PATH ${PROJECT_SOURCE_DIR}/cmake)
 find_package(Threads REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(fcl REQUIRED)

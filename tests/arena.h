@@ -1,12 +1,13 @@
 #pragma once
 
+#include "paths.h"
 #include "catch.h"
 #include "program.h"
 
 #include <set>
 
-inline const std::string training_scene = "'" SPAWNFIELD_SOURCE "/maps/training/scene.yaml'";
-inline const std::string husky_option = " --robot '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml' ";
+inline const std::string training_scene = "'" + source_folder() + "/maps/training/scene.yaml'";
+inline const std::string husky_option = " --robot '" + source_folder() + "/maps/robots/husky.yaml' ";
 
 /// Names of what a folder holds.
 inline std::set<std::string> names_in(const std::filesystem::path& folder)

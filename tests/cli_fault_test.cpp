@@ -1,3 +1,4 @@
+#include "paths.h"
 #include "catch.h"
 #include "program.h"
 
@@ -12,7 +13,7 @@ struct Refusal {
     std::string arguments, message;
 };
 
-const std::string husky = " --robot '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml' ";
+const std::string husky = " --robot '" + source_folder() + "/maps/robots/husky.yaml' ";
 
 /// A folder with a map, poses, and an old result that must not be touched.
 class Desk : public TempFolder {

@@ -1,3 +1,4 @@
+#include "paths.h"
 #include "arena.h"
 
 #include <spawnfield/map.h>
@@ -68,8 +69,8 @@ TEST_CASE("every command has help with an example, and the program tells its ver
 TEST_CASE("every example works after README's steps, and leaves their files as they are")
 {
     const TempFolder folder;  // stands for /tmp and for the source folder
-    fs::create_symlink(SPAWNFIELD_CLI, folder / "spawnfield");
-    fs::create_symlink(SPAWNFIELD_SOURCE "/maps", folder / "maps");
+    fs::create_symlink(program_file(), folder / "spawnfield");
+    fs::create_symlink(source_folder() + "/maps", folder / "maps");
     for (const char* const name : {"poses.csv", "spawns.csv", "raster.csv"}) folder.write(name, "mine");
     for (const std::string& command : commands) {
         const std::string help = run_program(folder, command + " --help").out;
@@ -169,7 +170,7 @@ TEST_CASE("info tells of maps, scenes and robots, in words or JSON")
     const auto robot = nlohmann::json::parse(arena("info box:1,2,3 --json").out);
     CHECK(robot["kind"] == "robot");
     CHECK(robot["bounds"]["max"] == std::vector<double>{0.5, 1, 3});
-    CHECK_THAT(arena("info '" SPAWNFIELD_SOURCE "/maps/robots/husky.yaml'").out, Contains("robot husky\n  from  -0.495, -0.335, 0 m"));
+    CHECK_THAT(arena("info '" + source_folder() + "/maps/robots/husky.yaml'").out, Contains("robot husky\n  from  -0.495, -0.335, 0 m"));
     CHECK(arena("info map --summary s.json").status == 0);
     summary(arena / "s.json", "info");
 }

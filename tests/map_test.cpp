@@ -1,3 +1,4 @@
+#include "paths.h"
 #include "catch.h"
 #include "geometry/tile.h"
 #include "temp_folder.h"
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path training = SPAWNFIELD_SOURCE "/maps/training/scene.yaml";
+const fs::path training = source_folder() + "/maps/training/scene.yaml";
 
 BakeReport bake_training(const fs::path& folder, int threads = 0)
 {

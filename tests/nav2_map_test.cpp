@@ -1,3 +1,4 @@
+#include "paths.h"
 #include "base/cell_blocks.h"
 #include "base/pgm.h"
 #include "catch.h"
@@ -223,7 +224,7 @@ TEST_CASE("maps that make no sense are refused by file, key and line")
     options.wall_height = -1;
     CHECK_THROWS_WITH(load_scene(write_yaml(folder, "a.pgm"), options), "load_scene: wall_height is -1, needs > 0 m");
     options.wall_height = 1;
-    CHECK_THROWS_WITH(load_scene(SPAWNFIELD_SOURCE "/maps/training/scene.yaml", options), Contains("wall_height is for a 2D map"));
+    CHECK_THROWS_WITH(load_scene(source_folder() + "/maps/training/scene.yaml", options), Contains("wall_height is for a 2D map"));
 }
 
 TEST_CASE("a nav2 map bakes as it is, and robots stand where it is free")
@@ -257,6 +258,6 @@ TEST_CASE("a nav2 map bakes as it is, and robots stand where it is free")
         CHECK(refused.status == 2);
         CHECK_THAT(refused.err, Contains("--wall-height is " + height + ", needs > 0"));
     }
-    CHECK(run_program(folder, "info " SPAWNFIELD_SOURCE "/maps/training/scene.yaml --wall-height 0").status == 2);
+    CHECK(run_program(folder, "info " + source_folder() + "/maps/training/scene.yaml --wall-height 0").status == 2);
     CHECK(run_program(folder, "bake room.pgm -o map2").status == 4);
 }

@@ -1,3 +1,4 @@
+#include "paths.h"
 #include "program.h"
 
 #include <sys/wait.h>
@@ -8,7 +9,7 @@ ProgramRun run(const TempFolder& folder, const std::string& before, const std::s
 {
     const std::string out = (folder / ".out").string(), err = (folder / ".err").string();
     const std::string command = "exec </dev/null >'" + out + "' 2>'" + err + "'; cd '" + folder.path().string() + "' && " + before +
-                                " '" SPAWNFIELD_CLI "' " + arguments;
+                                " '" + program_file() + "' " + arguments;
     const int status = std::system(command.c_str());
     const ProgramRun result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(out), bytes_of(err)};
     std::filesystem::remove(out);

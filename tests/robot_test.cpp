@@ -1,3 +1,4 @@
+#include "paths.h"
 #include "catch.h"
 #include "check_bounds.h"
 #include "mesh_text.h"
@@ -113,7 +114,7 @@ TEST_CASE("robot.yaml holds boxes, spheres, cylinders, capsules and contacts")
 
 TEST_CASE("the Husky of maps/robots is the thesis's")
 {
-    const Robot robot = load_robot((std::filesystem::path(SPAWNFIELD_SOURCE) / "maps/robots/husky.yaml").string());
+    const Robot robot = load_robot((std::filesystem::path(source_folder()) / "maps/robots/husky.yaml").string());
     check_bounds(robot.bounds(), {-0.495, -0.335, 0}, {0.495, 0.335, 0.39});
     CHECK(robot.contacts.size() == 4);
 }

@@ -1,3 +1,4 @@
+#include "paths.h"
 #include "catch.h"
 #include "mesh_text.h"
 #include "scene_text.h"
@@ -266,7 +267,7 @@ TEST_CASE("a bare mesh is scaled, then turned up")
 
 TEST_CASE("the training arena has the thesis's heights")
 {
-    const Scene scene = load_scene(std::filesystem::path(SPAWNFIELD_SOURCE) / "maps/training/scene.yaml");
+    const Scene scene = load_scene(std::filesystem::path(source_folder()) / "maps/training/scene.yaml");
     const Geometry geometry(scene);
     CHECK(scene.parts.size() == 16);
     const auto layers = [&](double x, double y) { return column_at(geometry, x, y).layers; };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "paths.h"
+
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -10,7 +12,7 @@ inline std::optional<std::filesystem::path> shared_scenes()
 {
     const char* const given = std::getenv("SPAWNFIELD_SCENES");
     const std::filesystem::path folder =
-        given != nullptr ? given : std::filesystem::path(SPAWNFIELD_SOURCE) / ".." / "shared" / "scenes";
+        given != nullptr ? given : std::filesystem::path(source_folder()) / ".." / "shared" / "scenes";
     if (std::filesystem::is_directory(folder)) return std::filesystem::canonical(folder);
     std::cout << "skipped: no shared scenes at " << folder.string() << " (SPAWNFIELD_SCENES says where they are)\n";
     return std::nullopt;

@@ -1,3 +1,4 @@
+#include "paths.h"
 #include "arena.h"
 #include "worlds/random.h"
 
@@ -346,9 +347,9 @@ TEST_CASE("patches lie on the ground below the spawns")
 TEST_CASE("the commands of each simulator's page work as they are written")
 {
     const TempFolder folder;  // stands for /tmp and for the source folder
-    fs::create_symlink(SPAWNFIELD_CLI, folder / "spawnfield");
-    fs::create_symlink(SPAWNFIELD_SOURCE "/maps", folder / "maps");
-    for (const auto& page : fs::directory_iterator(SPAWNFIELD_SOURCE "/docs/simulators")) {
+    fs::create_symlink(program_file(), folder / "spawnfield");
+    fs::create_symlink(source_folder() + "/maps", folder / "maps");
+    for (const auto& page : fs::directory_iterator(source_folder() + "/docs/simulators")) {
         std::istringstream text(bytes_of(page.path()));
         std::string script;
         bool is_code = false;

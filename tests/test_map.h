@@ -1,5 +1,6 @@
 #pragma once
 
+#include "paths.h"
 #include "random_scene.h"
 
 #include <spawnfield/map.h>
@@ -29,10 +30,10 @@ inline TestMap map_of(spawnfield::Scene scene, double resolution = 0.1, const sp
 
 inline TestMap training_map()
 {
-    return map_of(spawnfield::load_scene(SPAWNFIELD_SOURCE "/maps/training/scene.yaml"));
+    return map_of(spawnfield::load_scene(source_folder() + "/maps/training/scene.yaml"));
 }
 
-inline spawnfield::Robot husky() { return spawnfield::load_robot(SPAWNFIELD_SOURCE "/maps/robots/husky.yaml"); }
+inline spawnfield::Robot husky() { return spawnfield::load_robot(source_folder() + "/maps/robots/husky.yaml"); }
 
 inline spawnfield::CollisionChecker checker_of(const spawnfield::Map& map, const spawnfield::Robot& robot)
 {

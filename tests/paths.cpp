@@ -1,0 +1,13 @@
+#include "paths.h"
+
+const std::string& source_folder()
+{
+    static const std::string folder = SPAWNFIELD_SOURCE;
+    return folder;
+}
+
+const std::string& program_file()
+{
+    static const std::string file = SPAWNFIELD_CLI;
+    return file;
+}
