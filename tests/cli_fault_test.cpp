@@ -92,7 +92,7 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"check map --poses poses.csv -o out --max-slope inf" + husky, "spawnfield: --max-slope is inf, needs > 0 and < 90 degrees"},
         {"heatmap map -o out --max-slope -5" + husky, "spawnfield: --max-slope is -5, needs > 0 and < 90 degrees"},
         {raster + "--yaw inf", "spawnfield: --yaw is inf, needs a finite number, rad"},
-        {raster + "--offset inf", "spawnfield: --offset is inf, needs a finite number, m"},
+        {raster + "--offset inf", "spawnfield: --offset: \"inf\" is no finite number"},
         {raster + "--write-aerial", "spawnfield: --write-aerial is for --dims 3: in 2D poses stand on their layers"},
         {"raster map -o out --dims 2 --step 0.00001" + husky, "spawnfield: columns is 640001600001, needs at most 2147483647; take a larger step"},
         {raster3 + "--write-aerial --layers top",

@@ -44,7 +44,7 @@ std::string described(const RasterOptions& options)
 {
     std::ostringstream out = exact_numbers();
     out << "raster --dims " << options.dims << (options.height_check ? "" : " --no-height-check") << (options.snap ? " --snap" : "") << " --step " << options.step
-        << " --step-z " << options.step_z << " --offset " << options.offset << " --max-height " << options.max_height << " max-slope " << options.max_slope << " yaw "
+        << " --step-z " << options.step_z << " --offset " << options.offset.value_or(std::nan("")) << " --max-height " << options.max_height << " max-slope " << options.max_slope << " yaw "
         << options.yaw << " layers " << int(options.layers.kind) << " bounds " << described(options.bounds);
     return out.str();
 }
@@ -154,7 +154,7 @@ Tally of_sample(const TestMap& map, const CollisionChecker& checker, const Sampl
 {
     Tally tally;
     std::ostringstream query = exact_numbers();
-    query << "sample -n " << options.count << " --min-distance " << options.min_distance << " --offset " << options.offset << " max-slope "
+    query << "sample -n " << options.count << " --min-distance " << options.min_distance << " --offset " << options.offset.value_or(std::nan("")) << " max-slope "
           << options.max_slope << " --seed " << options.seed << " yaw " << (options.random_yaw ? "random" : std::to_string(options.yaw)) << " bounds " << described(options.bounds);
     compare_spawns(query.str(), sample(map, checker, options), sample(map, checker, exhaustive(options)), tally);
     return tally;

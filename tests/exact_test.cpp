@@ -380,7 +380,7 @@ TEST_CASE("with a mask that is made on first use, rasters are the same bytes at 
                 options.dims = dims;
                 options.snap = dims == 3;
                 options.step_z = 1.7;
-                options.offset = std::clamp(options.offset, 0.0, options.max_height);
+                options.offset = std::clamp(*options.offset, 0.0, options.max_height);
                 const RasterResult result = raster(map, checker, options);
                 text += csv(result) + std::to_string(result.exact_checks);
             }

@@ -222,7 +222,7 @@ std::optional<Verdict> verdict_at(const Map& map, const CollisionChecker& checke
     const int count = int(column.layers.size());
     for (int layer = 0; layer < count; ++layer)
         if (options.layers.includes(layer, count)) {
-            const Vec3 position(x, y, column.layers[std::size_t(layer)] + options.offset);
+            const Vec3 position(x, y, column.layers[std::size_t(layer)] + *options.offset);
             return judge(map, checker, column, {position, rotation_from_rpy(0, 0, options.yaw)}, options).verdict;
         }
     return std::nullopt;

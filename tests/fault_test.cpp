@@ -325,11 +325,11 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
     folder.write("map/map.yaml", bad);
     CHECK(read() == "@/map/map.yaml: differs from the hash in its last line: it was altered; bake the map again");
     bad = good;
-    bad.replace(0, bad.find('\n'), "format: spawnfield-map/3");
+    bad.replace(0, bad.find('\n'), "format: spawnfield-map/4");
     folder.write("map/map.yaml", bad);
-    CHECK(read() == "@/map/map.yaml: has format version 3, this program reads 2; bake the map again or use a newer spawnfield");
+    CHECK(read() == "@/map/map.yaml: has format version 4, this program reads 2 and 3; bake the map again or use a newer spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
-    CHECK(read() == "@/map/map.yaml: is no map.yaml of spawnfield (its first line is not `format: spawnfield-map/2`)");
+    CHECK(read() == "@/map/map.yaml: is no map.yaml of spawnfield (its first line is not `format: spawnfield-map/3`)");
     fs::remove(map / "map.yaml");
     CHECK(read() == "@/map: is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");

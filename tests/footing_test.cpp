@@ -289,6 +289,7 @@ TEST_CASE("frames, rails and pillars of a bridge that is terrain throughout are 
     const CollisionChecker checker = checker_of(map, husky());
     RasterOptions options;
     options.step = 0.11;
+    options.offset = 0.1;
     const RasterResult without = raster(map, checker, options);
     options.max_slope = rad(25);
     const RasterResult with = raster(map, checker, options);
@@ -296,7 +297,7 @@ TEST_CASE("frames, rails and pillars of a bridge that is terrain throughout are 
     REQUIRE(with.poses.size() == without.poses.size());
     for (std::size_t i = 0; i < with.poses.size(); ++i) {
         const RasterPose& pose = with.poses[i];
-        const double height = pose.z - options.offset;
+        const double height = pose.z - *options.offset;
         frames += without.poses[i].verdict == Valid && height > 2.5;
         if (pose.verdict != Valid) continue;
         CHECK((std::abs(height) < 1e-9 || std::abs(height - 2.2) < 1e-9));
@@ -447,6 +448,7 @@ TEST_CASE("samples stand, and footings are the same bytes at any number of threa
         samples.count = 60;
         samples.random_yaw = true;
         samples.offset = hard.offset;
+        samples.max_height = std::max(1.0, hard.offset);
         samples.max_slope = hard.max_slope;
         std::vector<std::string> texts;
         for (const int threads : {1, 2, 8}) {

@@ -84,8 +84,8 @@ Tally rasters_snapped(const TestMap& map, const CollisionChecker& checker, const
         options.step = random.chance(0.5) ? hard.resolution : wide_step(map, 31);
         options.bounds = crop_near(map, random, options.step, 14);
         options.snap = true;
-        options.offset = std::max(0.0, options.offset);
-        options.max_height = std::max(options.max_height, options.offset);
+        options.offset = std::max(0.0, *options.offset);
+        options.max_height = std::max(options.max_height, *options.offset);
         limit_heights(options, hard, random, 40);
         if (wide) options.step_z = random.between(0.5, 3);
         tally.add(of_raster(map, checker, options));
@@ -125,6 +125,7 @@ Tally samples(const TestMap& map, const CollisionChecker& checker, const HardCas
 {
     SampleOptions options = spawn_options<SampleOptions>(hard, random);
     options.offset = hard.offset;
+    options.max_height = std::max(1.0, hard.offset);
     return of_sample(map, checker, options);
 }
 

@@ -385,7 +385,7 @@ TEST_CASE("options and rasters out of range are named with their limits")
     CHECK_THROWS_WITH(write({}), Contains("raster.grid.cols is 0, needs >= 1"));
     raster.grid.step = 0;
     CHECK_THROWS_WITH(write({}), Contains("raster.grid.step is 0, needs > 0 m"));
-    CHECK_THROWS_AS(write_preview({}, "", folder / "a.png"), ArgumentError);
+    CHECK_THROWS_AS(write_preview({}, {}, folder / "a.png"), ArgumentError);
     CHECK_FALSE(std::filesystem::exists(folder / "a.png"));
 }
 
@@ -415,7 +415,9 @@ TEST_CASE("a preview shows terrain by height, obstacles grey, water blue and not
     add_page(terrain, "obstacle", obstacle);
     add_page(terrain, "water", [](double x, double) { return (x > 12 && x < 16) || x > 24 ? 1.0f : nothing; });
     const Folder folder;
-    write_preview(terrain, "preview", folder / "preview.png");
+    Map map;
+    map.name = "preview";
+    write_preview(map, terrain, folder / "preview.png");
     const Picture picture = read_picture(folder / "preview.png", {0, 0, 28, 8});
 
     CHECK(std::max(picture.image.cols, picture.image.rows) == 1000);

@@ -89,6 +89,7 @@ SampleOptions options_in(const Area& area, std::size_t count, double min_distanc
     options.min_distance = min_distance;
     options.seed = 4;
     options.area = area;
+    options.offset = 0.1;
     return options;
 }
 
@@ -267,7 +268,7 @@ TEST_CASE("a region that is full is proven so, and the same bytes at any number 
             if (!index.contains({x, y})) continue;
             const Column column = column_at(map.geometry, x, y);
             for (const double layer : column.layers) {
-                const Vec3 p(x, y, layer + options.offset);
+                const Vec3 p(x, y, layer + *options.offset);
                 ++probes;
                 const bool far = std::none_of(one.spawns.begin(), one.spawns.end(), [&](const Spawn& spawn) { return (spawn.position - p).norm() < 1.0; });
                 if (far) CHECK(judge(map, checker, column, {p, Mat3::Identity()}, options).verdict != Verdict::Valid);

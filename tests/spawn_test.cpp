@@ -37,6 +37,7 @@ SampleOptions sample_options(std::size_t count, double min_distance)
     options.count = count;
     options.min_distance = min_distance;
     options.random_yaw = true;
+    options.offset = 0.1;
     options.seed = 11;
     return options;
 }
@@ -69,7 +70,7 @@ Spawn valid_at(const Map& map, const CollisionChecker& checker, const SampleOpti
     const int count = int(column.layers.size());
     for (int layer = 0; layer < count; ++layer) {
         if (!options.layers.includes(layer, count)) continue;
-        const Spawn spawn{{x, y, column.layers[std::size_t(layer)] + options.offset}, options.random_yaw ? random.between(-M_PI, M_PI) : options.yaw};
+        const Spawn spawn{{x, y, column.layers[std::size_t(layer)] + *options.offset}, options.random_yaw ? random.between(-M_PI, M_PI) : options.yaw};
         QueryOptions query = options;
         query.max_height = 1e9;
         if (judge(map, checker, column, {spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}, query).verdict == Verdict::Valid) return spawn;
@@ -86,7 +87,7 @@ std::size_t room_left(const Map& map, const CollisionChecker& checker, const Sam
         for (int j = 0; j <= cells; ++j) {
             const Vec3 p = map.bounds.min + (map.bounds.max - map.bounds.min).cwiseProduct(Vec3(double(i) / cells, double(j) / cells, 0));
             for (const double layer : column_at(map.geometry, p.x(), p.y()).layers) {
-                const Vec3 at(p.x(), p.y(), layer + options.offset);
+                const Vec3 at(p.x(), p.y(), layer + *options.offset);
                 const bool clear = std::all_of(list.spawns.begin(), list.spawns.end(), [&](const Spawn& s) { return (s.position - at).norm() >= options.min_distance; });
                 if (clear && judged(map, checker, {at, random.between(-M_PI, M_PI)}, 1e9) == Verdict::Valid) ++count;
             }
@@ -370,10 +371,12 @@ TEST_CASE("cells that are proven closed hold no valid pose, in hard scenes")
         options.random_yaw = random.chance(0.5);
         options.yaw = hard.yaws[0];
         options.offset = hard.offset;
+        options.max_height = std::max(1.0, hard.offset);
         if (random.chance(0.2)) options.max_water_depth = random.between(0, 0.5);
         if (random.chance(0.2)) options.layers.kind = LayerChoice::Kind::Top;
         SpacedPoints taken(options.min_distance);
-        CellProofs proofs(map, checker, options, taken);
+        const AreaIndex everywhere{Area{}};
+        CellProofs proofs(map, checker, options, everywhere, taken);
         for (int n = 0; n < 60; ++n) {
             const double side = 2 * std::pow(0.5, random.below(8));
             const Bounds crop = compare::crop_near(map, random, side, 2);

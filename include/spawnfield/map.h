@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/floors.h>
 #include <spawnfield/occupancy.h>
 #include <spawnfield/solid_bounds.h>
 #include <spawnfield/terrain.h>
@@ -12,12 +13,14 @@ namespace spawnfield {
 struct Map {
     std::string name;
     Bounds bounds;                    ///< poses beyond them in x and y are `outside`
+    ZRange z_limits;                  ///< poses beyond them are `outside`, layers beyond them are no ground
     double resolution = 0.1;          ///< of the terrain, m
     double occupancy_resolution = 0;  ///< m
     Geometry geometry;
     SolidBounds solid_bounds;         ///< of the terrain's raster
     std::optional<GeoOrigin> origin;  ///< where it lies in a survey's coordinates
     int layers = 0;                   ///< most terrain layers above one cell centre
+    std::optional<std::vector<Floor>> floors;  ///< as find_floors; nothing: in a map of format version 2
     std::string scene_file;           ///< name of the file it was baked from
     std::string scene_hash;           ///< xxh64 of that file, 16 hexadecimal digits
     std::string hash;                 ///< of the map: of its files' checksums, 16 hexadecimal digits
@@ -31,6 +34,7 @@ struct BakeOptions {
     double resolution = 0;            ///< m; 0: 0.1 m, or coarser with a notice where that passes max_columns
     double occupancy_resolution = 0;  ///< m; 0: 2.5 times the resolution, or coarser with a notice where OctoMap needs it
     Bounds bounds = {};               ///< empty: the scene's
+    ZRange z = {};                    ///< z limits; without any: those of `bounds`, if given
     bool allow_no_terrain = false;
     int threads = 0;
     Progress progress = {};
@@ -48,7 +52,8 @@ struct BakeReport {
 
 /// Writes the map folder: map.yaml and map_files.
 ///
-/// Written into a temporary folder beside it, then renamed: an old map stays whole until the new one is complete. Other
+/// A map with z limits has terrain.tiff, heightmap.png, preview.png and occupancy.bt within them; its geometry stays whole, as
+/// a robot collides with solid space beyond them too. Written into a temporary folder beside it, then renamed: an old map stays whole until the new one is complete. Other
 /// files that lie in an old map's folder move to the new one. Throws FileError if the scene has no terrain (unless allowed)
 /// or does not meet the bounds, ArgumentError for bad options, OutputError.
 BakeReport bake(Scene scene, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
@@ -61,12 +66,16 @@ Map read_map(const std::filesystem::path& folder);
 /// The pages of terrain.tiff. Throws FileError.
 TerrainMap read_terrain(const Map& map);
 
+/// Map::floors, or where there are none find_floors of the terrain. Throws FileError.
+std::vector<Floor> floors_of(const Map& map);
+
 /// occupancy.bt. Throws FileError.
 OccupancyTree read_occupancy(const Map& map);
 
 /// Sizes and checksums of all files of the folder. Throws FileError at the first that differs.
 void verify_map(const std::filesystem::path& folder);
 
-inline constexpr int map_format_version = 2;
+/// Version 3 added z_limits and floors. Version 2 is read: without z limits, floors found anew from terrain.tiff.
+inline constexpr int map_format_version = 3;
 
 }  // namespace spawnfield

@@ -39,6 +39,7 @@ void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml
 
 struct GeoTiffOptions {
     LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< whose clearance and slope are told: one
+    ZRange z = {};       ///< layers beyond these heights, m, or beyond the map's z limits are left out
     bool survey = true;  ///< in the survey's coordinates where the map knows them by an EPSG code
     int threads = 0;
     Progress progress = {};

@@ -5,6 +5,7 @@
 #include <spawnfield/region.h>
 
 #include <atomic>
+#include <optional>
 
 namespace spawnfield {
 
@@ -53,6 +54,12 @@ Judgement judge(const Map& map, const CollisionChecker& checker, const Column& c
 std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& checker, const std::vector<Pose>& poses,
                                    const QueryOptions& options = {});
 
+/// The offset that puts the robot's lowest point 0.1 m above its layer, m.
+double auto_offset(const Robot& robot);
+
+/// Whether a robot with this offset collides with all flat ground: its lowest point is not above its layer.
+bool is_in_flat_ground(const Robot& robot, double offset);
+
 /// Which layers of a column count. The index counts from the top, 0 first.
 struct LayerChoice {
     enum class Kind { All, Top, Bottom, Index } kind = Kind::All;
@@ -73,10 +80,13 @@ struct LayerChoice {
 struct RasterOptions : QueryOptions {
     int dims = 2;                ///< 2: a pose per column and layer; 3: a pose per column and height
     Bounds bounds = {};          ///< empty: the map's; two-dimensional rasters leave z aside
-    Area area = {};              ///< columns elsewhere are left out: they give no pose and count nowhere
+    ZRange z = {};               ///< 2D: layers beyond these heights, m, or beyond the map's z limits are no ground
+    /// Columns and layers elsewhere are left out: they give no pose and count nowhere. 3D: of regions without z limits.
+    Area area = {};
     double step = 1.0;           ///< m between columns, > 0
     double step_z = 0;           ///< m between heights, > 0; 0: as step
-    double offset = 0.1;         ///< m of the origin above its layer (2D, snap); with snap 0 .. max_height
+    /// m of the origin above its layer (2D, snap); with snap 0 .. max_height. Nothing: auto_offset().
+    std::optional<double> offset = {};
     double yaw = 0;              ///< rad
     LayerChoice layers = {};     ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
     bool height_check = true;    ///< false (3D only): collisions alone, at every pose; max_slope is not asked for
@@ -100,7 +110,9 @@ struct RasterGrid {
 
 struct RasterPose {
     double x, y, z;
-    std::int32_t layer;  ///< the layer that is its ground (2D, snap: that it was placed on), 0 the highest; -1: its ground is no layer
+    /// The layer that is its ground (2D, snap: that it was placed on), 0 the highest; -1: its ground is no layer. Layers that
+    /// are no ground for the query (2D: RasterOptions::z, the map's z limits) are not counted.
+    std::int32_t layer;
     Verdict verdict;
     bool snapped = false;  ///< 3D: on a layer, in place of a step
 };
@@ -160,8 +172,9 @@ struct SearchOptions : SpawnOptions {
 SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOptions& options);
 
 struct SampleOptions : SpawnOptions {
-    double offset = 0.1;  ///< m of the origin above its layer
+    std::optional<double> offset = {};  ///< m of the origin above its layer, at most max_height; nothing: auto_offset()
     LayerChoice layers = {};
+    ZRange z = {};                      ///< layers beyond these heights, m, or beyond the map's z limits are no ground
 };
 
 /// Valid poses distributed uniformly by horizontal area over the feasible region of all chosen layers, each confirmed

@@ -7,7 +7,7 @@
 
 namespace spawnfield {
 
-/// A closed set of the map's x-y plane, m: what lies in any of some polygons.
+/// A closed set of the map's x-y plane, m: what lies in any of some polygons, at the heights of a range.
 ///
 /// A point is in a polygon if it is inside an odd number of its rings (so holes are rings too, and a ring that crosses itself has its
 /// doubly wound part outside), or within 1e-9 m of a ring.
@@ -16,12 +16,14 @@ struct Region {
     using Polygon = std::vector<Ring>;
     std::string name;  ///< in words for the user: its file
     std::vector<Polygon> polygons;
+    /// Heights of the region, m: of layers where poses stand on layers (sample, 2D rasters), of the robot's origin in `search`.
+    ZRange z = {};
     std::vector<std::string> notices = {};  ///< what was assumed while reading
 
-    Bounds bounds() const;  ///< of the rings; z is without limits
+    Bounds bounds() const;  ///< of the rings, and of z
 };
 
-/// Where poses are wanted, by their x and y.
+/// Where poses are wanted.
 struct Area {
     std::vector<Region> within = {};    ///< in any of these; none: everywhere
     std::vector<Region> keep_out = {};  ///< in none of these
@@ -30,7 +32,7 @@ struct Area {
     Bounds bounds() const;  ///< of `within`; infinite if that is everywhere
 };
 
-Region box_region(double x0, double y0, double x1, double y1);
+Region box_region(double x0, double y0, double x1, double y1, const ZRange& z = {});
 
 /// What of a nav2 map is the region: its free cells, or as its keepout filter has it the occupied ones.
 enum class MapCells { Free, Occupied };

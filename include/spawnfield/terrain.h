@@ -50,8 +50,9 @@ struct TerrainMap {
 /// A whole page, frame.rows x frame.cols; all NaN if there is no such page. Throws std::runtime_error on damaged tiles.
 HeightImage page_image(const TerrainMap& terrain, const std::string& name);
 
-/// Vertical rays at the cells' centres. O(elements + cells covered).
+/// Vertical rays at the cells' centres. Layers and water beyond the z limits are left out, and so are obstacles that begin
+/// above them or end below them. O(elements + cells covered).
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,
-                             const Progress& progress = {});
+                             const Progress& progress = {}, const ZRange& z_limits = {});
 
 }  // namespace spawnfield

@@ -14,6 +14,22 @@ namespace spawnfield {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
+/// A closed range of heights, m; without limits by default.
+struct ZRange {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+
+    bool is_unlimited() const { return *this == ZRange{}; }
+    bool contains(double z, double tolerance) const { return z >= low - tolerance && z <= high + tolerance; }
+    bool operator==(const ZRange&) const = default;
+};
+
+/// Heights in both ranges. Contains nothing if they are apart (low > high).
+inline ZRange overlap(const ZRange& a, const ZRange& b)
+{
+    return {a.low > b.low ? a.low : b.low, a.high < b.high ? a.high : b.high};
+}
+
 /// Axis-aligned box, closed. Empty while min > max.
 struct Bounds {
     Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
@@ -29,6 +45,7 @@ struct Bounds {
     {
         return (min.head(axes).array() <= other.max.head(axes).array()).all() && (max.head(axes).array() >= other.min.head(axes).array()).all();
     }
+    ZRange z() const { return {min.z(), max.z()}; }
     void extend(const Vec3& point)
     {
         min = min.cwiseMin(point);

@@ -2,6 +2,7 @@
 
 #include "column/surface_hit.h"
 
+#include <optional>
 #include <span>
 
 namespace spawnfield {
@@ -17,6 +18,27 @@ struct ColumnView {
 };
 
 std::optional<Ground> ground_below(const ColumnView& column, double z);
+
+/// Those of a column's layers or water surfaces, from the top down, that lie in the range, to touch_tolerance.
+inline std::span<const double> heights_within(std::span<const double> heights, const ZRange& z)
+{
+    std::size_t first = 0, end = heights.size();
+    while (first < end && heights[first] > z.high + touch_tolerance) ++first;
+    while (end > first && heights[end - 1] < z.low - touch_tolerance) --end;
+    return heights.subspan(first, end - first);
+}
+
+/// Top of the highest obstacle that begins within or below the range and ends within or above it, where it stands above the
+/// highest of the column's `layers` or there are none.
+inline std::optional<double> obstacle_above(const ColumnView& column, std::span<const double> layers, const ZRange& z)
+{
+    for (const Span& span : column.spans) {
+        if (span.bottom > z.high) continue;
+        if (span.top < z.low || (!layers.empty() && span.top <= layers.front())) return std::nullopt;
+        return span.top;
+    }
+    return std::nullopt;
+}
 
 /// Columns x0 + (col + shift) * step, y0 + (row + shift) * step.
 struct ColumnGrid {

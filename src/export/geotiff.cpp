@@ -63,12 +63,16 @@ struct Tiles {
     }
 };
 
-int most_layers(const Map& map, const GridFrame& frame, int threads)
+ZRange ground_z(const Map& map, const GeoTiffOptions& options) { return overlap(map.z_limits, options.z); }
+
+int most_layers(const Map& map, const GridFrame& frame, const GeoTiffOptions& options)
 {
+    const ZRange z = ground_z(map, options);
     const Tiles tiles(frame);
     std::vector<int> most(std::size_t(tiles.rows) * std::size_t(tiles.cols), 0);
-    parallel_for(most.size(), threads, {}, [&](std::size_t t) {
-        tiles.visit_cells(map.geometry, t, 0, [&](int, int, const ColumnView& column) { most[t] = std::max(most[t], int(column.layers.size())); });
+    parallel_for(most.size(), options.threads, {}, [&](std::size_t t) {
+        tiles.visit_cells(map.geometry, t, 0,
+                          [&](int, int, const ColumnView& column) { most[t] = std::max(most[t], int(heights_within(column.layers, z).size())); });
     });
     return *std::max_element(most.begin(), most.end());
 }
@@ -84,8 +88,8 @@ float clearance(const ColumnView& column, double height)
 
 class TileBands {
 public:
-    TileBands(const Map& map, const Tiles& tiles, const VerdictImage* verdicts, const LayerChoice& layers, int layer_bands)
-        : map_(map), tiles_(tiles), verdicts_(verdicts), layers_(layers), layer_bands_(std::size_t(layer_bands))
+    TileBands(const Map& map, const Tiles& tiles, const VerdictImage* verdicts, const GeoTiffOptions& options, int layer_bands)
+        : map_(map), tiles_(tiles), verdicts_(verdicts), layers_(options.layers), z_(ground_z(map, options)), layer_bands_(std::size_t(layer_bands))
     {
     }
 
@@ -97,9 +101,10 @@ public:
         std::vector<std::vector<float>> bands(layer_bands_ + 5 + (verdicts_ != nullptr), std::vector<float>(tile_cells, no_data));
         tiles_.visit_cells(map_.geometry, tile, border, [&](int row, int col, const ColumnView& column) {
             const bool inside = row >= 0 && row < side && col >= 0 && col < side;
-            const int layer = chosen_layer(int(column.layers.size()));
-            if (layer >= 0) chosen(row + border, col + border) = float(column.layers[std::size_t(layer)]);
-            if (inside) add_cell(bands, std::size_t(row) * side + std::size_t(col), column, layer);
+            const std::span<const double> heights = heights_within(column.layers, z_);
+            const int layer = chosen_layer(int(heights.size()));
+            if (layer >= 0) chosen(row + border, col + border) = float(heights[std::size_t(layer)]);
+            if (inside) add_cell(bands, std::size_t(row) * side + std::size_t(col), column, heights, layer);
         });
         add_slopes(bands[layer_bands_ + 2], chosen, border);
         if (verdicts_ != nullptr) add_verdicts(bands.back(), tile);
@@ -116,14 +121,14 @@ private:
         return -1;
     }
 
-    void add_cell(std::vector<std::vector<float>>& bands, std::size_t cell, const ColumnView& column, int layer) const
+    void add_cell(std::vector<std::vector<float>>& bands, std::size_t cell, const ColumnView& column, std::span<const double> heights, int layer) const
     {
-        for (std::size_t l = 0; l < column.layers.size(); ++l) bands[l][cell] = float(column.layers[l]);
-        bands[layer_bands_][cell] = float(column.layers.size());
-        if (layer >= 0) bands[layer_bands_ + 1][cell] = clearance(column, column.layers[std::size_t(layer)]);
-        if (!column.water.empty()) bands[layer_bands_ + 3][cell] = float(column.water.front());
-        if (!column.spans.empty() && (column.layers.empty() || column.spans.front().top > column.layers.front()))
-            bands[layer_bands_ + 4][cell] = float(column.spans.front().top);
+        for (std::size_t l = 0; l < heights.size(); ++l) bands[l][cell] = float(heights[l]);
+        bands[layer_bands_][cell] = float(heights.size());
+        if (layer >= 0) bands[layer_bands_ + 1][cell] = clearance(column, heights[std::size_t(layer)]);
+        const std::span<const double> water = heights_within(column.water, z_);
+        if (!water.empty()) bands[layer_bands_ + 3][cell] = float(water.front());
+        if (const auto top = obstacle_above(column, heights, z_)) bands[layer_bands_ + 4][cell] = float(*top);
     }
 
     void add_slopes(std::vector<float>& band, const HeightImage& heights, int border) const
@@ -149,6 +154,7 @@ private:
     const Tiles& tiles_;
     const VerdictImage* verdicts_;
     const LayerChoice& layers_;
+    const ZRange z_;  ///< layers elsewhere are left out
     const std::size_t layer_bands_;
 };
 
@@ -281,7 +287,7 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
         throw ArgumentError("write_geotiff", "layers is all, needs top, bottom or a number: a cell has one clearance");
     if (verdicts != nullptr && (verdicts->frame.rows != frame.rows || verdicts->frame.cols != frame.cols))
         throw ArgumentError("write_geotiff", "verdicts are of another frame, needs the same rows and columns");
-    const int layers = std::max(1, most_layers(map, frame, options.threads));
+    const int layers = std::max(1, most_layers(map, frame, options));
     const std::vector<Band> bands = bands_of(layers, verdicts != nullptr);
     const Tiles tiles(frame);
     const double most_bytes = double(tiles.rows) * tiles.cols * double(bands.size()) * (sizeof(float) * tile_cells + 1000);
@@ -292,7 +298,7 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
     set_tags(tiff.get(), frame, bands.size());
     set_geo_tags(tiff.get(), frame, survey_of(map, options));
     TIFFSetField(tiff.get(), gdal_metadata_tag, metadata(map, bands, options.layers, verdicts != nullptr).c_str());
-    if (!write_tiles(tiff.get(), TileBands(map, tiles, verdicts, options.layers, layers), tiles, bands.size(), options) || TIFFFlush(tiff.get()) != 1)
+    if (!write_tiles(tiff.get(), TileBands(map, tiles, verdicts, options, layers), tiles, bands.size(), options) || TIFFFlush(tiff.get()) != 1)
         throw failed();
     tiff.reset();
     out.commit();

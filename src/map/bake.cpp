@@ -96,7 +96,7 @@ std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path
             map.layers = top.isNaN().all() ? 0 : terrain.layers();
             z_range = write_heightmap_png(top, folder / "heightmap.png");
         }
-        if (file == 1) write_preview(terrain, map.name, folder / "preview.png");
+        if (file == 1) write_preview(map, terrain, folder / "preview.png");
         if (file == 2) write_terrain(folder / "terrain.tiff", terrain);
     });
     return z_range;
@@ -115,12 +115,16 @@ Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& 
         throw FileError(scene_file.string(), "has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') "
                                              "or pass --allow-no-terrain");
     if (!(options.resolution >= 0)) throw ArgumentError("bake", "resolution", options.resolution, "> 0 m (0: chosen)");
+    if (!(options.z.low <= options.z.high)) throw ArgumentError("bake", "z.high", options.z.high, "at least z.low");
     if (!(options.occupancy_resolution >= 0))
         throw ArgumentError("bake", "occupancy_resolution", options.occupancy_resolution, "> 0 m (0: chosen)");
     Map map;
     map.name = scene.name.empty() ? scene_file.stem().string() : scene.name;
     const Bounds extent = scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds;
     map.bounds = chosen_bounds("bake", options.bounds, extent);
+    map.z_limits = !options.z.is_unlimited() ? options.z : options.bounds.is_empty() ? ZRange{} : map.bounds.z();
+    if (std::isfinite(map.z_limits.low)) map.bounds.min.z() = map.z_limits.low;
+    if (std::isfinite(map.z_limits.high)) map.bounds.max.z() = map.z_limits.high;
     if (!map.bounds.meets(extent)) throw FileError(scene_file.string(), "bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
     map.origin = scene.origin;
     map.resolution = options.resolution > 0 ? options.resolution : default_resolution(map.bounds, report);
@@ -147,7 +151,8 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     const Bounds extent = scene.bounds();
     scene = {};
     lap("geometry");
-    const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads, part_of(options.progress, 0, 0.3));
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads, part_of(options.progress, 0, 0.3), map.z_limits);
+    map.floors = find_floors(terrain, options.threads);
     lap("terrain");
     const std::pair<double, double> z_range = write_images(terrain, target.path(), map, options.threads);
     if (map.layers == 0 && has_terrain)

@@ -62,6 +62,8 @@ TerrainMap read_terrain(const Map& map)
     return terrain;
 }
 
+std::vector<Floor> floors_of(const Map& map) { return map.floors ? *map.floors : find_floors(read_terrain(map)); }
+
 OccupancyTree read_occupancy(const Map& map)
 {
     const MapYaml yaml = read_map_yaml(map.folder);

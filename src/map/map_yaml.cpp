@@ -15,6 +15,7 @@
 #include <opencv2/core/version.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace spawnfield {
 namespace {
@@ -23,6 +24,7 @@ namespace fs = std::filesystem;
 
 const std::string format_prefix = "spawnfield-map/";
 const std::string hash_key = "hash: ";
+constexpr int oldest_format = 2;  // without z_limits and floors
 
 std::string quoted(const std::string& text)
 {
@@ -100,6 +102,45 @@ std::string origin_text(const GeoOrigin& origin)
 
 GeoOrigin read_origin(const YamlMap& map) { return {map.finite("x"), map.finite("y"), map.positive("unit"), map.text("crs", "")}; }
 
+/// Limits that are infinite as YAML 1.2 has them.
+std::string z_text(const ZRange& z)
+{
+    const auto limit = [](double value) { return std::isfinite(value) ? number(value) : std::string(value < 0 ? "-.inf" : ".inf"); };
+    return "[" + limit(z.low) + ", " + limit(z.high) + "]";
+}
+
+ZRange read_z(const YamlMap& map, const std::string& key)
+{
+    const YAML::Node node = map.list(key);
+    ZRange z;
+    try {
+        z = {node[0].as<double>(), node[1].as<double>()};
+    } catch (const YAML::Exception&) {
+        map.fail(key, "needs two heights, m");
+    }
+    if (!(z.low <= z.high)) map.fail(key, "has its higher limit first");
+    return z;
+}
+
+std::string floor_lines(const std::vector<Floor>& floors)
+{
+    if (floors.empty()) return " []\n";
+    std::string out = "\n";
+    for (const Floor& floor : floors)
+        out += "  - {height: " + number(floor.height) + ", z: " + z_text(floor.z) + ", area: " + number(floor.area) + ", share: " + number(floor.share) + "}\n";
+    return out;
+}
+
+std::vector<Floor> read_floors(const YamlMap& root)
+{
+    std::vector<Floor> out;
+    for (const YAML::Node& node : root.list("floors")) {
+        const YamlMap entry(node, root.file(), "floor " + std::to_string(out.size()));
+        out.push_back({entry.finite("height"), read_z(entry, "z"), entry.finite("area"), entry.finite("share")});
+    }
+    return out;
+}
+
 /// The last line, which holds the checksum of all before it.
 std::string hash_line(const std::string& hash) { return hash_key + "\"" + hash + "\"\n"; }
 
@@ -115,17 +156,18 @@ std::string verified_hash(const fs::path& file, const std::string& text)
     return hash;
 }
 
-/// Newer maps are refused before anything else of them is looked at.
-void check_version(const fs::path& file, const std::string& text)
+/// The version of a file that this program can read. Newer maps are refused before anything else of them is read.
+int version_of(const fs::path& file, const std::string& text)
 {
     const std::size_t at = text.find(format_prefix);
     if (!text.starts_with("format: ") || at == std::string::npos || at > 16)
         throw FileError(file.string(), "is no map.yaml of spawnfield (its first line is not `format: " + format_prefix +
                                            std::to_string(map_format_version) + "`)");
     const std::string found = text.substr(at + format_prefix.size(), text.find('\n') - at - format_prefix.size());
-    if (found != std::to_string(map_format_version))
-        throw FileError(file.string(), "has format version " + found + ", this program reads " +
-                                           std::to_string(map_format_version) + "; bake the map again or use a newer spawnfield");
+    if (found == std::to_string(map_format_version)) return map_format_version;
+    if (found == std::to_string(oldest_format)) return oldest_format;
+    throw FileError(file.string(), "has format version " + found + ", this program reads " + std::to_string(oldest_format) + " and " +
+                                       std::to_string(map_format_version) + "; bake the map again or use a newer spawnfield");
 }
 
 }  // namespace
@@ -141,6 +183,8 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
     text += "# metres, x forward, y left, z up\n";
     text += "bounds: {min: " + list_of({map.bounds.min.x(), map.bounds.min.y(), map.bounds.min.z()}) + ", max: " +
             list_of({map.bounds.max.x(), map.bounds.max.y(), map.bounds.max.z()}) + "}\n";
+    if (!map.z_limits.is_unlimited())
+        text += "# poses beyond these heights are outside, layers beyond them are no ground\nz_limits: " + z_text(map.z_limits) + "\n";
     text += "resolution: " + number(map.resolution) + "\n";
     text += "occupancy_resolution: " + number(map.occupancy_resolution) + "\n";
     text += "# of every image: row 0 is the largest y, column 0 the smallest x; x0, y0 is the lower left corner\n";
@@ -148,6 +192,7 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
             ", rows: " + std::to_string(frame.rows) + ", cols: " + std::to_string(frame.cols) + "}\n";
     if (map.origin) text += "# survey coordinates of 0, 0, in units of so many metres\norigin: " + origin_text(*map.origin) + "\n";
     text += "layers: " + std::to_string(map.layers) + "\n";
+    text += "# from the lowest up: z has the layers that belong to it, area is m2 of ground, share is of all ground\nfloors:" + floor_lines(*map.floors);
     text += "terrain:  # pages of terrain.tiff, float32 metres, NaN: nothing\n";
     for (const TerrainMap::Page& page : terrain.pages) text += "  - " + page.name + "\n";
     text += "heightmap: {z: " + list_of({heightmap_range.first, heightmap_range.second}) + ", no_terrain: 0}  # of pixels 0 and 65535\n";
@@ -164,15 +209,17 @@ MapYaml read_map_yaml(const fs::path& folder)
     const fs::path file = folder / "map.yaml";
     if (!fs::is_regular_file(file)) throw FileError(folder.string(), "is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
     const std::string text = read_file(file);
-    check_version(file, text);
+    const int format = version_of(file, text);
     MapYaml out;
     out.map.hash = verified_hash(file, text);
     out.map.folder = folder;
-    const YamlMap root = read_yaml(file, format_prefix + std::to_string(map_format_version));
+    const YamlMap root = read_yaml(file, format_prefix + std::to_string(format));
     out.map.name = root.text("name");
     out.map.bounds = read_bounds(root);
     out.map.resolution = root.positive("resolution");
     out.map.occupancy_resolution = root.positive("occupancy_resolution");
+    if (root.has("z_limits")) out.map.z_limits = read_z(root, "z_limits");
+    if (format > oldest_format) out.map.floors = read_floors(root);
     if (root.has("origin")) out.map.origin = read_origin(root.map("origin"));
     out.map.layers = int(root.finite("layers"));
     out.map.scene_file = root.map("scene").text("file");

@@ -32,8 +32,8 @@ struct TilePages {
 
 class TileRaster {
 public:
-    TileRaster(const Geometry& geometry, const GridFrame& frame, int tile_row, int tile_col)
-        : geometry_(geometry), frame_(frame), row0_(tile_row * TerrainMap::tile), col0_(tile_col * TerrainMap::tile),
+    TileRaster(const Geometry& geometry, const GridFrame& frame, const ZRange& z_limits, int tile_row, int tile_col)
+        : geometry_(geometry), frame_(frame), z_limits_(z_limits), row0_(tile_row * TerrainMap::tile), col0_(tile_col * TerrainMap::tile),
           rows_(std::min(TerrainMap::tile, frame.rows - row0_)), cols_(std::min(TerrainMap::tile, frame.cols - col0_))
     {
     }
@@ -60,11 +60,11 @@ private:
     void add_cell(int row, int col, const ColumnView& column)
     {
         const std::size_t cell = std::size_t(row) * TerrainMap::tile + std::size_t(col);
-        while (pages_.height.size() < column.layers.size()) pages_.height.emplace_back();
-        for (std::size_t layer = 0; layer < column.layers.size(); ++layer) set(pages_.height[layer], cell, column.layers[layer]);
-        if (!column.water.empty()) set(pages_.water, cell, column.water.front());
-        if (!column.spans.empty() && (column.layers.empty() || column.spans.front().top > column.layers.front()))
-            set(pages_.obstacle, cell, column.spans.front().top);
+        const std::span<const double> layers = heights_within(column.layers, z_limits_), water = heights_within(column.water, z_limits_);
+        while (pages_.height.size() < layers.size()) pages_.height.emplace_back();
+        for (std::size_t layer = 0; layer < layers.size(); ++layer) set(pages_.height[layer], cell, layers[layer]);
+        if (!water.empty()) set(pages_.water, cell, water.front());
+        if (const auto top = obstacle_above(column, layers, z_limits_)) set(pages_.obstacle, cell, *top);
     }
 
     static void set(std::vector<float>& page, std::size_t cell, double height)
@@ -75,6 +75,7 @@ private:
 
     const Geometry& geometry_;
     const GridFrame& frame_;
+    const ZRange& z_limits_;
     const int row0_, col0_, rows_, cols_;
     TilePages<std::vector<float>> pages_;
 };
@@ -137,13 +138,13 @@ HeightImage page_image(const TerrainMap& terrain, const std::string& name)
 }
 
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads,
-                             const Progress& progress)
+                             const Progress& progress, const ZRange& z_limits)
 {
     TerrainMap out;
     out.frame = frame;
     std::vector<TilePages<std::string>> tiles(std::size_t(out.tile_rows()) * std::size_t(out.tile_cols()));
     parallel_for(tiles.size(), threads, progress,
-                 [&](std::size_t t) { tiles[t] = TileRaster(geometry, frame, int(t) / out.tile_cols(), int(t) % out.tile_cols()).run(); });
+                 [&](std::size_t t) { tiles[t] = TileRaster(geometry, frame, z_limits, int(t) / out.tile_cols(), int(t) % out.tile_cols()).run(); });
     std::size_t layers = 1;  // a page of heights even if there is no terrain
     for (const auto& tile : tiles) layers = std::max(layers, tile.height.size());
     for (std::size_t k = 0; k < layers; ++k)

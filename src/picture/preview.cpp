@@ -1,3 +1,5 @@
+#include "base/number.h"
+#include "column/columns.h"
 #include "picture/relief.h"
 
 #include <spawnfield/error.h>
@@ -22,6 +24,12 @@ Ramp hypsometric()
 
 /// Without a hue, which tells obstacles from terrain; higher is lighter.
 Ramp greys() { return ramp_through({rgb(0x4a4a4a), rgb(0x8a8a8a), rgb(0xb8b8b8)}); }
+
+/// Heights that a picture shows, m; NaN where there is nothing of its kind. A page of size 0 is all nothing.
+struct Scenery {
+    GridFrame frame;
+    HeightImage terrain, solid, water;  ///< solid: the highest obstacle, or else the terrain
+};
 
 /// What a look from above meets at each pixel, m; NaN where there is nothing of its kind.
 struct TopView {
@@ -125,32 +133,138 @@ Legend legend_of(const Drawing& drawing, const ColourScale& heights)
     return legend;
 }
 
-}  // namespace
-
-void write_preview(const TerrainMap& terrain, const std::string& title, const std::filesystem::path& file)
+Scenery from_above(const TerrainMap& terrain)
 {
-    const GridFrame& grid = terrain.frame;
-    if (grid.rows < 1 || grid.cols < 1) throw ArgumentError("write_preview", "terrain.frame.rows * cols", 0, ">= 1");
+    Scenery out{terrain.frame, page_image(terrain, "height.0"), {}, page_or_nothing(terrain, "water")};
+    out.solid = out.terrain;
+    add_obstacles(terrain, out.solid);
+    return out;
+}
+
+Image picture_of(const Scenery& scenery, const std::string& title, int pixels)
+{
+    const GridFrame& grid = scenery.frame;
     const View view = with_room({grid.x0, grid.y0, grid.cols * grid.cell, grid.rows * grid.cell});
     // Drawn two or three times as fine as the plot will be, then shrunk: smooth edges, and thin walls do not vanish.
-    constexpr double finer = 2000;
-    const double scale = finer / std::max(view.width, view.height);
-    const cv::Size pixels(std::max(1, cvRound(scale * view.width)), std::max(1, cvRound(scale * view.height)));
+    const double scale = 2.0 * pixels / std::max(view.width, view.height);
+    const cv::Size fine(std::max(1, cvRound(scale * view.width)), std::max(1, cvRound(scale * view.height)));
 
     TopView top;
-    top.water = samples(grid, page_or_nothing(terrain, "water"), view, pixels);
-    HeightImage solid = page_image(terrain, "height.0");
-    top.terrain = samples(grid, solid, view, pixels);
-    add_obstacles(terrain, solid);
-    top.solid = samples(grid, solid, view, pixels);
+    top.water = samples(grid, scenery.water, view, fine);
+    top.terrain = samples(grid, scenery.terrain, view, fine);
+    top.solid = samples(grid, scenery.solid, view, fine);
     const ColourScale heights = scale_over(top.terrain, "terrain height, m", hypsometric());
-    const Drawing drawing = draw_top(top, relief(grid, solid, view, pixels), heights);
+    const Drawing drawing = draw_top(top, relief(grid, scenery.solid, view, fine), heights);
 
-    const Frame frame{view, 1000, title, legend_of(drawing, heights)};
+    const Frame frame{view, pixels, title, legend_of(drawing, heights)};
     const Layout layout = lay_out(frame);
     Image plot;
     cv::resize(drawing.image, plot, layout.plot.size(), 0, 0, cv::INTER_AREA);
-    write_png(draw_picture(frame, layout, plot), file);
+    return draw_picture(frame, layout, plot);
+}
+
+// ---------------------------------------------------------------- floors
+
+constexpr double cut_height = 2;          // m above a floor: what begins higher is not drawn, as in a floor plan
+constexpr double most_hidden = 0.25;      // of the ground under something, in a picture from above
+constexpr std::size_t most_floors = 16;   // drawn
+constexpr float no_height = std::numeric_limits<float>::quiet_NaN();
+
+/// Cells for a picture or an estimate, at most `most` along the longer side.
+GridFrame coarse_frame(const Map& map, int most)
+{
+    const Vec3 size = map.bounds.max - map.bounds.min;
+    return frame_around(map.bounds, std::max(map.resolution, std::max(size.x(), size.y()) / most));
+}
+
+/// Calls visit(row, col, column) for every cell's centre; row 0 is the largest y.
+template <class Visit>
+void visit_columns(const Geometry& geometry, const GridFrame& frame, const Visit& visit)
+{
+    constexpr int block = 64;  // whose columns stay in a core's cache
+    for (int j0 = 0; j0 < frame.rows; j0 += block)
+        for (int i0 = 0; i0 < frame.cols; i0 += block) {
+            const int rows = std::min(block, frame.rows - j0), cols = std::min(block, frame.cols - i0);
+            const Columns centres(geometry, {frame.x0, frame.y0, frame.cell, i0, j0, cols, rows, 0.5});
+            for (int j = 0; j < rows; ++j)
+                for (int i = 0; i < cols; ++i) visit(frame.rows - 1 - j0 - j, i0 + i, centres.at(i, j));
+        }
+}
+
+/// The highest layer of a floor in a column; NaN if there is none.
+double ground_of(const ColumnView& column, const Floor& floor, const Map& map)
+{
+    const std::span<const double> layers = heights_within(column.layers, overlap(floor.z, map.z_limits));
+    return layers.empty() ? std::numeric_limits<double>::quiet_NaN() : layers.front();
+}
+
+/// The share of all floors' ground that is under something, as seen from above. Something that begins less than the cut
+/// height above the ground hides nothing: it stands on the ground.
+double hidden_share(const Map& map, const std::vector<Floor>& floors)
+{
+    std::size_t all = 0, hidden = 0;
+    visit_columns(map.geometry, coarse_frame(map, 200), [&](int, int, const ColumnView& column) {
+        for (const Floor& floor : floors) {
+            const double ground = ground_of(column, floor, map);
+            if (std::isnan(ground)) continue;
+            ++all;
+            hidden += std::any_of(column.spans.begin(), column.spans.end(), [&](const Span& span) {
+                return span.bottom > ground + cut_height && span.bottom <= map.z_limits.high;
+            });
+        }
+    });
+    return all == 0 ? 0 : double(hidden) / double(all);
+}
+
+/// The terrain of a floor with what stands on it, cut above it.
+Scenery floor_plan(const Map& map, const Floor& floor, int pixels)
+{
+    Scenery out;
+    out.frame = coarse_frame(map, pixels);
+    out.terrain = out.solid = out.water = HeightImage::Constant(out.frame.rows, out.frame.cols, no_height);
+    visit_columns(map.geometry, out.frame, [&](int row, int col, const ColumnView& column) {
+        const double ground = ground_of(column, floor, map), level = std::isnan(ground) ? floor.height : ground;
+        out.terrain(row, col) = out.solid(row, col) = float(ground);
+        // Where there is no ground, what rises through the floor's height is an obstacle: a wall, say.
+        if (const auto top = obstacle_above(column, {&level, 1}, {level, level + cut_height})) out.solid(row, col) = float(std::min(*top, level + cut_height));
+        const std::span<const double> water = heights_within(column.water, {level, level + cut_height});
+        if (!water.empty()) out.water(row, col) = float(water.front());
+    });
+    return out;
+}
+
+/// A small picture for each floor, the lowest first, in rows.
+Image floor_pictures(const Map& map, const std::vector<Floor>& floors)
+{
+    constexpr int longest = 2000, smallest = 400, border = 24;  // pixels
+    const std::size_t count = std::min(floors.size(), most_floors);
+    const int cols = int(std::ceil(std::sqrt(double(count)))), rows = (int(count) + cols - 1) / cols;
+    const int pixels = std::clamp(longest / cols, smallest, 1000);
+    std::vector<Image> pictures;
+    cv::Size largest;
+    for (std::size_t k = 0; k < count; ++k) {
+        std::string title = map.name + ", floor " + std::to_string(k) + " at " + number(floors[k].height) + " m";
+        if (k + 1 == count && count < floors.size()) title += " (" + std::to_string(floors.size() - count) + " more are not drawn)";
+        pictures.push_back(picture_of(floor_plan(map, floors[k], 2 * pixels), title, pixels));
+        largest = {std::max(largest.width, pictures[k].cols), std::max(largest.height, pictures[k].rows)};
+    }
+    Image sheet(rows * (largest.height + border) - border, cols * (largest.width + border) - border, white);
+    for (std::size_t k = 0; k < count; ++k) {
+        const cv::Point at(int(k) % cols * (largest.width + border), int(k) / cols * (largest.height + border));
+        pictures[k].copyTo(sheet(cv::Rect(at, pictures[k].size())));
+    }
+    return sheet;
+}
+
+}  // namespace
+
+void write_preview(const Map& map, const TerrainMap& terrain, const std::filesystem::path& file)
+{
+    if (terrain.frame.rows < 1 || terrain.frame.cols < 1)
+        throw ArgumentError("write_preview", "terrain.frame.rows * cols", 0, ">= 1");
+    const std::vector<Floor> floors = map.floors.value_or(std::vector<Floor>{});
+    const bool by_floor = !floors.empty() && hidden_share(map, floors) > most_hidden;
+    write_png(by_floor ? floor_pictures(map, floors) : picture_of(from_above(terrain), map.name, 1000), file);
 }
 
 }  // namespace spawnfield

@@ -1,5 +1,7 @@
 #include "query/area_index.h"
 
+#include <spawnfield/shape.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -151,6 +153,44 @@ bool PolygonIndex::covers(const Rect& rect) const
     for (std::uint32_t g = starts_[middle]; g < starts_[middle + 1]; ++g)
         if (holds(groups_[g], centre) && is_whole(groups_[g].polygon)) return true;
     return false;
+}
+
+AreaIndex::AreaIndex(const Area& area) : within_(slabs_of(area.within)), keep_out_(slabs_of(area.keep_out)) {}
+
+std::vector<AreaIndex::Slab> AreaIndex::slabs_of(const std::vector<Region>& regions)
+{
+    std::vector<std::pair<ZRange, std::vector<Region>>> groups;
+    for (const Region& region : regions) {
+        auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == region.z; });
+        if (group == groups.end()) group = groups.insert(group, {region.z, {}});
+        group->second.push_back(region);
+    }
+    std::vector<Slab> out;
+    for (const auto& [z, members] : groups) out.push_back({z, PolygonIndex(members)});
+    return out;
+}
+
+bool AreaIndex::contains(const Vec2& point) const
+{
+    const auto has = [&](const Slab& slab) { return slab.polygons.contains(point); };
+    return (within_.empty() || std::any_of(within_.begin(), within_.end(), has)) &&
+           std::none_of(keep_out_.begin(), keep_out_.end(), [&](const Slab& slab) { return slab.z.is_unlimited() && has(slab); });
+}
+
+bool AreaIndex::contains(const Vec2& point, double z) const
+{
+    const auto has = [&](const Slab& slab) { return slab.z.contains(z, touch_tolerance) && slab.polygons.contains(point); };
+    return (within_.empty() || std::any_of(within_.begin(), within_.end(), has)) && std::none_of(keep_out_.begin(), keep_out_.end(), has);
+}
+
+bool AreaIndex::misses(const Rect& rect, const ZRange& z) const
+{
+    const auto is_apart = [&](const Slab& slab) {
+        return slab.z.low > z.high + 2 * touch_tolerance || slab.z.high < z.low - 2 * touch_tolerance || slab.polygons.misses(rect);
+    };
+    const auto holds_all = [&](const Slab& slab) { return slab.z.low <= z.low && slab.z.high >= z.high && slab.polygons.covers(rect); };
+    return (!within_.empty() && std::all_of(within_.begin(), within_.end(), is_apart)) ||
+           std::any_of(keep_out_.begin(), keep_out_.end(), holds_all);
 }
 
 }  // namespace spawnfield

@@ -42,22 +42,26 @@ private:
 /// Area, ready to be asked.
 class AreaIndex {
 public:
-    explicit AreaIndex(const Area& area)
-        : has_within_(!area.within.empty()), has_keep_out_(!area.keep_out.empty()), within_(area.within), keep_out_(area.keep_out)
-    {
-    }
+    explicit AreaIndex(const Area& area);
 
-    bool contains(const Vec2& point) const
-    {
-        return (!has_within_ || within_.contains(point)) && !(has_keep_out_ && keep_out_.contains(point));
-    }
-    /// True only if no point of the closed rectangle is in it. False where an edge of a region runs through the rectangle, and where only
-    /// several keep-outs together cover it.
-    bool misses(const Rect& rect) const { return (has_within_ && within_.misses(rect)) || (has_keep_out_ && keep_out_.covers(rect)); }
+    /// Whether the area has the point at some height.
+    bool contains(const Vec2& point) const;
+    bool contains(const Vec2& point, double z) const;  ///< z to touch_tolerance
+
+    /// True only if no point of the closed rectangle is in the area at these heights. False where an edge of a region runs
+    /// through the rectangle, and where only several keep-outs together cover it.
+    bool misses(const Rect& rect, const ZRange& z = {}) const;
 
 private:
-    bool has_within_, has_keep_out_;
-    PolygonIndex within_, keep_out_;
+    /// Regions that share their heights.
+    struct Slab {
+        ZRange z;
+        PolygonIndex polygons;
+    };
+    static std::vector<Slab> slabs_of(const std::vector<Region>& regions);
+
+    std::vector<Slab> within_;  ///< empty: everywhere
+    std::vector<Slab> keep_out_;
 };
 
 }  // namespace spawnfield

@@ -29,10 +29,11 @@ public:
     {
         if (facets_.terrain.bottom > facets_.terrain.top) return true;
         find_bands();
-        for (std::size_t b = 0; b < bands_.size(); ++b)
-            if (!is_left_out(b) && !is_covered(bands_[b]) && !is_submerged(b) && !is_blocked(bands_[b]) && !is_in_ground(bands_[b]) &&
-                !is_in_solid(bands_[b]))
-                return false;
+        for (std::size_t b = 0; b < bands_.size(); ++b) {
+            const Interval band = ground_in(bands_[b]);
+            if (band.bottom > band.top || proofs_.area_.misses(rect_, {band.bottom, band.top}) || is_left_out(b)) continue;
+            if (!is_covered(band) && !is_submerged(b) && !is_blocked(band) && !is_in_ground(band) && !is_in_solid(band)) return false;
+        }
         return true;
     }
 
@@ -108,20 +109,29 @@ private:
         return false;
     }
 
-    /// Only the top layer is chosen, and there is one above.
+    /// The part of a band whose layers are ground and whose poses are not outside.
+    Interval ground_in(const Interval& band) const
+    {
+        return {std::max(band.bottom, proofs_.ground_z_.low - slack), std::min(band.top, proofs_.ground_z_.high + slack)};
+    }
+
+    /// Only the top layer is chosen, and there is one above that is ground.
     bool is_left_out(std::size_t b) const
     {
         const LayerChoice& layers = proofs_.options_.layers;
         const bool only_top = layers.kind == LayerChoice::Kind::Top || (layers.kind == LayerChoice::Kind::Index && layers.index == 0);
         if (!only_top || facets_.has_too_many || b + 1 == bands_.size()) return false;
-        return covers(facets_.all, rect_, [&](const Facet& facet) { return facet.terrain && !facet.filled && facet.z.bottom > bands_[b].top + 2 * layer_tolerance; });
+        return covers(facets_.all, rect_, [&](const Facet& facet) { 
+            return facet.terrain && !facet.filled && facet.z.bottom > bands_[b].top + 2 * layer_tolerance &&
+                   facet.z.bottom >= proofs_.layer_z_.low && facet.z.top <= proofs_.layer_z_.high;
+        });
     }
 
     bool is_covered(const Interval& band) const
     {
         const double distance = proofs_.taken_.distance();
         if (!(distance > 0)) return false;
-        const double offset = proofs_.options_.offset, low = band.bottom + offset, high = band.top + offset;
+        const double offset = proofs_.offset_, low = band.bottom + offset, high = band.top + offset;
         const Vec3 middle(rect_.centre_x(), rect_.centre_y(), (low + high) / 2);
         const Vec3 half((rect_.high_x - rect_.low_x) / 2, (rect_.high_y - rect_.low_y) / 2, (high - low) / 2);
         if (half.norm() >= distance) return false;
@@ -135,9 +145,9 @@ private:
         const bool any_depth = std::isinf(options.max_water_depth);
         // Whatever terrain is the ground of a pose must lie under the water: the layer, or one between that and the origin.
         double highest = band.top;
-        for (std::size_t above = b + 1; above < bands_.size() && bands_[above].bottom <= band.top + options.offset + slack; ++above)
+        for (std::size_t above = b + 1; above < bands_.size() && bands_[above].bottom <= band.top + proofs_.offset_ + slack; ++above)
             highest = bands_[above].top;
-        if (facets_.has_too_many || (!any_depth && options.offset < 0)) return false;
+        if (facets_.has_too_many || (!any_depth && proofs_.offset_ < 0)) return false;
         return covers(facets_.all, rect_, [&](const Facet& facet) {
             if (!facet.water || facet.z.bottom < highest) return false;
             return any_depth || (!facet.filled && facet.z.top <= band.bottom + options.max_water_depth);
@@ -146,7 +156,7 @@ private:
 
     bool is_blocked(const Interval& band) const
     {
-        const Pose pose{{rect_.centre_x(), rect_.centre_y(), (band.bottom + band.top) / 2 + proofs_.options_.offset}, Mat3::Identity()};
+        const Pose pose{{rect_.centre_x(), rect_.centre_y(), (band.bottom + band.top) / 2 + proofs_.offset_}, Mat3::Identity()};
         for (const DrawnIn& drawn_in : proofs_.drawn_in_)  // from the largest robot on
             if ((band.top - band.bottom) / 2 <= drawn_in.half_height) return !drawn_in.checker.is_free(pose);
         return false;
@@ -157,7 +167,7 @@ private:
     {
         return std::any_of(proofs_.prisms_.begin(), proofs_.prisms_.end(), [&](const Prism& prism) {
             const Vec2 shift = (prism.polygon[0] + prism.polygon[prism.polygon.size() / 2]) / 2;
-            const double rise = proofs_.options_.offset + (prism.bottom + prism.top) / 2;
+            const double rise = proofs_.offset_ + (prism.bottom + prism.top) / 2;
             return is_solid({rect_.low_x + shift.x(), rect_.low_y + shift.y(), rect_.high_x + shift.x(), rect_.high_y + shift.y()},
                             {band.bottom + rise - slack, band.top + rise + slack});
         });
@@ -210,7 +220,7 @@ private:
         const Rect there{rect_.low_x + shift.x(), rect_.low_y + shift.y(), rect_.high_x + shift.x(), rect_.high_y + shift.y()};
         const CellFacets ground(proofs_.map_.geometry, there);
         if (ground.has_too_many) return false;
-        const double low = proofs_.options_.offset + prism.bottom + slack, high = proofs_.options_.offset + prism.top - slack;
+        const double low = proofs_.offset_ + prism.bottom + slack, high = proofs_.offset_ + prism.top - slack;
         return covers(ground.all, there, [&](const Facet& facet) {
             return facet.terrain && facet.has_plane && std::all_of(stands.begin(), stands.end(), [&](const Facet* stand) {
                 const Interval rise = rise_between(*stand, facet, shift);
@@ -247,8 +257,11 @@ private:
     std::vector<Interval> bands_;
 };
 
-CellProofs::CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const SpacedPoints& taken)
-    : map_(map), options_(options), taken_(taken)
+CellProofs::CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const AreaIndex& area,
+                       const SpacedPoints& taken)
+    : map_(map), options_(options), offset_(*options.offset),
+      ground_z_(overlap(overlap(map.z_limits, options.z), ZRange{map.z_limits.low - offset_, map.z_limits.high - offset_})),
+      layer_z_(overlap(map.z_limits, options.z)), area_(area), taken_(taken)
 {
     if (checker.uses_occupancy()) return;  // not what the proofs see
     const std::vector<Footprint> prints = options.random_yaw ? yaw_free_footprints(checker.robot())
@@ -299,6 +312,6 @@ Robot CellProofs::drawn_in(double half_x, double half_y, double half_height) con
     return robot;
 }
 
-bool CellProofs::is_closed(const Rect& cell) const { return Cell(*this, cell).is_closed(); }
+bool CellProofs::is_closed(const Rect& cell) const { return area_.misses(cell) || Cell(*this, cell).is_closed(); }
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "query/area_index.h"
 #include "query/cell_facets.h"
 #include "query/spaced_points.h"
 
@@ -12,15 +13,15 @@ namespace spawnfield {
 /// Proofs that no further sample can stand anywhere in a cell, from the scene's own geometry: the mask has no part in them, so
 /// that they are the same with it and without it.
 ///
-/// A cell's layers lie between heights that the planes of its terrain give. At each such height, all poses must be too close
-/// to one taken position, under water, or collide: the robot drawn in by half a cell does at its centre, or some point of
+/// A cell's layers lie between heights that the planes of its terrain give. At each such height, as far as layers are ground
+/// there, all poses must be off the area, outside, too close to one taken position, under water, or collide: the robot drawn in by half a cell does at its centre, or some point of
 /// the robot is inside the ground at every pose. Lines within 1e-9 m of an upright face are left aside. What is not
 /// proven stays open: cells half on an obstacle as flat as the offset, for one. A footing that is asked for (max_slope) only
 /// takes valid poses away, so what is closed without it is closed with it; cells where all is steep stay open.
 class CellProofs {
 public:
-    /// `taken` may grow between calls of is_closed, never during them.
-    CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const SpacedPoints& taken);
+    /// options.offset is given. `taken` may grow between calls of is_closed, never during them.
+    CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const AreaIndex& area, const SpacedPoints& taken);
     ~CellProofs();
 
     /// For cells of these half sides, m. Not to be called while others ask.
@@ -40,6 +41,10 @@ private:
 
     const Map& map_;
     const SampleOptions& options_;
+    const double offset_;
+    const ZRange ground_z_;  ///< layers elsewhere are no ground, or give poses that are outside
+    const ZRange layer_z_;   ///< layers elsewhere are no ground
+    const AreaIndex& area_;
     const SpacedPoints& taken_;
     std::vector<Prism> prisms_;        ///< within the robot at every yaw that is drawn, relative to its origin
     std::vector<DrawnIn> drawn_in_;    ///< from the lowest range of heights on

@@ -19,7 +19,7 @@ bool judge_ground(const Map& map, const ColumnView& column, const Vec3& position
 {
     out.ground = ground_below(column, position.z());
     out.verdict = Verdict::Outside;
-    if (!map.bounds.contains_xy(position.x(), position.y(), touch_tolerance)) return false;
+    if (!is_within(map, position)) return false;
     out.verdict = Verdict::Aerial;
     if (!out.ground || position.z() - out.ground->height > options.max_height + touch_tolerance) return false;
     out.verdict = Verdict::OffTerrain;

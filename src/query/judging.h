@@ -10,6 +10,12 @@
 
 namespace spawnfield {
 
+/// Whether a pose with its origin there is not `outside`.
+inline bool is_within(const Map& map, const Vec3& position)
+{
+    return map.bounds.contains_xy(position.x(), position.y(), touch_tolerance) && map.z_limits.contains(position.z(), touch_tolerance);
+}
+
 /// Judges poses for one query: the mask first, the CollisionChecker where it cannot tell, then the footing of those that are
 /// free. Shared by all threads.
 class Judging {
@@ -28,6 +34,12 @@ private:
     std::optional<FreeSpace> space_;  ///< none: every pose is checked exactly
     std::optional<Footing> footing_;  ///< none: it is not asked for; each thread takes its own copy
 };
+
+/// Throws ArgumentError unless the range is one and the offset, if given, is finite.
+void check_ground(const char* function, const ZRange& z, const std::optional<double>& offset);
+
+/// Throws ArgumentError for an offset above max_height: `check` calls such poses aerial.
+void check_offset(const char* function, double offset, const QueryOptions& options);
 
 /// One thread's judge of poses that share a rotation.
 class PoseJudge {

@@ -194,6 +194,13 @@ Json layers_json(const LayerChoice& layers)
     return "all";
 }
 
+/// An infinite limit is null.
+Json z_json(const ZRange& z)
+{
+    const auto limit = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+    return {limit(z.low), limit(z.high)};
+}
+
 /// What both commands have; a limit that there is not is left out.
 Json settings_json(const SpawnOptions& options, const Map& map, int axes)
 {
@@ -371,7 +378,8 @@ std::string spawns_csv(const SpawnList& list)
 std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SampleOptions& options)
 {
     Json settings = settings_json(options, map, 2);
-    settings["offset"] = options.offset;
+    settings["offset"] = options.offset.value_or(auto_offset(robot));
+    if (!options.z.is_unlimited()) settings["z"] = z_json(options.z);
     settings["layers"] = layers_json(options.layers);
     Json out = json_head("sample", map, robot, std::move(settings));
     out["full"] = list.is_full;

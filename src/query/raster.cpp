@@ -36,6 +36,13 @@ RasterGrid grid_of(const Bounds& bounds, const RasterOptions& options)
     return grid;
 }
 
+bool has_no_z_limits(const Area& area)
+{
+    const auto is_unlimited = [](const Region& region) { return region.z.is_unlimited(); };
+    return std::all_of(area.within.begin(), area.within.end(), is_unlimited) &&
+           std::all_of(area.keep_out.begin(), area.keep_out.end(), is_unlimited);
+}
+
 void check(const RasterOptions& options)
 {
     if (options.dims != 2 && options.dims != 3) throw ArgumentError("raster", "dims", options.dims, "2 or 3");
@@ -44,15 +51,23 @@ void check(const RasterOptions& options)
     if (!(options.max_height >= 0)) throw ArgumentError("raster", "max_height", options.max_height, ">= 0 m");
     if (!(options.max_water_depth >= 0)) throw ArgumentError("raster", "max_water_depth", options.max_water_depth, ">= 0 m");
     check_max_slope("raster", options);
-    if (!std::isfinite(options.offset)) throw ArgumentError("raster", "offset", options.offset, "a finite number, m");
+    check_ground("raster", options.z, options.offset);
     if (!std::isfinite(options.yaw)) throw ArgumentError("raster", "yaw", options.yaw, "a finite number, rad");
     if (!options.height_check && options.dims != 3)
         throw ArgumentError("raster", "without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
+    if (options.dims == 3 && !has_no_z_limits(options.area))
+        throw ArgumentError("raster", "area has z limits, needs regions without any for dims 3: bounds has the heights");
     if (!options.snap) return;
     if (options.dims != 3) throw ArgumentError("raster", "snap needs dims 3: a pose of a 2D raster stands on its layer by definition");
     if (!options.height_check) throw ArgumentError("raster", "snap needs the height check: collisions alone know no layers");
-    if (!(options.offset >= 0 && options.offset <= options.max_height))
-        throw ArgumentError("raster", "offset", options.offset, "0 .. max_height with snap: poses on their layers would be aerial");
+}
+
+double chosen_offset(const Robot& robot, const RasterOptions& options)
+{
+    const double offset = options.offset.value_or(auto_offset(robot));
+    if (options.snap && !(offset >= 0 && offset <= options.max_height))
+        throw ArgumentError("raster", "offset", offset, "0 .. max_height with snap: poses on their layers would be aerial");
+    return offset;
 }
 
 /// Numbers of heights, each once.
@@ -87,8 +102,10 @@ class RasterJudge {
 public:
     static constexpr int most_rows = 32, block = 128;  ///< of a strip; columns of a block
 
-    RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid, double top)
-        : options_(options), grid_(grid), top_(top), judging_(map, checker, query_options(options)), area_(options.area)
+    RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid,
+                double offset, double top)
+        : options_(options), grid_(grid), offset_(offset), top_(top), ground_z_(overlap(map.z_limits, options.dims == 2 ? options.z : ZRange{})),
+          judging_(map, checker, query_options(options)), area_(options.area)
     {
     }
 
@@ -117,7 +134,7 @@ private:
     static QueryOptions query_options(const RasterOptions& options)
     {
         QueryOptions out = options;
-        // A pose of a 2D raster is offset above its layer by definition.
+        // A pose of a 2D raster is `offset` above its layer by definition.
         if (options.dims == 2) out.max_height = std::numeric_limits<double>::infinity();
         return out;
     }
@@ -132,7 +149,7 @@ private:
         const std::size_t first = out.poses.size();
         if (options_.snap) layers(judge, column, x, y, out);
         const std::size_t steps = out.poses.size();
-        const Steps replaced = replaced_steps(grid_, options_.offset, std::span(out.poses).subspan(first));
+        const Steps replaced = replaced_steps(grid_, offset_, std::span(out.poses).subspan(first));
         if (options_.height_check && judging_.map().bounds.contains_xy(x, y, touch_tolerance)) heights(judge, column, replaced, x, y, out);
         else all_heights(judge, replaced, x, y, out);
         if (steps > first)
@@ -140,22 +157,27 @@ private:
                                [](const RasterPose& a, const RasterPose& b) { return a.z > b.z; });
     }
 
+    /// Layers that are ground, from the top down: their numbers are those of the answer.
+    std::span<const double> ground_layers(const ColumnView& column) const { return heights_within(column.layers, ground_z_); }
+
     void layers(PoseJudge& judge, const ColumnView& column, double x, double y, Row& out) const
     {
-        const int count = int(column.layers.size());
+        const std::span<const double> heights = ground_layers(column);
+        const int count = int(heights.size());
         for (int layer = 0; layer < count; ++layer) {
-            const double height = column.layers[std::size_t(layer)];
+            const double height = heights[std::size_t(layer)];
             if (!options_.layers.includes(layer, count)) continue;
+            if (options_.dims == 2 && !area_.contains({x, y}, height)) continue;
             if (options_.snap && !(height >= grid_.z0 - touch_tolerance && height <= top_ + touch_tolerance)) continue;
-            const double z = height + options_.offset;
+            const double z = height + offset_;
             const Judgement judged = judge.at(column, x, z);
             out.exact_checks += judged.exact_check;
             out.poses.push_back({x, y, z, layer, judged.verdict, options_.snap});
         }
     }
 
-    /// Heights at which the ground may be near enough, and the replaced ones, from the top down: the rest is aerial without
-    /// a look.
+    /// Heights at which the ground may be near enough, those beyond the map's z limits, and the replaced ones, from the top
+    /// down: the rest is aerial without a look.
     const Steps& near_heights(const ColumnView& column, const Steps& replaced) const
     {
         thread_local Steps near;
@@ -168,7 +190,8 @@ private:
             for (int k = to; k >= from; --k) near.push_back(k);
         }
         near.insert(near.end(), replaced.begin(), replaced.end());
-        if (column.spans.size() + replaced.size() > 1) {
+        near.insert(near.end(), outside_.begin(), outside_.end());
+        if (column.spans.size() + replaced.size() + outside_.size() > 1) {
             std::sort(near.begin(), near.end(), std::greater<>());
             near.erase(std::unique(near.begin(), near.end()), near.end());
         }
@@ -185,7 +208,7 @@ private:
             const double z = grid_.z_of(k);
             if (!every_layer) {
                 const std::int32_t layer = layer_of(column, ground_below(column, z));
-                if (layer < 0 || !options_.layers.includes(layer, int(column.layers.size()))) continue;
+                if (layer < 0 || !options_.layers.includes(layer, int(ground_layers(column).size()))) continue;
             }
             const Judgement judged = judge.at(column, x, z);
             out.exact_checks += judged.exact_check;
@@ -207,19 +230,32 @@ private:
         }
     }
 
-    static std::int32_t layer_of(const ColumnView& column, const std::optional<Ground>& ground)
+    std::int32_t layer_of(const ColumnView& column, const std::optional<Ground>& ground) const
     {
         if (!ground || !ground->terrain) return -1;
-        for (std::size_t layer = 0; layer < column.layers.size(); ++layer)
-            if (std::abs(column.layers[layer] - ground->height) <= layer_tolerance) return std::int32_t(layer);
+        const std::span<const double> heights = ground_layers(column);
+        for (std::size_t layer = 0; layer < heights.size(); ++layer)
+            if (std::abs(heights[layer] - ground->height) <= layer_tolerance) return std::int32_t(layer);
         return -1;
+    }
+
+    /// Of a 3D raster: the heights beyond the map's z limits.
+    Steps steps_outside() const
+    {
+        Steps out;
+        for (int k = 0; k < grid_.heights; ++k)
+            if (!judging_.map().z_limits.contains(grid_.z_of(k), touch_tolerance)) out.push_back(k);
+        return out;
     }
 
     const RasterOptions& options_;
     const RasterGrid& grid_;
-    const double top_;  ///< upper limit of the bounds' z
+    const double offset_;
+    const double top_;       ///< upper limit of the bounds' z
+    const ZRange ground_z_;  ///< layers elsewhere are no ground
     const Judging judging_;
     const AreaIndex area_;
+    const Steps outside_ = steps_outside();
 };
 
 }  // namespace
@@ -239,11 +275,11 @@ RasterResult raster(const Map& map, const CollisionChecker& checker, const Raste
     RasterResult out;
     out.dims = options.dims;
     out.yaw = options.yaw;
-    out.offset = options.offset;
+    out.offset = chosen_offset(checker.robot(), options);
     out.area = options.area;
     const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
     out.grid = grid_of(bounds, options);
-    const RasterJudge judge(map, checker, options, out.grid, bounds.max.z());
+    const RasterJudge judge(map, checker, options, out.grid, out.offset, bounds.max.z());
     std::vector<Row> rows(std::size_t(out.grid.rows));
     // Without heights rows share nothing, and each takes long.
     const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;

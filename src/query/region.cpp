@@ -6,13 +6,12 @@ namespace spawnfield {
 
 Bounds Region::bounds() const
 {
-    constexpr double far = std::numeric_limits<double>::infinity();
     Bounds out;
     for (const Polygon& polygon : polygons)
         for (const Ring& ring : polygon)
             for (const Eigen::Vector2d& corner : ring) out.extend({corner.x(), corner.y(), 0});
-    out.min.z() = -far;
-    out.max.z() = far;
+    out.min.z() = z.low;
+    out.max.z() = z.high;
     return out;
 }
 
@@ -29,9 +28,10 @@ Bounds Area::bounds() const
     return out;
 }
 
-Region box_region(double x0, double y0, double x1, double y1)
+Region box_region(double x0, double y0, double x1, double y1, const ZRange& z)
 {
     Region out;
+    out.z = z;
     out.polygons = {{{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}}};
     return out;
 }

@@ -24,16 +24,6 @@ constexpr std::size_t some_proofs = 1 << 19, proofs_per_spawn = 12;
 constexpr double next_to_nothing = 2e-5;                        // of the region
 constexpr double smallest_cell = 0.0001;                        // m
 
-/// Layers of a column that were chosen, from the top.
-std::vector<double> chosen_layers(const Column& column, const LayerChoice& choice)
-{
-    std::vector<double> out;
-    const int count = int(column.layers.size());
-    for (int layer = 0; layer < count; ++layer)
-        if (choice.includes(layer, count)) out.push_back(column.layers[layer]);
-    return out;
-}
-
 /// A region in equal cells, of which some are left. They are split all at once, so that to draw one of them, and then a
 /// point of it, is to draw by area.
 class Cells {
@@ -111,7 +101,8 @@ Bounds within(const Bounds& box, Bounds limits)
 class Sampler {
 public:
     Sampler(const Map& map, const CollisionChecker& checker, const SampleOptions& options, std::size_t slots)
-        : map_(map), checker_(checker), options_(options), judging_(map, checker, standing(options)), area_(options.area),
+        : map_(map), checker_(checker), options_(options), offset_(*options.offset), ground_z_(overlap(map.z_limits, options.z)),
+          judging_(map, checker, options), area_(options.area),
           box_(overlap(chosen_bounds("sample", options.bounds, map.bounds, 2), options.area.bounds())), slots_(slots), taken_(options.min_distance)
     {
     }
@@ -162,7 +153,7 @@ private:
     void fill(SpawnList& out)
     {
         Cells cells(within(box_, map_.bounds), options_.min_distance);
-        CellProofs proofs(map_, checker_, options_, taken_.before());
+        CellProofs proofs(map_, checker_, options_, area_, taken_.before());
         std::size_t proofs_made = 0;
         const auto point = [&](Draw& from) {
             const Rect cell = cells.at(std::min(cells.size() - 1, std::size_t(from.unit() * double(cells.size()))));
@@ -198,16 +189,20 @@ private:
         parallel_for((flags.size() + chunk - 1) / chunk, options_.threads, share_found(options_, out), [&](std::size_t c) {
             for (std::size_t i = c * chunk; i < std::min(flags.size(), (c + 1) * chunk); ++i) {
                 const Rect cell = cells.at(i);
-                flags[i] = area_.misses(cell) || proofs.is_closed(cell);
+                flags[i] = proofs.is_closed(cell);
             }
         });
         cells.drop(flags);
     }
 
-    static QueryOptions standing(const SampleOptions& options)
+    /// Layers of a column that are ground, were chosen and lie in the area, from the top.
+    std::vector<double> chosen_layers(const Column& column, const Vec2& at) const
     {
-        QueryOptions out = options;
-        out.max_height = std::numeric_limits<double>::infinity();  // poses stand on their layer by definition
+        std::vector<double> out;
+        const std::span<const double> heights = heights_within(column.layers, ground_z_);
+        const int count = int(heights.size());
+        for (int layer = 0; layer < count; ++layer)
+            if (options_.layers.includes(layer, count) && area_.contains(at, heights[std::size_t(layer)])) out.push_back(heights[std::size_t(layer)]);
         return out;
     }
 
@@ -222,11 +217,11 @@ private:
         out.off_area = !area_.contains(at);
         if (out.off_area) return out;
         const Column column = column_at(map_.geometry, x, y);
-        const std::vector<double> layers = chosen_layers(column, options_.layers);
+        const std::vector<double> layers = chosen_layers(column, at);
         if (layers.size() > slots_) overfull_ = true;
         if (slot >= double(layers.size())) return out;
         out.on_ground = true;
-        out.spawn.position = Vec3(x, y, layers[std::size_t(slot)] + options_.offset);
+        out.spawn.position = Vec3(x, y, layers[std::size_t(slot)] + offset_);
         out.clear = taken_.before().is_clear(out.spawn.position);
         if (!out.clear) return out;
         out.set(judge.at(y, out.spawn.yaw).at(column, x, out.spawn.position.z()));
@@ -250,6 +245,8 @@ private:
     const Map& map_;
     const CollisionChecker& checker_;
     const SampleOptions& options_;
+    const double offset_;
+    const ZRange ground_z_;  ///< layers elsewhere are no ground
     const Judging judging_;
     const AreaIndex area_;
     const Bounds box_;
@@ -261,10 +258,13 @@ private:
 
 }  // namespace
 
-SpawnList sample(const Map& map, const CollisionChecker& checker, const SampleOptions& options)
+SpawnList sample(const Map& map, const CollisionChecker& checker, const SampleOptions& wanted)
 {
-    check_spawn_options("sample", options);
-    if (!std::isfinite(options.offset)) throw ArgumentError("sample", "offset", options.offset, "a finite number, m");
+    check_spawn_options("sample", wanted);
+    check_ground("sample", wanted.z, wanted.offset);
+    SampleOptions options = wanted;
+    options.offset = wanted.offset.value_or(auto_offset(checker.robot()));
+    check_offset("sample", *options.offset, options);
     const bool one = options.layers.kind != LayerChoice::Kind::All;
     // The map counts layers at cell centres only; where a point between them has more, all starts over with more slots.
     for (std::size_t slots = one ? 1 : std::size_t(std::max(1, map.layers));; ++slots) {

@@ -1,4 +1,5 @@
 #include "base/chosen_bounds.h"
+#include "base/number.h"
 #include "free_space/bounds_tile.h"
 #include "query/area_index.h"
 #include "query/spawning.h"
@@ -22,25 +23,48 @@ void check_spawn_options(const char* function, const SpawnOptions& options)
     if (!std::isfinite(options.yaw)) throw ArgumentError(function, "yaw", options.yaw, "a finite number, rad");
 }
 
+void check_ground(const char* function, const ZRange& z, const std::optional<double>& offset)
+{
+    if (!(z.low <= z.high)) throw ArgumentError(function, "z.high", z.high, "at least z.low");
+    if (offset && !std::isfinite(*offset)) throw ArgumentError(function, "offset", *offset, "a finite number, m");
+}
+
+void check_offset(const char* function, double offset, const QueryOptions& options)
+{
+    if (offset > options.max_height + touch_tolerance)
+        throw ArgumentError(function, "offset", offset, "at most max_height, " + number(options.max_height) + " m: such poses are aerial");
+}
+
+double auto_offset(const Robot& robot)
+{
+    constexpr double above_ground = 0.1;  // m
+    return above_ground - robot.bounds().min.z();
+}
+
+bool is_in_flat_ground(const Robot& robot, double offset)
+{
+    return offset + robot.bounds().min.z() <= CollisionChecker::touch_margin;
+}
+
 namespace {
 
 /// Poses that are so high above all that is solid that they are aerial whatever their column holds, by a coarse image of
 /// the highest solids.
 class FarAbove {
 public:
-    /// Of no map: nothing is.
+    /// Without a map, `holds()` is always false.
     explicit FarAbove(const Map* map, double max_height) : max_height_(max_height)
     {
         if (map == nullptr) return;
         raster_ = &map->solid_bounds.impl();
-        bounds_ = map->bounds;
+        map_ = map;
         while (level_ + 1 < raster_->levels.size() && raster_->levels[level_].cell < finest) ++level_;
         if (raster_->levels.empty()) raster_ = nullptr;
     }
 
     bool holds(const Vec3& p) const
     {
-        if (raster_ == nullptr || !bounds_.contains_xy(p.x(), p.y(), 0)) return false;
+        if (raster_ == nullptr || !is_within(*map_, p)) return false;
         const BoundsLevel& level = raster_->levels[level_];
         const double u = (p.x() - raster_->x0) / level.cell, v = (p.y() - raster_->y0) / level.cell;
         const double col = std::floor(u), row = std::floor(v);
@@ -60,7 +84,7 @@ private:
     static constexpr double margin = 1e-5;  // m
 
     const SolidBounds::Impl* raster_ = nullptr;
-    Bounds bounds_;
+    const Map* map_ = nullptr;
     std::size_t level_ = 0;
     const double max_height_;
 };
@@ -83,7 +107,7 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
         Vec3& p = out.spawn.position;
         for (int axis = 0; axis < 3; ++axis) p[axis] = draw.uniform(box.min[axis], box.max[axis]);
         out.spawn.yaw = draw_yaw(options, draw);
-        out.off_area = !area.contains(p.head<2>());
+        out.off_area = !area.contains(p.head<2>(), p.z());
         if (out.off_area) return out;
         out.clear = checked.before().is_clear(p);
         if (!out.clear) return out;

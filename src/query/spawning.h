@@ -12,10 +12,9 @@
 
 namespace spawnfield {
 
-/// Of the first two axes; those of z are the first box's.
 inline Bounds overlap(Bounds box, const Bounds& other)
 {
-    for (int axis = 0; axis < 2; ++axis) {
+    for (int axis = 0; axis < 3; ++axis) {
         box.min[axis] = std::max(box.min[axis], other.min[axis]);
         box.max[axis] = std::min(box.max[axis], other.max[axis]);
     }

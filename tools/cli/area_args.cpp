@@ -14,7 +14,7 @@ Region read_one(const CommonArgs& common, const std::string& option, const std::
 {
     if (is_box(text) && !std::filesystem::exists(text)) {
         const Bounds box = parse_bounds(option, text, true);
-        Region out = box_region(box.min.x(), box.min.y(), box.max.x(), box.max.y());
+        Region out = box_region(box.min.x(), box.min.y(), box.max.x(), box.max.y(), box.z());
         out.name = text;
         return out;
     }
@@ -39,7 +39,7 @@ void tell_about(const CommonArgs& common, const Map& map, const std::string& opt
 void add_area(CLI::App& command, AreaArgs& args)
 {
     command.add_option("--region", args.regions,
-                       "Where poses are wanted: x0,y0,x1,y1 in m, or a file in the map's metres: GeoJSON, CSV (x,y), map.yaml of nav2 (free cells); "
+                       "Where poses are wanted: x0,y0,x1,y1 or x0,y0,z0,x1,y1,z1 in m, or a file in the map's metres: GeoJSON, CSV (x,y), map.yaml of nav2 (free cells); "
                        "repeatable: in any of them")
         ->allow_extra_args(false);
     command.add_option("--keep-out", args.keep_outs, "Where not, in the same ways; of a nav2 map the occupied cells (repeatable)")->allow_extra_args(false);

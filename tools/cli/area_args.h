@@ -10,7 +10,7 @@ struct AreaArgs {
 };
 void add_area(CLI::App& command, AreaArgs& args);
 
-/// What --region has if it is there once, with a box: "x0,y0,x1,y1"; else nothing. Throws ArgumentError.
+/// What --region has if it is there once, with a box; else nothing. Throws ArgumentError.
 std::optional<Bounds> lone_box(const AreaArgs& args);
 
 /// Reads the files and tells what is odd about them. Throws ArgumentError, FileError.

@@ -1,3 +1,4 @@
+#include "ground_args.h"
 #include "scene_args.h"
 
 #include <spawnfield/error.h>
@@ -9,7 +10,7 @@ namespace spawnfield::cli {
 namespace {
 
 struct BakeArgs : CommonArgs, SceneArgs, ModelPathArgs {
-    std::string scene, out, bounds;
+    std::string scene, out, bounds, z;
     double resolution = 0, occupancy_resolution = 0;
     bool allow_no_terrain = false;
 };
@@ -29,6 +30,8 @@ int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
     if (resolution_given) options.resolution = parse_positive("--resolution", args.resolution);
     if (occupancy_given) options.occupancy_resolution = parse_positive("--occupancy-resolution", args.occupancy_resolution);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, false);
+    if (!args.z.empty() && !args.bounds.empty()) throw ArgumentError("--z and --bounds both limit heights; give one of them");
+    if (!args.z.empty()) options.z = parse_z("--z", args.z);
     options.allow_no_terrain = args.allow_no_terrain;
     options.threads = args.threads;
     options.progress = progress_bar(args, "bake");
@@ -57,7 +60,8 @@ void add_bake(CLI::App& app, Run& run)
     command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")->required()->check(not_empty());
     auto* resolution = command.add_option("--resolution", args->resolution, "Side of a terrain cell, m (default 0.1)");
     auto* occupancy = command.add_option("--occupancy-resolution", args->occupancy_resolution, "Side of a voxel, m (default 2.5 cells)");
-    command.add_option("--bounds", args->bounds, "x0,y0,z0,x1,y1,z1 in m (default: the scene's)");
+    command.add_option("--bounds", args->bounds, "x0,y0,z0,x1,y1,z1 in m (default: the scene's). z0 and z1 are z limits: layers beyond them are no ground, poses beyond them outside");
+    command.add_option("--z", args->z, "LOW:HIGH in m: z limits alone, of the whole scene (5: and :8 have one limit)");
     add_scene_options(command, *args);
     add_model_path(command, *args);
     command.add_flag("--allow-no-terrain", args->allow_no_terrain, "Bake a scene in which nothing is terrain");

@@ -148,7 +148,8 @@ Bounds parse_bounds(const std::string& option, const std::string& text, bool fla
     if (v.size() == 6) {
         bounds = {Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
     } else if (v.size() == 4 && flat_allowed) {
-        bounds = {Vec3(v[0], v[1], 0), Vec3(v[2], v[3], 0)};
+        const ZRange all;
+        bounds = {Vec3(v[0], v[1], all.low), Vec3(v[2], v[3], all.high)};
     } else {
         throw ArgumentError(option + " has " + std::to_string(v.size()) + " numbers, needs 6: x0,y0,z0,x1,y1,z1" +
                             (flat_allowed ? " (or 4: x0,y0,x1,y1)" : ""));
@@ -254,17 +255,6 @@ void tell_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice&
     if (layers.kind == LayerChoice::Kind::Index && layers.index >= map.layers)
         notice(args, "--layers " + std::to_string(layers.index) + ": no cell of the map has so many, the most is " + counted(std::uint64_t(map.layers), "layer") +
                          " (0 is the highest)");
-}
-
-void tell_if_in_ground(const CommonArgs& args, const Robot& robot, double offset)
-{
-    const double depth = 0 - robot.bounds().min.z();  // never -0
-    if (offset > depth + CollisionChecker::touch_margin) return;
-    const double enough = (std::floor(100 * depth + 0.001) + 1) / 100;  // the next centimetre
-    char text[200];
-    std::snprintf(text, sizeof text, "the robot's lowest point is %.6g m below its origin, --offset is %.6g m: it collides on all flat ground; --offset %.6g would do",
-                  depth, offset, enough);
-    notice(args, text);
 }
 
 void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer,

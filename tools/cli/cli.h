@@ -21,6 +21,11 @@ enum ExitStatus { done = 0, failure = 1, wrong_usage = 2, fewer_found = 3, input
 /// The user pressed Ctrl-C; nothing was written.
 struct Interrupted {};
 
+/// No pose can be valid, and `why`: the command ends with fewer_found.
+struct NothingFits {
+    std::string why;
+};
+
 /// Options that every command has.
 struct CommonArgs {
     int threads = 0;
@@ -63,7 +68,7 @@ void clear_progress_bar();
 
 /// Finite numbers with `separator` between them. Throws ArgumentError.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, char separator = ',');
-/// "x0,y0,z0,x1,y1,z1", or "x0,y0,x1,y1" where heights do not count. Throws ArgumentError.
+/// "x0,y0,z0,x1,y1,z1", or, where that is allowed, "x0,y0,x1,y1" at all heights. Throws ArgumentError.
 Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed);
 /// As parse_bounds reads it: 6 numbers, or of 2 axes 4.
 std::string bounds_text(const Bounds& bounds, int axes);
@@ -91,6 +96,7 @@ public:
     std::string map_hash;
     ExactTime exact_time;                                     ///< for a query's options
     std::vector<std::string> extra;                           ///< further words for the line, in front
+    std::optional<double> offset;                             ///< m, of poses on layers
     std::vector<std::pair<std::string, double>> more_stages;  ///< a bake's own
     struct Fullness {
         bool is_full;
@@ -126,11 +132,9 @@ PoseTable open_poses(const CommonArgs& args, const std::string& file);
 std::unique_ptr<Session> open_session(const QueryArgs& args);
 void fill(QueryOptions& options, const QueryArgs& args, const std::string& label);
 
-/// A notice where an answer is plain before it is asked for: the region lies off the map, no column has that layer, the robot
-/// stands in all flat ground.
+/// A notice where an answer is plain before it is asked for: the region lies off the map, no column has that layer.
 void tell_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds);
 void tell_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice& layers);
-void tell_if_in_ground(const CommonArgs& args, const Robot& robot, double offset);
 
 /// `-o FILE`, whole or not at all, or standard output where the file is empty or "-". `then` runs when all is written but
 /// the file has not its name yet: it gets that only if `then` succeeds too.

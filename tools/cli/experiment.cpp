@@ -54,7 +54,7 @@ void check_usage(const ExperimentArgs& args, const CLI::App& command)
     if (args.runs < 1) throw bad_value("--runs", double(args.runs), ">= 1");
     if (args.runs > 1000000) throw bad_value("--runs", double(args.runs), "at most 1000000");
     if (args.search) {
-        refuse(command, {"--dims", "--steps", "--steps-z", "--offset", "--layers", "--no-height-check", "--snap"}, "is for rasters, not for --search");
+        refuse(command, {"--dims", "--steps", "--steps-z", "--offset", "--layers", "--floor", "--no-height-check", "--snap"}, "is for rasters, not for --search");
         if (command.count("-n") == 0) throw ArgumentError("--search needs -n, the spawns wanted");
         return;
     }
@@ -85,10 +85,11 @@ public:
         OutputFolder folder(args_.out, holds_only(experiment_files, "former experiment"));
         session_ = open_session(args_);
         if (args_.search) {
+            search_.bounds = with_heights(search_.bounds, heights_of(args_.ground, search_.bounds, "--bounds"), session_->map);
             tell_if_off_map(args_, session_->map, "--bounds", search_.bounds);
             tell_about_area(args_, session_->map, search_.area);
         } else {
-            tell_about(args_, *session_, raster_);
+            complete(raster_, args_, *session_, summary_);
         }
         summary_.lap("load");
         std::vector<ExperimentRun> runs = args_.search ? run_searches() : run_rasters();
@@ -107,7 +108,7 @@ private:
 
     void prepare_searches()
     {
-        search_ = search_options(args_, args_.draws, args_.bounds, "experiment");
+        search_ = search_options(args_, args_.draws, args_.bounds, "experiment", !args_.ground.z.empty());
         search_.yaw = parse_finite("--yaw", args_.yaw, "rad");
         search_.area = read_area(args_, args_.area);
         search_.exact_time = &summary_.exact_time;

@@ -97,18 +97,17 @@ const std::vector<std::string>& asking_options()
 void add_export(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<ExportArgs>();
+    args->ground.layers.clear();  // the default depends on the format
     CLI::App& command = *app.add_subcommand("export", "A map, or poses in it, in a file of another program");
     add_query(command, *args);
     command.get_option("--robot")->required(false);
     command.add_option("--format", args->format, "One of the formats below")->required()->check(CLI::IsMember(format_names()));
     command.add_option("--out,-o", args->out, "File to write (default: standard output, where the format can)");
-    command.add_option("--layers,--layer", args->layers,
-                       "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
-    command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
+    add_ground(command, args->ground, "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
     command.add_option("--step", args->step, "Between columns, m");
-    command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
+    command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
     command.add_flag("--local", args->local, "In the map's own frame, though the survey's coordinates are known");
     command.add_option("--poses,-p", args->poses, "CSV file of poses, as sample and check write them; a column name names the robots where --name does not");
     add_simulator_options(command, args->simulator);

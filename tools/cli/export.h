@@ -1,15 +1,17 @@
 #pragma once
 
+#include "ground_args.h"
 #include "simulator_output.h"
 
 namespace spawnfield::cli {
 
 /// Options of `export`; which of them a format takes its row of the table says.
 struct ExportArgs : QueryArgs {
-    std::string format, out, layers, bounds, poses;
+    GroundArgs ground;
+    std::string format, out, bounds, poses;
     bool local = false;
     SimulatorArgs simulator;
-    double resolution = 0, step = 0, offset = 0.1, yaw = 0;
+    double resolution = 0, step = 0, yaw = 0;
 };
 
 /// What a format's writer gets.

@@ -17,12 +17,15 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
     RasterOptions options;
     fill(options, args, "export");
     options.exact_time = &job.summary.exact_time;
-    options.offset = parse_finite("--offset", args.offset, "m");
+    const std::optional<double> offset = parse_offset(args.ground.offset);
     options.yaw = parse_finite("--yaw", args.yaw, "rad");
-    options.layers = parse_layers(args.layers.empty() ? layers : args.layers);
-    tell_idle(args, job.command, {"--max-height"}, "the robot stands on each layer");
+    options.layers = parse_layers(args.ground.layers.empty() ? layers : args.ground.layers);
+    if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
+    options.z = with_floor(heights_of(args.ground, options.bounds, "--bounds"), args.ground, job.session.map);
+    options.offset = job.summary.offset = chosen_offset(args, offset, job.session.robot);
+    job.summary.extra.push_back(offset_words(offset, *options.offset));
     tell_if_no_layer(args, job.session.map, options.layers);
-    tell_if_in_ground(args, job.session.robot, options.offset);
+    require_above_ground(job.session.robot, *options.offset);
     return options;
 }
 
@@ -30,8 +33,11 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
 std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& options, const std::string& layers)
 {
     const Session& session = job.session;
+    std::string floor = floor_words(job.args.ground, session.map);
+    if (!floor.empty()) floor = ", " + floor;
+    else if (!options.z.is_unlimited()) floor = ", heights " + number(options.z.low) + " to " + number(options.z.high) + " m";
     return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): where the origin of " + session.robot.name +
-            " can be, " + number(options.offset) + " m above its layer (" + (job.args.layers.empty() ? layers : job.args.layers) + "), yaw " +
+            " can be, " + number(*options.offset) + " m above its layer (" + (job.args.ground.layers.empty() ? layers : job.args.ground.layers) + floor + "), yaw " +
             number(options.yaw) + " rad"};
 }
 
@@ -76,7 +82,7 @@ void write_nav2(const ExportJob& job)
 /// Of a picture that needs no robot.
 LayerChoice image_layers(const ExportJob& job)
 {
-    const LayerChoice layers = parse_layers(job.args.layers.empty() ? "top" : job.args.layers);
+    const LayerChoice layers = parse_layers(job.args.ground.layers.empty() ? "top" : job.args.ground.layers);
     check_one_layer(job, layers);
     tell_if_no_layer(job.args, job.session.map, layers);
     return layers;
@@ -91,8 +97,10 @@ void write_geotiff(const ExportJob& job)
         const RasterOptions asked = image_options(job);
         verdicts = ask(job, asked, frame);
         options.layers = asked.layers;
+        options.z = asked.z;
     } else {
         options.layers = image_layers(job);
+        options.z = with_floor(heights_of(job.args.ground, {}, ""), job.args.ground, job.session.map);
     }
     options.survey = !job.args.local;
     options.threads = job.args.threads;
@@ -105,7 +113,6 @@ void write_ply(const ExportJob& job)
 {
     RasterOptions options = raster_options(job, "all");
     options.step = parse_positive("--step", job.args.step);
-    if (!job.args.bounds.empty()) options.bounds = parse_bounds("--bounds", job.args.bounds, true);
     tell_if_off_map(job.args, job.session.map, "--bounds", options.bounds);
     const RasterResult result = raster(job.session.map, *job.session.checker, options);
     job.summary.lap("query");
@@ -136,11 +143,11 @@ std::vector<ExportFormat> map_formats()
 {
     return {
         {"nav2", "map_server's pair for ROS: -o FILE.yaml and FILE.pgm beside it, free where --robot can stand", {"--robot", "--out"},
-         with(asking_options(), {"--layers", "--resolution"}), write_nav2},
+         with(asking_options(), {"--layers", "--z", "--floor", "--resolution"}), write_nav2},
         {"geotiff", "bands of elevation, layers, clearance, slope, water, obstacle, and the verdict of --robot if there is one", {"--out"},
-         with(asking_options(), {"--robot", "--layers", "--resolution", "--local"}), write_geotiff},
+         with(asking_options(), {"--robot", "--layers", "--z", "--floor", "--resolution", "--local"}), write_geotiff},
         {"ply", "points where --robot was asked to stand, every --step metres, coloured by verdict", {"--robot", "--step"},
-         with(asking_options(), {"--layers", "--bounds"}), write_ply},
+         with(asking_options(), {"--layers", "--z", "--floor", "--bounds"}), write_ply},
         {"glb", "the scene by labels, with a marker at each of --poses: --robot's shape, coloured by a column verdict", {},
          {"--robot", "--model-path", "--joints", "--mesh-parts", "--poses"}, write_glb},
     };

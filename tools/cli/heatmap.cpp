@@ -1,4 +1,5 @@
 #include "area_args.h"
+#include "ground_args.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
@@ -10,8 +11,9 @@ namespace {
 
 struct HeatmapArgs : QueryArgs {
     AreaArgs area;
-    std::string out, quantity = "verdict", layers = "all", spawns, bounds;
-    double step = 0, offset = 0.1, yaw = 0;
+    GroundArgs ground;
+    std::string out, quantity = "verdict", spawns, bounds;
+    double step = 0, yaw = 0;
     int size = 1000;
 };
 
@@ -36,11 +38,11 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     RasterOptions options;
     fill(options, args, "heatmap");
     options.exact_time = &summary.exact_time;
-    tell_idle(args, command, {"--max-height"}, "the robot stands on each layer");
-    options.offset = parse_finite("--offset", args.offset, "m");
+    const std::optional<double> offset = parse_offset(args.ground.offset);
     options.yaw = parse_finite("--yaw", args.yaw, "rad");
-    options.layers = parse_layers(args.layers);
+    options.layers = parse_layers(args.ground.layers);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
+    const ZRange heights = heights_of(args.ground, options.bounds, "--bounds");
     options.area = read_area(args, args.area);
     HeatmapOptions picture;
     picture.quantity = quantity_of(args.quantity);
@@ -51,7 +53,9 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     tell_if_off_map(args, session->map, "--bounds", options.bounds);
     tell_about_area(args, session->map, options.area);
     tell_if_no_layer(args, session->map, options.layers);
-    tell_if_in_ground(args, session->robot, options.offset);
+    options.z = with_floor(heights, args.ground, session->map);
+    options.offset = summary.offset = chosen_offset(args, offset, session->robot);
+    require_above_ground(session->robot, *options.offset);
     const TerrainMap terrain = read_terrain(session->map);
     summary.lap("load");
     const RasterResult result = raster(session->map, *session->checker, options);
@@ -62,7 +66,7 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     summary.set_counts(result.counts);
     summary.exact_checks = result.exact_checks;
     summary.map_hash = session->map.hash;
-    summary.extra = {args.out};
+    summary.extra = {args.out, offset_words(offset, *options.offset)};
     summary.finish();
     return done;
 }
@@ -78,11 +82,10 @@ void add_heatmap(CLI::App& app, Run& run)
     command.add_option("--quantity", args->quantity, "verdict, height, clearance or slope (default verdict)")
         ->check(CLI::IsMember({"verdict", "height", "clearance", "slope"}));
     command.add_option("--spawns", args->spawns, "CSV file of spawns to draw as arrows");
-    command.add_option("--layers,--layer", args->layers, "all (valid if one layer is), top, bottom, or N from the top (0 first)");
+    add_ground(command, args->ground, "all (valid if one layer is), top, bottom, or N from the top (0 first; default all)");
     command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
-    command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
     command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
-    command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
+    command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
     add_area(command, args->area);
     command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000)")->check(CLI::Range(200, 16000));
     command.footer("Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png");

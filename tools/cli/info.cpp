@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -53,11 +55,28 @@ Json scene_json(const Scene& scene)
     return out;
 }
 
+/// An infinite limit is null.
+Json json_of(const ZRange& z)
+{
+    const auto limit = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+    return {limit(z.low), limit(z.high)};
+}
+
+Json floors_json(const Map& map)
+{
+    Json out = Json::array();
+    for (const Floor& floor : floors_of(map))
+        out.push_back({{"floor", out.size()}, {"height", floor.height}, {"z", json_of(floor.z)}, {"area", floor.area}, {"share", floor.share}});
+    return out;
+}
+
 Json map_json(const Map& map, bool verified)
 {
     Json out = {{"kind", "map"}, {"name", map.name}, {"bounds", json_of(map.bounds)}, {"resolution", map.resolution},
                 {"occupancy_resolution", map.occupancy_resolution}, {"layers", map.layers},
                 {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
+    if (!map.z_limits.is_unlimited()) out["z_limits"] = json_of(map.z_limits);
+    out["floors"] = floors_json(map);
     if (map.origin) out["origin"] = json_of(*map.origin);
     if (verified) out["verified"] = true;
     out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
@@ -158,13 +177,36 @@ std::string scene_lines(const Json& scene)
     return out;
 }
 
+/// "floors: --floor K selects one", then a line for each, the highest first as they lie above each other.
+std::string floor_lines(const Json& map)
+{
+    const Json& floors = map["floors"];
+    if (floors.empty()) return "floors\n  none: the map has no ground\n";
+    std::string out = "floors (heights around which much of the ground lies; --floor K selects one)\n";
+    for (std::size_t k = floors.size(); k-- > 0;) {
+        char line[120];
+        std::snprintf(line, sizeof line, "  %zu: at %.6g m, %.4g m2, %.1f %% of the ground\n", k, floors[k]["height"].get<double>(),
+                      floors[k]["area"].get<double>(), 100 * floors[k]["share"].get<double>());
+        out += line;
+    }
+    return out;
+}
+
+/// Heights beyond which poses are outside, if the map has such limits.
+std::string z_limits_line(const Json& map)
+{
+    if (!map.contains("z_limits")) return "";
+    const auto limit = [&](std::size_t end) { return map["z_limits"][end].is_null() ? "" : number(map["z_limits"][end]); };
+    return "  z limits " + limit(0) + ":" + limit(1) + " m: layers beyond them are no ground, poses beyond them are outside\n";
+}
+
 std::string map_lines(const Json& map)
 {
     std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() + ", hash " +
                       map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
     out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") + "; voxels of " +
-           map["occupancy_resolution"].dump() + " m\n" + origin_line(map);
-    out += scene_lines(map) + "files\n";
+           map["occupancy_resolution"].dump() + " m\n" + z_limits_line(map) + origin_line(map);
+    out += floor_lines(map) + scene_lines(map) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
     return out;

@@ -28,6 +28,8 @@ int guarded(const Run& run)
         return tell(interrupted, "interrupted; nothing was written");
     } catch (const ArgumentError& error) {
         return tell(wrong_usage, error.message());
+    } catch (const NothingFits& nothing) {
+        return tell(fewer_found, nothing.why);
     } catch (const FileError& error) {
         return tell(input_refused, error.what());
     } catch (const std::bad_alloc&) {

@@ -44,12 +44,13 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     add("Step (m)", number(grid.step));
     if (is_3d) add("Step z (m)", number(grid.step_z));
     if (is_3d) add("Snap", options.snap ? "yes" : "no");
-    if (!is_3d || options.snap) add("Offset (m)", number(options.offset));
+    if (!is_3d || options.snap) add("Offset (m)", number(*options.offset));
     add("Yaw (rad)", number(options.yaw));
     add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, options.dims));
     for (const Region& region : options.area.within) add("Region", region.name);
     for (const Region& region : options.area.keep_out) add("Keep out", region.name);
-    add("Layers", args.layers);
+    add("Layers", args.ground.layers);
+    if (!is_3d && !options.z.is_unlimited()) add("Heights of layers (m)", number(options.z.low) + ":" + number(options.z.high));
     if (is_3d) add("Height check", options.height_check ? "yes" : "no");
     if (is_3d && options.height_check) add("Max height (m)", number(options.max_height));
     if (options.height_check) add("Max water depth (m)", number(options.max_water_depth));
@@ -64,7 +65,7 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     options.exact_time = &summary.exact_time;
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     const auto session = open_session(args);
-    tell_about(args, *session, options);
+    complete(options, args, *session, summary);
     summary.lap("load");
     const RasterResult result = raster(session->map, *session->checker, options);
     summary.lap("query");

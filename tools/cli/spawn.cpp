@@ -1,4 +1,5 @@
 #include "area_args.h"
+#include "ground_args.h"
 #include "simulator_output.h"
 #include "spawn_args.h"
 #include "thesis_output.h"
@@ -14,8 +15,8 @@ struct SpawnArgs : QueryArgs {
     DrawArgs draws;
     SimulatorArgs simulator;
     AreaArgs area;
-    double offset = 0.1;
-    std::string bounds, layers = "all", yaw = "0", format = "csv", out;
+    GroundArgs ground;
+    std::string bounds, yaw = "0", format = "csv", out;
 
     bool is_thesis() const { return format == "thesis"; }
 };
@@ -69,27 +70,45 @@ void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& 
     output.write(robots, session.map, [&] { return spawns_json(robots, list, session.map, session.robot, options); });
 }
 
+/// `hopeless`: why no pose can be valid, or empty.
 int finish(Summary& summary, const SpawnArgs& args, const Session& session, const SpawnOptions& options, const SpawnList& list,
-           const std::string& command)
+           const std::string& command, const std::string& hopeless)
 {
     summary.lap("write");
     summary.set_counts(list.counts);
     summary.exact_checks = list.exact_checks;
     summary.map_hash = session.map.hash;
     summary.seed = options.seed;
-    summary.extra = {std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns",
-                     counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
-                         (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region")};
+    summary.extra.insert(summary.extra.begin(), std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns");
+    summary.extra.push_back(counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
+                            (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region"));
     summary.finish();
     if (list.spawns.size() == options.count) return done;
-    notice(args, shortfall(options, list, command));
+    notice(args, hopeless.empty() ? shortfall(options, list, command) : hopeless);
     return fewer_found;
 }
 
-/// Both commands, once their options are known: `own` are the settings that the other has not.
+/// A command's own part of run_spawn, once the map and the robot are known.
 template <class Options>
-int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Options&), Summary& summary, const SpawnArgs& args,
-              const CLI::App& app, Options options, const std::string& command, const Settings& own, const std::function<void(const Session&)>& tell)
+struct SpawnQuery {
+    std::function<Settings(const Session&, Options&, Summary&)> prepare;  ///< returns settings that the other command does not have
+    SpawnList (*run)(const Map&, const CollisionChecker&, const Options&);
+    std::function<std::string(const Session&, const Options&)> find_hopeless = [](const auto&, const auto&) { return ""; };
+};
+
+/// Nothing was drawn: all of the region is undecided.
+SpawnList nothing_drawn(const Map& map, const SpawnOptions& options)
+{
+    const Bounds box = options.bounds.is_empty() ? map.bounds : options.bounds;
+    SpawnList out;
+    out.undecided_area = (box.max - box.min).head<2>().prod();
+    return out;
+}
+
+/// Both commands, once their options are known.
+template <class Options>
+int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArgs& args, const CLI::App& app, Options options,
+              const std::string& command)
 {
     options.random_yaw = !parse_yaw(args.yaw, options.yaw);
     options.exact_time = &summary.exact_time;
@@ -98,29 +117,32 @@ int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Opti
     std::optional<SimulatorOutput> output;
     if (!folder) output.emplace(args, app, args.simulator, SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args)});
     const auto session = open_session(args);
-    tell(*session);
+    const Settings own = query.prepare(*session, options, summary);
+    const std::string hopeless = query.find_hopeless(*session, options);
     summary.lap("load");
-    const SpawnList list = query(session->map, *session->checker, options);
+    const SpawnList list = hopeless.empty() ? query.run(session->map, *session->checker, options) : nothing_drawn(session->map, options);
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
     summary.lap("query");
     if (folder)
         write_thesis(*folder, settings_of(args, *session, options, list, command, own), list.counts, summary,
                      [&](const auto& into) { return write_thesis_locations(into, list); });
     else write(args, *output, *session, options, list);
-    return finish(summary, args, *session, options, list, command);
+    return finish(summary, args, *session, options, list, command, hopeless);
 }
 
 int run_search(const SpawnArgs& args, const CLI::App& command)
 {
     Summary summary("search", args);
-    SearchOptions options = search_options(args, args.draws, args.bounds, "search");
+    SearchOptions options = search_options(args, args.draws, args.bounds, "search", !args.ground.z.empty());
     options.area = read_area(args, args.area);
-    const Settings own = {{"Max failures", std::to_string(options.max_failures)}, {"Max height (m)", number(options.max_height)}};
-    return run_spawn(search, summary, args, command, options, "search", own,
-                     [&](const Session& session) {
-                         tell_if_off_map(args, session.map, "--bounds", options.bounds);
-                         tell_about_area(args, session.map, options.area);
-                     });
+    const ZRange heights = heights_of(args.ground, options.bounds, "--bounds");
+    const auto prepare = [&](const Session& session, SearchOptions& asked, Summary&) {
+        asked.bounds = with_heights(asked.bounds, heights, session.map);
+        tell_if_off_map(args, session.map, "--bounds", asked.bounds);
+        tell_about_area(args, session.map, asked.area);
+        return Settings{{"Max failures", std::to_string(asked.max_failures)}, {"Max height (m)", number(asked.max_height)}};
+    };
+    return run_spawn<SearchOptions>({prepare, search}, summary, args, command, options, "search");
 }
 
 int run_sample(const SpawnArgs& args, const CLI::App& command)
@@ -133,16 +155,22 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
         options.bounds = *box;
         options.area.within.clear();
     }
-    options.offset = parse_finite("--offset", args.offset, "m");
-    options.layers = parse_layers(args.layers);
-    tell_idle(args, command, {"--max-height"}, "samples stand on their layers");
-    const Settings own = {{"Offset (m)", number(options.offset)}, {"Layers", args.layers}};
-    return run_spawn(sample, summary, args, command, options, "sample", own, [&](const Session& session) {
-        tell_if_off_map(args, session.map, "--region", options.bounds);
-        tell_about_area(args, session.map, options.area);
-        tell_if_no_layer(args, session.map, options.layers);
-        tell_if_in_ground(args, session.robot, options.offset);
-    });
+    const std::optional<double> offset = parse_offset(args.ground.offset);
+    options.layers = parse_layers(args.ground.layers);
+    const ZRange heights = heights_of(args.ground, options.bounds, "--region");
+    const auto prepare = [&](const Session& session, SampleOptions& asked, Summary& told) {
+        asked.z = with_floor(heights, args.ground, session.map);
+        asked.offset = told.offset = chosen_offset(args, offset, session.robot);
+        told.extra.push_back(offset_words(offset, *asked.offset));
+        tell_if_off_map(args, session.map, "--region", asked.bounds);
+        tell_about_area(args, session.map, asked.area);
+        tell_if_no_layer(args, session.map, asked.layers);
+        Settings own{{"Offset (m)", number(*asked.offset)}, {"Layers", args.ground.layers}};
+        if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", number(asked.z.low) + ":" + number(asked.z.high));
+        return own;
+    };
+    const auto find_hopeless = [](const Session& session, const SampleOptions& asked) { return flat_ground_complaint(session.robot, *asked.offset); };
+    return run_spawn<SampleOptions>({prepare, sample, find_hopeless}, summary, args, command, options, "sample");
 }
 
 void add_spawn_options(CLI::App& command, SpawnArgs& args)
@@ -168,7 +196,8 @@ void add_search(CLI::App& app, Run& run)
     CLI::App& command = *app.add_subcommand("search", "N spawns by random search in a box, away from all positions checked before");
     add_spawn_options(command, *args);
     add_max_failures(command, args->draws);
-    command.add_option("--bounds", args->bounds, "Box of the draws: x0,y0,z0,x1,y1,z1 in m (default: the map's)");
+    command.add_option("--bounds", args->bounds, "Box of the draws: x0,y0,z0,x1,y1,z1 in m, or with --z x0,y0,x1,y1 (default: the map's)");
+    command.add_option("--z", args->ground.z, "LOW:HIGH in m: heights of the draws, short for those of --bounds (5: and :8 have one limit)");
     command.footer("Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 --max-failures 10000");
     command.callback([=, &command, &run] { run = [=, &command] { return run_search(*args, command); }; });
 }
@@ -178,8 +207,7 @@ void add_sample(CLI::App& app, Run& run)
     auto args = std::make_shared<SpawnArgs>();
     CLI::App& command = *app.add_subcommand("sample", "N valid spawns, uniform by area");
     add_spawn_options(command, *args);
-    command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
-    command.add_option("--layers,--layer", args->layers, "all, top, bottom, or N from the top (0 first)");
+    add_ground(command, args->ground, "all, top, bottom, or N from the top (0 first; default all)");
     command.footer("Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");
     command.callback([=, &command, &run] { run = [=, &command] { return run_sample(*args, command); }; });
 }

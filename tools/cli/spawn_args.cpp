@@ -26,11 +26,11 @@ void fill(SpawnOptions& options, const QueryArgs& args, const DrawArgs& draws, c
     options.seed = draws.seed;
 }
 
-SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds, const std::string& label)
+SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds, const std::string& label, bool flat_allowed)
 {
     SearchOptions options;
     fill(options, args, draws, label);
-    if (!bounds.empty()) options.bounds = parse_bounds("--bounds", bounds, false);
+    if (!bounds.empty()) options.bounds = parse_bounds("--bounds", bounds, flat_allowed);
     if (draws.max_failures < 1) throw bad_value("--max-failures", double(draws.max_failures), ">= 1");
     options.max_failures = std::uint64_t(draws.max_failures);
     return options;

@@ -93,6 +93,7 @@ std::string Summary::json(double total) const
         out["full"] = fullness->is_full;
         out["undecided_area"] = fullness->undecided_area;
     }
+    if (offset) out["offset"] = *offset;
     const double load = seconds_of("load"), write = seconds_of("write");
     // Exact checks run on all threads: their share of the query's time is told.
     const double query = total - load - write, judging = seconds_of("query");

@@ -1,0 +1,119 @@
+#include "ground_args.h"
+
+#include <cmath>
+
+namespace spawnfield::cli {
+namespace {
+
+const std::vector<Floor>& floor_checked(int floor, const std::vector<Floor>& floors)
+{
+    if (std::size_t(floor) < floors.size()) return floors;
+    std::string list;
+    for (std::size_t k = 0; k < floors.size(); ++k)
+        list += (k == 0 ? ": " : ", ") + std::to_string(k) + " at " + number(floors[k].height) + " m";
+    throw ArgumentError("--floor is " + std::to_string(floor) + "; the map has " + counted(floors.size(), "floor") + list);
+}
+
+}  // namespace
+
+void add_ground(CLI::App& command, GroundArgs& args, const std::string& layers_help)
+{
+    command.add_option("--offset", args.offset,
+                       "Height of the robot's origin above its layer, m; auto: the robot's lowest point is 0.1 m above the layer (default auto)");
+    command.add_option("--layers,--layer", args.layers, layers_help);
+    add_heights(command, args);
+}
+
+void add_heights(CLI::App& command, GroundArgs& args)
+{
+    command.add_option("--z", args.z, "LOW:HIGH in m: layers at other heights are no ground (5: and :8 have one limit)");
+    command.add_option("--floor", args.floor, "Layers of this floor alone, 0 the lowest; `spawnfield info MAP` lists floors")
+        ->check(CLI::Range(0, 1000000));
+}
+
+ZRange parse_z(const std::string& option, const std::string& text)
+{
+    const std::size_t colon = text.find(':');
+    if (colon == std::string::npos || text.size() == 1)
+        throw ArgumentError(option + " is \"" + text + "\", needs LOW:HIGH in m, for example 5:8 or 5:");
+    ZRange z;
+    if (colon > 0) z.low = parse_numbers(option, text.substr(0, colon))[0];
+    if (colon + 1 < text.size()) z.high = parse_numbers(option, text.substr(colon + 1))[0];
+    if (!(z.low <= z.high)) throw ArgumentError(option + " is \"" + text + "\": the lower height comes first");
+    return z;
+}
+
+std::optional<double> parse_offset(const std::string& text)
+{
+    if (text == "auto") return std::nullopt;
+    const std::vector<double> values = parse_numbers("--offset", text);
+    if (values.size() != 1) throw ArgumentError("--offset is \"" + text + "\", needs metres or auto");
+    return parse_finite("--offset", values[0], "m");
+}
+
+ZRange heights_of(const GroundArgs& args, const Bounds& bounds, const std::string& bounds_option)
+{
+    const ZRange of_bounds = bounds.is_empty() ? ZRange{} : bounds.z();
+    if (args.z.empty()) return of_bounds;
+    if (!of_bounds.is_unlimited())
+        throw ArgumentError("--z and the six numbers of " + bounds_option + " both limit heights; give one of them");
+    return parse_z("--z", args.z);
+}
+
+ZRange with_floor(const ZRange& heights, const GroundArgs& args, const Map& map)
+{
+    if (args.floor < 0) return heights;
+    if (!heights.is_unlimited()) throw ArgumentError("--floor and --z (or six numbers for a box) both limit heights; give one of them");
+    return floor_checked(args.floor, floors_of(map))[std::size_t(args.floor)].z;
+}
+
+Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map)
+{
+    if (bounds.is_empty() && heights.is_unlimited()) return bounds;
+    Bounds out = bounds.is_empty() ? map.bounds : bounds;
+    const auto first_finite = [](double a, double b, double c) { return std::isfinite(a) ? a : std::isfinite(b) ? b : c; };
+    out.min.z() = first_finite(heights.low, bounds.is_empty() ? heights.low : bounds.min.z(), map.bounds.min.z());
+    out.max.z() = first_finite(heights.high, bounds.is_empty() ? heights.high : bounds.max.z(), map.bounds.max.z());
+    if (!(out.min.z() <= out.max.z()))
+        throw ArgumentError("--z lies off the map, which is z " + number(map.bounds.min.z()) + " to " + number(map.bounds.max.z()) + " m");
+    return out;
+}
+
+std::string floor_words(const GroundArgs& args, const Map& map)
+{
+    if (args.floor < 0) return "";
+    const std::vector<Floor> floors = floors_of(map);
+    return "floor " + std::to_string(args.floor) + " at " + number(floor_checked(args.floor, floors)[std::size_t(args.floor)].height) + " m";
+}
+
+double chosen_offset(const QueryArgs& args, const std::optional<double>& offset, const Robot& robot)
+{
+    const double chosen = offset.value_or(auto_offset(robot));
+    if (chosen <= args.max_height + touch_tolerance) return chosen;
+    const std::string value = number(chosen);
+    throw ArgumentError("--offset is " + value + " m" + (offset ? "" : " (auto)") + ", needs at most --max-height, " + number(args.max_height) +
+                        " m: `check` calls higher poses aerial; give --max-height " + value + " or more");
+}
+
+std::string offset_words(const std::optional<double>& wanted, double chosen)
+{
+    return "offset " + number(chosen) + " m" + (wanted ? "" : " (auto)");
+}
+
+std::string flat_ground_complaint(const Robot& robot, double offset)
+{
+    if (!is_in_flat_ground(robot, offset)) return "";
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "at --offset %.6g m the robot collides with all flat ground: its lowest point is %.6g m below its origin; "
+                  "give --offset auto, which is %.6g m",
+                  offset, 0 - robot.bounds().min.z(), auto_offset(robot));
+    return text;
+}
+
+void require_above_ground(const Robot& robot, double offset)
+{
+    if (const std::string why = flat_ground_complaint(robot, offset); !why.empty()) throw NothingFits{why};
+}
+
+}  // namespace spawnfield::cli
