@@ -240,7 +240,7 @@ TEST_CASE("a damaged map is refused by every command, with the file named")
     const std::string yaml = bytes_of(desk / "map/map.yaml");
     desk.write("map/map.yaml", "format: spawnfield-map/99" + yaml.substr(yaml.find('\n')));
     for (const std::string& query : queries)
-        desk.check({query, "spawnfield: map/map.yaml: has format version 99, this program reads 2; bake the map again or use a newer spawnfield"}, 4);
+        desk.check({query, "spawnfield: map/map.yaml: has format version 99, this program reads 2 and 3; bake the map again or use a newer spawnfield"}, 4);
 }
 
 TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
