@@ -28,7 +28,7 @@ struct HeatmapOptions {
 /// of the listed poses says; a column of a 3D raster without any is aerial. Each pixel shows the nearest column, level
 /// ground in just the legend's colour. Obstacles are dark wherever one stands at the height of the robot, so that around
 /// them the collision colour is the margin that the robot's size adds; they are drawn from the geometry, at up to 2000
-/// places along the longer side. The legend counts columns, each one as it is shown.
+/// places along the longer side. The legend counts columns, each one as it is shown; shares are of those that have a pose.
 /// With several headings a column is valid at all of them, at some, or else shown as the commonest verdict.
 ///
 /// Height: z of the pose that is shown. Clearance: horizontal distance from a valid column to the nearest one that is not,

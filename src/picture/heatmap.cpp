@@ -1,41 +1,22 @@
 #include "picture/obstacle_mask.h"
-#include "picture/palette.h"
+#include "picture/quantities.h"
 #include "picture/relief.h"
 #include "picture/spawn_marks.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
 
-#include <opencv2/imgproc.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace spawnfield {
 namespace {
 
-constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
-
 // ---------------------------------------------------------------- colours and words
 
-/// What a column is shown as: a verdict, or one of these.
-using Kind = std::uint8_t;
-constexpr Kind some_headings = verdict_count, obstacle = verdict_count + 1, no_pose = verdict_count + 2, kind_count = verdict_count + 3;
-
-constexpr Kind kind_of(Verdict verdict) { return static_cast<Kind>(verdict); }
-
 const Colour not_valid = rgb(0x9a9a9a), beyond = rgb(0xffffff);
-
-Colour colour_of(Kind kind)
-{
-    switch (kind) {
-    case some_headings: return rgb(some_headings_colour);
-    case obstacle: return rgb(obstacle_colour);
-    case no_pose: return rgb(no_pose_colour);
-    default: return rgb(verdict_palette[kind]);
-    }
-}
 
 std::string name_of(Kind kind, const HeatmapOptions& options)
 {
@@ -61,8 +42,6 @@ std::string count_and_share(std::uint64_t count, std::uint64_t total)
     return text + "   " + (percent < 0.05 ? "< 0.1" : fixed(percent, 1)) + " %";
 }
 
-// ---------------------------------------------------------------- columns
-
 void check_size(const char* what, std::size_t size, std::size_t wanted, const char* limit)
 {
     if (size != 0 && size != wanted) throw ArgumentError("write_heatmap", std::string("size of ") + what, static_cast<double>(size), limit);
@@ -82,81 +61,7 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
     check_size("valid_headings", options.valid_headings.size(), raster.poses.size(), "as many as the raster's poses, or none");
 }
 
-/// The pose that the picture shows of each column, nullptr where it has none. Row 0 is the largest y.
-struct ShownPoses {
-    int rows = 0, cols = 0;
-    std::vector<const RasterPose*> poses;
-    std::vector<int> headings;  ///< at how many the pose is valid
-
-    std::size_t index(int row, int col) const { return static_cast<std::size_t>(row) * cols + col; }
-    const RasterPose* at(int row, int col) const { return poses[index(row, col)]; }
-    bool is_valid(int row, int col, int at_headings) const { return at(row, col) && headings[index(row, col)] >= at_headings; }
-};
-
-/// At how many headings pose p of the raster is valid.
-int headings_of(const RasterResult& raster, const HeatmapOptions& options, std::size_t p)
-{
-    if (!options.valid_headings.empty()) return options.valid_headings[p];
-    return raster.poses[p].verdict == Verdict::Valid ? options.headings : 0;
-}
-
-/// Valid at more headings first, then the higher one.
-ShownPoses shown_poses(const RasterResult& raster, const HeatmapOptions& options)
-{
-    const RasterGrid& grid = raster.grid;
-    ShownPoses shown{grid.rows, grid.cols, {}, {}};
-    shown.poses.resize(static_cast<std::size_t>(grid.rows) * grid.cols);
-    shown.headings.resize(shown.poses.size());
-    for (std::size_t p = 0; p < raster.poses.size(); ++p) {
-        const RasterPose& pose = raster.poses[p];
-        const double i = std::round((pose.x - grid.x0) / grid.step), j = std::round((pose.y - grid.y0) / grid.step);
-        if (!(i >= 0 && i < grid.cols)) throw ArgumentError("write_heatmap", "x of a pose", pose.x, "a column of the raster");
-        if (!(j >= 0 && j < grid.rows)) throw ArgumentError("write_heatmap", "y of a pose", pose.y, "a column of the raster");
-        const std::size_t column = shown.index(grid.rows - 1 - static_cast<int>(j), static_cast<int>(i));
-        const RasterPose* const current = shown.poses[column];
-        const int headings = headings_of(raster, options, p);
-        if (current && (headings != shown.headings[column] ? headings < shown.headings[column] : pose.z <= current->z)) continue;
-        shown.poses[column] = &pose;
-        shown.headings[column] = headings;
-    }
-    return shown;
-}
-
-/// What a column without a pose is: in 3D rasters all its poses are aerial, which are counted but not listed.
-bool is_aerial_without_pose(const RasterResult& raster)
-{
-    return raster.dims == 3 && raster.counts[static_cast<std::size_t>(Verdict::Aerial)] > 0 && raster.area.is_everywhere();
-}
-
-using Kinds = cv::Mat_<Kind>;
-
-Kinds column_kinds(const ShownPoses& shown, const RasterResult& raster, const HeatmapOptions& options)
-{
-    const Kind without_pose = is_aerial_without_pose(raster) ? kind_of(Verdict::Aerial) : no_pose;
-    Kinds kinds(shown.rows, shown.cols);
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col) {
-            const RasterPose* const pose = shown.at(row, col);
-            kinds(row, col) = !pose                                          ? without_pose
-                              : shown.is_valid(row, col, options.headings) ? kind_of(Verdict::Valid)
-                              : shown.is_valid(row, col, 1)                  ? some_headings
-                                                                             : kind_of(pose->verdict);
-        }
-    return kinds;
-}
-
 // ---------------------------------------------------------------- obstacles
-
-View view_of(const RasterGrid& grid)
-{
-    return {grid.x_of(0) - grid.step / 2, grid.y_of(0) - grid.step / 2, grid.cols * grid.step, grid.rows * grid.step};
-}
-
-GridFrame frame_of(const RasterGrid& grid)
-{
-    const View view = view_of(grid);
-    return {view.x0, view.y0, grid.step, grid.rows, grid.cols};
-}
 
 /// Cells over the view, of a pixel's size, or larger where there would be too many.
 GridFrame fine_frame(const View& view, cv::Size pixels)
@@ -184,97 +89,6 @@ ObstacleSearch obstacle_search(const ShownPoses& shown, const RasterResult& rast
         return pose ? std::optional(pose->z - above_layer) : std::nullopt;
     };
     return search;
-}
-
-/// Columns that an obstacle's own place makes infeasible. Where the robot fits over or beside it, the column stays valid.
-void mark_obstacles(Kinds& kinds, const cv::Mat_<std::uint8_t>& obstacles)
-{
-    for (int row = 0; row < kinds.rows; ++row)
-        for (int col = 0; col < kinds.cols; ++col) {
-            const Kind kind = kinds(row, col);
-            if (obstacles(row, col) && kind != kind_of(Verdict::Valid) && kind != some_headings) kinds(row, col) = obstacle;
-        }
-}
-
-// ---------------------------------------------------------------- quantities: NaN where the column is not valid at all headings
-
-cv::Mat_<float> pose_heights(const ShownPoses& shown, int headings)
-{
-    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col, headings)) values(row, col) = static_cast<float>(shown.at(row, col)->z);
-    return values;
-}
-
-cv::Mat_<float> clearances(const ShownPoses& shown, double step, int headings)
-{
-    cv::Mat_<std::uint8_t> valid(shown.rows + 2, shown.cols + 2, std::uint8_t{0});  // a ring that is not, around all
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col, headings)) valid(row + 1, col + 1) = 1;
-    cv::Mat_<float> columns;
-    cv::distanceTransform(valid, columns, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col, headings)) values(row, col) = static_cast<float>(columns(row + 1, col + 1) * step);
-    return values;
-}
-
-/// All layers of a terrain map.
-std::vector<HeightImage> layer_images(const TerrainMap& terrain)
-{
-    std::vector<HeightImage> layers;
-    for (int layer = 0; layer < terrain.layers(); ++layer) layers.push_back(page_image(terrain, "height." + std::to_string(layer)));
-    return layers;
-}
-
-/// The 3 x 3 cells around one, in each the layer nearest to `height`: the surface that goes on from there, which may be
-/// another layer's number beside it.
-HeightImage surface_around(const std::vector<HeightImage>& layers, int row, int col, double height)
-{
-    HeightImage surface = HeightImage::Constant(3, 3, no_value);
-    for (int dr = -1; dr <= 1; ++dr)
-        for (int dc = -1; dc <= 1; ++dc)
-            for (const HeightImage& layer : layers) {
-                const int r = row + dr, c = col + dc;
-                if (r < 0 || c < 0 || r >= layer.rows() || c >= layer.cols()) continue;
-                float& nearest = surface(dr + 1, dc + 1);
-                if (std::isfinite(layer(r, c)) && !(std::abs(layer(r, c) - height) >= std::abs(nearest - height))) nearest = layer(r, c);
-            }
-    return surface;
-}
-
-cv::Mat_<float> slopes(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain, int headings)
-{
-    constexpr double degrees = 180 / 3.14159265358979323846;
-    const RasterGrid& grid = raster.grid;
-    const GridFrame& frame = terrain.frame;
-    const std::vector<HeightImage> layers = layer_images(terrain);
-    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col) {
-            if (!shown.is_valid(row, col, headings)) continue;
-            const int cell_col = cell_index((grid.x_of(col) - frame.x0) / frame.cell, frame.cols);
-            const int from_below = cell_index((grid.y_of(grid.rows - 1 - row) - frame.y0) / frame.cell, frame.rows);
-            if (cell_col < 0 || from_below < 0) continue;
-            const double layer = shown.at(row, col)->z - (raster.dims == 2 ? raster.offset : 0);
-            const HeightImage around = surface_around(layers, frame.rows - 1 - from_below, cell_col, layer);
-            values(row, col) = static_cast<float>(std::atan(gradient(around, 1, 1, frame.cell).norm()) * degrees);
-        }
-    return values;
-}
-
-cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain, const HeatmapOptions& options)
-{
-    switch (options.quantity) {
-    case HeatmapQuantity::Height: return pose_heights(shown, options.headings);
-    case HeatmapQuantity::Slope: return slopes(shown, raster, terrain, options.headings);
-    case HeatmapQuantity::Clearance:
-    case HeatmapQuantity::Verdict: break;
-    }
-    return clearances(shown, raster.grid.step, options.headings);
 }
 
 /// Clearances and slopes begin at 0, heights at the lowest; all end at the largest that occurs.
@@ -307,22 +121,24 @@ KindCounts counts_of(const Kinds& kinds)
     return counts;
 }
 
-std::string columns_heading(const RasterResult& raster)
+/// Columns that have an answer: shares are of these.
+std::uint64_t answered(const KindCounts& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}) - counts[no_pose]; }
+
+std::string columns_heading(const RasterResult& raster, std::uint64_t columns)
 {
-    const auto columns = static_cast<std::uint64_t>(raster.grid.cols) * static_cast<std::uint64_t>(raster.grid.rows);
     char step[32];
     std::snprintf(step, sizeof step, "%.3g", raster.grid.step);
     return counted(columns, "column") + (columns > 1 ? std::string(", ") + step + " m apart" : "");
 }
 
 /// The one for columns without a pose, if there are any.
-void append_no_pose(const RasterResult& raster, const KindCounts& counts, std::uint64_t columns, Legend& legend)
+void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend& legend)
 {
     if (counts[no_pose] == 0) return;
     const bool lower_layer = !raster.poses.empty() && std::all_of(raster.poses.begin(), raster.poses.end(),
                                                                   [](const RasterPose& pose) { return pose.layer > 0; });
     const std::string name = !raster.area.is_everywhere() ? "off the region, or no terrain" : raster.dims == 3 ? "no pose" : lower_layer ? "no such layer" : "no terrain";
-    legend.entries.push_back({colour_of(no_pose), name, count_and_share(counts[no_pose], columns)});
+    legend.entries.push_back({colour_of(no_pose), name, counted(counts[no_pose], "column")});
 }
 
 /// Kinds that can occur, or did, with the numbers of columns that show them.
@@ -333,30 +149,30 @@ Legend verdict_legend(const RasterResult& raster, const Kinds& kinds, const Heat
                                kind_of(Verdict::Aerial), kind_of(Verdict::Outside)};
     constexpr std::array always{kind_of(Verdict::Valid), kind_of(Verdict::Collision), kind_of(Verdict::Submerged), kind_of(Verdict::OffTerrain)};
     const KindCounts counts = counts_of(kinds);
-    const auto columns = static_cast<std::uint64_t>(kinds.total());
+    const std::uint64_t columns = answered(counts);
     Legend legend;
-    legend.heading = columns_heading(raster);
+    legend.heading = columns_heading(raster, columns);
     for (const Kind kind : order) {
         const bool possible = std::find(always.begin(), always.end(), kind) != always.end() || (kind == some_headings && options.headings > 1) ||
                               (kind == kind_of(Verdict::Aerial) && raster.dims == 3);
         if (counts[kind] > 0 || possible) legend.entries.push_back({colour_of(kind), name_of(kind, options), count_and_share(counts[kind], columns)});
     }
-    append_no_pose(raster, counts, columns, legend);
+    append_no_pose(raster, counts, legend);
     return legend;
 }
 
 Legend quantity_legend(const RasterResult& raster, const Kinds& kinds, const ColourScale& scale, const HeatmapOptions& options)
 {
     const KindCounts counts = counts_of(kinds);
-    const auto columns = static_cast<std::uint64_t>(kinds.total());
-    const std::uint64_t valid = counts[kind_of(Verdict::Valid)], others = columns - valid - counts[obstacle] - counts[no_pose];
+    const std::uint64_t columns = answered(counts);
+    const std::uint64_t valid = counts[kind_of(Verdict::Valid)], others = columns - valid - counts[obstacle];
     Legend legend;
-    legend.heading = columns_heading(raster);
+    legend.heading = columns_heading(raster, columns);
     legend.scale = scale;
     legend.scale->detail = "valid   " + count_and_share(valid, columns);
     legend.entries.push_back({not_valid, options.headings > 1 ? "not valid at all headings" : "not valid", count_and_share(others, columns)});
     if (counts[obstacle] > 0) legend.entries.push_back({colour_of(obstacle), "obstacle", count_and_share(counts[obstacle], columns)});
-    append_no_pose(raster, counts, columns, legend);
+    append_no_pose(raster, counts, legend);
     return legend;
 }
 
@@ -435,11 +251,10 @@ VisibleSpawns visible_spawns(const std::vector<Spawn>& spawns, const View& view,
 {
     VisibleSpawns visible;
     for (std::size_t i = 0; i < spawns.size(); ++i) {
-        const cv::Point2d at((spawns[i].position.x() - view.x0) / view.width * plot.width,
-                             (view.y0 + view.height - spawns[i].position.y()) / view.height * plot.height);
-        if (!(at.x >= 0 && at.x <= plot.width && at.y >= 0 && at.y <= plot.height)) continue;
+        const double across = (spawns[i].position.x() - view.x0) / view.width, down = (view.y0 + view.height - spawns[i].position.y()) / view.height;
+        if (!(across >= 0 && across <= 1 && down >= 0 && down <= 1)) continue;
         visible.numbers.push_back(i);
-        visible.places.push_back(at + cv::Point2d(plot.tl()));
+        visible.places.emplace_back(plot.x + across * plot.width, plot.y + down * plot.height);
     }
     return visible;
 }

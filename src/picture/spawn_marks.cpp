@@ -74,13 +74,14 @@ bool is_small(const SpawnLook& look)
     return extent_of(look.footprint).size().minCoeff() * look.scale < least_width;
 }
 
-constexpr double ahead = 6;  // pixels that this line sticks out
+/// Pixels that this line sticks out.
+double length_ahead(double unit) { return std::clamp(10 * unit, 3.0, 6.0); }
 
 void draw_heading(Figure& figure, const Placement& placement, const Extent& extent, bool small, double unit, Colour colour)
 {
     const Vec2 size = extent.size(), centre = extent.centre();
     const double tip = extent.max.x() - 0.12 * size.x(), back = extent.max.x() - 0.45 * size.x(), half = 0.28 * size.y();
-    if (small) draw_outline(figure, placement.of(Polygon2{centre, {extent.max.x() + ahead / placement.scale, centre.y()}}), ink, 1.4 * unit);
+    if (small) draw_outline(figure, placement.of(Polygon2{centre, {extent.max.x() + length_ahead(unit) / placement.scale, centre.y()}}), ink, 1.4 * unit);
     else draw_polygon(figure, placement.of(Polygon2{{tip, centre.y()}, {back, centre.y() + half}, {back, centre.y() - half}}), contrast_to(colour), ink, 0);
 }
 
@@ -146,7 +147,7 @@ void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre
         return;
     }
     const Extent extent = extent_of(look.footprint);
-    const double size = symbol_size * look.unit, room = is_small(look) ? std::max(size - ahead, size / 2) : size;
+    const double size = symbol_size * look.unit, room = is_small(look) ? std::max(size - length_ahead(look.unit), size / 2) : size;
     const double scale = room / extent.size().maxCoeff();
     const Vec2 middle = extent.centre();
     draw_footprint(figure, look, {{centre.x - scale * middle.x(), centre.y + scale * middle.y()}, 0, scale}, colour);

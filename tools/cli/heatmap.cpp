@@ -158,7 +158,7 @@ void add_heatmap(CLI::App& app, Run& run)
     command.add_option("--yaw", args->yaw, "Of all poses, rad; random: show at how many of 16 headings the robot fits (default: as the spawns face, else 0)");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
     add_area(command, args->area);
-    command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000)")->check(CLI::Range(200, 16000));
+    command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000; texts can be read from about 500 on)")->check(CLI::Range(200, 16000));
     command.footer("Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png");
     command.callback([=, &command, &run] { run = [=, &command] { return run_heatmap(*args, command); }; });
 }
