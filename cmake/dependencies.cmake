@@ -15,6 +15,8 @@ find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(PROJ REQUIRED CONFIG)
 find_package(ZLIB REQUIRED)
+find_path(HPDF_INCLUDE_DIR hpdf.h REQUIRED)
+find_library(HPDF_LIBRARY hpdf REQUIRED)
 find_package(TBB REQUIRED)
 find_package(sdformat12 REQUIRED)
 find_package(PkgConfig REQUIRED)
@@ -26,5 +28,5 @@ pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 
 set(SPAWNFIELD_PRIVATE_LIBRARIES
   fcl PkgConfig::ccd octomap octomath assimp::assimp opencv_core opencv_imgproc yaml-cpp tinyxml2::tinyxml2
-  nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate
+  nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF ZLIB::ZLIB ${HPDF_LIBRARY} TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate
   Threads::Threads)

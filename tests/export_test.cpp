@@ -515,8 +515,8 @@ TEST_CASE("a PLY has the raster's poses as points, to the bit, coloured as in he
     constexpr std::size_t point = 3 * sizeof(double) + 4;
     REQUIRE(bytes.size() == body + point * result.poses.size());
     REQUIRE((result.counts[std::size_t(Verdict::Valid)] > 100 && result.counts[std::size_t(Verdict::Collision)] > 100));
-    const std::map<Verdict, std::string> colours{{Verdict::Valid, std::string("\x00\x9e\x73", 3)}, {Verdict::Collision, std::string("\xd5\x5e\x00", 3)},
-                                                 {Verdict::OffTerrain, "\xcc\x79\xa7"}, {Verdict::Outside, "\x99\x99\x99"}};
+    const std::map<Verdict, std::string> colours{{Verdict::Valid, "\xbd\xd5\xa7"}, {Verdict::Collision, "\xa5\x4c\x31"},
+                                                 {Verdict::OffTerrain, "\x91\x82\xff"}, {Verdict::Outside, "\x72\x6e\x77"}};
     std::size_t wrong = 0;
     for (std::size_t p = 0; p < result.poses.size(); ++p) {
         const RasterPose& pose = result.poses[p];
@@ -545,7 +545,7 @@ import sys
 from plyfile import PlyData
 v = PlyData.read(sys.argv[1])['vertex']
 valid = [p for p in v if p['verdict'] == 7]
-assert len(valid) > 500 and all((p['red'], p['green'], p['blue']) == (0, 0x9e, 0x73) for p in valid)
+assert len(valid) > 500 and all((p['red'], p['green'], p['blue']) == (0xbd, 0xd5, 0xa7) for p in valid)
 assert any(abs(p['z'] - 0.45) < 1e-12 for p in valid)
 )", arena / "a.ply"));
 }

@@ -1,15 +1,20 @@
 #include "base/deflate.h"
+#include "picture/palette.h"
 #include "picture/relief.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
 
 #include "catch.h"
+#include "figure_text.h"
+#include "temp_folder.h"
+#include "test_map.h"
 
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 using namespace spawnfield;
@@ -96,16 +101,6 @@ RasterResult raster_of(const Drawing& drawing)
 
 // ---------------------------------------------------------------- pictures
 
-class Folder {
-public:
-    Folder() : path_(std::filesystem::temp_directory_path() / "spawnfield_heatmap_test") { std::filesystem::create_directories(path_); }
-    ~Folder() { std::filesystem::remove_all(path_); }
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
-private:
-    std::filesystem::path path_;
-};
-
 /// A picture as a reader sees it: the plot is what the frame of exactly this colour encloses.
 struct Picture {
     Image image;
@@ -161,14 +156,24 @@ Picture read_picture(const std::filesystem::path& file, const View& view)
     return picture;
 }
 
-Picture draw(const RasterResult& raster, const HeatmapOptions& options = {}, const TerrainMap& terrain = level_terrain(20, 20))
+Picture draw(const RasterResult& raster, const HeatmapOptions& options = {}, const TerrainMap& terrain = level_terrain(20, 20), const Map& map = {})
 {
-    const Folder folder;
-    write_heatmap({}, terrain, raster, options, folder / "picture.png");
+    const TempFolder folder;
+    write_heatmap(map, terrain, raster, options, folder / "picture.png");
     const RasterGrid& grid = raster.grid;
     return read_picture(folder / "picture.png", with_room({grid.x0 - grid.step / 2, grid.y0 - grid.step / 2,
                                                            grid.cols * grid.step, grid.rows * grid.step}));
 }
+
+/// Texts of the picture, as its SVG has them.
+std::vector<std::string> texts_of(const RasterResult& raster, const HeatmapOptions& options = {}, const TerrainMap& terrain = level_terrain(20, 20), const Map& map = {})
+{
+    const TempFolder folder;
+    write_heatmap(map, terrain, raster, options, folder / "picture.svg");
+    return svg_texts(bytes_of(folder / "picture.svg"));
+}
+
+bool contains(const std::vector<std::string>& texts, const std::string& text) { return std::find(texts.begin(), texts.end(), text) != texts.end(); }
 
 int count_outside_plot(const Picture& picture, Colour colour)
 {
@@ -181,10 +186,12 @@ int count_outside_plot(const Picture& picture, Colour colour)
 
 int brightness(Colour colour) { return colour[0] + colour[1] + colour[2]; }
 
-// Okabe and Ito's palette, as they published it.
-const Colour valid = rgb(0x009e73), collision = rgb(0xd55e00), submerged = rgb(0x0072b2), off_terrain = rgb(0xcc79a7),
-             steep = rgb(0xe69f00), unstable = rgb(0x56b4e9),
-             aerial = rgb(0xf0e442), outside = rgb(0x999999), no_pose = rgb(0xe6e6e6);
+Colour of(Verdict verdict) { return rgb(verdict_palette[std::size_t(verdict)]); }
+
+const Colour valid = of(Verdict::Valid), collision = of(Verdict::Collision), submerged = of(Verdict::Submerged),
+             off_terrain = of(Verdict::OffTerrain), steep = of(Verdict::Steep), unstable = of(Verdict::Unstable),
+             aerial = of(Verdict::Aerial), outside = of(Verdict::Outside), no_pose = rgb(no_pose_colour),
+             some_headings = rgb(some_headings_colour), obstacle = rgb(obstacle_colour);
 
 Colour colour_of(char letter)
 {
@@ -199,14 +206,6 @@ Colour colour_of(char letter)
     case '.': return no_pose;
     default: return valid;
     }
-}
-
-std::string bytes_of(const std::filesystem::path& file)
-{
-    std::ifstream in(file, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
 }
 
 }  // namespace
@@ -297,8 +296,8 @@ TEST_CASE("ground that faces north-west is lighter than ground that faces south-
     CHECK(brightness(lit) > brightness(valid));
     CHECK(brightness(dark) < brightness(valid));
     for (const Colour& colour : {lit, dark}) {
-        CHECK(colour[1] > colour[0]);  // green over blue over red
-        CHECK(colour[0] > colour[2]);
+        CHECK(colour[1] > colour[2]);  // green over red over blue
+        CHECK(colour[2] > colour[0]);
     }
 }
 
@@ -350,14 +349,32 @@ TEST_CASE("height shows the pose that the column is known by")
     CHECK(in_bar > 80);
 }
 
-TEST_CASE("slope is that of the top layer below the column")
+TEST_CASE("slope is that of the layer below the pose, and the scale ends at the largest")
 {
     const auto ground = [](double, double y) { return y < 6 ? 0.0f : float(y - 6); };
     const Picture picture =
         draw(raster_of({"V", "V", "V", "V", "V", "V"}), {.quantity = HeatmapQuantity::Slope}, terrain_of(2, 12, ground));
     CHECK(picture.at(1, 1) == viridis().front());
-    const Colour steep = viridis()[std::size_t(std::lround(45.0 / 50 * 255))], seen = picture.at(1, 11);  // shaded, so only like it
-    for (int c = 0; c < 3; ++c) CHECK(std::abs(seen[c] - steep[c]) < 60);
+    const Colour steepest = viridis().back(), seen = picture.at(1, 11);  // shaded, so only like it
+    for (int c = 0; c < 3; ++c) CHECK(std::abs(seen[c] - steepest[c]) < 60);
+}
+
+TEST_CASE("under a level roof slope is that of the ramp below, where the shown pose stands")
+{
+    // A roof at 10 m over x < 6; below it, and as the top layer beyond it, a ramp of 1 in 5: 11.3 degrees.
+    const auto ramp = [](double x, double) { return float(0.2 * x); };
+    TerrainMap terrain = terrain_of(12, 2, [=](double x, double y) { return x < 6 ? 10.0f : ramp(x, y); });
+    add_page(terrain, "height.1", [=](double x, double y) { return x < 6 ? ramp(x, y) : nothing; });
+    RasterResult raster = raster_of({"......"});
+    raster.offset = 0.1;
+    for (int i = 0; i < 6; ++i) add_pose(raster, i, 0, 0.2 * raster.grid.x_of(i) + 0.1, Verdict::Valid);
+    const std::vector<std::string> texts = texts_of(raster, {.quantity = HeatmapQuantity::Slope}, terrain);
+    CAPTURE(texts);
+    CHECK(contains(texts, "11.3"));  // the end of the scale: no cliff where the roof ends
+    raster.poses[0].z = 10.1;        // now on the roof, which is level
+    const Picture picture = draw(raster, {.quantity = HeatmapQuantity::Slope}, terrain);
+    CHECK(picture.at(1, 1) == viridis().front());
+    CHECK(brightness(picture.at(3, 1)) > brightness(viridis()[200]));
 }
 
 TEST_CASE("a gradient is one-sided beside a hole and nothing in it")
@@ -373,7 +390,7 @@ TEST_CASE("a gradient is one-sided beside a hole and nothing in it")
 
 TEST_CASE("options and rasters out of range are named with their limits")
 {
-    const Folder folder;
+    const TempFolder folder;
     const TerrainMap terrain = level_terrain(2, 2);
     RasterResult raster = raster_of({"V"});
     const auto write = [&](const HeatmapOptions& options) { write_heatmap({}, terrain, raster, options, folder / "a.png"); };
@@ -391,7 +408,7 @@ TEST_CASE("options and rasters out of range are named with their limits")
 
 TEST_CASE("pictures are the same bytes each time")
 {
-    const Folder folder;
+    const TempFolder folder;
     const TerrainMap terrain = terrain_of(6, 4, [](double x, double y) { return float(std::sin(x) * y); });
     const RasterResult raster = raster_of({"VCS", "OV."});
     for (const char* name : {"a.png", "b.png"})
@@ -402,7 +419,7 @@ TEST_CASE("pictures are the same bytes each time")
 
 TEST_CASE("a picture that cannot be written is an OutputError")
 {
-    const Folder folder;
+    const TempFolder folder;
     CHECK_THROWS_AS(write_heatmap({}, level_terrain(2, 2), raster_of({"V"}), {}, folder / "missing/a.png"), OutputError);
 }
 
@@ -414,7 +431,7 @@ TEST_CASE("a preview shows terrain by height, obstacles grey, water blue and not
     TerrainMap terrain = terrain_of(28, 8, ground);
     add_page(terrain, "obstacle", obstacle);
     add_page(terrain, "water", [](double x, double) { return (x > 12 && x < 16) || x > 24 ? 1.0f : nothing; });
-    const Folder folder;
+    const TempFolder folder;
     Map map;
     map.name = "preview";
     write_preview(map, terrain, folder / "preview.png");
@@ -434,4 +451,246 @@ TEST_CASE("a preview shows terrain by height, obstacles grey, water blue and not
     }
     CHECK(picture.at(18, 4) == white);
     CHECK(count_outside_plot(picture, lake) > 100);  // the legend
+}
+
+// ---------------------------------------------------------------- legends
+
+TEST_CASE("the legend counts columns as they are shown, not poses")
+{
+    RasterResult raster = raster_of({"VVC."});
+    add_pose(raster, 2, 0, 5, Verdict::Valid);  // another layer: the column is valid
+    const std::vector<std::string> texts = texts_of(raster);
+    CHECK(contains(texts, "3 columns, 2 m apart"));
+    CHECK(contains(texts, "3   100.0 %"));  // valid
+    CHECK(contains(texts, "0"));            // collision
+    CHECK(contains(texts, "1 column"));     // no terrain: beside the shares
+}
+
+TEST_CASE("a caption stands below the title")
+{
+    const std::vector<std::string> texts = texts_of(raster_of({"V"}), {.title = "arena, husky", .caption = "offset 0.1 m, yaw 0 deg"});
+    CHECK(texts[0] == "arena, husky");
+    CHECK(texts[1] == "offset 0.1 m, yaw 0 deg");
+}
+
+TEST_CASE("scales of height end at the data, on both sides")
+{
+    RasterResult raster = raster_of({".."});
+    add_pose(raster, 0, 0, 0.13, Verdict::Valid);
+    add_pose(raster, 1, 0, 7.24, Verdict::Valid);
+    const std::vector<std::string> texts = texts_of(raster, {.quantity = HeatmapQuantity::Height});
+    CAPTURE(texts);
+    CHECK(contains(texts, "0.1"));
+    CHECK(contains(texts, "7.2"));
+    CHECK_FALSE(contains(texts, "8"));
+}
+
+// ---------------------------------------------------------------- headings
+
+TEST_CASE("with several headings a column is valid at all, at some or at none")
+{
+    RasterResult raster = raster_of({"VVVC"});
+    HeatmapOptions options{.headings = 16, .valid_headings = {16, 15, 1, 0}};
+    const Picture picture = draw(raster, options);
+    CHECK(picture.at(1, 1) == valid);
+    CHECK(picture.at(3, 1) == some_headings);
+    CHECK(picture.at(5, 1) == some_headings);
+    CHECK(picture.at(7, 1) == collision);
+    const std::vector<std::string> texts = texts_of(raster, options);
+    CHECK(contains(texts, "valid at all 16 headings"));
+    CHECK(contains(texts, "2   50.0 %"));
+
+    add_pose(raster, 1, 0, -3, Verdict::Valid);  // a lower layer, valid at more headings, is the one that is shown
+    options.valid_headings = {16, 15, 1, 0, 16};
+    CHECK(draw(raster, options).at(3, 1) == valid);
+    options.valid_headings.pop_back();
+    CHECK_THROWS_WITH(draw(raster, options), Contains("size of valid_headings is 4, needs as many as the raster's poses, or none"));
+}
+
+TEST_CASE("quantities count as valid what fits at all headings")
+{
+    const RasterResult raster = raster_of({"VVV", "VVV", "VVV"});
+    const HeatmapOptions options{.quantity = HeatmapQuantity::Clearance, .headings = 4, .valid_headings = {4, 4, 4, 4, 3, 4, 4, 4, 4}};
+    const Picture picture = draw(raster, options);
+    CHECK(picture.at(3, 3) == rgb(0x9a9a9a));
+    CHECK(picture.at(1, 3) != rgb(0x9a9a9a));
+}
+
+// ---------------------------------------------------------------- obstacles
+
+TEST_CASE("obstacles are dark where they stand at the robot's height, and what else collides has the collision colour")
+{
+    // A wall, a beam 3 m above the ground, and a block that begins above a low robot: on a floor of 12 x 12 m.
+    const TempFolder folder;
+    const TestMap map = map_of(load_scene(folder.write("scene.yaml", R"(
+format: spawnfield-scene/1
+parts:
+  - {name: floor, label: terrain, box: [12, 12, 1], xyz: [6, 6, -0.5]}
+  - {name: wall, box: [0.3, 12, 2], xyz: [6, 6, 1]}
+  - {name: beam, box: [12, 0.5, 0.2], xyz: [6, 11, 3]}
+  - {name: block, box: [1, 1, 1], xyz: [10, 4, 1]}
+)")));
+    const Robot low = load_robot("box:2,1,0.3"), high = load_robot("box:2,1,0.6");
+    const auto verdicts = [&](const Robot& robot) {
+        RasterOptions options;
+        options.step = 0.25;
+        return raster(map, checker_of(map, robot), options);
+    };
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame_around(map.bounds, 0.1));
+    const RasterResult result = verdicts(low);
+    const Picture picture = draw(result, {.robot = &low}, terrain, map);
+    CHECK(picture.at(6, 5) == obstacle);
+    CHECK(picture.at(5.9, 5) == obstacle);  // not only where a column of the raster stands
+    CHECK(picture.at(5.2, 5) == collision);
+    CHECK(picture.at(6.8, 5) == collision);
+    CHECK(picture.at(4.5, 5) == valid);
+    CHECK(picture.at(2, 11) == valid);  // below the beam
+    CHECK(picture.at(10, 4) == valid);  // below the block
+    CHECK(draw(verdicts(high), {.robot = &high}, terrain, map).at(10, 4) == obstacle);
+
+    // 49 columns in y; the wall's own are those at x = 6, and its margin reaches 1 m + 0.15 m to each side.
+    const std::vector<std::string> texts = texts_of(result, {.robot = &low}, terrain, map);
+    CHECK(contains(texts, "49   2.0 %"));
+    const auto row = std::count_if(result.poses.begin(), result.poses.end(), [](const RasterPose& pose) { return pose.y == 2 && pose.verdict == Verdict::Collision; });
+    CHECK(contains(texts, with_commas(std::uint64_t(49 * (row - 1))) + "   " + fixed(100.0 * double(row - 1) / 49, 1) + " %"));
+}
+
+TEST_CASE("obstacles on a slope are found at the height of the ground below them")
+{
+    // 45 degrees, columns 2 m apart: between columns the ground is up to 1 m off.
+    const TempFolder folder;
+    folder.write("slope.obj", "o slope\nv 0 0 0\nv 12 0 12\nv 12 4 12\nv 0 4 0\nf 1 2 3 4\n");
+    const TestMap map = map_of(load_scene(folder.write("scene.yaml", R"(
+format: spawnfield-scene/1
+parts:
+  - {name: slope, label: terrain, mesh: slope.obj}
+  - {name: pole, cylinder: {radius: 0.2, length: 0.4}, xyz: [6.9, 2, 7.1]}
+)")));
+    const Robot robot = load_robot("box:0.2,0.2,0.3@0,0,0.3");
+    RasterOptions options;
+    options.step = 2;
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame_around(map.bounds, 0.1));
+    const Picture picture = draw(raster(map, checker_of(map, robot), options), {.robot = &robot}, terrain, map);
+    CHECK(picture.at(6.9, 2) == obstacle);
+    CHECK(picture.at(5.1, 2) != obstacle);
+}
+
+// ---------------------------------------------------------------- spawns
+
+namespace {
+
+/// Polygons of an SVG picture that have this fill.
+std::vector<std::vector<cv::Point2d>> polygons_of(const RasterResult& raster, const HeatmapOptions& options, const std::string& fill)
+{
+    const TempFolder folder;
+    write_heatmap({}, level_terrain(20, 20), raster, options, folder / "picture.svg");
+    const std::string svg = bytes_of(folder / "picture.svg"), head = "<polygon points=\"";
+    std::vector<std::vector<cv::Point2d>> out;
+    for (std::size_t at = svg.find(head); at != std::string::npos; at = svg.find(head, at + 1)) {
+        const std::size_t end = svg.find('"', at + head.size());
+        if (svg.compare(end, fill.size() + 9, "\" fill=\"" + fill + "\"") != 0) continue;
+        std::istringstream points(svg.substr(at + head.size(), end - at - head.size()));
+        std::vector<cv::Point2d> polygon;
+        char comma;
+        for (cv::Point2d point; points >> point.x >> comma >> point.y;) polygon.push_back(point);
+        out.push_back(polygon);
+    }
+    return out;
+}
+
+cv::Size2d size_of(const std::vector<cv::Point2d>& polygon)
+{
+    const cv::Rect_<float> box = cv::boundingRect(std::vector<cv::Point2f>(polygon.begin(), polygon.end()));
+    return {box.width, box.height};
+}
+
+const std::string white_fill = "#ffffff";
+
+}  // namespace
+
+TEST_CASE("spawns are footprints to scale where those are 6 pixels long or more, else arrows")
+{
+    const RasterResult raster = raster_of({"VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV"});  // 20 x 10 m
+    const Robot robot = load_robot("box:2,1,0.5@0.5,0,0.25");
+    HeatmapOptions options{.spawns = {{{10, 5, 0.1}, pi / 2}}, .robot = &robot};
+    const Picture picture = draw(raster, options);
+    const double metre = picture.plot.width / picture.view.width;
+    const auto footprints = polygons_of(raster, options, white_fill);
+    REQUIRE(footprints.size() >= 2);  // in the plot and in the legend; the north arrow's half too
+    CHECK(size_of(footprints[0]).width == Approx(metre).margin(2));  // it looks along y
+    CHECK(size_of(footprints[0]).height == Approx(2 * metre).margin(2));
+    CHECK(picture.at(10, 5) == white);
+    CHECK(picture.at(10, 5.8) == ink);    // the heading mark, towards its front
+    CHECK(picture.at(10, 4.2) == valid);  // behind the origin there is half a metre of it only
+    CHECK(picture.at(10, 4.6) == white);
+
+    // The same robot in 20 x 10 km: an arrow of the usual length.
+    RasterResult large = raster;
+    large.grid.x0 *= 1000, large.grid.y0 *= 1000, large.grid.step *= 1000;
+    for (RasterPose& pose : large.poses) pose.x *= 1000, pose.y *= 1000;
+    options.spawns[0].position *= 1000;
+    CHECK(std::max(size_of(polygons_of(large, options, white_fill)[0]).height, 0.0) > 12);
+    CHECK(polygons_of(large, options, white_fill)[0].size() == 4);
+
+    // Just below and above the limit of 6 pixels.
+    const Robot five = load_robot("box:" + std::to_string(5.5 / metre) + ",0.01,0.5"), seven = load_robot("box:" + std::to_string(7 / metre) + ",0.01,0.5");
+    options.spawns[0].position /= 1000;
+    options.robot = &five;
+    CHECK(size_of(polygons_of(raster, options, white_fill)[0]).height > 12);
+    options.robot = &seven;
+    CHECK(size_of(polygons_of(raster, options, white_fill)[0]).height < 9);
+}
+
+TEST_CASE("spawns with verdicts have their colours, and the legend counts those in view")
+{
+    const RasterResult raster = raster_of({"AAAAA", "AAAAA", "AAAAA"});  // 10 x 6 m
+    const Robot robot = load_robot("box:1,0.6,0.5");
+    HeatmapOptions options{.spawns = {{{1, 1, 0}, 0}, {{5, 3, 0}, 1}, {{9, 5, 0}, 2}, {{30, 5, 0}, 2}},
+                           .spawn_verdicts = {Verdict::Valid, Verdict::Collision, Verdict::Valid, Verdict::Submerged}, .robot = &robot};
+    const Picture picture = draw(raster, options);
+    CHECK(picture.at(0.9, 1.1) == valid);
+    CHECK(picture.at(4.9, 2.9) == collision);
+    CHECK(picture.at(9, 4.95) == valid);
+    const std::vector<std::string> texts = texts_of(raster, options);
+    CHECK(contains(texts, "3 of 4 spawns in view"));
+    CHECK(contains(texts, "2 valid"));
+    CHECK(contains(texts, "1 collision"));
+    CHECK_FALSE(contains(texts, "1 submerged"));
+    options.spawns.resize(3);
+    options.spawn_verdicts.resize(3);
+    CHECK(contains(texts_of(raster, options), "3 spawns"));
+    options.spawn_verdicts.resize(2);
+    CHECK_THROWS_WITH(texts_of(raster, options), Contains("size of spawn_verdicts is 2"));
+}
+
+TEST_CASE("names are written beside spawns, and those without room are counted")
+{
+    const RasterResult raster = raster_of({"VVVVV", "VVVVV", "VVVVV"});
+    HeatmapOptions options{.spawns = {{{2, 2, 0}, 0}, {{8, 4, 0}, 1}}, .spawn_names = {"left <1>", "right"}};
+    std::vector<std::string> texts = texts_of(raster, options);
+    CHECK(contains(texts, "left <1>"));
+    CHECK(contains(texts, "right"));
+    for (int k = 0; k < 20; ++k) {
+        options.spawns.push_back({{2, 2, 0}, 0});
+        options.spawn_names.push_back("n" + std::to_string(k));
+    }
+    texts = texts_of(raster, options);
+    const auto written = std::count_if(texts.begin(), texts.end(), [](const std::string& text) { return text.starts_with("n") && std::isdigit(text[1]); });
+    CHECK(written < 20);
+    CHECK(contains(texts, std::to_string(written + 2) + " of 22 names shown: no room"));
+}
+
+TEST_CASE("heat maps are SVG and PDF by the file's ending, with texts as texts")
+{
+    const TempFolder folder;
+    const RasterResult raster = raster_of({"VC"});
+    for (const char* const name : {"a.svg", "b.svg", "a.pdf", "b.pdf"}) write_heatmap({}, level_terrain(4, 2), raster, {.title = "two columns"}, folder / name);
+    CHECK(contains(svg_texts(bytes_of(folder / "a.svg")), "two columns"));
+    CHECK_THAT(pdf_page(bytes_of(folder / "a.pdf")), Contains("(two columns) Tj"));
+    CHECK(bytes_of(folder / "a.svg") == bytes_of(folder / "b.svg"));
+    CHECK(bytes_of(folder / "a.pdf") == bytes_of(folder / "b.pdf"));
+    write_heatmap({}, level_terrain(4, 2), raster, {.format = PictureFormat::Svg}, folder / "plain");
+    CHECK(bytes_of(folder / "plain").starts_with("<?xml"));
+    CHECK_THROWS_AS(write_heatmap({}, level_terrain(4, 2), raster, {}, folder / "a.jpg"), ArgumentError);
+    CHECK_FALSE(std::filesystem::exists(folder / "a.jpg"));
 }

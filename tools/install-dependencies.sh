@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
   cmake ninja-build ccache g++ pkg-config
-  catch2 libassimp-dev libccd-dev libcli11-dev libdeflate-dev libeigen3-dev libembree-dev libfcl-dev liboctomap-dev
+  catch2 libassimp-dev libccd-dev libcli11-dev libdeflate-dev libeigen3-dev libembree-dev libfcl-dev libhpdf-dev liboctomap-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
   libpng-dev libproj-dev libqhull-dev librecast-dev libsdformat-dev libtbb-dev libtiff-dev libtinyxml2-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev python3-matplotlib zlib1g-dev
 )

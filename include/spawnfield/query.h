@@ -122,6 +122,7 @@ struct RasterResult {
     RasterGrid grid;
     Area area = {};                 ///< outside of which columns were left out
     double yaw = 0, offset = 0;
+    ZRange z = {};                  ///< 2D: heights of the layers that are ground
     std::vector<RasterPose> poses;  ///< y after y, x fastest, from the top down; of 3D rasters without the aerial ones
     VerdictCounts counts{};         ///< of all poses, the aerial ones too
     std::uint64_t exact_checks = 0;

@@ -50,6 +50,10 @@ struct TerrainMap {
 /// A whole page, frame.rows x frame.cols; all NaN if there is no such page. Throws std::runtime_error on damaged tiles.
 HeightImage page_image(const TerrainMap& terrain, const std::string& name);
 
+/// The highest layer of each cell within a range of heights, frame.rows x frame.cols, m; NaN where there is none.
+/// Throws std::runtime_error on damaged tiles.
+HeightImage highest_within(const TerrainMap& terrain, const ZRange& z);
+
 /// Vertical rays at the cells' centres. Layers and water beyond the z limits are left out, and so are obstacles that begin
 /// above them or end below them. O(elements + cells covered).
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,

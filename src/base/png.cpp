@@ -114,11 +114,11 @@ void append_chunk(std::string& out, const char* type, std::string_view data)
 /// Every row as differences from the one above (filter 2): good for heights and pictures alike, and the same choice always.
 /// libpng, which deflates with zlib, would take three times as long. put_row(row, out) writes the bytes of one.
 template <class PutRow>
-void write_png(const std::filesystem::path& file, int rows, int cols, int bits, int colour, std::size_t row_bytes, const PutRow& put_row)
+std::string png_bytes(const std::string& name, int rows, int cols, int bits, int colour, std::size_t row_bytes, const PutRow& put_row)
 {
     constexpr int most = 1000000;  // that libpng reads
     if (rows < 1 || cols < 1 || rows > most || cols > most)
-        throw OutputError(file.string(), "cannot be written as PNG: it has " + std::to_string(cols) + " x " + std::to_string(rows) +
+        throw OutputError(name, "cannot be written as PNG: it has " + std::to_string(cols) + " x " + std::to_string(rows) +
                                              " pixels, needs 1 to " + std::to_string(most) + " along each side");
     const std::size_t count = std::size_t(rows);
     std::string filtered(count * (row_bytes + 1), '\2');
@@ -130,7 +130,7 @@ void write_png(const std::filesystem::path& file, int rows, int cols, int bits, 
         std::swap(here, above);
     }
     const std::string pixels = deflate_bytes(filtered);
-    if (pixels.size() > PNG_UINT_31_MAX) throw OutputError(file.string(), "cannot be written as PNG: it would pass 2 GB");
+    if (pixels.size() > PNG_UINT_31_MAX) throw OutputError(name, "cannot be written as PNG: it would pass 2 GB");
     std::string head, bytes = "\x89PNG\r\n\x1a\n";
     append_big_endian(head, std::uint32_t(cols));
     append_big_endian(head, std::uint32_t(rows));
@@ -138,7 +138,7 @@ void write_png(const std::filesystem::path& file, int rows, int cols, int bits, 
     append_chunk(bytes, "IHDR", head);
     append_chunk(bytes, "IDAT", pixels);
     append_chunk(bytes, "IEND", {});
-    write_file_atomically(file, bytes);
+    return bytes;
 }
 
 }  // namespace
@@ -232,10 +232,10 @@ ColourImage read_colour_png(const std::filesystem::path& path, std::uint64_t mos
     return image;
 }
 
-void write_bgr_png(const std::filesystem::path& file, int rows, int cols, const std::uint8_t* pixels)
+std::string bgr_png(const std::string& name, int rows, int cols, const std::uint8_t* pixels)
 {
     const std::size_t row_bytes = 3 * std::size_t(cols);
-    write_png(file, rows, cols, 8, PNG_COLOR_TYPE_RGB, row_bytes, [&](std::size_t row, std::uint8_t* out) {
+    return png_bytes(name, rows, cols, 8, PNG_COLOR_TYPE_RGB, row_bytes, [&](std::size_t row, std::uint8_t* out) {
         const std::uint8_t* const from = pixels + row * row_bytes;
         for (std::size_t at = 0; at < row_bytes; at += 3) {
             out[at] = from[at + 2];
@@ -245,15 +245,20 @@ void write_bgr_png(const std::filesystem::path& file, int rows, int cols, const 
     });
 }
 
+void write_bgr_png(const std::filesystem::path& file, int rows, int cols, const std::uint8_t* pixels)
+{
+    write_file_atomically(file, bgr_png(file.string(), rows, cols, pixels));
+}
+
 void write_grey_png(const std::filesystem::path& file, int rows, int cols, const std::uint16_t* pixels)
 {
-    write_png(file, rows, cols, 16, PNG_COLOR_TYPE_GRAY, 2 * std::size_t(cols), [&](std::size_t row, std::uint8_t* out) {
+    write_file_atomically(file, png_bytes(file.string(), rows, cols, 16, PNG_COLOR_TYPE_GRAY, 2 * std::size_t(cols), [&](std::size_t row, std::uint8_t* out) {
         const std::uint16_t* const from = pixels + row * std::size_t(cols);
         for (std::size_t col = 0; col < std::size_t(cols); ++col) {
             out[2 * col] = std::uint8_t(from[col] >> 8);
             out[2 * col + 1] = std::uint8_t(from[col]);
         }
-    });
+    }));
 }
 
 }  // namespace spawnfield

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,7 +26,10 @@ struct ColourImage {
 /// `most` pixels before any is read.
 ColourImage read_colour_png(const std::filesystem::path& file, std::uint64_t most = max_pixels);
 
-/// Pixels of 8-bit blue, green, red. Same pixels, same bytes. Throws OutputError.
+/// Bytes of a PNG file of 8-bit blue, green, red. Same pixels, same bytes. Throws OutputError, which begins with `name`.
+std::string bgr_png(const std::string& name, int rows, int cols, const std::uint8_t* pixels);
+
+/// Writes those bytes to a file. Throws OutputError.
 void write_bgr_png(const std::filesystem::path& file, int rows, int cols, const std::uint8_t* pixels);
 
 /// 16-bit pixels. Same pixels, same bytes. Throws OutputError.

@@ -137,6 +137,21 @@ HeightImage page_image(const TerrainMap& terrain, const std::string& name)
     return image;
 }
 
+HeightImage highest_within(const TerrainMap& terrain, const ZRange& z)
+{
+    HeightImage out = page_image(terrain, "height.0");
+    if (z.is_unlimited()) return out;
+    constexpr double float_step = 1e-6;  // of a height: what its rounding to float32 may move it
+    const auto is_within = [&](float height) { return z.contains(height, std::abs(double(height)) * float_step); };
+    out = out.unaryExpr([&](float height) { return is_within(height) ? height : nothing; });
+    for (int k = 1; k < terrain.layers(); ++k) {  // from the top down: the first that fits stays
+        const HeightImage page = page_image(terrain, "height." + std::to_string(k));
+        for (Eigen::Index i = 0; i < out.size(); ++i)
+            if (std::isnan(out.data()[i]) && is_within(page.data()[i])) out.data()[i] = page.data()[i];
+    }
+    return out;
+}
+
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads,
                              const Progress& progress, const ZRange& z_limits)
 {

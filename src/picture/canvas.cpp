@@ -14,21 +14,6 @@ namespace {
 constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double font_cap = 21;  // its capitals at scale 1, pixels
 
-/// UTF-8 text in what the font has.
-std::string printable(const std::string& text)
-{
-    constexpr std::string_view latin =  // U+00C0 .. U+00FF without their accents
-        "AAAAAAACEEEEIIIIDNOOOOOxOUUUUYPsaaaaaaaceeeeiiiidnooooo/ouuuuypy";
-    std::string result;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto byte = static_cast<unsigned char>(text[i]);
-        const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
-        if (byte == 0xc3 && next >= 0x80 && next < 0xc0) result += latin[next - 0x80];
-        else if ((byte & 0xc0) != 0x80) result += byte >= ' ' && byte < 127 ? text[i] : '?';
-    }
-    return result;
-}
-
 /// Mixes `colour` into the image where `cover` is not 0; parts beyond the image are left out.
 void blend(Image& image, const cv::Mat_<std::uint8_t>& cover, cv::Point corner, Colour colour)
 {
@@ -52,7 +37,28 @@ cv::Point in_fractions(cv::Point2d p)
 
 cv::Scalar scalar(Colour colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
 
+std::vector<cv::Point> in_fractions(const std::vector<cv::Point2d>& corners)
+{
+    std::vector<cv::Point> points;
+    for (const cv::Point2d& corner : corners) points.push_back(in_fractions(corner));
+    return points;
+}
+
 }  // namespace
+
+std::string printable(const std::string& text)
+{
+    constexpr std::string_view latin =  // U+00C0 .. U+00FF without their accents
+        "AAAAAAACEEEEIIIIDNOOOOOxOUUUUYPsaaaaaaaceeeeiiiidnooooo/ouuuuypy";
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+        if (byte == 0xc3 && next >= 0x80 && next < 0xc0) result += latin[next - 0x80];
+        else if ((byte & 0xc0) != 0x80) result += byte >= ' ' && byte < 127 ? text[i] : '?';
+    }
+    return result;
+}
 
 Ramp viridis()
 {
@@ -90,12 +96,19 @@ void draw_text(Image& image, const std::string& text, cv::Point2d baseline, cons
     const cv::Point corner(cvFloor(baseline.x - border), cvFloor(baseline.y - style.cap - border));
     const cv::Size size(cvCeil(width + 2 * border) + 1, cvCeil(style.cap + 2 * border) + 1);
 
-    cv::Mat_<std::uint8_t> large(size * finer, std::uint8_t{0}), cover;
+    cv::Mat_<std::uint8_t> large, cover;
     const cv::Point origin(cvRound((baseline.x - corner.x) * finer), cvRound((baseline.y - corner.y) * finer));
-    const int thickness = std::max(1, cvRound(0.125 * style.cap * finer));
-    cv::putText(large, printable(text), origin, font, style.cap * finer / font_cap, cv::Scalar(255), thickness, cv::LINE_AA);
-    cv::resize(large, cover, size, 0, 0, cv::INTER_AREA);
-    blend(image, cover, corner, style.colour);
+    const double pen = 0.125 * style.cap;
+    const auto write = [&](double pen_width, Colour colour) {
+        large.create(size * finer);
+        large = 0;
+        const int thickness = std::max(1, cvRound(pen_width * finer));
+        cv::putText(large, printable(text), origin, font, style.cap * finer / font_cap, cv::Scalar(255), thickness, cv::LINE_AA);
+        cv::resize(large, cover, size, 0, 0, cv::INTER_AREA);
+        blend(image, cover, corner, colour);
+    };
+    if (style.halo) write(pen + halo_width(style.cap), *style.halo);
+    write(pen, style.colour);
 }
 
 double text_width(const std::string& text, double cap)
@@ -120,29 +133,21 @@ void fill(Image& image, const cv::Rect& area, Colour colour)
     image(area & cv::Rect({}, image.size())) = colour;
 }
 
-void outline(Image& image, const cv::Rect& area, int thickness, Colour colour)
+std::array<cv::Rect, 4> sides_around(const cv::Rect& area, int thickness)
 {
     const cv::Rect outer(area.x - thickness, area.y - thickness, area.width + 2 * thickness, area.height + 2 * thickness);
-    fill(image, {outer.x, outer.y, outer.width, thickness}, colour);
-    fill(image, {outer.x, area.br().y, outer.width, thickness}, colour);
-    fill(image, {outer.x, outer.y, thickness, outer.height}, colour);
-    fill(image, {area.br().x, outer.y, thickness, outer.height}, colour);
+    return {cv::Rect(outer.x, outer.y, outer.width, thickness), cv::Rect(outer.x, area.br().y, outer.width, thickness),
+            cv::Rect(outer.x, outer.y, thickness, outer.height), cv::Rect(area.br().x, outer.y, thickness, outer.height)};
 }
 
-void draw_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour inside, Colour edge,
-                  double edge_width)
+void fill_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour colour)
 {
-    std::vector<cv::Point> points;
-    for (const cv::Point2d& corner : corners) points.push_back(in_fractions(corner));
-    cv::fillPoly(image, std::vector{points}, scalar(inside), cv::LINE_AA, shift);
-    cv::polylines(image, std::vector{points}, true, scalar(edge), whole(edge_width), cv::LINE_AA, shift);
+    cv::fillPoly(image, std::vector{in_fractions(corners)}, scalar(colour), cv::LINE_AA, shift);
 }
 
 void draw_outline(Image& image, const std::vector<cv::Point2d>& corners, Colour edge, double edge_width)
 {
-    std::vector<cv::Point> points;
-    for (const cv::Point2d& corner : corners) points.push_back(in_fractions(corner));
-    cv::polylines(image, std::vector{points}, true, scalar(edge), whole(edge_width), cv::LINE_AA, shift);
+    cv::polylines(image, std::vector{in_fractions(corners)}, true, scalar(edge), whole(edge_width), cv::LINE_AA, shift);
 }
 
 void draw_dot(Image& image, cv::Point2d centre, double radius, Colour inside, Colour edge, double edge_width)

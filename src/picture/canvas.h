@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,20 +34,26 @@ struct TextStyle {
     double cap;  ///< height of capital letters, pixels
     Colour colour = ink;
     Align align = Align::Left;
+    std::optional<Colour> halo = {};  ///< around the letters, so that they can be read on any ground
 };
+
+/// Width of the pen that draws the halo of text, pixels.
+inline double halo_width(double cap) { return 0.5 * cap; }
 
 /// Places and lengths are in pixels from the upper left corner of the image, y down, a pixel's centre at .5; what lies
 /// beyond the image is left out.
 ///
 /// The font has ASCII only: of UTF-8 text, western letters lose their accents and other characters become question marks.
+std::string printable(const std::string& text);  ///< UTF-8 text in the characters that the font has
 void draw_text(Image& image, const std::string& text, cv::Point2d baseline, const TextStyle& style);
 double text_width(const std::string& text, double cap);
 std::string cut_to(std::string text, double cap, double width);  ///< ends in "..." if it was wider
 
 int whole(double pixels);  ///< rounded, at least 1
 void fill(Image& image, const cv::Rect& area, Colour colour);
-void outline(Image& image, const cv::Rect& area, int thickness, Colour colour);  ///< around the area, outside it
-void draw_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour inside, Colour edge, double edge_width);
+/// The four sides of a frame around the area, outside it.
+std::array<cv::Rect, 4> sides_around(const cv::Rect& area, int thickness);
+void fill_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour colour);
 void draw_outline(Image& image, const std::vector<cv::Point2d>& corners, Colour edge, double edge_width);  ///< a closed line
 void draw_dot(Image& image, cv::Point2d centre, double radius, Colour inside, Colour edge, double edge_width);
 

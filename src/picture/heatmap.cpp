@@ -1,29 +1,29 @@
-#include "picture/palette.h"
+#include "picture/obstacle_mask.h"
+#include "picture/quantities.h"
 #include "picture/relief.h"
+#include "picture/spawn_marks.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
 
-#include <opencv2/imgproc.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace spawnfield {
 namespace {
 
-constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
-
 // ---------------------------------------------------------------- colours and words
 
-Colour colour_of(Verdict verdict) { return rgb(verdict_palette[static_cast<std::size_t>(verdict)]); }
+const Colour not_valid = rgb(0x9a9a9a), beyond = rgb(0xffffff);
 
-const Colour no_pose = rgb(0xe6e6e6), not_valid = rgb(0x9a9a9a), beyond = rgb(0xffffff);
-
-std::string name_of(Verdict verdict)
+std::string name_of(Kind kind, const HeatmapOptions& options)
 {
-    std::string name = to_string(verdict);
+    if (kind == obstacle) return "obstacle";
+    if (kind == some_headings) return "valid at some headings";
+    if (kind == kind_of(Verdict::Valid) && options.headings > 1) return "valid at all " + std::to_string(options.headings) + " headings";
+    std::string name = to_string(static_cast<Verdict>(kind));
     std::replace(name.begin(), name.end(), '_', ' ');
     return name;
 }
@@ -42,7 +42,10 @@ std::string count_and_share(std::uint64_t count, std::uint64_t total)
     return text + "   " + (percent < 0.05 ? "< 0.1" : fixed(percent, 1)) + " %";
 }
 
-// ---------------------------------------------------------------- columns
+void check_size(const char* what, std::size_t size, std::size_t wanted, const char* limit)
+{
+    if (size != 0 && size != wanted) throw ArgumentError("write_heatmap", std::string("size of ") + what, static_cast<double>(size), limit);
+}
 
 void check(const RasterResult& raster, const HeatmapOptions& options)
 {
@@ -52,112 +55,43 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
     if (!(grid.step > 0) || !std::isfinite(grid.step)) throw ArgumentError("write_heatmap", "raster.grid.step", grid.step, "> 0 m");
     if (grid.cols < 1) throw ArgumentError("write_heatmap", "raster.grid.cols", grid.cols, ">= 1");
     if (grid.rows < 1) throw ArgumentError("write_heatmap", "raster.grid.rows", grid.rows, ">= 1");
+    if (options.headings < 1 || options.headings > 255) throw ArgumentError("write_heatmap", "headings", options.headings, "1 .. 255");
+    check_size("spawn_verdicts", options.spawn_verdicts.size(), options.spawns.size(), "as many as spawns, or none");
+    check_size("spawn_names", options.spawn_names.size(), options.spawns.size(), "as many as spawns, or none");
+    check_size("valid_headings", options.valid_headings.size(), raster.poses.size(), "as many as the raster's poses, or none");
 }
 
-/// The pose that the picture shows of each column, nullptr where it has none. Row 0 is the largest y.
-struct ShownPoses {
-    int rows = 0, cols = 0;
-    std::vector<const RasterPose*> poses;
+// ---------------------------------------------------------------- obstacles
 
-    const RasterPose* at(int row, int col) const { return poses[static_cast<std::size_t>(row) * cols + col]; }
-    bool is_valid(int row, int col) const { return at(row, col) && at(row, col)->verdict == Verdict::Valid; }
-};
-
-/// Valid before not, then higher before lower.
-bool is_shown_before(const RasterPose& pose, const RasterPose& other)
+/// Cells over the view, of a pixel's size, or larger where there would be too many.
+GridFrame fine_frame(const View& view, cv::Size pixels)
 {
-    const bool valid = pose.verdict == Verdict::Valid, other_valid = other.verdict == Verdict::Valid;
-    return valid != other_valid ? valid : pose.z > other.z;
+    constexpr double most = 2000;
+    const double cell = std::max(view.width / pixels.width, std::max(view.width, view.height) / most);
+    return {view.x0, view.y0, cell, static_cast<int>(std::ceil(view.height / cell)), static_cast<int>(std::ceil(view.width / cell))};
 }
 
-ShownPoses shown_poses(const RasterResult& raster)
+ObstacleSearch obstacle_search(const ShownPoses& shown, const RasterResult& raster, const HeatmapOptions& options)
 {
     const RasterGrid& grid = raster.grid;
-    ShownPoses shown{grid.rows, grid.cols, {}};
-    shown.poses.resize(static_cast<std::size_t>(grid.rows) * grid.cols);
-    for (const RasterPose& pose : raster.poses) {
-        const double i = std::round((pose.x - grid.x0) / grid.step), j = std::round((pose.y - grid.y0) / grid.step);
-        if (!(i >= 0 && i < grid.cols)) throw ArgumentError("write_heatmap", "x of a pose", pose.x, "a column of the raster");
-        if (!(j >= 0 && j < grid.rows)) throw ArgumentError("write_heatmap", "y of a pose", pose.y, "a column of the raster");
-        const std::size_t row = static_cast<std::size_t>(grid.rows - 1 - static_cast<int>(j));
-        const RasterPose*& current = shown.poses[row * grid.cols + static_cast<std::size_t>(i)];
-        if (!current || is_shown_before(pose, *current)) current = &pose;
-    }
-    return shown;
+    const View view = view_of(grid);
+    const double above_layer = raster.dims == 2 ? raster.offset : 0;  // poses of 3D rasters are at heights of their own
+    ObstacleSearch search;
+    if (options.robot) search.robot = {options.robot->bounds().min.z(), options.robot->bounds().max.z()};
+    search.robot.low += above_layer;
+    search.robot.high += above_layer;
+    search.reach = raster.dims == 2 ? 2 * grid.step : 0;
+    search.without_layer = raster.dims == 2 && raster.area.is_everywhere();
+    search.threads = options.threads;
+    search.layer_near = [=, &shown](double x, double y) -> std::optional<double> {
+        const int col = cell_index((x - view.x0) / grid.step, grid.cols), from_below = cell_index((y - view.y0) / grid.step, grid.rows);
+        const RasterPose* const pose = col < 0 || from_below < 0 ? nullptr : shown.at(grid.rows - 1 - from_below, col);
+        return pose ? std::optional(pose->z - above_layer) : std::nullopt;
+    };
+    return search;
 }
 
-/// What a column without a pose is: in 3D rasters all its poses are aerial, which are counted but not listed.
-bool is_aerial_without_pose(const RasterResult& raster)
-{
-    return raster.dims == 3 && raster.counts[static_cast<std::size_t>(Verdict::Aerial)] > 0 && raster.area.is_everywhere();
-}
-
-Image verdict_colours(const ShownPoses& shown, Colour without_pose)
-{
-    Image colours(shown.rows, shown.cols);
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col) {
-            const RasterPose* pose = shown.at(row, col);
-            colours(row, col) = pose ? colour_of(pose->verdict) : without_pose;
-        }
-    return colours;
-}
-
-// ---------------------------------------------------------------- quantities: NaN where the column is not valid
-
-cv::Mat_<float> pose_heights(const ShownPoses& shown)
-{
-    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col)) values(row, col) = static_cast<float>(shown.at(row, col)->z);
-    return values;
-}
-
-cv::Mat_<float> clearances(const ShownPoses& shown, double step)
-{
-    cv::Mat_<std::uint8_t> valid(shown.rows + 2, shown.cols + 2, std::uint8_t{0});  // a ring that is not, around all
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col)) valid(row + 1, col + 1) = 1;
-    cv::Mat_<float> columns;
-    cv::distanceTransform(valid, columns, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col)) values(row, col) = static_cast<float>(columns(row + 1, col + 1) * step);
-    return values;
-}
-
-cv::Mat_<float> slopes(const ShownPoses& shown, const RasterGrid& grid, const GridFrame& frame, const HeightImage& heights)
-{
-    constexpr double degrees = 180 / 3.14159265358979323846;
-    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col) {
-            if (!shown.is_valid(row, col)) continue;
-            const int cell_col = cell_index((grid.x_of(col) - frame.x0) / frame.cell, frame.cols);
-            const int from_below = cell_index((grid.y_of(grid.rows - 1 - row) - frame.y0) / frame.cell, frame.rows);
-            if (cell_col < 0 || from_below < 0) continue;
-            const double slope = gradient(heights, frame.rows - 1 - from_below, cell_col, frame.cell).norm();
-            values(row, col) = static_cast<float>(std::atan(slope) * degrees);
-        }
-    return values;
-}
-
-cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterGrid& grid, const GridFrame& frame,
-                                const HeightImage& heights, HeatmapQuantity quantity)
-{
-    switch (quantity) {
-    case HeatmapQuantity::Height: return pose_heights(shown);
-    case HeatmapQuantity::Slope: return slopes(shown, grid, frame, heights);
-    case HeatmapQuantity::Clearance:
-    case HeatmapQuantity::Verdict: break;
-    }
-    return clearances(shown, grid.step);
-}
-
-/// Clearances and slopes begin at 0, heights at the lowest.
+/// Clearances and slopes begin at 0, heights at the lowest; all end at the largest that occurs.
 ColourScale scale_for(const cv::Mat_<float>& values, HeatmapQuantity quantity)
 {
     const bool from_zero = quantity != HeatmapQuantity::Height;
@@ -173,74 +107,94 @@ ColourScale scale_for(const cv::Mat_<float>& values, HeatmapQuantity quantity)
     const char* heading = quantity == HeatmapQuantity::Height      ? "height of the pose, m"
                           : quantity == HeatmapQuantity::Clearance ? "clearance, m"
                                                                    : "slope, degrees";
-    return {heading, "", ticks_around(low, high), viridis()};
-}
-
-Image quantity_colours(const ShownPoses& shown, const cv::Mat_<float>& values, const ColourScale& scale,
-                                  Colour without_pose)
-{
-    Image colours(shown.rows, shown.cols);
-    for (int row = 0; row < shown.rows; ++row)
-        for (int col = 0; col < shown.cols; ++col) {
-            const float value = values(row, col);
-            colours(row, col) = std::isfinite(value)   ? scale.at(value)
-                                : shown.at(row, col) ? not_valid
-                                                       : without_pose;
-        }
-    return colours;
+    return scale_between(heading, low, high, viridis());
 }
 
 // ---------------------------------------------------------------- legend
 
-std::uint64_t total(const VerdictCounts& counts)
+using KindCounts = std::array<std::uint64_t, kind_count>;
+
+KindCounts counts_of(const Kinds& kinds)
 {
-    std::uint64_t sum = 0;
-    for (const std::uint64_t count : counts) sum += count;
-    return sum;
+    KindCounts counts{};
+    for (const Kind kind : kinds) ++counts[kind];
+    return counts;
+}
+
+/// Columns that have an answer: shares are of these.
+std::uint64_t answered(const KindCounts& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}) - counts[no_pose]; }
+
+std::string columns_heading(const RasterResult& raster, std::uint64_t columns)
+{
+    char step[32];
+    std::snprintf(step, sizeof step, "%.3g", raster.grid.step);
+    return counted(columns, "column") + (columns > 1 ? std::string(", ") + step + " m apart" : "");
 }
 
 /// The one for columns without a pose, if there are any.
-void append_no_pose(const ShownPoses& shown, const RasterResult& raster, Legend& legend)
+void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend& legend)
 {
-    const auto count = std::count(shown.poses.begin(), shown.poses.end(), nullptr);
-    if (count == 0 || is_aerial_without_pose(raster)) return;
+    if (counts[no_pose] == 0) return;
     const bool lower_layer = !raster.poses.empty() && std::all_of(raster.poses.begin(), raster.poses.end(),
                                                                   [](const RasterPose& pose) { return pose.layer > 0; });
-    const std::string name = !raster.area.is_everywhere() ? "off the region, or no terrain" : raster.dims == 3 ? "no pose" : lower_layer ? "no such layer" : "no terrain";
-    legend.entries.push_back({no_pose, name, counted(static_cast<std::uint64_t>(count), "column")});
+    const std::string name = !raster.area.is_everywhere() ? "off the region, or no terrain" : raster.dims == 3 ? "no pose" : lower_layer ? "no such layer" : raster.z.is_unlimited() ? "no terrain" : "no terrain at these heights";
+    legend.entries.push_back({colour_of(no_pose), name, counted(counts[no_pose], "column")});
 }
 
-/// Those that can occur, or did.
-Legend verdict_legend(const RasterResult& raster)
+/// Kinds that can occur, or did, with the numbers of columns that show them.
+Legend verdict_legend(const RasterResult& raster, const Kinds& kinds, const HeatmapOptions& options)
 {
-    const std::uint64_t all = total(raster.counts);
+    constexpr std::array order{kind_of(Verdict::Valid), some_headings, kind_of(Verdict::Steep), kind_of(Verdict::Unstable),
+                               kind_of(Verdict::Collision), obstacle, kind_of(Verdict::Submerged), kind_of(Verdict::OffTerrain),
+                               kind_of(Verdict::Aerial), kind_of(Verdict::Outside)};
+    constexpr std::array always{kind_of(Verdict::Valid), kind_of(Verdict::Collision), kind_of(Verdict::Submerged), kind_of(Verdict::OffTerrain)};
+    const KindCounts counts = counts_of(kinds);
+    const std::uint64_t columns = answered(counts);
     Legend legend;
-    legend.heading = counted(all, "pose");
-    for (const Verdict verdict : {Verdict::Valid, Verdict::Steep, Verdict::Unstable, Verdict::Collision, Verdict::Submerged,
-                                  Verdict::OffTerrain, Verdict::Aerial, Verdict::Outside}) {
-        const std::uint64_t count = raster.counts[static_cast<std::size_t>(verdict)];
-        const bool rare = verdict == Verdict::Outside || verdict == Verdict::Steep || verdict == Verdict::Unstable || (verdict == Verdict::Aerial && raster.dims == 2);
-        if (count > 0 || !rare) legend.entries.push_back({colour_of(verdict), name_of(verdict), count_and_share(count, all)});
+    legend.heading = columns_heading(raster, columns);
+    for (const Kind kind : order) {
+        const bool possible = std::find(always.begin(), always.end(), kind) != always.end() || (kind == some_headings && options.headings > 1) ||
+                              (kind == kind_of(Verdict::Aerial) && raster.dims == 3);
+        if (counts[kind] > 0 || possible) legend.entries.push_back({colour_of(kind), name_of(kind, options), count_and_share(counts[kind], columns)});
     }
+    append_no_pose(raster, counts, legend);
     return legend;
 }
 
-Legend quantity_legend(const RasterResult& raster, const ColourScale& scale)
+Legend quantity_legend(const RasterResult& raster, const Kinds& kinds, const ColourScale& scale, const HeatmapOptions& options)
 {
-    const std::uint64_t all = total(raster.counts), valid = raster.counts[static_cast<std::size_t>(Verdict::Valid)];
+    const KindCounts counts = counts_of(kinds);
+    const std::uint64_t columns = answered(counts);
+    const std::uint64_t valid = counts[kind_of(Verdict::Valid)], others = columns - valid - counts[obstacle];
     Legend legend;
-    legend.heading = counted(all, "pose");
+    legend.heading = columns_heading(raster, columns);
     legend.scale = scale;
-    legend.scale->detail = "valid   " + count_and_share(valid, all);
-    legend.entries.push_back({not_valid, "not valid", count_and_share(all - valid, all)});
+    legend.scale->detail = "valid   " + count_and_share(valid, columns);
+    legend.entries.push_back({not_valid, options.headings > 1 ? "not valid at all headings" : "not valid", count_and_share(others, columns)});
+    if (counts[obstacle] > 0) legend.entries.push_back({colour_of(obstacle), "obstacle", count_and_share(counts[obstacle], columns)});
+    append_no_pose(raster, counts, legend);
     return legend;
 }
 
 // ---------------------------------------------------------------- plot
 
-View view_of(const RasterGrid& grid)
+Image kind_colours(const Kinds& kinds)
 {
-    return {grid.x_of(0) - grid.step / 2, grid.y_of(0) - grid.step / 2, grid.cols * grid.step, grid.rows * grid.step};
+    Image colours(kinds.size());
+    std::transform(kinds.begin(), kinds.end(), colours.begin(), colour_of);
+    return colours;
+}
+
+Image quantity_colours(const Kinds& kinds, const cv::Mat_<float>& values, const ColourScale& scale)
+{
+    Image colours(kinds.size());
+    for (int row = 0; row < kinds.rows; ++row)
+        for (int col = 0; col < kinds.cols; ++col) {
+            const float value = values(row, col);
+            const Kind kind = kinds(row, col);
+            colours(row, col) = std::isfinite(value) ? scale.at(value) : kind == obstacle || kind == no_pose ? colour_of(kind) : not_valid;
+        }
+    return colours;
 }
 
 /// Each pixel as its nearest column says.
@@ -269,21 +223,80 @@ void shade(Image& plot, const cv::Mat_<float>& light, float depth)
             if (plot(row, col) != beyond) plot(row, col) = shaded(plot(row, col), light(row, col), depth);
 }
 
-/// In units; smaller where they are many, so that they stay apart.
-double arrow_length(const Layout& layout, std::size_t count)
+/// Over the shading: on the ground below obstacles relief says nothing. White room around thin views has none.
+void draw_obstacles(Image& plot, const cv::Mat_<std::uint8_t>& obstacles, const GridFrame& frame, const View& columns, const View& view)
 {
-    const double apart = std::sqrt(layout.plot.area() / std::max(1.0, static_cast<double>(count))) / layout.unit;
-    return std::clamp(0.5 * apart, smallest_arrow - 1, 22.0);
+    for (int row = 0; row < plot.rows; ++row) {
+        const double y = view.y0 + view.height - (row + 0.5) / plot.rows * view.height;
+        const int from_below = cell_index((y - frame.y0) / frame.cell, frame.rows);
+        if (from_below < 0 || cell_index((y - columns.y0) / columns.height, 1) < 0) continue;
+        for (int col = 0; col < plot.cols; ++col) {
+            const double x = view.x0 + (col + 0.5) / plot.cols * view.width;
+            const int cell = cell_index((x - frame.x0) / frame.cell, frame.cols);
+            if (cell >= 0 && cell_index((x - columns.x0) / columns.width, 1) >= 0 && obstacles(frame.rows - 1 - from_below, cell))
+                plot(row, col) = colour_of(obstacle);
+        }
+    }
 }
 
-void draw_spawns(Image& plot, const std::vector<Spawn>& spawns, const View& view, double length, double unit)
+// ---------------------------------------------------------------- spawns
+
+/// Spawns whose origin is in the view, with their places in the picture.
+struct VisibleSpawns {
+    std::vector<std::size_t> numbers;
+    std::vector<cv::Point2d> places;
+};
+
+VisibleSpawns visible_spawns(const std::vector<Spawn>& spawns, const View& view, const cv::Rect& plot)
 {
-    for (const Spawn& spawn : spawns) {
-        const cv::Point2d at((spawn.position.x() - view.x0) / view.width * plot.cols,
-                             (view.y0 + view.height - spawn.position.y()) / view.height * plot.rows);
-        const bool inside = at.x >= 0 && at.x <= plot.cols && at.y >= 0 && at.y <= plot.rows;
-        if (inside) draw_arrow(plot, at, spawn.yaw, length, unit);
+    VisibleSpawns visible;
+    for (std::size_t i = 0; i < spawns.size(); ++i) {
+        const double across = (spawns[i].position.x() - view.x0) / view.width, down = (view.y0 + view.height - spawns[i].position.y()) / view.height;
+        if (!(across >= 0 && across <= 1 && down >= 0 && down <= 1)) continue;
+        visible.numbers.push_back(i);
+        visible.places.emplace_back(plot.x + across * plot.width, plot.y + down * plot.height);
     }
+    return visible;
+}
+
+Colour spawn_colour(const HeatmapOptions& options, std::size_t spawn)
+{
+    return options.spawn_verdicts.empty() ? white : colour_of(kind_of(options.spawn_verdicts[spawn]));
+}
+
+/// "12 of 30 spawns in view", with the symbols of their verdicts. Symbols draw nothing before draw_spawns() gives them a look.
+void append_spawns(const HeatmapOptions& options, const VisibleSpawns& visible, Legend& legend)
+{
+    const std::size_t all = options.spawns.size(), seen = visible.numbers.size();
+    if (all == 0) return;
+    const std::string text = seen == all ? counted(all, "spawn") : with_commas(seen) + " of " + counted(all, "spawn") + " in view";
+    const auto later = [](Figure&, cv::Point2d) {};
+    if (options.spawn_verdicts.empty()) {
+        legend.symbols.push_back({text, later});
+        return;
+    }
+    legend.symbols.push_back({text});
+    for (std::size_t v = verdict_count; v-- > 0;) {
+        const auto count = std::count_if(visible.numbers.begin(), visible.numbers.end(),
+                                         [&](std::size_t i) { return options.spawn_verdicts[i] == static_cast<Verdict>(v); });
+        if (count > 0) legend.symbols.push_back({with_commas(static_cast<std::uint64_t>(count)) + ' ' + name_of(static_cast<Kind>(v), {}), later, colour_of(static_cast<Kind>(v))});
+    }
+}
+
+void draw_spawns(Figure& figure, const HeatmapOptions& options, const VisibleSpawns& visible, const SpawnLook& look, const Layout& layout, Legend& legend)
+{
+    for (LegendSymbol& symbol : legend.symbols)
+        if (symbol.draw) symbol.draw = [=, colour = symbol.colour](Figure& into, cv::Point2d centre) { draw_spawn_symbol(into, look, centre, colour); };
+    clip(figure, layout.plot);
+    for (std::size_t k = 0; k < visible.numbers.size(); ++k)
+        draw_spawn(figure, look, visible.places[k], options.spawns[visible.numbers[k]].yaw, spawn_colour(options, visible.numbers[k]));
+    clip(figure, {});
+    if (options.spawn_names.empty()) return;
+    std::vector<std::string> names;
+    for (const std::size_t i : visible.numbers) names.push_back(options.spawn_names[i]);
+    const std::size_t written = write_names(figure, look, visible.places, names, layout.plot);
+    if (written < names.size()) legend.symbols.back().name = with_commas(written) + " of " + counted(names.size(), "name") + " shown: no room";
+    else legend.symbols.pop_back();
 }
 
 }  // namespace
@@ -292,32 +305,41 @@ void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult
                    const std::filesystem::path& file)
 {
     check(raster, options);
-    const ShownPoses shown = shown_poses(raster);
-    const HeightImage heights = page_image(terrain, "height.0");
-    const Colour without_pose = is_aerial_without_pose(raster) ? colour_of(Verdict::Aerial) : no_pose;
+    const PictureFormat format = options.format ? *options.format : picture_format(file);
+    const ShownPoses shown = shown_poses(raster, options);
+    const ObstacleSearch search = obstacle_search(shown, raster, options);
+    Kinds kinds = column_kinds(shown, raster, options);
+    mark_obstacles(kinds, obstacle_mask(map.geometry, frame_of(raster.grid), search));
     const View columns = view_of(raster.grid);
-    Frame frame{with_room(columns), options.pixels, options.title.empty() ? map.name : options.title, {}};
+    Frame frame{with_room(columns), options.pixels, options.title.empty() ? map.name : options.title, {}, options.caption};
 
     Image colours;
     if (options.quantity == HeatmapQuantity::Verdict) {
-        colours = verdict_colours(shown, without_pose);
-        frame.legend = verdict_legend(raster);
+        colours = kind_colours(kinds);
+        frame.legend = verdict_legend(raster, kinds, options);
     } else {
-        const cv::Mat_<float> values = quantity_values(shown, raster.grid, terrain.frame, heights, options.quantity);
+        const cv::Mat_<float> values = quantity_values(shown, raster, terrain, options);
         const ColourScale scale = scale_for(values, options.quantity);
-        colours = quantity_colours(shown, values, scale, is_aerial_without_pose(raster) ? not_valid : no_pose);
-        frame.legend = quantity_legend(raster, scale);
+        colours = quantity_colours(kinds, values, scale);
+        frame.legend = quantity_legend(raster, kinds, scale, options);
     }
-    append_no_pose(shown, raster, frame.legend);
-    if (!options.spawns.empty()) frame.legend.arrow = counted(options.spawns.size(), "spawn");
+    append_spawns(options, visible_spawns(options.spawns, frame.view, {0, 0, 1, 1}), frame.legend);
+    if (!options.spawn_names.empty()) frame.legend.symbols.push_back({"names: no room for all of them"});  // its place in the layout
 
     const Layout layout = lay_out(frame);
     Image plot = draw_columns(colours, columns, frame.view, layout.plot.size());
     const float depth = options.quantity == HeatmapQuantity::Verdict ? 1 : 0.5f;  // values are read from the lightness
-    shade(plot, relief(terrain.frame, heights, frame.view, plot.size()), depth);
-    frame.legend.arrow_length = arrow_length(layout, options.spawns.size());
-    draw_spawns(plot, options.spawns, frame.view, frame.legend.arrow_length, layout.unit);
-    write_png(draw_picture(frame, layout, plot), file);
+    shade(plot, relief(terrain.frame, highest_within(terrain, raster.z), frame.view, plot.size()), depth);
+    const GridFrame fine = fine_frame(frame.view, plot.size());
+    draw_obstacles(plot, obstacle_mask(map.geometry, fine, search), fine, columns, frame.view);
+    const VisibleSpawns visible = visible_spawns(options.spawns, frame.view, layout.plot);
+    const SpawnLook look = spawn_look(options.robot, layout, plot.cols / frame.view.width, visible.numbers.size());
+
+    Figure figure{layout.size, {}};
+    draw_image(figure, layout.plot.tl(), plot);
+    draw_spawns(figure, options, visible, look, layout, frame.legend);
+    draw_surroundings(figure, frame, layout);
+    write_figure(figure, format, file);
 }
 
 }  // namespace spawnfield

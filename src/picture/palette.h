@@ -4,9 +4,20 @@
 
 namespace spawnfield {
 
-/// 0xRRGGBB of each Verdict, in pictures and in files of other programs.
-/// Source: Okabe, Ito, Color Universal Design, 2008.
-inline constexpr std::array<std::uint32_t, verdict_count> verdict_palette{0x999999, 0xf0e442, 0xcc79a7, 0x0072b2,
-                                                                          0xd55e00, 0xe69f00, 0x56b4e9, 0x009e73};
+// Colours as 0xRRGGBB, in pictures and in files of other programs. They were searched for, from Okabe and Ito's hues, such
+// that people with any kind of colour vision can tell them apart; tests/palette_test.cpp holds what they reach:
+// Valid and Collision differ in lightness (CIE L*) by 25 or more, and no two verdicts are closer than 20 (both CIEDE2000:
+// Sharma, Wu, Dalal 2005, and CIE76), in normal vision, protanopia, deuteranopia and tritanopia (Machado, Oliveira,
+// Fernandes, A physiologically-based model for simulation of color vision deficiency, 2009, full severity).
+
+/// By Verdict.
+inline constexpr std::array<std::uint32_t, verdict_count> verdict_palette{0x726e77, 0xfff516, 0x9182ff, 0x033cd9,
+                                                                          0xa54c31, 0xc99102, 0x4eedff, 0xbdd5a7};
+
+/// The two verdicts of DESIGN.md that no query gives yet.
+inline constexpr std::uint32_t obstructed_colour = 0x570901, unreachable_colour = 0x371d4a;
+
+/// What heat maps show beside verdicts: at least 11 (CIEDE2000) from these and from each other.
+inline constexpr std::uint32_t some_headings_colour = 0x5a9c78, obstacle_colour = 0x141414, no_pose_colour = 0xe9e9e9;
 
 }  // namespace spawnfield

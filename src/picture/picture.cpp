@@ -11,7 +11,7 @@ namespace {
 // Lengths in units: thousandths of the picture's longer side.
 constexpr double text_cap = 10.5, small_cap = 9.5, title_cap = 15;  // heights of capital letters
 constexpr double margin = 18, tick_length = 6, gap = 7, column_gap = 30;
-constexpr double bearing_width = 160, bearing_height = 54, longest_scale_bar = 110;
+constexpr double bearing_width = 160, bearing_height = 54, longest_scale_bar = 110, caption_line = 25;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 const Colour line = rgb(0x404040);
@@ -20,7 +20,7 @@ const Colour line = rgb(0x404040);
 
 struct Item {
     double width, height;                             ///< pixels
-    std::function<void(Image&, cv::Point2d)> draw;  ///< at its upper left corner
+    std::function<void(Figure&, cv::Point2d)> draw;  ///< at its upper left corner
 };
 
 Item entry_item(const LegendEntry& entry, double unit)
@@ -28,39 +28,57 @@ Item entry_item(const LegendEntry& entry, double unit)
     const double cap = text_cap * unit, small = small_cap * unit, indent = 28 * unit;
     const bool two_lines = !entry.detail.empty();
     const double width = indent + std::max(text_width(entry.name, cap), text_width(entry.detail, small));
-    return {width, (two_lines ? 42 : 27) * unit, [=](Image& image, cv::Point2d at) {
+    return {width, (two_lines ? 42 : 27) * unit, [=](Figure& figure, cv::Point2d at) {
                 const cv::Rect swatch(cvRound(at.x), cvRound(at.y), whole(18 * unit), whole((two_lines ? 28 : 14) * unit));
-                fill(image, swatch, entry.colour);
-                outline(image, swatch, whole(0.8 * unit), muted);
+                fill(figure, swatch, entry.colour);
+                outline(figure, swatch, whole(0.8 * unit), muted);
                 const double first = two_lines ? at.y + cap : at.y + 7 * unit + cap / 2;
-                draw_text(image, entry.name, {at.x + indent, first}, {cap});
-                draw_text(image, entry.detail, {at.x + indent, first + 17 * unit}, {small, muted});
+                draw_text(figure, entry.name, {at.x + indent, first}, {cap});
+                draw_text(figure, entry.detail, {at.x + indent, first + 17 * unit}, {small, muted});
             }};
 }
 
-Item arrow_item(const Legend& legend, double unit)
+Item symbol_item(const LegendSymbol& symbol, double unit)
 {
-    const double cap = text_cap * unit, indent = 28 * unit;
-    return {indent + text_width(legend.arrow, cap), 27 * unit,
-            [=, text = legend.arrow, length = legend.arrow_length](Image& image, cv::Point2d at) {
-                const double middle = 0.1 * std::max(0.0, length - smallest_arrow);  // more of an arrow is ahead of its centre
-                draw_arrow(image, {at.x + (9 - middle) * unit, at.y + 7 * unit}, 0, length, unit);
-                draw_text(image, text, {at.x + indent, at.y + 7 * unit + cap / 2}, {cap});
+    const double cap = text_cap * unit, indent = symbol.draw ? (symbol_size + 10) * unit : 0;
+    return {indent + text_width(symbol.name, cap), 27 * unit, [=](Figure& figure, cv::Point2d at) {
+                if (symbol.draw) symbol.draw(figure, {at.x + symbol_size / 2 * unit, at.y + 7 * unit});
+                draw_text(figure, symbol.name, {at.x + indent, at.y + 7 * unit + cap / 2}, {cap});
             }};
 }
 
-void draw_bar(Image& image, const cv::Rect& bar, const ColourScale& scale, double unit)
+/// The ends of the scale, and the ticks that are not too near to them, with their labels.
+std::vector<std::pair<double, std::string>> bar_labels(const ColourScale& scale, double height, double unit)
 {
-    const double low = scale.ticks.lowest(), high = scale.ticks.highest();
-    for (int row = 0; row < bar.height; ++row)
-        fill(image, {bar.x, bar.y + row, bar.width, 1}, scale.at(high + (low - high) * (row + 0.5) / bar.height));
-    const int thickness = whole(unit), tick = whole(tick_length * unit);
-    outline(image, bar, thickness, line);
+    const double apart = 1.6 * small_cap * unit / height * (scale.high - scale.low), same = 1e-6 * (scale.high - scale.low);
+    const auto near = [](double a, double b, double distance) { return std::abs(a - b) < distance; };
+    std::vector<std::pair<double, std::string>> labels;
+    for (const double end : {scale.low, scale.high}) {
+        std::string text = fixed(end, scale.ticks.decimals + 1);
+        for (int i = 0; i < scale.ticks.count; ++i)
+            if (near(scale.ticks.at(i), end, same)) text = scale.ticks.label(i);
+        labels.emplace_back(end, text);
+    }
     for (int i = 0; i < scale.ticks.count; ++i) {
-        const double y = bar.y + bar.height * (high - scale.ticks.at(i)) / (high - low);
-        fill(image, {bar.br().x + thickness, cvRound(y - thickness / 2.0), tick, thickness}, line);
-        const cv::Point2d label(bar.br().x + tick + gap * unit, y + small_cap * unit / 2);
-        draw_text(image, scale.ticks.label(i), label, {small_cap * unit});
+        const double tick = scale.ticks.at(i);
+        if (!near(tick, scale.low, apart) && !near(tick, scale.high, apart)) labels.emplace_back(tick, scale.ticks.label(i));
+    }
+    return labels;
+}
+
+void draw_bar(Figure& figure, const cv::Rect& bar, const ColourScale& scale, double unit)
+{
+    const double low = scale.low, high = scale.high;
+    Image colours(bar.size());
+    for (int row = 0; row < bar.height; ++row) colours.row(row) = scale.at(high + (low - high) * (row + 0.5) / bar.height);
+    draw_image(figure, bar.tl(), colours);
+    const int thickness = whole(unit), tick = whole(tick_length * unit);
+    outline(figure, bar, thickness, line);
+    for (const auto& [value, label] : bar_labels(scale, bar.height, unit)) {
+        const double y = bar.y + bar.height * (high - value) / (high - low);
+        fill(figure, {bar.br().x + thickness, cvRound(y - thickness / 2.0), tick, thickness}, line);
+        const cv::Point2d place(bar.br().x + tick + gap * unit, y + small_cap * unit / 2);
+        draw_text(figure, label, place, {small_cap * unit});
     }
 }
 
@@ -69,12 +87,12 @@ Item scale_item(const ColourScale& scale, double unit, double bar_height)
     const double cap = text_cap * unit, small = small_cap * unit, bar_width = 18 * unit;
     const double head = cap + (scale.detail.empty() ? 13 : 30) * unit;
     double width = std::max(text_width(scale.heading, cap), text_width(scale.detail, small));
-    for (int i = 0; i < scale.ticks.count; ++i)
-        width = std::max(width, bar_width + (tick_length + gap) * unit + text_width(scale.ticks.label(i), small));
-    return {width, head + bar_height + 18 * unit, [=](Image& image, cv::Point2d at) {
-                draw_text(image, scale.heading, {at.x, at.y + cap}, {cap});
-                draw_text(image, scale.detail, {at.x, at.y + cap + 17 * unit}, {small, muted});
-                draw_bar(image, {cvRound(at.x), cvRound(at.y + head), whole(bar_width), whole(bar_height)}, scale, unit);
+    for (const auto& [value, label] : bar_labels(scale, bar_height, unit))
+        width = std::max(width, bar_width + (tick_length + gap) * unit + text_width(label, small));
+    return {width, head + bar_height + 18 * unit, [=](Figure& figure, cv::Point2d at) {
+                draw_text(figure, scale.heading, {at.x, at.y + cap}, {cap});
+                draw_text(figure, scale.detail, {at.x, at.y + cap + 17 * unit}, {small, muted});
+                draw_bar(figure, {cvRound(at.x), cvRound(at.y + head), whole(bar_width), whole(bar_height)}, scale, unit);
             }};
 }
 
@@ -83,7 +101,7 @@ std::vector<Item> legend_items(const Legend& legend, double unit, double bar_hei
     std::vector<Item> items;
     if (legend.scale) items.push_back(scale_item(*legend.scale, unit, bar_height * unit));
     for (const LegendEntry& entry : legend.entries) items.push_back(entry_item(entry, unit));
-    if (!legend.arrow.empty()) items.push_back(arrow_item(legend, unit));
+    for (const LegendSymbol& symbol : legend.symbols) items.push_back(symbol_item(symbol, unit));
     return items;
 }
 
@@ -214,49 +232,54 @@ Layout arrange(const Frame& frame, const Margins& margins, double unit)
     return layout;
 }
 
-/// Long titles shrink, then make narrow pictures wider; only what is wider than any picture is cut.
-double title_height(const std::string& title, int width, double unit)
+/// Height of the title's or caption's capitals. Long lines shrink, then make narrow pictures wider; only what is wider
+/// than any picture is cut.
+double line_height(const std::string& text, double cap, int width, double unit)
 {
     const double room = width - 2 * margin * unit;
-    return title_cap * unit * std::clamp(room / std::max(1.0, text_width(title, title_cap * unit)), 0.75, 1.0);
+    return cap * unit * std::clamp(room / std::max(1.0, text_width(text, cap * unit)), 0.75, 1.0);
 }
 
 // ---------------------------------------------------------------- parts of the picture
 
-void draw_title(Image& image, const std::string& title, double unit)
+void draw_title(Figure& figure, const Frame& frame, double unit)
 {
-    const double cap = title_height(title, image.cols, unit);
-    const std::string shown = cut_to(title, cap, image.cols - 2 * margin * unit + 1);
-    draw_text(image, shown, {margin * unit, (margin + title_cap) * unit}, {cap});
+    const double room = figure.size.width - 2 * margin * unit + 1;
+    const auto write = [&](const std::string& text, double cap, double y, Colour colour) {
+        const double shown_cap = line_height(text, cap, figure.size.width, unit);
+        draw_text(figure, cut_to(text, shown_cap, room), {margin * unit, y * unit}, {shown_cap, colour});
+    };
+    write(frame.title, title_cap, margin + title_cap, ink);
+    write(frame.caption, text_cap, margin + title_cap + caption_line, muted);
 }
 
-void draw_axes(Image& image, const View& view, const Layout& layout)
+void draw_axes(Figure& figure, const View& view, const Layout& layout)
 {
     const cv::Rect& plot = layout.plot;
     const double unit = layout.unit, cap = small_cap * unit;
     const int thickness = whole(1.2 * unit), tick = whole(tick_length * unit);
-    outline(image, plot, thickness, line);
+    outline(figure, plot, thickness, line);
     for (int i = 0; i < layout.x_ticks.count; ++i) {
         const double x = plot.x + (layout.x_ticks.at(i) - view.x0) / view.width * plot.width;
-        fill(image, {cvRound(x - thickness / 2.0), plot.br().y, thickness, thickness + tick}, line);
-        draw_text(image, layout.x_ticks.label(i), {x, plot.br().y + tick + gap * unit + cap}, {cap, ink, Align::Centre});
+        fill(figure, {cvRound(x - thickness / 2.0), plot.br().y, thickness, thickness + tick}, line);
+        draw_text(figure, layout.x_ticks.label(i), {x, plot.br().y + tick + gap * unit + cap}, {cap, ink, Align::Centre});
     }
     for (int i = 0; i < layout.y_ticks.count; ++i) {
         const double y = plot.y + (view.y0 + view.height - layout.y_ticks.at(i)) / view.height * plot.height;
-        fill(image, {plot.x - thickness - tick, cvRound(y - thickness / 2.0), thickness + tick, thickness}, line);
-        draw_text(image, layout.y_ticks.label(i), {plot.x - tick - gap * unit, y + cap / 2}, {cap, ink, Align::Right});
+        fill(figure, {plot.x - thickness - tick, cvRound(y - thickness / 2.0), thickness + tick, thickness}, line);
+        draw_text(figure, layout.y_ticks.label(i), {plot.x - tick - gap * unit, y + cap / 2}, {cap, ink, Align::Right});
     }
     const double below_labels = plot.br().y + tick + (2 * gap + 3) * unit + 2 * cap;
-    draw_text(image, "x, m", {plot.x + plot.width / 2.0, below_labels}, {cap, muted, Align::Centre});
-    draw_text(image, "y, m", {plot.x - tick - gap * unit, plot.y - 17 * unit}, {cap, muted, Align::Right});
+    draw_text(figure, "x, m", {plot.x + plot.width / 2.0, below_labels}, {cap, muted, Align::Centre});
+    draw_text(figure, "y, m", {plot.x - tick - gap * unit, plot.y - 17 * unit}, {cap, muted, Align::Right});
 }
 
-void draw_legend(Image& image, const Legend& legend, const Layout& layout)
+void draw_legend(Figure& figure, const Legend& legend, const Layout& layout)
 {
     const Panel panel = panel_of(legend, layout.unit, layout.column_height);
     const double cap = text_cap * layout.unit;
-    draw_text(image, legend.heading, layout.panel + cv::Point2d(0, cap), {cap});
-    for (std::size_t i = 0; i < panel.items.size(); ++i) panel.items[i].draw(image, layout.panel + panel.places[i]);
+    draw_text(figure, legend.heading, layout.panel + cv::Point2d(0, cap), {cap});
+    for (std::size_t i = 0; i < panel.items.size(); ++i) panel.items[i].draw(figure, layout.panel + panel.places[i]);
 }
 
 std::string length_label(RoundStep length)
@@ -266,23 +289,23 @@ std::string length_label(RoundStep length)
 }
 
 /// Scale bar, and north arrow to its right. `scale` is in pixels per metre.
-void draw_bearing(Image& image, cv::Point2d at, double scale, double unit)
+void draw_bearing(Figure& figure, cv::Point2d at, double scale, double unit)
 {
     const double bottom = at.y + (bearing_height - 1) * unit;
     const RoundStep length = round_down(longest_scale_bar * unit / scale);
     const int pixels = whole(length.value * scale), height = whole(6 * unit), thickness = whole(unit);
     const cv::Rect bar(cvRound(at.x) + thickness, cvRound(bottom) - height, pixels, height);
-    fill(image, bar, white);
-    fill(image, {bar.x, bar.y, pixels / 2, bar.height}, ink);
-    outline(image, bar, thickness, ink);
+    fill(figure, bar, white);
+    fill(figure, {bar.x, bar.y, pixels / 2, bar.height}, ink);
+    outline(figure, bar, thickness, ink);
     const cv::Point2d label(bar.x + pixels / 2.0, bar.y - 8 * unit);
-    draw_text(image, length_label(length), label, {small_cap * unit, ink, Align::Centre});
+    draw_text(figure, length_label(length), label, {small_cap * unit, ink, Align::Centre});
 
     const double half = 8 * unit, needle = 26 * unit;
     const cv::Point2d tip(at.x + bearing_width * unit - half - unit, bottom - needle), notch(tip.x, tip.y + 0.75 * needle);
-    draw_polygon(image, {tip, {tip.x - half, bottom}, notch}, ink, ink, unit);
-    draw_polygon(image, {tip, {tip.x + half, bottom}, notch}, white, ink, unit);
-    draw_text(image, "N", {tip.x, tip.y - 6 * unit}, {text_cap * unit, ink, Align::Centre});
+    draw_polygon(figure, {tip, {tip.x - half, bottom}, notch}, ink, ink, unit);
+    draw_polygon(figure, {tip, {tip.x + half, bottom}, notch}, white, ink, unit);
+    draw_text(figure, "N", {tip.x, tip.y - 6 * unit}, {text_cap * unit, ink, Align::Centre});
 }
 
 }  // namespace
@@ -296,14 +319,24 @@ View with_room(View view)
 
 Colour ColourScale::at(double value) const
 {
-    const double share = (value - ticks.lowest()) / (ticks.highest() - ticks.lowest());
+    const double share = (value - low) / (high - low);
     return ramp[static_cast<std::size_t>(cvRound(std::clamp(share, 0.0, 1.0) * 255))];
+}
+
+ColourScale scale_between(const std::string& heading, double low, double high, const Ramp& ramp)
+{
+    if (!(high - low > 1e-6 * std::max(1.0, std::abs(high)))) {
+        low -= 0.5;
+        high += 0.5;
+    }
+    return {heading, "", ticks_within(low, high, round_up((high - low) / 6)), ramp, low, high};
 }
 
 Layout lay_out(const Frame& frame)
 {
     const double unit = frame.pixels / 1000.0;
-    const int top = cvRound((frame.title.empty() ? margin + 20 : margin + title_cap + 42) * unit);
+    const double head = frame.title.empty() ? 20 : title_cap + 42;
+    const int top = cvRound((margin + head + (frame.caption.empty() ? 0 : caption_line)) * unit);
     Margins margins{cvRound(70 * unit), 0, top, cvRound(62 * unit)};
     // Labels need ticks, ticks the scale, the scale the labels' width: a first guess of that width is close enough.
     Layout layout = arrange(frame, margins, unit);
@@ -314,32 +347,28 @@ Layout lay_out(const Frame& frame)
     layout = arrange(frame, margins, unit);
     layout.x_ticks = x;
     layout.y_ticks = y;
-    const double title = text_width(frame.title, title_height(frame.title, layout.size.width, unit)) + 2 * margin * unit;
-    layout.size.width = std::clamp(cvCeil(title), layout.size.width, std::max(frame.pixels, layout.size.width));
+    const auto width_of = [&](const std::string& text, double height) {
+        return text_width(text, line_height(text, height, layout.size.width, unit)) + 2 * margin * unit;
+    };
+    const double wanted = std::max(width_of(frame.title, title_cap), width_of(frame.caption, text_cap));
+    layout.size.width = std::clamp(cvCeil(wanted), layout.size.width, std::max(frame.pixels, layout.size.width));
     return layout;
+}
+
+void draw_surroundings(Figure& figure, const Frame& frame, const Layout& layout)
+{
+    draw_title(figure, frame, layout.unit);
+    draw_axes(figure, frame.view, layout);
+    draw_legend(figure, frame.legend, layout);
+    draw_bearing(figure, layout.bearing, layout.plot.width / frame.view.width, layout.unit);
 }
 
 Image draw_picture(const Frame& frame, const Layout& layout, const Image& plot)
 {
-    Image image(layout.size, white);
-    plot.copyTo(image(layout.plot));
-    draw_title(image, frame.title, layout.unit);
-    draw_axes(image, frame.view, layout);
-    draw_legend(image, frame.legend, layout);
-    draw_bearing(image, layout.bearing, layout.plot.width / frame.view.width, layout.unit);
-    return image;
-}
-
-void draw_arrow(Image& image, cv::Point2d centre, double yaw, double length, double unit)
-{
-    if (length < smallest_arrow) {
-        draw_dot(image, centre, std::max(1.2, 2.2 * unit), white, ink, unit);
-        return;
-    }
-    const cv::Point2d along = length * unit * cv::Point2d(std::cos(yaw), -std::sin(yaw)), left(along.y, -along.x);
-    const cv::Point2d tail = centre - 0.4 * along;
-    draw_polygon(image, {centre + 0.6 * along, tail + 0.36 * left, centre - 0.2 * along, tail - 0.36 * left}, white, ink,
-                 1.4 * unit);
+    Figure figure{layout.size, {}};
+    draw_image(figure, layout.plot.tl(), plot);
+    draw_surroundings(figure, frame, layout);
+    return paint(figure);
 }
 
 }  // namespace spawnfield

@@ -1,8 +1,9 @@
 #pragma once
 
-#include "picture/canvas.h"
+#include "picture/figure.h"
 #include "picture/ticks.h"
 
+#include <functional>
 #include <optional>
 
 namespace spawnfield {
@@ -15,15 +16,19 @@ struct View {
 /// The view with its shorter side widened on both ends until it is at least 1/12 of the longer one.
 View with_room(View view);
 
-/// Colours for the values from the lowest tick to the highest.
+/// Colours for the values from `low` to `high`.
 struct ColourScale {
     std::string heading;  ///< quantity and unit
     std::string detail;   ///< second line, may be empty
-    Ticks ticks;
+    Ticks ticks;          ///< at least one
     Ramp ramp;
+    double low = ticks.lowest(), high = ticks.highest();
 
-    Colour at(double value) const;  ///< beyond the ticks the nearest one's
+    Colour at(double value) const;  ///< beyond the scale the nearest end's
 };
+
+/// A scale that ends at the data: from low to high, with round ticks in between. A range of no length is widened by 1.
+ColourScale scale_between(const std::string& heading, double low, double high, const Ramp& ramp);
 
 struct LegendEntry {
     Colour colour;
@@ -31,12 +36,19 @@ struct LegendEntry {
     std::string detail;  ///< second line, may be empty
 };
 
+/// What stands in the plot, as spawns do.
+struct LegendSymbol {
+    std::string name;
+    std::function<void(Figure&, cv::Point2d centre)> draw = {};  ///< in a square of symbol_size units; empty: words alone
+    Colour colour = white;
+};
+inline constexpr double symbol_size = 22;
+
 struct Legend {
     std::string heading;               ///< may be empty
     std::optional<ColourScale> scale;  ///< drawn as a bar
     std::vector<LegendEntry> entries;
-    std::string arrow;                 ///< what arrows in the plot are; empty: there are none
-    double arrow_length = 0;           ///< units, as in the plot
+    std::vector<LegendSymbol> symbols = {};
 };
 
 /// All of a picture but its plot.
@@ -45,6 +57,7 @@ struct Frame {
     int pixels = 1000;  ///< longer side
     std::string title;  ///< may be empty
     Legend legend;
+    std::string caption = {};  ///< second line, below the title; may be empty
 };
 
 /// Where everything stands, in pixels.
@@ -61,12 +74,10 @@ struct Layout {
 /// The legend stands to the right of the plot, or below it where the view is wide.
 Layout lay_out(const Frame& frame);
 
+/// Title, axes, legend, scale bar and north arrow: all but the plot.
+void draw_surroundings(Figure& figure, const Frame& frame, const Layout& layout);
+
 /// The whole picture; plot has the size layout.plot.
 Image draw_picture(const Frame& frame, const Layout& layout, const Image& plot);
-
-/// White with a dark outline, pointing along yaw (from x to y, which is up); a dot if shorter than smallest_arrow.
-/// `length` is in units.
-void draw_arrow(Image& image, cv::Point2d centre, double yaw, double length, double unit);
-inline constexpr double smallest_arrow = 10;
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #include "free_space/footprint.h"
-#include "picture/canvas.h"
+#include "picture/figure.h"
+#include "picture/silhouette.h"
 #include "picture/ticks.h"
 #include "query/contacts.h"
 
@@ -14,62 +15,20 @@
 namespace spawnfield {
 namespace {
 
-constexpr int circle_corners = 64;
 constexpr double text_cap = 10, small_cap = 8, title_cap = 14, line = 19;  // pixels
 constexpr double left = 66, right = 24, top = 66, bottom = 46, between = 74;
 constexpr double least_legend = 250;
 
-/// What a view shows to the right and upwards, and of what it shows the nearest last. From the right: x and z.
-struct Axes {
-    Vec3 u, v, nearness;
+/// A view with its names. `nearness` points to the viewer.
+struct Axes : ViewAxes {
+    Vec3 nearness;
     const char* heading;
     const char *u_name, *v_name;
 };
 
-const Axes from_above{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), "from above", "x", "y"};
-const Axes from_right{Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY(), "from its right side", "x", "z"};
-const Axes from_front{Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX(), "from the front", "y", "z"};
-
-/// Corners of a polygon around a circle, seen along the view.
-void add_circle(const Axes& axes, const Vec3& centre, const Vec3& a, const Vec3& b, Polygon2& out)
-{
-    const double outer = 1 / std::cos(std::numbers::pi / circle_corners);
-    for (int k = 0; k < circle_corners; ++k) {
-        const double angle = 2 * std::numbers::pi * k / circle_corners;
-        const Vec3 point = centre + outer * (std::cos(angle) * a + std::sin(angle) * b);
-        out.emplace_back(axes.u.dot(point), axes.v.dot(point));
-    }
-}
-
-/// Outline of a part, m.
-Polygon2 silhouette(const RobotPart& part, const Axes& axes)
-{
-    const Pose& pose = part.shape.pose;
-    const Vec3& size = part.shape.size;
-    const Vec3 half_axis = size[1] / 2 * pose.rotation.col(2);
-    Polygon2 out;
-    switch (part.shape.kind) {
-    case ShapeKind::Hull:
-        for (const Vec3& vertex : part.hull_vertices) out.emplace_back(axes.u.dot(vertex), axes.v.dot(vertex));
-        break;
-    case ShapeKind::Box:
-        for (int corner = 0; corner < 8; ++corner) {
-            const Vec3 side(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
-            const Vec3 point = pose.rotation * size.cwiseProduct(side) + pose.position;
-            out.emplace_back(axes.u.dot(point), axes.v.dot(point));
-        }
-        break;
-    case ShapeKind::Sphere: add_circle(axes, pose.position, size[0] * axes.u, size[0] * axes.v, out); break;
-    case ShapeKind::Cylinder:
-        for (const double end : {-1.0, 1.0})
-            add_circle(axes, pose.position + end * half_axis, size[0] * pose.rotation.col(0), size[0] * pose.rotation.col(1), out);
-        break;
-    case ShapeKind::Capsule:
-        for (const double end : {-1.0, 1.0}) add_circle(axes, pose.position + end * half_axis, size[0] * axes.u, size[0] * axes.v, out);
-        break;
-    }
-    return convex_hull(std::move(out));
-}
+const Axes from_above{{Vec3::UnitX(), Vec3::UnitY()}, Vec3::UnitZ(), "from above", "x", "y"};
+const Axes from_right{{Vec3::UnitX(), Vec3::UnitZ()}, -Vec3::UnitY(), "from its right side", "x", "z"};
+const Axes from_front{{Vec3::UnitY(), Vec3::UnitZ()}, Vec3::UnitX(), "from the front", "y", "z"};
 
 /// Colours of links, in the order of the file; the ninth has that of the first.
 class LinkColours {
@@ -151,7 +110,7 @@ Sheet lay_out(const Bounds& bounds)
     return sheet;
 }
 
-void draw_grid(Image& image, const Pane& pane)
+void draw_grid(Figure& figure, const Pane& pane)
 {
     const Colour grid = rgb(0xe4e4e4);
     const RoundStep step = round_up(60 / pane.scale);
@@ -159,23 +118,23 @@ void draw_grid(Image& image, const Pane& pane)
     const Ticks vs = ticks_within(pane.v0, pane.v0 + pane.area.height / pane.scale, step);
     for (int k = 0; k < us.count; ++k) {
         const double x = pane.at(us.at(k), 0).x;
-        fill(image, {cvRound(x - 0.5), pane.area.y, 1, pane.area.height}, grid);
-        draw_text(image, us.label(k), {x, pane.area.br().y + 8 + small_cap}, {small_cap, muted, Align::Centre});
+        fill(figure, {cvRound(x - 0.5), pane.area.y, 1, pane.area.height}, grid);
+        draw_text(figure, us.label(k), {x, pane.area.br().y + 8 + small_cap}, {small_cap, muted, Align::Centre});
     }
     for (int k = 0; k < vs.count; ++k) {
         const double y = pane.at(0, vs.at(k)).y;
-        fill(image, {pane.area.x, cvRound(y - 0.5), pane.area.width, 1}, grid);
-        draw_text(image, vs.label(k), {pane.area.x - 8.0, y + small_cap / 2}, {small_cap, muted, Align::Right});
+        fill(figure, {pane.area.x, cvRound(y - 0.5), pane.area.width, 1}, grid);
+        draw_text(figure, vs.label(k), {pane.area.x - 8.0, y + small_cap / 2}, {small_cap, muted, Align::Right});
     }
     const std::string names = std::string(pane.axes.u_name) + " right, " + pane.axes.v_name + " up, m";
-    draw_text(image, pane.axes.heading, {double(pane.area.x), pane.area.y - 9.0}, {text_cap});
+    draw_text(figure, pane.axes.heading, {double(pane.area.x), pane.area.y - 9.0}, {text_cap});
     const double used = text_width(pane.axes.heading, text_cap);
     if (used + 16 + text_width(names, small_cap) < pane.area.width)
-        draw_text(image, names, {double(pane.area.br().x), pane.area.y - 9.0}, {small_cap, muted, Align::Right});
+        draw_text(figure, names, {double(pane.area.br().x), pane.area.y - 9.0}, {small_cap, muted, Align::Right});
 }
 
 /// The farthest first. Around them all a thick line, the outline of their union; the hidden ones show as thin lines.
-void draw_parts(Image& image, const Pane& pane, const Robot& robot, const LinkColours& colours)
+void draw_parts(Figure& figure, const Pane& pane, const Robot& robot, const LinkColours& colours)
 {
     std::vector<std::vector<cv::Point2d>> outlines;
     std::vector<std::size_t> order(robot.parts.size());
@@ -187,37 +146,37 @@ void draw_parts(Image& image, const Pane& pane, const Robot& robot, const LinkCo
         nearness.push_back(std::max(pane.axes.nearness.dot(box.min), pane.axes.nearness.dot(box.max)));
     }
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return nearness[a] < nearness[b]; });
-    for (const auto& corners : outlines) draw_polygon(image, corners, ink, ink, 5);
-    for (const std::size_t k : order) draw_polygon(image, outlines[k], colours.of(robot.parts[k].name), rgb(0x4d4d4d), 1);
-    for (const auto& corners : outlines) draw_outline(image, corners, rgb(0x8c8c8c), 1);
+    for (const auto& corners : outlines) draw_polygon(figure, corners, ink, ink, 5);
+    for (const std::size_t k : order) draw_polygon(figure, outlines[k], colours.of(robot.parts[k].name), rgb(0x4d4d4d), 1);
+    for (const auto& corners : outlines) draw_outline(figure, corners, rgb(0x8c8c8c), 1);
 }
 
 /// Large and dark where the robot's file gives them; those that are taken instead may be many, close together.
-void draw_contact(Image& image, cv::Point2d place, bool given)
+void draw_contact(Figure& figure, cv::Point2d place, bool given)
 {
-    draw_dot(image, place, given ? 5 : 2.5, given ? ink : white, given ? white : ink, given ? 1.6 : 1);
+    draw_dot(figure, place, given ? 5 : 2.5, given ? ink : white, given ? white : ink, given ? 1.6 : 1);
 }
 
-void draw_contacts(Image& image, const Pane& pane, const RobotContacts& contacts)
+void draw_contacts(Figure& figure, const Pane& pane, const RobotContacts& contacts)
 {
-    for (const Vec3& contact : contacts.points) draw_contact(image, pane.at(contact), contacts.given);
+    for (const Vec3& contact : contacts.points) draw_contact(figure, pane.at(contact), contacts.given);
 }
 
 /// Arrows along the two axes of the view from the origin.
-void draw_axes(Image& image, const Pane& pane)
+void draw_axes(Figure& figure, const Pane& pane)
 {
     const cv::Point2d origin = pane.at(0, 0);
     constexpr double length = 46, head = 9;
     const auto arrow = [&](cv::Point2d along, const char* name) {
         const cv::Point2d tip = origin + length * along, side(-along.y, along.x);
-        draw_polygon(image, {origin, tip - head * along}, ink, ink, 2);
-        draw_polygon(image, {tip, tip - head * along + 4.5 * side, tip - head * along - 4.5 * side}, ink, ink, 1);
+        draw_polygon(figure, {origin, tip - head * along}, ink, ink, 2);
+        draw_polygon(figure, {tip, tip - head * along + 4.5 * side, tip - head * along - 4.5 * side}, ink, ink, 1);
         const cv::Point2d place = tip + 9.0 * along;
-        draw_text(image, name, {place.x, place.y + text_cap / 2}, {text_cap, ink, Align::Centre});
+        draw_text(figure, name, {place.x, place.y + text_cap / 2}, {text_cap, ink, Align::Centre});
     };
     arrow({1, 0}, pane.axes.u_name);
     arrow({0, -1}, pane.axes.v_name);
-    draw_dot(image, origin, 3.5, white, ink, 1.5);
+    draw_dot(figure, origin, 3.5, white, ink, 1.5);
 }
 
 std::string rounded(double value)
@@ -229,55 +188,55 @@ std::string rounded(double value)
 /// Writes line by line downwards.
 class LegendWriter {
 public:
-    LegendWriter(Image& image, const cv::Rect& area) : image_(image), area_(area), y_(area.y + text_cap) {}
+    LegendWriter(Figure& figure, const cv::Rect& area) : figure_(figure), area_(area), y_(area.y + text_cap) {}
 
     void text(const std::string& words, Colour colour = ink)
     {
-        draw_text(image_, cut_to(words, text_cap, area_.width), {double(area_.x), y_}, {text_cap, colour});
+        draw_text(figure_, cut_to(words, text_cap, area_.width), {double(area_.x), y_}, {text_cap, colour});
         y_ += line;
     }
     void swatch(Colour colour, const std::string& words)
     {
         const cv::Rect box(area_.x, cvRound(y_ - text_cap - 1), 18, 12);
-        fill(image_, box, colour);
-        outline(image_, box, 1, muted);
-        draw_text(image_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
+        fill(figure_, box, colour);
+        outline(figure_, box, 1, muted);
+        draw_text(figure_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
         y_ += line;
     }
     void contact(bool given, const std::string& words)
     {
-        draw_contact(image_, {area_.x + 9.0, y_ - text_cap / 2}, given);
-        draw_text(image_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
+        draw_contact(figure_, {area_.x + 9.0, y_ - text_cap / 2}, given);
+        draw_text(figure_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
         y_ += line;
     }
     void thick_line(const std::string& words)
     {
-        fill(image_, {area_.x, cvRound(y_ - text_cap / 2 - 1), 18, 3}, ink);
-        draw_text(image_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
+        fill(figure_, {area_.x, cvRound(y_ - text_cap / 2 - 1), 18, 3}, ink);
+        draw_text(figure_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
         y_ += line;
     }
     void scale_bar(double scale)
     {
         const RoundStep step = round_down(0.6 * area_.width / scale);
         const int length = whole(step.value * scale), y = cvRound(y_ - 4);
-        fill(image_, {area_.x, y, length, 3}, ink);
-        fill(image_, {area_.x, y - 4, 2, 11}, ink);
-        fill(image_, {area_.x + length - 2, y - 4, 2, 11}, ink);
-        draw_text(image_, fixed(step.value, step.decimals) + " m", {area_.x + length + 10.0, y + text_cap / 2 + 1}, {text_cap});
+        fill(figure_, {area_.x, y, length, 3}, ink);
+        fill(figure_, {area_.x, y - 4, 2, 11}, ink);
+        fill(figure_, {area_.x + length - 2, y - 4, 2, 11}, ink);
+        draw_text(figure_, fixed(step.value, step.decimals) + " m", {area_.x + length + 10.0, y + text_cap / 2 + 1}, {text_cap});
         y_ += line + 4;
     }
     void gap() { y_ += line / 2; }
     int lines_left() const { return int((area_.br().y - y_) / line) + 1; }
 
 private:
-    Image& image_;
+    Figure& figure_;
     const cv::Rect area_;
     double y_;
 };
 
-void write_legend(Image& image, const Sheet& sheet, const Robot& robot, const RobotContacts& contacts, const LinkColours& colours)
+void write_legend(Figure& figure, const Sheet& sheet, const Robot& robot, const RobotContacts& contacts, const LinkColours& colours)
 {
-    LegendWriter legend(image, sheet.legend);
+    LegendWriter legend(figure, sheet.legend);
     const Bounds bounds = robot.bounds();
     const Vec3 size = bounds.max - bounds.min;
     legend.scale_bar(sheet.panes[0].scale);
@@ -311,20 +270,21 @@ RobotContacts robot_contacts(const Robot& robot) { return {contacts_of(robot), s
 
 void write_robot_picture(const Robot& robot, const std::filesystem::path& file)
 {
+    const PictureFormat format = picture_format(file);
     const RobotContacts contacts = robot_contacts(robot);
     const Sheet sheet = lay_out(shown_bounds(robot, contacts));
     const LinkColours colours(robot);
-    Image image(sheet.size, white);
+    Figure figure{sheet.size, {}};
     for (const Pane& pane : sheet.panes) {
-        draw_grid(image, pane);
-        draw_parts(image, pane, robot, colours);
-        draw_contacts(image, pane, contacts);
-        draw_axes(image, pane);
-        outline(image, pane.area, 1, muted);
+        draw_grid(figure, pane);
+        draw_parts(figure, pane, robot, colours);
+        draw_contacts(figure, pane, contacts);
+        draw_axes(figure, pane);
+        outline(figure, pane.area, 1, muted);
     }
-    draw_text(image, cut_to(robot.name, title_cap, sheet.size.width - left - right), {left, 30}, {title_cap});
-    write_legend(image, sheet, robot, contacts, colours);
-    write_png(image, file);
+    draw_text(figure, cut_to(robot.name, title_cap, sheet.size.width - left - right), {left, 30}, {title_cap});
+    write_legend(figure, sheet, robot, contacts, colours);
+    write_figure(figure, format, file);
 }
 
 }  // namespace spawnfield

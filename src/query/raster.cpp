@@ -277,6 +277,7 @@ RasterResult raster(const Map& map, const CollisionChecker& checker, const Raste
     out.yaw = options.yaw;
     out.offset = chosen_offset(checker.robot(), options);
     out.area = options.area;
+    if (options.dims == 2) out.z = overlap(map.z_limits, options.z);
     const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
     out.grid = grid_of(bounds, options);
     const RasterJudge judge(map, checker, options, out.grid, out.offset, bounds.max.z());

@@ -33,11 +33,10 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
 std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& options, const std::string& layers)
 {
     const Session& session = job.session;
-    std::string floor = floor_words(job.args.ground, session.map);
-    if (!floor.empty()) floor = ", " + floor;
-    else if (!options.z.is_unlimited()) floor = ", heights " + number(options.z.low) + " to " + number(options.z.high) + " m";
+    std::string heights = height_words(job.args.ground, options.z, session.map);
+    if (!heights.empty()) heights = ", " + heights;
     return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): where the origin of " + session.robot.name +
-            " can be, " + number(*options.offset) + " m above its layer (" + (job.args.ground.layers.empty() ? layers : job.args.ground.layers) + floor + "), yaw " +
+            " can be, " + number(*options.offset) + " m above its layer (" + (job.args.ground.layers.empty() ? layers : job.args.ground.layers) + heights + "), yaw " +
             number(options.yaw) + " rad"};
 }
 

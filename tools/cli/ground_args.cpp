@@ -31,6 +31,12 @@ void add_heights(CLI::App& command, GroundArgs& args)
         ->check(CLI::Range(0, 1000000));
 }
 
+std::string z_text(const ZRange& z)
+{
+    const auto limit = [](double value) { return std::isfinite(value) ? number(value) : std::string(); };
+    return limit(z.low) + ":" + limit(z.high);
+}
+
 ZRange parse_z(const std::string& option, const std::string& text)
 {
     const std::size_t colon = text.find(':');
@@ -79,9 +85,10 @@ Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map)
     return out;
 }
 
-std::string floor_words(const GroundArgs& args, const Map& map)
+std::string height_words(const GroundArgs& args, const ZRange& heights, const Map& map)
 {
-    if (args.floor < 0) return "";
+    if (args.floor < 0 && heights.is_unlimited()) return "";
+    if (args.floor < 0) return "heights " + z_text(heights) + " m";
     const std::vector<Floor> floors = floors_of(map);
     return "floor " + std::to_string(args.floor) + " at " + number(floor_checked(args.floor, floors)[std::size_t(args.floor)].height) + " m";
 }

@@ -18,6 +18,9 @@ void add_heights(CLI::App& command, GroundArgs& args);
 /// "LOW:HIGH" in m; one of them may be missing: "5:", ":8". Throws ArgumentError.
 ZRange parse_z(const std::string& option, const std::string& text);
 
+/// As parse_z() reads it.
+std::string z_text(const ZRange& z);
+
 /// "auto", which gives nothing, or metres. Throws ArgumentError.
 std::optional<double> parse_offset(const std::string& text);
 
@@ -31,8 +34,8 @@ ZRange with_floor(const ZRange& heights, const GroundArgs& args, const Map& map)
 /// bounds stay empty if the heights are unlimited.
 Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map);
 
-/// "floor 1 at 5.2 m", for people; empty without --floor.
-std::string floor_words(const GroundArgs& args, const Map& map);
+/// "floor 1 at 5.2 m" or "heights 2:4 m", for people; empty if the heights are unlimited.
+std::string height_words(const GroundArgs& args, const ZRange& heights, const Map& map);
 
 /// The offset that a robot gets; empty optional: auto. Throws ArgumentError if it is above --max-height, as `check` would
 /// call such poses aerial.

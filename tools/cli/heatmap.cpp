@@ -1,10 +1,14 @@
 #include "area_args.h"
 #include "ground_args.h"
+#include "picture_args.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/headings.h>
 #include <spawnfield/heatmap.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace spawnfield::cli {
 namespace {
@@ -12,9 +16,10 @@ namespace {
 struct HeatmapArgs : QueryArgs {
     AreaArgs area;
     GroundArgs ground;
-    std::string out, quantity = "verdict", spawns, bounds;
-    double step = 0, yaw = 0;
+    std::string out, format, quantity = "verdict", spawns, bounds, yaw;
+    double step = 0;
     int size = 1000;
+    bool names = false;
 };
 
 /// About 300 columns along the longer side: fine enough to look at, and quick.
@@ -32,36 +37,104 @@ HeatmapQuantity quantity_of(const std::string& name)
     return name == "slope" ? HeatmapQuantity::Slope : HeatmapQuantity::Verdict;
 }
 
-int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
+/// Yaws that the picture is made for: one, or 16 headings all around.
+struct Facing {
+    bool is_any = false;
+    double yaw = 0;  ///< rad, unless it is any
+};
+
+bool is_same_yaw(double a, double b) { return std::abs(std::remainder(a - b, 2 * std::numbers::pi)) <= 1e-6; }
+
+/// --yaw if it is given, else as the spawns face.
+Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
 {
-    Summary summary("heatmap", args);
+    Facing facing;
+    if (!args.yaw.empty()) {
+        facing.is_any = !parse_yaw(args.yaw, facing.yaw);
+        if (!facing.is_any) parse_finite("--yaw", facing.yaw, "rad");
+        return facing;
+    }
+    if (spawns.empty()) return facing;
+    facing.yaw = spawns[0].yaw;
+    facing.is_any = std::any_of(spawns.begin(), spawns.end(), [&](const Spawn& spawn) { return !is_same_yaw(spawn.yaw, facing.yaw); });
+    if (facing.is_any) notice(args, "the spawns have different yaws: the ground shows at how many of 16 headings the robot fits (--yaw RAD shows one)");
+    else if (!is_same_yaw(facing.yaw, 0)) notice(args, "the ground is shown for yaw " + number(facing.yaw) + " rad, which all spawns have (--yaw RAD shows another)");
+    return facing;
+}
+
+/// Spawns of --spawns with their verdicts and, with --names, their names.
+void read_spawns(const HeatmapArgs& args, HeatmapOptions& picture)
+{
+    if (args.spawns.empty()) return;
+    const PoseTable table = open_poses(args, args.spawns);
+    picture.spawns = spawns_of(table);
+    picture.spawn_verdicts = verdicts_of(table, args.spawns);
+    if (!args.names) return;
+    picture.spawn_names = column_of(table, "name");
+    if (!picture.spawn_names.empty()) return;
+    for (std::size_t row = 1; row <= picture.spawns.size(); ++row) picture.spawn_names.push_back(std::to_string(row));
+}
+
+RasterOptions raster_options(const HeatmapArgs& args)
+{
     RasterOptions options;
     fill(options, args, "heatmap");
-    options.exact_time = &summary.exact_time;
-    const std::optional<double> offset = parse_offset(args.ground.offset);
-    options.yaw = parse_finite("--yaw", args.yaw, "rad");
+    options.offset = parse_offset(args.ground.offset);
     options.layers = parse_layers(args.ground.layers);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
-    const ZRange heights = heights_of(args.ground, options.bounds, "--bounds");
+    options.z = heights_of(args.ground, options.bounds, "--bounds");
     options.area = read_area(args, args.area);
+    return options;
+}
+
+HeatmapOptions picture_options(const HeatmapArgs& args)
+{
+    if (args.names && args.spawns.empty()) throw ArgumentError("--names needs --spawns: it writes the names of spawns");
     HeatmapOptions picture;
     picture.quantity = quantity_of(args.quantity);
     picture.pixels = args.size;
-    if (!args.spawns.empty()) picture.spawns = spawns_of(open_poses(args, args.spawns));
+    picture.threads = args.threads;
+    read_spawns(args, picture);
+    return picture;
+}
+
+/// The raster that the picture shows; what belongs to several headings goes to the picture's options.
+RasterResult shown_raster(const Session& session, const RasterOptions& options, bool any_heading, HeatmapOptions& picture)
+{
+    if (!any_heading) return raster(session.map, *session.checker, options);
+    HeadingRaster result = raster_at_headings(session.map, *session.checker, options);
+    picture.headings = result.headings;
+    picture.valid_headings = std::move(result.valid_headings);
+    return std::move(result.raster);
+}
+
+int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
+{
+    Summary summary("heatmap", args);
+    const PictureFile file = picture_file(args.out, args.format);
+    RasterOptions options = raster_options(args);
+    options.exact_time = &summary.exact_time;
+    HeatmapOptions picture = picture_options(args);
+    const Facing facing = facing_of(args, picture.spawns);
+    options.yaw = facing.yaw;
     const auto session = open_session(args);
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step) : default_step(session->map, options);
     tell_if_off_map(args, session->map, "--bounds", options.bounds);
     tell_about_area(args, session->map, options.area);
     tell_if_no_layer(args, session->map, options.layers);
-    options.z = with_floor(heights, args.ground, session->map);
+    options.z = with_floor(options.z, args.ground, session->map);
+    const std::optional<double> offset = options.offset;
     options.offset = summary.offset = chosen_offset(args, offset, session->robot);
     require_above_ground(session->robot, *options.offset);
     const TerrainMap terrain = read_terrain(session->map);
     summary.lap("load");
-    const RasterResult result = raster(session->map, *session->checker, options);
+    const RasterResult result = shown_raster(*session, options, facing.is_any, picture);
     summary.lap("query");
     picture.title = session->map.name + ", " + session->robot.name;
-    write_heatmap(session->map, terrain, result, picture, args.out);
+    picture.caption = heatmap_caption(options, args.ground, session->map, facing.is_any ? std::to_string(picture.headings) + " headings" : "");
+    picture.robot = &session->robot;
+    picture.format = file.format;
+    write_heatmap(session->map, terrain, result, picture, file.path);
     summary.lap("write");
     summary.set_counts(result.counts);
     summary.exact_checks = result.exact_checks;
@@ -78,16 +151,18 @@ void add_heatmap(CLI::App& app, Run& run)
     auto args = std::make_shared<HeatmapArgs>();
     CLI::App& command = *app.add_subcommand("heatmap", "Picture of where the robot can stand");
     add_query(command, *args);
-    command.add_option("--out,-o", args->out, "PNG file to draw")->required()->check(not_empty());
+    command.add_option("--out,-o", args->out, "Picture to write: .png, .svg or .pdf")->required()->check(not_empty());
+    command.add_option("--format", args->format, "png, svg or pdf (default: as the ending of -o says, else png)")->check(CLI::IsMember({"png", "svg", "pdf"}));
     command.add_option("--quantity", args->quantity, "verdict, height, clearance or slope (default verdict)")
         ->check(CLI::IsMember({"verdict", "height", "clearance", "slope"}));
-    command.add_option("--spawns", args->spawns, "CSV file of spawns to draw as arrows");
+    command.add_option("--spawns", args->spawns, "CSV file of spawns to draw, as footprints of the robot or as arrows; a column verdict (from `check`) gives their colours");
+    command.add_flag("--names", args->names, "Write each spawn's name beside it: its column name, or else the number of its row, from 1");
     add_ground(command, args->ground, "all (valid if one layer is), top, bottom, or N from the top (0 first; default all)");
     command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
-    command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
+    command.add_option("--yaw", args->yaw, "Of all poses, rad; random: show at how many of 16 headings the robot fits (default: as the spawns face, else 0)");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
     add_area(command, args->area);
-    command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000)")->check(CLI::Range(200, 16000));
+    command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000; texts can be read from about 500 on)")->check(CLI::Range(200, 16000));
     command.footer("Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png");
     command.callback([=, &command, &run] { run = [=, &command] { return run_heatmap(*args, command); }; });
 }

@@ -1,3 +1,4 @@
+#include "picture_args.h"
 #include "raster_args.h"
 #include "thesis_output.h"
 
@@ -50,7 +51,7 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     for (const Region& region : options.area.within) add("Region", region.name);
     for (const Region& region : options.area.keep_out) add("Keep out", region.name);
     add("Layers", args.ground.layers);
-    if (!is_3d && !options.z.is_unlimited()) add("Heights of layers (m)", number(options.z.low) + ":" + number(options.z.high));
+    if (!is_3d && !options.z.is_unlimited()) add("Heights of layers (m)", z_text(options.z));
     if (is_3d) add("Height check", options.height_check ? "yes" : "no");
     if (is_3d && options.height_check) add("Max height (m)", number(options.max_height));
     if (options.height_check) add("Max water depth (m)", number(options.max_water_depth));
@@ -63,6 +64,7 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     Summary summary("raster", args);
     RasterOptions options = options_of(args, command);
     options.exact_time = &summary.exact_time;
+    const std::optional<PictureFile> picture_to = args.heatmap.empty() ? std::nullopt : std::optional(picture_file(args.heatmap));
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     const auto session = open_session(args);
     complete(options, args, *session, summary);
@@ -70,10 +72,14 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     const RasterResult result = raster(session->map, *session->checker, options);
     summary.lap("query");
     const auto draw = [&] {
-        if (args.heatmap.empty()) return;
+        if (!picture_to) return;
         HeatmapOptions picture;
         picture.title = session->map.name + ", " + session->robot.name;
-        write_heatmap(session->map, read_terrain(session->map), result, picture, args.heatmap);
+        picture.caption = heatmap_caption(options, args.ground, session->map);
+        picture.robot = &session->robot;
+        picture.format = picture_to->format;
+        picture.threads = args.threads;
+        write_heatmap(session->map, read_terrain(session->map), result, picture, picture_to->path);
     };
     if (folder)
         write_thesis(*folder, settings_of(args, *session, options, result.grid), result.counts, summary,
@@ -102,7 +108,7 @@ void add_raster(CLI::App& app, Run& run)
     command.add_option("--format", args->format, "csv, or thesis: a folder of Valid_Locations.txt and the like in Unity's frame (default csv)")
         ->check(CLI::IsMember({"csv", "thesis"}));
     command.add_option("--out,-o", args->out, "CSV file, or folder, to write (default: standard output, or none with --heatmap)");
-    command.add_option("--heatmap", args->heatmap, "PNG file to draw");
+    command.add_option("--heatmap", args->heatmap, "Picture to draw: .png, .svg or .pdf");
     command.footer("Example:\n"
                    "  spawnfield raster /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --step 0.5 --offset 0.5 -o /tmp/box_raster.csv");
     command.callback([=, &command, &run] { run = [=, &command] { return run_raster(*args, command); }; });

@@ -166,7 +166,7 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
         tell_about_area(args, session.map, asked.area);
         tell_if_no_layer(args, session.map, asked.layers);
         Settings own{{"Offset (m)", number(*asked.offset)}, {"Layers", args.ground.layers}};
-        if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", number(asked.z.low) + ":" + number(asked.z.high));
+        if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
         return own;
     };
     const auto find_hopeless = [](const Session& session, const SampleOptions& asked) { return flat_ground_complaint(session.robot, *asked.offset); };

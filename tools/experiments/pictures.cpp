@@ -38,9 +38,10 @@ RasterResult verdicts_in(const Settings& settings, const Environment& environmen
 Picture draw_case(const Settings& settings, const Environment& environment, const Case& shown, const std::filesystem::path& folder)
 {
     const RasterResult verdicts = verdicts_in(settings, environment, region_of(environment, shown.landmark), 0.3);
+    const Robot box = robot(settings, "box");
     Picture picture{std::string("case_") + environment.name + "_" + shown.landmark + ".png", shown.title};
     std::replace(picture.file.begin(), picture.file.end(), '-', '_');
-    write_heatmap(environment.map, read_terrain(environment.map), verdicts, {.pixels = case_pixels, .title = shown.title}, folder / picture.file);
+    write_heatmap(environment.map, read_terrain(environment.map), verdicts, {.pixels = case_pixels, .title = shown.title, .robot = &box}, folder / picture.file);
     return picture;
 }
 
@@ -65,8 +66,10 @@ std::vector<Picture> draw_spawns(const Settings& settings, const Districts& dist
     std::vector<Picture> out;
     for (const int test : {7, 8}) {
         const Environment& environment = test == 7 ? districts.low : districts.complex;
+        const Robot box = robot(settings, "box");
         HeatmapOptions options;
         options.pixels = map_pixels;
+        options.robot = &box;
         options.spawns = first_search(settings, districts, test).spawns;
         options.title = environment.name + ", " + std::to_string(options.spawns.size()) + " random spawns";
         Picture picture{"spawns_" + environment.name + ".png", options.title};

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace spawnfield {
+
+/// Svg and Pdf have lines, areas and texts as vectors, and the coloured ground as one embedded image.
+enum class PictureFormat { Png, Svg, Pdf };
+
+/// The format that a file's ending names: .png, .svg or .pdf, in any case. A name without an ending is a PNG file.
+/// Throws ArgumentError for any other ending, because no program would open the file.
+PictureFormat picture_format(const std::filesystem::path& file);
+
+/// "png", "svg" or "pdf".
+const char* to_string(PictureFormat format);
+
+}  // namespace spawnfield

@@ -1,0 +1,104 @@
+#include "picture/quantities.h"
+
+#include "picture/relief.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace spawnfield {
+namespace {
+
+constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
+
+cv::Mat_<float> pose_heights(const ShownPoses& shown, int headings)
+{
+    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
+    for (int row = 0; row < shown.rows; ++row)
+        for (int col = 0; col < shown.cols; ++col)
+            if (shown.is_valid(row, col, headings)) values(row, col) = static_cast<float>(shown.at(row, col)->z);
+    return values;
+}
+
+cv::Mat_<float> clearances(const ShownPoses& shown, double step, int headings)
+{
+    cv::Mat_<std::uint8_t> valid(shown.rows + 2, shown.cols + 2, std::uint8_t{0});  // a ring that is not, around all
+    for (int row = 0; row < shown.rows; ++row)
+        for (int col = 0; col < shown.cols; ++col)
+            if (shown.is_valid(row, col, headings)) valid(row + 1, col + 1) = 1;
+    cv::Mat_<float> columns;
+    cv::distanceTransform(valid, columns, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
+    for (int row = 0; row < shown.rows; ++row)
+        for (int col = 0; col < shown.cols; ++col)
+            if (shown.is_valid(row, col, headings)) values(row, col) = static_cast<float>(columns(row + 1, col + 1) * step);
+    return values;
+}
+
+/// A valid column with the 3 x 3 terrain cells around it.
+struct Place {
+    int row, col;        ///< of the column
+    int cell_row, cell_col;
+    double layer;        ///< height of the layer that its pose stands on, m
+    HeightImage around;  ///< of each cell the layer nearest to that: beside a column the same surface may have another number
+};
+
+std::vector<Place> valid_places(const ShownPoses& shown, const RasterResult& raster, const GridFrame& frame, int headings)
+{
+    const RasterGrid& grid = raster.grid;
+    std::vector<Place> out;
+    for (int row = 0; row < shown.rows; ++row)
+        for (int col = 0; col < shown.cols; ++col) {
+            if (!shown.is_valid(row, col, headings)) continue;
+            const int cell_col = cell_index((grid.x_of(col) - frame.x0) / frame.cell, frame.cols);
+            const int from_below = cell_index((grid.y_of(grid.rows - 1 - row) - frame.y0) / frame.cell, frame.rows);
+            if (cell_col < 0 || from_below < 0) continue;
+            const double layer = shown.at(row, col)->z - (raster.dims == 2 ? raster.offset : 0);
+            out.push_back({row, col, frame.rows - 1 - from_below, cell_col, layer, HeightImage::Constant(3, 3, no_value)});
+        }
+    return out;
+}
+
+void take_nearer(Place& place, const HeightImage& heights)
+{
+    for (int dr = -1; dr <= 1; ++dr)
+        for (int dc = -1; dc <= 1; ++dc) {
+            const int row = place.cell_row + dr, col = place.cell_col + dc;
+            if (row < 0 || col < 0 || row >= heights.rows() || col >= heights.cols() || !std::isfinite(heights(row, col))) continue;
+            float& nearest = place.around(dr + 1, dc + 1);
+            if (!(std::abs(heights(row, col) - place.layer) >= std::abs(nearest - place.layer))) nearest = heights(row, col);
+        }
+}
+
+/// Layer by layer, so that one page of the terrain is in memory at a time.
+cv::Mat_<float> slopes(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain, int headings)
+{
+    std::vector<Place> places = valid_places(shown, raster, terrain.frame, headings);
+    for (int layer = 0; layer < terrain.layers(); ++layer) {
+        const HeightImage heights = page_image(terrain, "height." + std::to_string(layer));
+        for (Place& place : places) take_nearer(place, heights);
+    }
+    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
+    for (const Place& place : places) {
+        const double slope = gradient(place.around, 1, 1, terrain.frame.cell).norm();
+        values(place.row, place.col) = static_cast<float>(std::atan(slope) * 180 / std::numbers::pi);
+    }
+    return values;
+}
+
+}  // namespace
+
+cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain, const HeatmapOptions& options)
+{
+    switch (options.quantity) {
+    case HeatmapQuantity::Height: return pose_heights(shown, options.headings);
+    case HeatmapQuantity::Slope: return slopes(shown, raster, terrain, options.headings);
+    case HeatmapQuantity::Clearance:
+    case HeatmapQuantity::Verdict: break;
+    }
+    return clearances(shown, raster.grid.step, options.headings);
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,118 @@
+#include "arena.h"
+#include "figure_text.h"
+
+#include <algorithm>
+
+namespace {
+
+/// Runs `heatmap` for the Husky, coarse and quick.
+ProgramRun heatmap(const Arena& arena, const std::string& arguments)
+{
+    return arena("heatmap map --step 0.5" + husky_option + arguments);
+}
+
+std::vector<std::string> texts_in(const Arena& arena, const std::string& file) { return svg_texts(bytes_of(arena / file)); }
+
+bool has(const std::vector<std::string>& texts, const std::string& part)
+{
+    return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) { return text.find(part) != std::string::npos; });
+}
+
+}  // namespace
+
+TEST_CASE("endings that no picture is written with are refused before any work")
+{
+    const Arena arena;
+    for (const std::string& command : {"heatmap map -o x.jpg" + husky_option, "raster map --dims 2 --step 1 --heatmap x.jpg -o x.csv" + husky_option,
+                                      std::string("info 'box:1,1,1' --picture x.jpg"), "heatmap none -o x.jpg" + husky_option}) {
+        CAPTURE(command);
+        const ProgramRun run = arena(command);
+        CHECK(run.status == 2);
+        CHECK(run.err == "spawnfield: x.jpg ends in .jpg, but pictures are written as .png, .svg or .pdf; rename it\n");
+    }
+    const ProgramRun contradiction = heatmap(arena, "-o x.png --format svg");
+    CHECK(contradiction.status == 2);
+    CHECK(contradiction.err == "spawnfield: --format is svg, but x.png ends in .png; make them agree, or leave --format out\n");
+    CHECK(arena.names() == std::set<std::string>{"map"});
+}
+
+TEST_CASE("pictures of each command are PNG, SVG or PDF as their names say")
+{
+    const Arena arena;
+    const std::pair<std::string, std::string> starts[] = {{"png", "\x89PNG"}, {"svg", "<?xml"}, {"pdf", "%PDF-"}};
+    for (const auto& [ending, start] : starts) {
+        CAPTURE(ending);
+        CHECK(heatmap(arena, "-o a." + ending).status == 0);
+        CHECK(bytes_of(arena / ("a." + ending)).starts_with(start));
+        CHECK(heatmap(arena, "-o plain --format " + ending).status == 0);
+        CHECK(bytes_of(arena / "plain") == bytes_of(arena / ("a." + ending)));
+        CHECK(heatmap(arena, "-q -o - --format " + ending).out == bytes_of(arena / "plain"));
+        CHECK(arena("raster map --dims 2 --step 1 --heatmap r." + ending + husky_option).status == 0);
+        CHECK(bytes_of(arena / ("r." + ending)).starts_with(start));
+        CHECK(arena("info 'box:1,1,1' --picture i." + ending).status == 0);
+        CHECK(bytes_of(arena / ("i." + ending)).starts_with(start));
+    }
+}
+
+TEST_CASE("the picture says robot, offset, yaw and layers")
+{
+    const Arena arena;
+    REQUIRE(heatmap(arena, "-o a.svg --offset 0.25 --yaw 0.5235987755982988 --layers top --max-slope 20").status == 0);
+    const std::vector<std::string> texts = texts_in(arena, "a.svg");
+    CHECK(texts[0] == "training, husky");
+    CHECK(texts[1] == "offset 0.25 m, yaw 30 deg, top layer, slope up to 20 deg");
+    REQUIRE(arena("raster map --dims 3 --step 1 --heatmap r.svg" + husky_option).status == 0);
+    CHECK(texts_in(arena, "r.svg")[1] == "yaw 0 deg, all layers (valid if one is)");
+}
+
+TEST_CASE("the ground is shown for the way in which the spawns face")
+{
+    const Arena arena;
+    arena.write("same.csv", "x,y,z,yaw\n0,3,0.1,1.5\n2,3,0.1,7.783185307179586\n");  // 1.5, and a turn more
+    arena.write("mixed.csv", "x,y,z,yaw\n0,3,0.1,0\n2,3,0.1,1\n50,3,0.1,1\n");
+    const ProgramRun same = heatmap(arena, "-o same.svg --spawns same.csv");
+    CHECK_THAT(same.err, Contains("notice: the ground is shown for yaw 1.5 rad, which all spawns have (--yaw RAD shows another)\n"));
+    CHECK(has(texts_in(arena, "same.svg"), "yaw 85.94 deg"));
+
+    const ProgramRun mixed = heatmap(arena, "-o mixed.svg --spawns mixed.csv");
+    CHECK_THAT(mixed.err, Contains("notice: the spawns have different yaws: the ground shows at how many of 16 headings the robot fits (--yaw RAD shows one)\n"));
+    CHECK(has(texts_in(arena, "mixed.svg"), "16 headings"));
+    CHECK(has(texts_in(arena, "mixed.svg"), "valid at some headings"));
+    CHECK(has(texts_in(arena, "mixed.svg"), "2 of 3 spawns in view"));
+
+    const ProgramRun chosen = heatmap(arena, "-o chosen.svg --spawns mixed.csv --yaw 0");
+    CHECK(chosen.err.find("notice") == std::string::npos);
+    CHECK(has(texts_in(arena, "chosen.svg"), "yaw 0 deg"));
+    CHECK(heatmap(arena, "-o any.svg --yaw random").status == 0);
+    CHECK(has(texts_in(arena, "any.svg"), "valid at all 16 headings"));
+    CHECK(heatmap(arena, "-o any.svg --yaw north").status == 2);
+}
+
+TEST_CASE("what check wrote is drawn by verdict, with names")
+{
+    const Arena arena;
+    arena.write("poses.csv", "name,x,y,z\nstart,0,3,0.1\nwall,-6.5,-5,0.1\nlake,7,-7,0.1\n");
+    REQUIRE(arena("check map --poses poses.csv -o checked.csv" + husky_option).status == 0);
+    REQUIRE(heatmap(arena, "-o a.svg --spawns checked.csv --names").status == 0);
+    std::vector<std::string> texts = texts_in(arena, "a.svg");
+    for (const char* const text : {"3 spawns", "1 valid", "1 collision", "1 submerged", "start", "wall", "lake"}) CHECK(has(texts, text));
+    arena.write("plain.csv", "x,y,z\n0,3,0.1\n-1,3,0.1\n");
+    REQUIRE(heatmap(arena, "-o a.svg --spawns plain.csv --names").status == 0);
+    texts = texts_in(arena, "a.svg");
+    CHECK(std::find(texts.begin(), texts.end(), "1") != texts.end());
+    CHECK(std::find(texts.begin(), texts.end(), "2") != texts.end());
+    const ProgramRun nothing_to_name = heatmap(arena, "-o b.svg --names");
+    CHECK(nothing_to_name.status == 2);
+    CHECK(nothing_to_name.err == "spawnfield: --names needs --spawns: it writes the names of spawns\n");
+}
+
+TEST_CASE("heat maps are the same bytes at any number of threads")
+{
+    const Arena arena;
+    for (const char* const ending : {"png", "svg", "pdf"}) {
+        const std::string file = std::string(".") + ending;
+        REQUIRE(heatmap(arena, "--yaw random --threads 1 -o a" + file).status == 0);
+        REQUIRE(heatmap(arena, "--yaw random --threads 3 -o b" + file).status == 0);
+        CHECK(bytes_of(arena / ("a" + file)) == bytes_of(arena / ("b" + file)));
+    }
+}

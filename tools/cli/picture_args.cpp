@@ -1,0 +1,55 @@
+#include "picture_args.h"
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace spawnfield::cli {
+namespace {
+
+PictureFormat format_named(const std::string& name)
+{
+    for (const PictureFormat format : {PictureFormat::Svg, PictureFormat::Pdf})
+        if (name == to_string(format)) return format;
+    return PictureFormat::Png;
+}
+
+/// At most four significant digits, for people to read.
+std::string rounded(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value + 0.0);
+    return text;
+}
+
+std::string layer_words(const std::string& layers)
+{
+    if (layers == "all") return "all layers (valid if one is)";
+    if (layers == "top" || layers == "bottom") return layers + " layer";
+    return "layer " + layers + " from the top";
+}
+
+}  // namespace
+
+PictureFile picture_file(const std::string& file, const std::string& format)
+{
+    const std::string path = file == "-" ? "/dev/stdout" : file;
+    const PictureFormat by_ending = picture_format(path);
+    const PictureFormat chosen = format.empty() ? by_ending : format_named(format);
+    if (std::filesystem::path(path).has_extension() && chosen != by_ending)
+        throw ArgumentError("--format is " + format + ", but " + path + " ends in ." + to_string(by_ending) + "; make them agree, or leave --format out");
+    return {path, chosen};
+}
+
+std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Map& map, const std::string& yaw)
+{
+    std::string text;
+    if (options.offset) text = "offset " + rounded(*options.offset) + " m, ";
+    text += yaw.empty() ? "yaw " + rounded(options.yaw * 180 / std::numbers::pi) + " deg" : yaw;
+    if (const std::string words = height_words(ground, options.z, map); options.dims == 2 && !words.empty()) text += ", " + words;
+    if (options.height_check) text += ", " + layer_words(ground.layers);
+    if (std::isfinite(options.max_slope)) text += ", slope up to " + rounded(options.max_slope * 180 / std::numbers::pi) + " deg";
+    return text;
+}
+
+}  // namespace spawnfield::cli
