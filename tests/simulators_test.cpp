@@ -344,13 +344,15 @@ TEST_CASE("patches lie on the ground below the spawns")
     }
 }
 
-TEST_CASE("the commands of each simulator's page work as they are written")
+TEST_CASE("the commands of each simulator's page and of the page on floors work as they are written")
 {
     const TempFolder folder;  // stands for /tmp and for the source folder
     fs::create_symlink(program_file(), folder / "spawnfield");
     fs::create_symlink(source_folder() + "/maps", folder / "maps");
-    for (const auto& page : fs::directory_iterator(source_folder() + "/docs/simulators")) {
-        std::istringstream text(bytes_of(page.path()));
+    std::vector<fs::path> pages{source_folder() + "/docs/floors.md"};
+    for (const auto& page : fs::directory_iterator(source_folder() + "/docs/simulators")) pages.push_back(page.path());
+    for (const fs::path& page : pages) {
+        std::istringstream text(bytes_of(page));
         std::string script;
         bool is_code = false;
         for (std::string line; std::getline(text, line);) {
@@ -358,7 +360,7 @@ TEST_CASE("the commands of each simulator's page work as they are written")
             else if (is_code && (line.starts_with("spawnfield ") || line.starts_with("cp "))) script += line + "\n";
         }
         for (std::size_t at = script.find("/tmp"); at != std::string::npos; at = script.find("/tmp")) script.replace(at, 4, ".");
-        INFO(page.path().string() + "\n" + script);
+        INFO(page.string() + "\n" + script);
         CHECK(std::count(script.begin(), script.end(), '\n') >= 2);
         CHECK(run_program(folder, "--version && set -e && PATH=$PWD:$PATH\n" + script).status == 0);
     }
