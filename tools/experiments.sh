@@ -14,8 +14,8 @@ for argument in "$@"; do
   esac
 done
 
-tools/install-dependencies.sh
+tools/install-dependencies.sh --experiments
 echo "building (some minutes the first time)" >&2
-tools/build.sh release spawnfield_experiments
+tools/build.sh release -DSPAWNFIELD_TESTS=AUTO spawnfield_experiments
 build/release/bin/spawnfield_experiments -o "$folder" "${quick[@]}" --command "tools/experiments.sh${quick:+ --quick}"
 /usr/bin/python3 tools/experiments/plot.py "$folder"

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-tools/install-dependencies.sh
+tools/install-dependencies.sh --tests
 echo "building (some minutes the first time)" >&2
 tools/build.sh release
 ctest --preset release -j "$(nproc)"
