@@ -12,7 +12,10 @@ while [[ ${1:-} == -D* ]]; do
 done
 mkdir -p "build/$preset"
 log=build/$preset/build.log
-if ! { cmake --preset "$preset" "${settings[@]}" && cmake --build --preset "$preset" ${1:+--target "$@"}; } >"$log" 2>&1; then
+configure_and_build() {
+  cmake --preset "$preset" "${settings[@]}" && cmake --build --preset "$preset" ${1:+--target "$@"}
+}
+if ! configure_and_build "$@" >"$log" 2>&1; then
   tail -n 60 "$log" >&2
   echo "build.sh: the build of preset $preset failed; the whole log is $log" >&2
   exit 1

@@ -12,9 +12,10 @@ spawnfield=build/release/bin/spawnfield
 out=out/demo
 mkdir -p "$out"
 "$spawnfield" bake maps/training/scene.yaml -o "$out/training" --quiet
-"$spawnfield" sample "$out/training" --robot maps/robots/husky.yaml -n 50 --min-distance 1 --yaw random -o "$out/spawns.csv" \
-  2>"$out/summary.txt"
-"$spawnfield" heatmap "$out/training" --robot maps/robots/husky.yaml --spawns "$out/spawns.csv" -o "$out/heatmap.png" --quiet
+"$spawnfield" sample "$out/training" --robot maps/robots/husky.yaml -n 50 --min-distance 1 --yaw random \
+  -o "$out/spawns.csv" 2>"$out/summary.txt"
+"$spawnfield" heatmap "$out/training" --robot maps/robots/husky.yaml --spawns "$out/spawns.csv" \
+  -o "$out/heatmap.png" --quiet
 
 echo "map      $out/training"
 echo "spawns   $out/spawns.csv"

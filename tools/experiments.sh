@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The thesis's eight experiments: experiments.sh [FOLDER] [--quick]. Installs what is missing, builds a release, makes and
-# bakes the environments, runs the tests and writes FOLDER/experiments.md with its plots (default: out/experiments).
+# The thesis's eight experiments: experiments.sh [FOLDER] [--quick]. Installs what is missing, builds a release, makes
+# and bakes the environments, runs the tests and writes FOLDER/experiments.md with its plots (default: out/experiments).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -14,11 +14,13 @@ packages=(
 for argument in "$@"; do
   case "$argument" in
     --tests)
-      packages+=(catch2 libembree-dev libopencv-imgcodecs-dev librecast-dev python3-matplotlib python3-roslaunch python3-venv)
+      packages+=(catch2 libembree-dev libopencv-imgcodecs-dev librecast-dev)
+      packages+=(python3-matplotlib python3-roslaunch python3-venv)
       ;;
     --experiments) packages+=(python3-matplotlib) ;;
     *)
-      echo "install-dependencies.sh: unknown argument $argument; usage: tools/install-dependencies.sh [--tests] [--experiments]" >&2
+      echo "install-dependencies.sh: unknown argument $argument" >&2
+      echo "usage: tools/install-dependencies.sh [--tests] [--experiments]" >&2
       exit 2
       ;;
   esac
@@ -32,7 +34,10 @@ done
 
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
-  command -v sudo >/dev/null || { echo "install-dependencies.sh: run as root or install sudo; missing: ${missing[*]}" >&2; exit 1; }
+  if ! command -v sudo >/dev/null; then
+    echo "install-dependencies.sh: run as root or install sudo; missing packages: ${missing[*]}" >&2
+    exit 1
+  fi
   as_root=(sudo)
 fi
 echo "installing ${missing[*]}" >&2
