@@ -143,13 +143,13 @@ bool same(const HeightImage& a, const HeightImage& b)
     return a.rows() == b.rows() && a.cols() == b.cols() && std::equal(a.data(), a.data() + a.size(), b.data(), [](float x, float y) { return same(x, y); });
 }
 
-/// The Python that has packages for reading our files back: SPAWNFIELD_PYTHON, or the system's; nothing if it has not this one.
+/// A Python that reads our files back with this package; nothing if that is not installed (ctest reports the test
+/// read_back_packages as skipped then).
 std::optional<std::string> python_with(const std::string& package)
 {
-    const char* const given = std::getenv("SPAWNFIELD_PYTHON");
-    const std::string python = given != nullptr ? given : "/usr/bin/python3";
+    const std::string python = "'" + python_file() + "'";
     if (std::system((python + " -c 'import " + package + "' > /dev/null 2>&1").c_str()) == 0) return python;
-    std::cout << "skipped: " << python << " has no " << package << " (SPAWNFIELD_PYTHON names one that has)\n";
+    std::cout << "skipped: " << python << " has no " << package << "; tools/test-python.sh installs it\n";
     return std::nullopt;
 }
 

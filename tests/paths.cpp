@@ -11,3 +11,9 @@ const std::string& program_file()
     static const std::string file = SPAWNFIELD_CLI;
     return file;
 }
+
+const std::string& python_file()
+{
+    static const std::string file = TEST_PYTHON;
+    return file;
+}

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The thesis's eight experiments: experiments.sh [FOLDER] [--quick]. Installs what is missing, builds a release, makes and
-# bakes the environments, runs the tests and writes FOLDER/experiments.md with its plots (default: out/experiments).
+# The thesis's eight experiments: experiments.sh [FOLDER] [--quick]. Installs what is missing, builds a release, makes
+# and bakes the environments, runs the tests and writes FOLDER/experiments.md with its plots (default: out/experiments).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -14,8 +14,8 @@ for argument in "$@"; do
   esac
 done
 
-tools/install-dependencies.sh
+tools/install-dependencies.sh --experiments
 echo "building (some minutes the first time)" >&2
-tools/build.sh release spawnfield_experiments
+tools/build.sh release -DSPAWNFIELD_TESTS=AUTO spawnfield_experiments
 build/release/bin/spawnfield_experiments -o "$folder" "${quick[@]}" --command "tools/experiments.sh${quick:+ --quick}"
 /usr/bin/python3 tools/experiments/plot.py "$folder"

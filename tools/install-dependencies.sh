@@ -1,13 +1,30 @@
 #!/usr/bin/env bash
-# Installs the Debian/Ubuntu packages that spawnfield is built from and that are missing. Needs root or sudo only then.
+# Installs the Debian/Ubuntu packages that are missing: install-dependencies.sh [--tests] [--experiments].
+# Without an option: what spawnfield itself is built from. --tests adds what only tests and benchmarks need,
+# --experiments what the plots need. Needs root or sudo, but only if a package is missing.
 set -euo pipefail
 
+# ccache is here because adding it later changes every compile command, and so builds everything again.
 packages=(
-  cmake ninja-build ccache g++ pkg-config
-  catch2 libassimp-dev libccd-dev libcli11-dev libdeflate-dev libeigen3-dev libembree-dev libfcl-dev libhpdf-dev liboctomap-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
-  libpng-dev libproj-dev libqhull-dev librecast-dev libsdformat-dev libtbb-dev libtiff-dev libtinyxml2-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev python3-matplotlib zlib1g-dev
+  ccache cmake g++ ninja-build pkg-config
+  libassimp-dev libccd-dev libcli11-dev libdeflate-dev libeigen3-dev libfcl-dev libhpdf-dev liboctomap-dev
+  libopencv-core-dev libopencv-imgproc-dev libpng-dev libproj-dev libqhull-dev libsdformat-dev libtbb-dev libtiff-dev libtinyxml2-dev
+  liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
 )
+for argument in "$@"; do
+  case "$argument" in
+    --tests)
+      packages+=(catch2 libembree-dev libopencv-imgcodecs-dev librecast-dev)
+      packages+=(python3-matplotlib python3-roslaunch python3-venv)
+      ;;
+    --experiments) packages+=(python3-matplotlib) ;;
+    *)
+      echo "install-dependencies.sh: unknown argument $argument" >&2
+      echo "usage: tools/install-dependencies.sh [--tests] [--experiments]" >&2
+      exit 2
+      ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do
@@ -17,7 +34,10 @@ done
 
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
-  command -v sudo >/dev/null || { echo "install-dependencies.sh: run as root or install sudo; missing: ${missing[*]}" >&2; exit 1; }
+  if ! command -v sudo >/dev/null; then
+    echo "install-dependencies.sh: run as root or install sudo; missing packages: ${missing[*]}" >&2
+    exit 1
+  fi
   as_root=(sudo)
 fi
 echo "installing ${missing[*]}" >&2

@@ -2,12 +2,12 @@
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "query/pose_json.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -173,8 +173,6 @@ void append_row(std::string& text, const RasterPose& pose, double yaw)
     text += '\n';
 }
 
-using Json = nlohmann::ordered_json;
-
 Json bounds_json(const Bounds& bounds, int axes)
 {
     Json out = Json::array();
@@ -214,41 +212,12 @@ Json settings_json(const SpawnOptions& options, const Map& map, int axes)
     return out;
 }
 
-Json json_head(const std::string& command, const Map& map, const Robot& robot, Json settings)
-{
-    Json out;
-    out["format"] = "spawnfield-spawns/1";
-    out["version"] = version();
-    out["command"] = command;
-    out["map"] = {{"name", map.name}, {"hash", map.hash}};
-    if (!robot.name.empty()) out["robot"] = robot.name;
-    for (const auto& [joint, value] : robot.joints) out["joints"][joint] = value;
-    if (robot.mesh_parts != 1) out["mesh_parts"] = robot.mesh_parts;
-    if (!settings.is_null()) out["settings"] = std::move(settings);
-    out["frame"] = "metres, radians, x forward, y left, z up (REP-103)";
-    out["quaternion_order"] = "xyzw";
-    return out;
-}
-
-Json pose_json(const RobotStart& robot)
-{
-    Json out;
-    if (!robot.name.empty()) out["name"] = robot.name;
-    if (!robot.name_space.empty()) out["namespace"] = robot.name_space;
-    const Vec3& p = robot.position;
-    const Eigen::Quaterniond q = quaternion_from(robot.rpy);
-    out["position"] = {p.x(), p.y(), p.z()};
-    out["quaternion"] = {q.x(), q.y(), q.z(), q.w()};
-    out["rpy"] = {robot.rpy.roll, robot.rpy.pitch, robot.rpy.yaw};
-    return out;
-}
-
 std::string finished(Json out, const std::optional<VerdictCounts>& counts, std::span<const RobotStart> robots)
 {
     for (std::size_t verdict = 0; counts && verdict < verdict_count; ++verdict) out["counts"][to_string(Verdict(verdict))] = (*counts)[verdict];
     out["poses"] = Json::array();
     for (const RobotStart& robot : robots) out["poses"].push_back(pose_json(robot));
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // a name may be no UTF-8
+    return json_text(out, 2) + "\n";
 }
 
 void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& names, const std::vector<std::string>& name_spaces)

@@ -6,7 +6,7 @@ from truth import FOLDER, ROBOTS, check_pose, from_quaternion
 try:
     import numpy
 except ImportError:
-    print('skipped: numpy is not installed')
+    print('skipped: numpy is not installed; tools/test-python.sh installs it')
     sys.exit(77)
 
 for name in ('wxyz', 'xyzw'):

@@ -1,11 +1,40 @@
 #include "cli.h"
 
+#include <spawnfield/verdict_report.h>
+
+#include <iostream>
+
 namespace spawnfield::cli {
 namespace {
 
 struct CheckArgs : QueryArgs {
-    std::string poses, out;
+    std::string poses, out, format = "csv";
+    bool require_valid = false;
 };
+
+void write_verdicts(const CheckArgs& args, const VerdictReport& report)
+{
+    write_output(args.out, [&](const auto& sink) {
+        if (args.format == "json") write_verdicts_json(report, sink);
+        else if (args.format == "junit") write_verdicts_junit(report, sink);
+        else sink(verdicts_csv(report.table, report.judgements, report.map.geometry.parts()));
+    });
+}
+
+/// Says on standard error how many poses are not valid, and why the first ones are not.
+void tell_not_valid(const VerdictReport& report)
+{
+    constexpr std::size_t shown = 5;
+    const std::vector<std::string> names = pose_names(report.table);
+    std::string first;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (report.judgements[i].verdict != Verdict::Valid && ++count <= shown)
+            first += "\n  " + names[i] + ": " + described(report, i);
+    if (count > shown) first += "\n  and " + std::to_string(count - shown) + " more";
+    std::cerr << "spawnfield: --require-valid: " << count << " of " << counted(names.size(), "pose")
+              << (count == 1 ? " is" : " are") << " not valid:" << first << "\n";
+}
 
 int run_check(const CheckArgs& args)
 {
@@ -24,12 +53,15 @@ int run_check(const CheckArgs& args)
         ++counts[std::size_t(judged.verdict)];
         summary.exact_checks += judged.exact_check;
     }
-    write_output(args.out, [&](const auto& sink) { sink(verdicts_csv(table, judgements, session->map.geometry.parts())); });
+    const VerdictReport report{table, judgements, session->map, session->robot, options, args.collision == "octree"};
+    write_verdicts(args, report);
     summary.lap("write");
     summary.set_counts(counts);
     summary.map_hash = session->map.hash;
     summary.finish();
-    return done;
+    if (!args.require_valid || counts[std::size_t(Verdict::Valid)] == judgements.size()) return done;
+    tell_not_valid(report);
+    return not_valid;
 }
 
 }  // namespace
@@ -40,7 +72,12 @@ void add_check(CLI::App& app, Run& run)
     CLI::App& command = *app.add_subcommand("check", "Verdict and reason for each pose of a CSV file");
     add_query(command, *args);
     command.add_option("--poses,-p", args->poses, "CSV file: x,y,z[,roll,pitch,yaw | ,qx,qy,qz,qw]; m, rad; other columns are kept, but verdict,ground,height_above,hit replaced")->required();
-    command.add_option("--out,-o", args->out, "CSV file to write (default: standard output)");
+    command.add_option("--out,-o", args->out, "File to write (default: standard output)");
+    command.add_option("--format", args->format,
+                       "csv: the input's columns and the verdict; json; or junit: a test case for each pose (default csv)")
+        ->check(CLI::IsMember({"csv", "json", "junit"}));
+    command.add_flag("--require-valid", args->require_valid,
+                     "End with status 3 if any pose is not valid; all rows are written in either case");
     command.footer("Example:\n"
                    "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/two_poses.csv\n"
                    "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv");

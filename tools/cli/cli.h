@@ -16,7 +16,15 @@
 
 namespace spawnfield::cli {
 
-enum ExitStatus { done = 0, failure = 1, wrong_usage = 2, fewer_found = 3, input_refused = 4, interrupted = 130 };
+enum ExitStatus {
+    done = 0,
+    failure = 1,
+    wrong_usage = 2,
+    fewer_found = 3,
+    not_valid = 3,  ///< check --require-valid
+    input_refused = 4,
+    interrupted = 130
+};
 
 /// The user pressed Ctrl-C; nothing was written.
 struct Interrupted {};

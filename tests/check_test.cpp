@@ -1,0 +1,261 @@
+#include "arena.h"
+
+#include <spawnfield/map.h>
+
+#include <nlohmann/json.hpp>
+#include <tinyxml2.h>
+
+
+namespace {
+
+using tinyxml2::XMLElement;
+
+const std::string header = "name,x,y,z,yaw\n", start = "start,0,3,0.1,0\n", wall = "wall,-6.5,-5,0.1,0\n",
+                  lake = "lake,7,-7,0.1,0\n", sky = "sky,0,3,2.5,0\n",
+                  cube = "cube,6.5,0,3,0\n", away = "away,99,0,0,0\n";
+
+/// One test case of a JUnit file; `type` is empty if it passed.
+struct Case {
+    std::string class_name, name, type, message, text;
+};
+
+std::string attribute(const XMLElement& element, const char* name)
+{
+    const char* const value = element.Attribute(name);
+    REQUIRE(value != nullptr);
+    return value;
+}
+
+/// The cases of a JUnit file, whose counts are those that its two outer elements state.
+std::vector<Case> cases_of(const std::string& junit)
+{
+    tinyxml2::XMLDocument document;
+    REQUIRE(document.Parse(junit.data(), junit.size()) == tinyxml2::XML_SUCCESS);
+    const XMLElement* const suites = document.FirstChildElement("testsuites");
+    REQUIRE(suites != nullptr);
+    const XMLElement* const suite = suites->FirstChildElement("testsuite");
+    REQUIRE((suite != nullptr && suite->NextSiblingElement() == nullptr));
+    std::vector<Case> out;
+    int failures = 0;
+    const XMLElement* next = suite->FirstChildElement("testcase");
+    for (; next != nullptr; next = next->NextSiblingElement()) {
+        Case& test = out.emplace_back(Case{attribute(*next, "classname"), attribute(*next, "name"), "", "", ""});
+        const XMLElement* const failure = next->FirstChildElement("failure");
+        if (failure == nullptr) continue;
+        ++failures;
+        test.type = attribute(*failure, "type");
+        test.message = attribute(*failure, "message");
+        test.text = failure->GetText();
+    }
+    for (const XMLElement* const counted : {suites, suite}) {
+        CHECK(attribute(*counted, "tests") == std::to_string(out.size()));
+        CHECK(attribute(*counted, "failures") == std::to_string(failures));
+        CHECK(attribute(*counted, "errors") == "0");
+    }
+    return out;
+}
+
+/// Whether a strict XML reader, Python's expat, takes the file.
+bool is_strict_xml(const std::filesystem::path& file)
+{
+    const std::string script = "import sys, xml.etree.ElementTree as tree; tree.parse(sys.argv[1])";
+    return std::system(("'" + python_file() + "' -c '" + script + "' '" + file.string() + "'").c_str()) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("check --require-valid ends with status 3 if a pose is not valid, and writes all rows")
+{
+    const Arena arena;
+    const std::string command = "check map --poses poses.csv" + husky_option;
+    arena.write("poses.csv", header + start + wall + lake);
+    const ProgramRun plain = arena(command);
+    CHECK(plain.status == 0);
+    const ProgramRun required = arena(command + "--require-valid -o out.csv");
+    CHECK(required.status == 3);
+    CHECK(required.out.empty());
+    CHECK(bytes_of(arena / "out.csv") == plain.out);
+    CHECK(required.err.ends_with("spawnfield: --require-valid: 2 of 3 poses are not valid:\n"
+                                 "  wall: collision with thin_wall\n  lake: submerged\n"));
+    const ProgramRun quiet = arena(command + "--require-valid -q");
+    CHECK(quiet.status == 3);
+    CHECK(quiet.out == plain.out);
+    CHECK(quiet.err.starts_with("spawnfield: --require-valid: 2 of 3"));
+
+    for (const char* const format : {"json", "junit"}) {
+        const std::string option = std::string("--format ") + format;
+        CHECK(arena(command + option).status == 0);
+        const ProgramRun run = arena(command + option + " --require-valid -o out." + format);
+        CHECK(run.status == 3);
+        CHECK(bytes_of(arena / (std::string("out.") + format)) == arena(command + option).out);
+    }
+
+    arena.write("poses.csv", header + start + start);
+    const ProgramRun all = arena(command + "--require-valid");
+    CHECK(all.status == 0);
+    CHECK(all.out == arena(command).out);
+    CHECK(all.err.find("--require-valid") == std::string::npos);
+}
+
+TEST_CASE("check --require-valid says why each of the first five poses is not valid, and how many follow")
+{
+    const Arena arena;
+    arena.write("poses.csv", header + start + away + sky + cube + wall + ",7,-7,0.1,0\n" + wall + lake);
+    const ProgramRun run = arena("check map --poses poses.csv --require-valid -q --max-height 2" + husky_option);
+    CHECK(run.status == 3);
+    CHECK(run.err == "spawnfield: --require-valid: 7 of 8 poses are not valid:\n"
+                     "  away: outside the map's bounds\n"
+                     "  sky: aerial: 2.55 m above the ground, the limit is 2 m\n"
+                     "  cube: off_terrain: the ground is cube_east\n"
+                     "  wall (pose 5): collision with thin_wall\n"
+                     "  pose 6: submerged\n"
+                     "  and 2 more\n");
+    arena.write("poses.csv", "x,y,z\n0,0,-3\n");
+    CHECK(arena("check map --poses poses.csv --require-valid -q --robot box:0.5,0.5,1").err ==
+          "spawnfield: --require-valid: 1 of 1 pose is not valid:\n  pose 1: aerial: no ground below the origin\n");
+}
+
+TEST_CASE("check --require-valid leaves the statuses of other failures as they are")
+{
+    const Arena arena;
+    arena.write("poses.csv", header + wall);
+    arena.write("bad.csv", "x,y\n0,0\n");
+    CHECK(arena("check map --poses bad.csv --require-valid" + husky_option).status == 4);
+    CHECK(arena("check map --poses poses.csv --require-valid -o none/out.csv" + husky_option).status == 1);
+    const ProgramRun format = arena("check map --poses poses.csv --format xml" + husky_option);
+    CHECK(format.status == 2);
+    CHECK_THAT(format.err, Contains("junit"));
+}
+
+TEST_CASE("check --format junit has a test case for each pose, with its verdict and what it hit")
+{
+    const Arena arena;
+    arena.write("poses.csv", header + start + wall + lake + sky + cube + away);
+    const std::string command = "check map --poses poses.csv --format junit --max-height 2" + husky_option;
+    const ProgramRun run = arena(command + "--threads 1");
+    CHECK(run.status == 0);
+    const std::vector<Case> cases = cases_of(run.out);
+    REQUIRE(cases.size() == 6);
+    const std::vector<std::string> names = {"start", "wall", "lake", "sky", "cube", "away"},
+                                   types = {"", "collision", "submerged", "aerial", "off_terrain", "outside"};
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        CHECK(cases[i].class_name == "training.husky");
+        CHECK(cases[i].name == names[i]);
+        CHECK(cases[i].type == types[i]);
+    }
+    CHECK(cases[1].message == "collision with thin_wall");
+    CHECK(cases[1].text == "row 2: wall,-6.5,-5,0.1,0\nposition -6.5, -5, 0.1 m; roll, pitch, yaw 0, 0, 0 rad\n"
+                           "ground at -0.05 m, 0.15 m below the origin\nhit thin_wall\n");
+    CHECK(cases[3].message == "aerial: 2.55 m above the ground, the limit is 2 m");
+    CHECK_THAT(cases[5].text, Contains("no ground below the origin"));
+    CHECK_THAT(run.out, Contains("<property name=\"max_height\" value=\"2.0\"/>"));
+    CHECK(arena(command + "--threads 3").out == run.out);
+    CHECK_THAT(arena(command + "--collision octree").out, Contains("message=\"collision with occupancy\""));
+}
+
+TEST_CASE("JUnit names are unique: the column name, or else the pose's number")
+{
+    const Arena arena;
+    arena.write("poses.csv", "name,x,y,z\na,0,3,0.1\n,0,3,0.1\na,0,3,0.1\nb,0,3,0.1\n");
+    const std::string command = "check map --format junit --poses poses.csv" + husky_option;
+    std::vector<Case> cases = cases_of(arena(command).out);
+    REQUIRE(cases.size() == 4);
+    CHECK(cases[0].name == "a (pose 1)");
+    CHECK(cases[1].name == "pose 2");
+    CHECK(cases[2].name == "a (pose 3)");
+    CHECK(cases[3].name == "b");
+    arena.write("poses.csv", "x,y,z\n0,3,0.1\n0,3,0.1\n");
+    cases = cases_of(arena(command).out);
+    REQUIRE(cases.size() == 2);
+    CHECK(cases[1].name == "pose 2");
+}
+
+TEST_CASE("reports hold hostile names: XML and JSON stay valid")
+{
+    const TempFolder folder;
+    folder.write("scene.yaml", "format: spawnfield-scene/1\nname: \"a<&\\\">'\\x01 world\"\nparts:\n"
+                               "- {name: floor, label: terrain, box: [9, 9, 1]}\n"
+                               "- {name: \"]]><failure type=\\\"x\\\"/>\\n\\x07\\uFFFE&amp;\", label: obstacle, "
+                               "box: [1, 1, 3]}\n");
+    REQUIRE(run_program(folder, "bake scene.yaml -o map -q").status == 0);
+    folder.write("poses.csv", "name,x,y,z\n\"<&\"\"'>\",0,0,0.6\n\"]]>\x01\x1b[31m\",0,0,0.6\n\xff\xc0\xaf,0,0,0.6\n"
+                              "\xef\xbf\xbf,0,0,0.6\n\xc3\xa9\xe2\x98\x83,3,3,0.6\n");
+    const std::string command = "check map --robot box:0.5,0.5,1 -p poses.csv --require-valid -q --format ";
+    CHECK(run_program(folder, command + "junit -o a.xml").status == 3);
+    CHECK(is_strict_xml(folder / "a.xml"));
+    const std::string junit = bytes_of(folder / "a.xml");
+    CHECK(std::none_of(junit.begin(), junit.end(), [](unsigned char c) { return c < ' ' && c != '\n'; }));
+    CHECK_NOTHROW(nlohmann::json(junit).dump());  // throws if it is not UTF-8
+    const std::vector<Case> cases = cases_of(junit);
+    REQUIRE(cases.size() == 5);
+    CHECK(cases[0].name == "<&\"'>");
+    CHECK(cases[1].name == "]]>  [31m");
+    CHECK_THAT(cases[2].name, Contains("\xEF\xBF\xBD"));
+    CHECK(cases[3].name == "\xEF\xBF\xBD");
+    CHECK(cases[4].name == "\xc3\xa9\xe2\x98\x83");
+    CHECK(cases[0].message == "collision with ]]><failure type=\"x\"/>  \xEF\xBF\xBD&amp;");
+    CHECK_THAT(cases[0].text, Contains("row 1: \"<&\"\"'>\",0,0,0.6\n"));
+    CHECK(cases[4].type.empty());
+
+    CHECK(run_program(folder, command + "json -o a.json").status == 3);
+    const auto json = nlohmann::json::parse(bytes_of(folder / "a.json"));
+    CHECK(json["poses"][0]["name"] == "<&\"'>");
+    CHECK(json["poses"][0]["hit"] == "]]><failure type=\"x\"/>\n\x07\xEF\xBF\xBE&amp;");
+    CHECK(json["map"]["name"] == "a<&\">'\x01 world");
+}
+
+TEST_CASE("check --format json has each pose with its verdict, ground, hit and the fields of its row")
+{
+    const Arena arena;
+    arena.write("poses.csv", "id,name,x,y,z,yaw,verdict\n1,start,0,3,0.1,0.5,aerial\n02,\"a, b\",-6.5,-5,0.1,0,\n"
+                             "3,,99,0,0,0,\n");
+    const std::string command = "check map --poses poses.csv --format json -q" + husky_option;
+    const std::string text = arena(command).out;
+    const auto json = nlohmann::json::parse(text);
+    CHECK(json["format"] == "spawnfield-verdicts/1");
+    CHECK(json["command"] == "check");
+    CHECK(json["map"]["hash"] == spawnfield::read_map(arena / "map").hash);
+    CHECK(json["robot"] == "husky");
+    CHECK(json["settings"] == nlohmann::json{{"max_height", 1.0}, {"collision", "geometry"}});
+    CHECK(json["counts"]["valid"] == 1);
+    CHECK(json["counts"]["collision"] == 1);
+    REQUIRE(json["poses"].size() == 3);
+    const auto& first = json["poses"][0];
+    CHECK(first["row"] == 1);
+    CHECK(first["name"] == "start");
+    CHECK(first["position"] == std::vector<double>{0, 3, 0.1});
+    CHECK(first["rpy"] == std::vector<double>{0, 0, 0.5});
+    CHECK(first["verdict"] == "valid");
+    CHECK(first["ground"] == -0.05);
+    CHECK(first["height_above"] == 0.1 - -0.05);
+    CHECK(first["hit"].is_null());
+    CHECK(first["columns"] ==
+          nlohmann::json{{"id", "1"}, {"name", "start"}, {"x", "0"}, {"y", "3"}, {"z", "0.1"}, {"yaw", "0.5"}});
+    CHECK(json["poses"][1]["hit"] == "thin_wall");
+    CHECK(json["poses"][1]["columns"]["id"] == "02");
+    CHECK(json["poses"][1]["name"] == "a, b");
+    CHECK((json["poses"][2]["ground"].is_null() && json["poses"][2]["height_above"].is_null()));
+    CHECK_FALSE(json["poses"][2].contains("name"));
+
+    const auto more = nlohmann::json::parse(arena(command + "--max-slope 45 --max-water-depth 2 --collision octree").out);
+    CHECK(more["settings"]["max_slope"].get<double>() == Approx(0.785398163));
+    CHECK(more["settings"]["max_water_depth"] == 2.0);
+    CHECK(more["settings"]["collision"] == "octree");
+}
+
+TEST_CASE("reports of many poses, written in several pieces, are whole")
+{
+    const Arena arena;
+    std::string text = header;
+    for (int i = 0; i < 6000; ++i) text += i % 3 == 0 ? start : wall;
+    arena.write("poses.csv", text);
+    const std::string command = "check map --poses poses.csv -q --format ";
+    const std::string junit = arena(command + "junit" + husky_option).out;
+    const std::string json = arena(command + "json" + husky_option).out;
+    CHECK((junit.size() > 1100000 && json.size() > 1100000));  // a piece is 1 MB
+    const std::vector<Case> cases = cases_of(junit);
+    REQUIRE(cases.size() == 6000);
+    CHECK(std::count_if(cases.begin(), cases.end(), [](const Case& test) { return test.type.empty(); }) == 2000);
+    CHECK(cases[5999].name == "wall (pose 6000)");
+    CHECK(nlohmann::json::parse(json)["poses"][5999]["row"] == 6000);
+}
