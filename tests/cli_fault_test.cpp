@@ -177,7 +177,7 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
     std::filesystem::create_symlink("/dev/zero", desk / "endless.yaml");
     desk.remember();
     const std::string keys = "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, scale, solid, "
-                             "sides, labels, unknown";
+                             "sides, labels, auto_label, unknown";
     const Refusal refusals[] = {
         {"bake none.yaml -o map", "spawnfield: none.yaml: does not exist; is the path right?"},
         {"bake no_terrain.yaml -o map", "spawnfield: no_terrain.yaml: has no terrain, so no robot can stand anywhere; label a part `terrain` "

@@ -188,6 +188,85 @@ TEST_CASE("info says of a house with a face missing that it is a shell")
     CHECK_THAT(run_program(folder, "info map").out, Contains(" m, 1 layer; voxels of "));
 }
 
+TEST_CASE(
+    "info lists nodes and materials of meshes with their triangles and heights, those of the most triangles first")
+{
+    const TempFolder folder;
+    folder.write("a.obj", "o wall\nv 0 0 0.5\nv 1 0 0.5\nv 0 1 2.25\nusemtl brick\nf 1 2 3\no Floor 1\nv 0 0 -1\nv 1 0 "
+                          "-1\nv 0 1 -1\nv 1 1 -1\nusemtl tar\nf 4 5 6\nf 6 5 7\n");
+    const ProgramRun run = run_program(folder, "info a.obj --label 'floor*=terrain' --label 'bri*=ignore'");
+    CHECK_THAT(
+        run.out,
+        Contains(
+            "names in meshes, for --label\n  node \"Floor 1\", material \"tar\": 2 triangles, z -1 to -1 m, terrain\n"
+            "  node \"wall\", material \"brick\": 1 triangle, z 0.5 to 2.25 m, ignore\n"));
+    const auto json = nlohmann::json::parse(run_program(folder, "info a.obj --json").out);
+    CHECK(json["parts"][0]["names"][0] ==
+          nlohmann::json{{"node", "wall"}, {"material", "brick"}, {"triangles", {{"terrain", 1}}}, {"z", {0.5, 2.25}}});
+    folder.write("two.yaml", "format: spawnfield-scene/1\nname: two\nparts:\n  - {name: a, mesh: a.obj}\n  - {name: b, "
+                             "mesh: a.obj, xyz: [0, 0, 10]}\n");
+    CHECK_THAT(run_program(folder, "info two.yaml").out,
+               Contains("  a: node \"wall\"") &&
+                   Contains("  b: node \"wall\", material \"brick\": 1 triangle, z 10.5 to 12.25 m, obstacle\n"));
+    std::string many;
+    for (int i = 0; i < 63; ++i) many += "o n" + std::to_string(i) + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
+    folder.write("many.obj", many);
+    CHECK_THAT(run_program(folder, "info many.obj").out,
+               Contains("node \"n59\"") && Contains("\n  … and 3 more (--json lists all)\n"));
+    CHECK(nlohmann::json::parse(run_program(folder, "info many.obj --json").out)["parts"][0]["names"].size() == 63);
+}
+
+TEST_CASE("notices of one kind are printed once, with a count; --json has all")
+{
+    const TempFolder folder;
+    std::string models = "<include><uri>model://ground_plane</uri></include>";
+    for (int i = 0; i < 200; ++i)
+        models += "<model name='m" + std::to_string(i) +
+                  "'><link name='l'><collision name='c'><geometry><mesh><uri>model://lost/" + std::to_string(i) +
+                  ".dae</uri></mesh></geometry></collision></link></model>";
+    folder.write("a.world", "<sdf version='1.9'><world name='w'>" + models + "</world></sdf>");
+    const ProgramRun run = run_program(folder, "info a.world --label 'lost*=terrain' --label 'gone*=water'");
+    const auto lines = [](const std::string& text, const std::string& part) {
+        std::size_t count = 0;
+        for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+        return count;
+    };
+    CHECK(lines(run.err, "is not found: it is left out") == 1);
+    CHECK_THAT(run.err, Contains("\n  ... and 199 more like it: \"m") && Contains(", ... (`info --json` lists all)\n"));
+    CHECK_THAT(run.err, Contains("label \"lost*\" matches no model, link, collision, node or material\n  ... and 1 "
+                                 "more like it: \"gone*\"\n"));
+    CHECK_THAT(run.err, Contains("the built-in ground plane stands for it\n"));
+    CHECK(lines(run.err, "\n") <= 8);
+    CHECK(nlohmann::json::parse(run_program(folder, "info a.world --json").out)["notices"].size() > 200);
+    CHECK(run_program(folder, "info a.world --quiet").err.empty());
+}
+
+TEST_CASE("a world that includes what is not there is refused by the program, and a map of 1 x 1 m gets a notice")
+{
+    const TempFolder folder;
+    folder.write("a.world", "<sdf version='1.9'><world name='w'><include><uri>model://house</uri></include><model "
+                            "name='rock'><link name='l'><collision name='c'><geometry>"
+                            "<box><size>1 1 1</size></box></geometry></collision></link></model></world></sdf>");
+    const ProgramRun refused = run_program(folder, "bake a.world -o map");
+    CHECK(refused.status == 4);
+    CHECK(refused.err == "spawnfield: a.world: 1 model that it includes is not found; name the folder that holds it "
+                         "with --model-path, or pass --allow-missing to leave it out:\n"
+                         "  line 1: <include> <uri> model://house is not found\n");
+    const ProgramRun obstacle = run_program(folder, "bake a.world -o map --allow-missing");
+    CHECK(obstacle.status == 4);
+    CHECK_THAT(obstacle.err,
+               Contains("nothing is made terrain") && Contains("has no terrain, so no robot can stand anywhere"));
+    const ProgramRun small = run_program(folder, "bake a.world -o map --allow-missing --label 'rock=terrain'");
+    CHECK(small.status == 0);
+    const std::string tiny = "notice: the map is only 1 x 1 m; is a part of the scene missing or in the wrong unit?\n";
+    CHECK_THAT(small.err, Contains(tiny));
+    CHECK_THAT(
+        run_program(folder, "bake a.world -o map --allow-missing --label 'rock=terrain' --bounds -0.5,-0.5,0,0.5,0.5,1")
+            .err,
+        !Contains(tiny));
+    CHECK(run_program(folder, "bake a.world -o map --allow-missing --strict").status == 2);
+}
+
 TEST_CASE("info lists the first 60 of many parts")
 {
     const TempFolder folder;

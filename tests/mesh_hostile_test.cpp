@@ -247,9 +247,11 @@ TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by 
                                                   "<diffuse><color>" + std::string(color) + "</color></diffuse></phong></technique></profile_COMMON></effect>"
                                                   "</library_effects><library_nodes>"));
     };
-    CHECK(effect("1 0 0 1") == "");
-    CHECK(effect("1 0 0") == "line 11: <color> has 3 numbers, needs 4");
-    CHECK(effect("1 0 0x10 1") == "line 11: <color> has \"0x10\", needs numbers with spaces between");
+    for (const char* const color : {"1 0 0 1", " 0.3 0.2 0.1 1", "\n0.3 0.2 0.1 1\n", "1 0 0", "1 0 0x10 1",
+                                    "0,3 0,2 0,1 1", "red", "", "nan nan nan 1", "<!-- none -->"}) {
+        CAPTURE(color);
+        CHECK(effect(color) == "");
+    }
     std::string strip = replaced(replaced(collada(), "<polylist", "<tristrips"), "</polylist", "</tristrips");
     strip = replaced(strip, "<vcount>3</vcount>", "");
     CHECK(complaint(folder, "a.dae", strip) == "");

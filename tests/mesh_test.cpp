@@ -179,6 +179,31 @@ TEST_CASE("label rules look at the node's or the material's name; the first matc
     CHECK(scene.parts[0].label == Label::Obstacle);
 }
 
+TEST_CASE("a rule with node and material holds where both match")
+{
+    const TempFolder folder;
+    std::vector<mesh_text::Node> nodes;
+    for (const char* const name : {"floor", "table"})
+        for (const char* const material : {"wood", "stone"})
+            nodes.push_back(
+                {.name = name + std::string("_") + material, .material = material, .mesh = hand::rectangle(1, 1)});
+    const auto terrain = [&](const std::string& rules) {
+        const Scene scene = load_mesh(folder, "a.obj", mesh_text::obj(nodes), ", labels: [" + rules + "]");
+        std::string names;
+        for (const FaceGroup& group : scene.face_groups)
+            names += group.triangles[std::size_t(Label::Terrain)] > 0 ? group.node + " " : "";
+        for (const std::string& notice : scene.notices) names += notice.substr(notice.find("labels:"));
+        return names;
+    };
+    CHECK(terrain("{node: 'floor*', material: wood, label: terrain}") == "floor_wood ");
+    CHECK(terrain("{material: wood, node: 'FLOOR*', label: obstacle}, {material: wood, label: terrain}") ==
+          "table_wood ");
+    CHECK(terrain("{node: 'floor*', label: terrain}") == "floor_wood floor_stone ");
+    // Each name is there, but not together.
+    CHECK(terrain("{node: floor_wood, material: stone, label: terrain}") ==
+          "labels: node \"floor_wood\" with material \"stone\" matches nothing");
+}
+
 TEST_CASE("a rule sees the node that carries the mesh, not its ancestors")
 {
     const TempFolder folder;

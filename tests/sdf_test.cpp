@@ -235,20 +235,48 @@ TEST_CASE("a polyline is extruded from its pose upwards, an outline within anoth
 TEST_CASE("a plane is infinite: it goes on beyond the bounds, whatever its drawn size")
 {
     const TempFolder folder;
-    const std::string small_plane = model_of("p", "<plane><normal>0 0 1</normal><size>2 2</size></plane>", "<pose>0 0 0.25 0 0 0</pose>");
-    const Scene scene = load_world(folder, small_plane + model_of("far", unit_box, "<pose>100 -50 0 0 0 0</pose>"));
-    CHECK((scene.map_bounds.min - Vec3(-1, -50.5, -0.5)).norm() < 1e-9);
-    CHECK((scene.map_bounds.max - Vec3(100.5, 1, 0.5)).norm() < 1e-9);
-    for (const auto& [x, y] : {std::pair{0.1, 0.2}, std::pair{90.0, -49.0}, std::pair{-50.9, 50.9}}) {
-        const auto layers = layers_at(scene, x, y);
-        REQUIRE(layers.size() == 1);
-        CHECK(std::abs(layers[0] - 0.25) < 1e-9);
+    const auto plane = [](const std::string& visual) {
+        return "<model name='p'><pose>0 0 0.25 0 0 0</pose><static>1</static><link name='l'>" +
+               collision("<plane><normal>0 0 1</normal><size>1 1</size></plane>") +
+               (visual.empty() ? "" : "<visual name='v'><geometry>" + visual + "</geometry></visual>") +
+               "</link></model>";
+    };
+    const auto drawn = [&](const std::string& side) {
+        return plane("<plane><normal>0 0 1</normal><size>" + side + " " + side + "</size></plane>");
+    };
+    const std::string far = model_of("far", unit_box, "<pose>100 -50 0 0 0 0</pose>") + model_of("near", unit_box);
+    const auto has_bounds = [](const Scene& of, const Vec3& min, const Vec3& max) {
+        CAPTURE(of.map_bounds.min.transpose(), of.map_bounds.max.transpose());
+        CHECK((of.map_bounds.min - min).norm() < 1e-9);
+        CHECK((of.map_bounds.max - max).norm() < 1e-9);
+    };
+    const std::string around = "no <visual> draws it larger than the rest of the world";
+    // The <size> of the collision says nothing, nor does a drawing that is no larger than the rest.
+    for (const std::string& unknown :
+         {plane(""), drawn("1"), drawn("50"), plane("<sphere><radius>500</radius></sphere>")}) {
+        const Scene scene = load_world(folder, unknown + far);
+        has_bounds(scene, {-10.5, -60.5, -0.5}, {110.5, 10.5, 0.5});
+        CHECK(has_notice(scene, around));
+        for (const auto& [x, y] : {std::pair{0.1, 0.7}, std::pair{90.0, -49.0}, std::pair{-60.4, 60.4}}) {
+            const auto layers = layers_at(scene, x, y);
+            REQUIRE(layers.size() == 1);
+            CHECK(std::abs(layers[0] - 0.25) < 1e-9);
+        }
+        CHECK(layers_at(scene, -60.6, 0).empty());
     }
-    CHECK(layers_at(scene, -51.1, 0).empty());
+    for (const std::string& large : {drawn("300"), plane("<box><size>300 300 0.01</size></box>")}) {
+        const Scene scene = load_world(folder, large + far);
+        has_bounds(scene, {-150, -150, -0.5}, {150, 150, 0.5});
+        CHECK_FALSE(has_notice(scene, around));
+    }
+    has_bounds(load_world(folder, drawn("4")), {-2, -2, 0.25}, {2, 2, 0.25});
+    has_bounds(load_world(folder, plane("")), {-10, -10, 0.25},
+               {10, 10, 0.25}); // nothing but a plane that nobody draws
     // Bounds that are given are those of the cut.
-    const Scene given = load_world(folder, small_plane, {.bounds = {Vec3(200, 200, 0), Vec3(210, 220, 5)}});
+    const Scene given = load_world(folder, drawn("2"), {.bounds = {Vec3(200, 200, 0), Vec3(210, 220, 5)}});
     CHECK(layers_at(given, 205, 210).size() == 1);
     CHECK(given.map_bounds.min.x() == 200);
+    CHECK_FALSE(has_notice(load_world(folder, plane("") + far, {.bounds = {Vec3(0, 0, 0), Vec3(9, 9, 5)}}), around));
     // A ramp: normal (-1, 0, 1) rises with x.
     const Scene ramp = load_world(folder, model_of("p", "<plane><normal>-1 0 1</normal><size>20 20</size></plane>"));
     const auto at = layers_at(ramp, 4, 3);
@@ -393,7 +421,8 @@ TEST_CASE("what is ground is found by rules, and --label comes first")
         if (rule.what == "name sidewalk*" || rule.what == "name floor*") CHECK(rule.count == 0);
     CHECK(has_notice(told, "label \"nothing*\" matches no model, link, collision, node or material"));
 
-    const std::string furniture = "name of these with light, lamp, sign, block, barrier, rail, cone, post or pole";
+    const std::string furniture = "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, "
+                                  "barrier, rail, cone, post or pole";
     const Scene street = load_world(folder, ground + model_of("street_light", unit_box) + model_of("bridgeRailing", unit_box) + model_of("roadblock_2", unit_box) +
                                                 model_of("bridge_2", unit_box) + model_of("road_design", unit_box));
     const std::map<std::string, std::string> on_street = {{"ground_plane::l::c", "terrain"}, {"street_light::l::c", "obstacle"}, {"bridgeRailing::l::c", "obstacle"},
@@ -407,23 +436,150 @@ TEST_CASE("what is ground is found by rules, and --label comes first")
     CHECK(has_notice(unnamed, "so everything is terrain"));
 }
 
+TEST_CASE("names are split into words, and walls, ceilings and the like are no ground whatever else they are called")
+{
+    const TempFolder folder;
+    const auto label_of = [&](const std::string& name, const std::string& link = "link",
+                              const std::string& collider = "collision") {
+        const Scene scene = load_world(folder, ground + "<model name='" + name + "'><link name='" + link + "'>" +
+                                                   collision(unit_box, collider) + "</link></model>");
+        return std::string(to_string(scene.parts[0].label));
+    };
+    for (const char* const name :
+         {"RetailShopFloor_01", "aws_robomaker_hospital_floor_01_floor", "warehouse_GroundB_01", "HTMLFloor", "floor1",
+          "1stFloor", "GROUND", "Sidewalk_7", "downstairs_floor", "outdoor_ground", "FloorTiles", "Roadway",
+          "ground_plane_box", "drywall_floor"}) {
+        CAPTURE(name);
+        CHECK(label_of(name) == "terrain");
+    }
+    for (const char* const name :
+         {"aws_robomaker_hospital_floor_01_ceiling", "aws_robomaker_hospital_floor_01_walls", "FirstFloorWall",
+          "FloorDoor2", "GroundFloorStairs", "floor_staircase", "RoofFloor", "floor_window", "floorLamp", "floor_lamp",
+          "street_light", "BridgeRailing", "underground", "background_wall", "retailshopfloor", "rock"}) {
+        CAPTURE(name);
+        CHECK(label_of(name) == "obstacle");
+    }
+    // The innermost name that says something decides.
+    CHECK(label_of("ground_floor", "wall_1") == "obstacle");
+    CHECK(label_of("house_wall", "link", "floor") == "terrain");
+    CHECK(label_of("bridge", "link", "railing") == "obstacle");
+}
+
 TEST_CASE("what is missing is told by its name, and refused where the caller is strict")
 {
     const TempFolder folder;
     const std::string world = ground + "<include><uri>model://nowhere</uri></include><include><uri>model://nowhere</uri><name>again</name></include>" +
                               model_of("statue", "<mesh><uri>model://statue/lost.dae</uri></mesh>") + "<model name='ghost'><static>1</static><link name='l'/></model>"
                               "<actor name='walker'><skin><filename>walk.dae</filename></skin></actor><road name='r'><width>2</width><point>0 0 0</point><point>1 0 0</point></road>";
-    const Scene scene = load_world(folder, world);
+    const Scene scene = load_world(folder, world, {.allow_missing = true});
     CAPTURE(scene.notices);
-    CHECK(has_notice(scene, "test.world: line 3: <include> <uri> model://nowhere is found nowhere (2 includes): it is left out"));
-    CHECK(has_notice(scene, "\"statue::l::c\": model://statue/lost.dae is found nowhere: it is left out"));
+    CHECK(has_notice(scene,
+                     "test.world: line 3: <include> <uri> model://nowhere is not found (2 includes): it is left out"));
+    CHECK(has_notice(scene, "\"statue::l::c\": model://statue/lost.dae is not found: it is left out"));
     CHECK(has_notice(scene, "1 model has no collision and is not there for a robot: ghost"));
     CHECK(has_notice(scene, "<actor>: 1 left out"));
     CHECK(has_notice(scene, "<road>: 1 left out"));
     CHECK(scene.parts.size() == 1);
-    const std::string strict = refusal_of(folder, world, {.strict = true});
-    CHECK(has(strict, "model://nowhere"));
+    const std::string strict = refusal_of(
+        folder, ground + model_of("statue", "<mesh><uri>model://statue/lost.dae</uri></mesh>"), {.strict = true});
+    CHECK(has(strict, "model://statue/lost.dae"));
     CHECK(has(strict, "--strict does not allow it"));
+}
+
+TEST_CASE("a world with includes that are not found is refused, with all of them")
+{
+    const TempFolder folder;
+    write_model(folder, "cart",
+                "<model name='cart'><include><uri>model://wheel</uri></include><link name='l'>" + collision(unit_box) +
+                    "</link></model>");
+    const std::string includes =
+        "<include><uri>model://desk</uri></include>\n<include><uri>model://desk</uri><name>b</name></include>\n"
+        "<include><uri>https://fuel.gazebosim.org/1.0/Somebody/models/Chair</uri></include>\n<include><uri>model://"
+        "cart</uri></include>";
+    const std::string refused = refusal_of(folder, ground + includes);
+    CAPTURE(refused);
+    CHECK(has(refused, "test.world: 3 models that it includes are not found; name the folder that holds them with "
+                       "--model-path, download models of Fuel with `gz fuel "
+                       "download -u URI`, or pass --allow-missing to leave them out:\n"));
+    CHECK(has(refused, "\n  line 3: <include> <uri> model://desk is not found (2 includes)\n"));
+    CHECK(has(refused, "line 5: <include> <uri> https://fuel.gazebosim.org/1.0/Somebody/models/Chair is not found\n"));
+    CHECK(has(refused, "model.sdf: line 1: <include> <uri> model://wheel is not found"));
+    CHECK(has(refusal_of(folder, ground + "<include><uri>model://desk</uri></include>"),
+              "1 model that it includes is not found; name the folder that holds it with --model-path, or pass"));
+    CHECK(load_world(folder, ground + includes, {.allow_missing = true}).parts.size() == 2);
+    // All of them missing: they are named.
+    const std::string empty = refusal_of(folder, "<include><uri>model://desk</uri></include>", {.allow_missing = true});
+    CHECK(has(empty, "has no models but those that are missing, so nothing to stand on:\n"));
+    CHECK(has(empty, "model://desk is not found: it is left out"));
+}
+
+TEST_CASE("nothing becomes terrain because a file is missing")
+{
+    const TempFolder folder;
+    const std::string desk = model_of("desk", unit_box),
+                      lost_mesh = model_of("floor", "<mesh><uri>model://house/floor.dae</uri></mesh>");
+    CHECK(load_world(folder, desk).has_terrain());  // nothing is missing: everything is terrain
+    for (const std::string& lost : {lost_mesh, std::string("<include><uri>model://house</uri></include>")}) {
+        const Scene scene = load_world(folder, desk + lost, {.allow_missing = true});
+        CAPTURE(lost);
+        CHECK_FALSE(scene.has_terrain());
+        CHECK(has_notice(scene, "nothing is made terrain"));
+        CHECK(load_world(folder, desk + lost, {.labels = {{"desk", Label::Terrain}}, .allow_missing = true})
+                  .has_terrain());
+    }
+}
+
+TEST_CASE("ground_plane and sun are built in, by all of their names, unless they are on disk")
+{
+    const TempFolder folder;
+    const std::string desk = model_of("desk", unit_box, "<pose>3 0 0 0 0 0</pose>");
+    const auto include = [](const std::string& uri, const std::string& more = "") {
+        return "<include><uri>" + uri + "</uri>" + more + "</include>";
+    };
+    for (const char* const uri :
+         {"model://ground_plane", "model://Ground Plane", "model://GroundPlane/", "ground_plane",
+          "model://ground_plane/model.sdf", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane",
+          "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground%20Plane/2",
+          "https://fuel.ignitionrobotics.org/1.0/openrobotics/models/Ground_Plane/tip",
+          "https://fuel.gazebosim.org/1.0/OpenRobotics/models/ground plane/"}) {
+        CAPTURE(uri);
+        const Scene scene = load_world(folder, desk + include(uri) + include("model://sun"));
+        CAPTURE(scene.notices);
+        REQUIRE(scene.parts.size() == 2);
+        CHECK(scene.parts[1].name == "ground_plane::link::collision");
+        CHECK(scene.parts[1].label == Label::Terrain);
+        CHECK(scene.parts[0].label == Label::Obstacle);
+        CHECK(scene.map_bounds.max.x() == 50);  // Gazebo's is drawn 100 x 100 m
+        CHECK(layers_at(scene, 99, 0) == std::vector<double>{0});
+        CHECK(has_notice(scene, uri + std::string(" is not on disk; the built-in ground plane stands for it")));
+    }
+    for (const char* const uri :
+         {"model://sun", "model://Sun", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Sun",
+          "https://fuel.ignitionrobotics.org/1.0/OpenRobotics/models/Sun/3"})
+        CHECK(load_world(folder, desk + include(uri)).parts.size() == 1);
+    for (const char* const uri :
+         {"model://ground_plane_2", "model://my/ground_plane",
+          "https://fuel.gazebosim.org/1.0/Somebody/models/Ground Plane",
+          "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Sun Flower", "package://ground_plane"})
+        CHECK(has(refusal_of(folder, desk + include(uri)), "is not found"));
+
+    // At the pose of its include, under its name, in another model, with frames.
+    const Scene high = load_world(folder,
+                                  desk + include("model://ground_plane", "<name>deck</name><pose>0 0 2 0 0 0</pose>"));
+    CHECK(high.parts[1].name == "deck::link::collision");
+    CHECK(layers_at(high, 20, 0) == std::vector<double>{2});
+    const Scene nested = load_world(folder, "<frame name='f'/>" + desk +
+                                                "<model name='outer'><pose>0 0 1 0 0 0</pose>" +
+                                                include("model://ground_plane") + "</model>");
+    CHECK(nested.parts[1].name == "outer::ground_plane::link::collision");
+    CHECK(layers_at(nested, 20, 0) == std::vector<double>{1});
+
+    write_model(folder, "ground_plane",
+                "<model name='mine'><link name='l'>" + collision("<box><size>7 7 1</size></box>") + "</link></model>");
+    write_model(folder, "sun", "<light type='directional' name='sun'/>");  // as Gazebo ships it
+    const Scene own = load_world(folder, desk + include("model://ground_plane") + include("model://sun"));
+    CHECK(places(own).contains("mine::l::c"));
+    CHECK_FALSE(has_notice(own, "built-in"));
 }
 
 TEST_CASE("models are found by --model-path, Gazebo's variables and above the file")
@@ -432,14 +588,14 @@ TEST_CASE("models are found by --model-path, Gazebo's variables and above the fi
     elsewhere.write("lib/crate/model.sdf", "<sdf version='1.6'><model name='crate'><link name='l'>" + collision("<mesh><uri>model://crate/meshes/crate.obj</uri></mesh>") + "</link></model></sdf>");
     elsewhere.write("lib/crate/meshes/crate.obj", mesh_text::obj(mesh_text::box(Vec3(0, 0, 0), Vec3(1, 1, 1))));
     const std::string world = ground + "<include><uri>model://crate</uri></include>";
-    CHECK(load_world(folder, world).parts.size() == 1);
+    CHECK(load_world(folder, world, {.allow_missing = true}).parts.size() == 1);
     CHECK(load_world(folder, world, {.model_paths = {elsewhere / "lib"}}).parts.size() == 2);
     for (const char* const variable : {"GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "IGN_GAZEBO_RESOURCE_PATH"}) {
         const Variable set(variable, "/nonexistent:" + (elsewhere / "lib").string());
         CHECK(load_world(folder, world).parts.size() == 2);
     }
     const fs::path inside = elsewhere.write("worlds/test.world", world_of(world));
-    CHECK(load_scene(inside).parts.size() == 1);
+    CHECK(load_scene(inside, {.allow_missing = true}).parts.size() == 1);
     fs::rename(elsewhere / "lib", elsewhere / "models");
     const Scene found = load_scene(inside);
     CHECK(found.parts.size() == 2);
@@ -479,7 +635,7 @@ TEST_CASE("faulty worlds are refused with file, line and element")
     CHECK(has(refusal(folder.write("version.sdf", "<sdf version='abc'><world name='w'/></sdf>")), "line 1: <sdf> has version \"abc\", needs such as version=\"1.6\""));
     const std::string only_lost = refusal(folder.write("lost.sdf", world_of(model_of("a", "<mesh><uri>nothere.dae</uri></mesh>"))));
     CHECK(has(only_lost, "has no geometry: all of it is ignored, missing or without collision"));
-    CHECK(has(only_lost, "nothere.dae is found nowhere"));
+    CHECK(has(only_lost, "nothere.dae is not found"));
     CHECK(has(refusal(folder.write("two.sdf", "<sdf version='1.9'><world name='a'/><world name='b'/></sdf>")), "has 2 worlds, needs one"));
     CHECK(has(refusal(folder / "nowhere"), "does not exist"));
     fs::create_directories(folder / "hollow");

@@ -58,6 +58,14 @@ struct NameRule {
     std::size_t count = 0; ///< of the collisions that it decided
 };
 
+/// Faces of one mesh that have the same node and the same material: label rules take or leave them together.
+struct FaceGroup {
+    std::uint32_t part = 0;
+    std::string node, material;                ///< as the file names them, may be empty
+    std::array<std::uint64_t, 4> triangles{};  ///< by label, with those that are ignored
+    double low = 0, high = 0;                  ///< lowest and highest z of the vertices, m
+};
+
 /// The world: triangles and primitives, labelled, in metres, z up. Everything of one part stands together, in the
 /// order of the scene file; ignored faces are left out.
 struct Scene {
@@ -72,6 +80,7 @@ struct Scene {
     std::optional<GeoOrigin> origin;   ///< from the first elevation model that tells where it lies
     std::vector<std::string> notices;  ///< defaults that mattered while reading; for the user to see
     std::vector<NameRule> rules;       ///< by which an SDF or URDF world was labelled, in their order
+    std::vector<FaceGroup> face_groups;  ///< of all meshes, part after part, in the order of their files
     /// What a map of it covers unless it is told otherwise; empty: all of it. Infinite planes reach beyond.
     Bounds map_bounds = {};
 
@@ -91,13 +100,17 @@ enum class Unknown : std::uint8_t { Free, Blocked };
 
 struct SceneOptions {
     std::vector<LabelRule> labels = {};  ///< come before the file's own rules; the first match wins
+    /// Labels by slope what no rule matches in meshes, OctoMaps and worlds: what looks up and is less steep than this is terrain, the rest
+    /// obstacle (docs/input-files.md). rad, 0 .. pi/2, both excluded; nothing: not asked for.
+    std::optional<double> auto_slope = {};
     char up = 0;                         ///< 'y' or 'z' for a bare mesh; 0: what the format says, else z
     double scale = 1.0;                  ///< m per unit of a bare mesh, > 0
     double wall_height = 0;              ///< m, of the walls of a nav2 map, > 0; 0: 2 m, with a notice
     /// Folders that hold models or ROS packages, for model:// and package:// URIs; then come GZ_SIM_RESOURCE_PATH,
     /// IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH, and the folders above the file with their `models`.
     std::vector<std::filesystem::path> model_paths = {};
-    bool strict = false;                 ///< a model or mesh that is missing is an error, not a notice
+    bool allow_missing = false;          ///< included models that are not found are left out with a notice, not an error
+    bool strict = false;                 ///< anything else that is missing (a mesh, for example) is an error too, not a notice
     std::string heightmap = {};          ///< of a bare elevation model: keys as under `heightmap:`, "size: [513, 513], z: [0, 75]"
     Bounds bounds = {};                  ///< infinite planes are cut to these, and 50 m beyond; empty: to all the rest and their drawn size
     std::optional<Unknown> unknown = {}; ///< of all OctoMaps; nothing: what the scene file says, else Free

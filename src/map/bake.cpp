@@ -126,6 +126,11 @@ Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& 
     if (std::isfinite(map.z_limits.low)) map.bounds.min.z() = map.z_limits.low;
     if (std::isfinite(map.z_limits.high)) map.bounds.max.z() = map.z_limits.high;
     if (!map.bounds.meets(extent)) throw FileError(scene_file.string(), "bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
+    const Vec3 size = map.bounds.max - map.bounds.min;
+    constexpr double tiny = 1 + 1e-9;  // m: no robot's world is smaller, but what is left of one may be
+    if (options.bounds.is_empty() && size.x() <= tiny && size.y() <= tiny)
+        report.notices.push_back("the map is only " + number(size.x()) + " x " + number(size.y()) +
+                                 " m; is a part of the scene missing or in the wrong unit?");
     map.origin = scene.origin;
     map.resolution = options.resolution > 0 ? options.resolution : default_resolution(map.bounds, report);
     map.occupancy_resolution = options.occupancy_resolution > 0

@@ -1,5 +1,6 @@
 #include "mesh/collada_check.h"
 
+#include "base/number.h"
 #include "base/text.h"
 #include "base/xml.h"
 #include "mesh/collada_numbers.h"
@@ -7,7 +8,10 @@
 #include <spawnfield/error.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdint>
+#include <sstream>
 #include <unordered_map>
 
 namespace spawnfield {
@@ -93,6 +97,36 @@ private:
     std::unordered_map<const Xml*, Size> sizes_;
 };
 
+/// Whether assimp reads the colour: four numbers, three for a light, with no space before the first.
+bool is_plain_color(const Xml& color)
+{
+    const std::string text = color.GetText() != nullptr ? color.GetText() : "";
+    const Xml* const parent = color.Parent()->ToElement();
+    const Xml* const above = parent == nullptr ? nullptr : parent->Parent()->ToElement();
+    const std::size_t least = above != nullptr && is_named(*above, "technique_common") ? 3 : 4;
+    std::istringstream words(text);
+    std::size_t count = 0;
+    for (std::string word; words >> word; ++count) {
+        double value = 0;
+        if (!parse_number(word, value) || !std::isfinite(value)) return false;
+    }
+    return count >= least && std::isspace(static_cast<unsigned char>(text.front())) == 0;
+}
+
+/// Replaces the colours that assimp would not read; whether there was one.
+bool replace_colors(Xml& element)  // recursive: tinyxml2 has limited the depth
+{
+    bool found = false;
+    if (is_named(element, "color") && !is_plain_color(element)) {
+        element.DeleteChildren();
+        element.SetText("0 0 0 1");
+        found = true;
+    }
+    for (Xml* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
+        found = replace_colors(*child) || found;
+    return found;
+}
+
 }  // namespace
 
 bool is_collada(std::string_view bytes, const std::string& extension)
@@ -100,7 +134,7 @@ bool is_collada(std::string_view bytes, const std::string& extension)
     return extension == ".dae" || bytes.substr(0, 4096).find("<COLLADA") != std::string_view::npos;
 }
 
-void check_collada(std::string_view bytes, const std::string& file)
+std::string check_collada(std::string_view bytes, const std::string& file)
 {
     tinyxml2::XMLDocument document;
     const tinyxml2::XMLError error = document.Parse(bytes.data(), bytes.size());
@@ -116,6 +150,11 @@ void check_collada(std::string_view bytes, const std::string& file)
         check_collada_numbers(*root, file);
         NodeCheck(*root, file).visit(*root);
     }
+    Xml* const root = document.RootElement();
+    if (root == nullptr || !replace_colors(*root)) return "";
+    tinyxml2::XMLPrinter printer(nullptr, true);
+    document.Print(&printer);
+    return printer.CStr();
 }
 
 }  // namespace spawnfield

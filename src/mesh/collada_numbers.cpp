@@ -60,7 +60,6 @@ private:
         else if (is_named(element, "Name_array") || is_named(element, "IDREF_array")) check_array(element, false);
         else if (is_named(element, "accessor")) accessors_.push_back(&element);
         else if (is_named(element, "vertex_weights")) check_weights(element);
-        else if (is_named(element, "color")) check_color(element);
         else if (const Shape* const shape = shape_of(element)) check_shape(element, *shape);
         else if (is_named(element, "node")) check_transforms(element);
         for (const Xml* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) visit(*child);
@@ -160,18 +159,6 @@ private:
     {
         for (const char* name : {"vcount", "v"})
             for (const Xml* child = weights.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name)) numbers(*child);
-    }
-
-    /// Of materials: assimp would say that "" is no number, but not where.
-    void check_color(const Xml& color) const
-    {
-        static constexpr std::array<const char*, 6> of_material{"emission", "ambient", "diffuse", "specular", "reflective", "transparent"};
-        const std::uint64_t found = numbers(color);
-        const Xml* const parent = color.Parent()->ToElement();
-        const Xml* const above = parent == nullptr ? nullptr : parent->Parent()->ToElement();
-        if (above == nullptr || is_named(*above, "technique_common")) return;  // of a light, which has three
-        for (const char* name : of_material)
-            if (is_named(*parent, name) && found < 4) throw fault(color, "has " + std::to_string(found) + " numbers, needs 4");
     }
 
     void check_shape(const Xml& element, const Shape& shape) const

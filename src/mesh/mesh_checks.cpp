@@ -118,7 +118,7 @@ void check_instances(const aiScene& scene, const std::vector<std::uint64_t>& tri
 
 }  // namespace
 
-void check_mesh_file(const std::filesystem::path& file, Assimp::Importer& importer)
+std::string check_mesh_file(const std::filesystem::path& file, Assimp::Importer& importer)
 {
     const Bytes bytes = map_file(file);
     const std::string extension = lower_case(file.extension().string());
@@ -128,8 +128,8 @@ void check_mesh_file(const std::filesystem::path& file, Assimp::Importer& import
         throw FileError(file.string(), "cannot be read as a mesh: is JSON, and \"" + extension + "\" is no ending of glTF (.gltf, .glb)");
     if (extension == ".zae") throw FileError(file.string(), "is a packed COLLADA file, which is not looked into; unpack it (unzip) and give the .dae in it");
     if (extension == ".gltf" || extension == ".glb") check_gltf(bytes.view, file.string());  // assimp goes by the ending, too
-    if (is_collada(bytes.view, extension)) check_collada(bytes.view, file.string());
     if (extension == ".ply" || is_ply(bytes.view)) take_ply(bytes.view, file.string(), importer);
+    return is_collada(bytes.view, extension) ? check_collada(bytes.view, file.string()) : "";
 }
 
 void check_mesh_scene(const aiScene& scene, const std::string& file)

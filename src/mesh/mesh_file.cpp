@@ -214,12 +214,15 @@ FileMesh read_mesh(const std::filesystem::path& file)
 {
     if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
     const std::string extension = lower_case(file.extension().string());
-    const ObjText obj = extension == ".obj" ? readable_obj(read_file(file)) : ObjText{};
+    ObjText obj = extension == ".obj" ? readable_obj(read_file(file)) : ObjText{};
+    std::string text;  // in place of the file's, if not empty; outlives the importer
     Assimp::Importer importer;
-    check_mesh_file(file, importer);
+    text = check_mesh_file(file, importer);
+    if (extension == ".obj") text = std::move(obj.text);
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};
-    if (extension == ".obj") importer.SetIOHandler(new RespeltFile(file.string(), obj.text));  // which the importer owns
+    if (extension == ".obj" || !text.empty())
+        importer.SetIOHandler(new RespeltFile(file.string(), text));  // which the importer owns
     // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids

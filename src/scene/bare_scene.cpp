@@ -52,7 +52,11 @@ Scene read_octomap_scene(const fs::path& file, Scene scene, Label fallback, cons
         throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() + " is an OctoMap, in metres and z up");
     const Label label = label_by_name(scene.name, options.labels, fallback);
     const std::uint32_t part = add_part(scene, scene.name, "octomap", label);
-    if (label != Label::Ignore) append_octomap(scene, part, file, {}, options.unknown.value_or(Unknown::Free));
+    const bool has_rule = std::any_of(options.labels.begin(), options.labels.end(),
+                                      [&](const LabelRule& rule) { return matches(rule.pattern, scene.name); });
+    if (label != Label::Ignore)
+        append_octomap(scene, part, file, {}, options.unknown.value_or(Unknown::Free),
+                       has_rule ? std::nullopt : options.auto_slope);
     tell_idle_rules(file, options.labels, {scene.name}, scene);
     return scene;
 }
@@ -63,11 +67,9 @@ Scene read_mesh_scene(const fs::path& file, Scene scene, Label fallback, const S
     mesh.scale = Vec3::Constant(options.scale);
     mesh.up = options.up;
     mesh.rules = face_rules(options.labels);
-    const MeshNames found = append_mesh(scene, add_part(scene, scene.name, "mesh", fallback), read_mesh(file), mesh);
-    Names names;
-    add_names(found.nodes, names);
-    add_names(found.materials, names);
-    tell_idle_rules(file, options.labels, names, scene);
+    mesh.auto_slope = options.auto_slope;
+    const std::uint32_t part = add_part(scene, scene.name, "mesh", fallback);
+    tell_idle_rules(file, options.labels, names_of(append_mesh(scene, part, read_mesh(file), mesh)), scene);
     return scene;
 }
 
@@ -77,6 +79,9 @@ Scene read_nav2_scene(const fs::path& file, const SceneOptions& options)
 {
     if (options.up != 0 || options.scale != 1.0 || !options.heightmap.empty())
         throw ArgumentError("load_scene", "up and scale are for a mesh, --heightmap for an elevation model; " + file.string() + " is a 2D map");
+    if (options.auto_slope)
+        throw ArgumentError("load_scene", "auto_slope is for meshes, OctoMaps and worlds; " + file.string() +
+                                              " is a 2D map, with a floor and walls");
     if (!(options.wall_height >= 0) || !std::isfinite(options.wall_height)) throw ArgumentError("load_scene", "wall_height", options.wall_height, "> 0 m");
     constexpr double usual_height = 2;
     const Nav2Map map = read_nav2_map(file);
@@ -95,16 +100,23 @@ Scene read_nav2_scene(const fs::path& file, const SceneOptions& options)
 Scene read_bare_scene(const fs::path& file, const SceneOptions& options)
 {
     const std::string extension = lower_case(file.extension().string());
-    if (is_elevation_model(file, extension, options)) return read_elevation_model(file, options);
+    if (is_elevation_model(file, extension, options)) {
+        if (options.auto_slope)
+            throw ArgumentError("load_scene", "auto_slope is for meshes, OctoMaps and worlds; " + file.string() +
+                                                  " is an elevation model: all of it is terrain");
+        return read_elevation_model(file, options);
+    }
     Scene scene;
     scene.name = file.stem().string();
-    Label fallback = Label::Obstacle;
-    if (options.labels.empty()) {
-        fallback = Label::Terrain;
-        scene.notices.push_back(file.string() + ": no label given, so everything is terrain (--label 'GLOB=LABEL' tells it apart)");
-    }
-    return is_octomap(extension) ? read_octomap_scene(file, std::move(scene), fallback, options)
-                                 : read_mesh_scene(file, std::move(scene), fallback, options);
+    const bool is_unlabelled = options.labels.empty() && !options.auto_slope;
+    const Label fallback = is_unlabelled ? Label::Terrain : Label::Obstacle;
+    scene = is_octomap(extension) ? read_octomap_scene(file, std::move(scene), fallback, options)
+                                  : read_mesh_scene(file, std::move(scene), fallback, options);
+    if (is_unlabelled)
+        scene.notices.insert(scene.notices.begin(),
+                             file.string() + ": no label given, so everything is terrain, walls and furniture too. " +
+                                 labelling_advice(scene));
+    return scene;
 }
 
 }  // namespace spawnfield

@@ -5,8 +5,10 @@
 #include "scene/extrusion.h"
 #include "scene/gazebo_heights.h"
 #include "scene/ground_rules.h"
+#include "scene/label_rules.h"
 #include "scene/mesh.h"
 #include "scene/pieces.h"
+#include "scene/shape_slope.h"
 
 #include <spawnfield/error.h>
 
@@ -23,6 +25,7 @@ namespace fs = std::filesystem;
 using Kind = CollisionGeometry::Kind;
 
 constexpr std::array kind_names{"box", "sphere", "cylinder", "capsule", "ellipsoid", "plane", "mesh", "heightmap", "polyline", "unknown"};
+constexpr double around_the_rest = 10;  // m
 constexpr double beyond_bounds = 50;  // m that planes go on, for what hangs over the map's rim: more than any robot's reach
 
 /// A closed mesh around the ellipsoid of these half axes.
@@ -64,8 +67,8 @@ std::vector<Vec3> plane_in_box(const Pose& pose, const Bounds& box)
 
 class BodyAppender {
 public:
-    BodyAppender(Scene& scene, const fs::path& file, ModelPaths& paths, const SceneOptions& options)
-        : scene_(scene), file_(file), paths_(paths), options_(options)
+    BodyAppender(Scene& scene, const fs::path& file, ModelPaths& paths, const SceneOptions& options, bool is_incomplete)
+        : scene_(scene), file_(file), paths_(paths), options_(options), is_incomplete_(is_incomplete)
     {
     }
 
@@ -76,18 +79,24 @@ public:
         find_files(bodies);
         label(bodies);
         for (std::size_t b = 0; b < bodies.size(); ++b)
-            if (bodies[b].geometry.kind != Kind::Plane) append_body(bodies[b], labels_[b]);
+            if (bodies[b].geometry.kind != Kind::Plane)
+                append_body(bodies[b], labels_[b], by_slope_[b] ? options_.auto_slope : std::nullopt);
         choose_bounds(bodies);
         for (std::size_t b = 0; b < bodies.size(); ++b)
             if (bodies[b].geometry.kind == Kind::Plane) append_plane(bodies[b], labels_[b]);
         tell_ellipsoids();
         tell_idle_rules(bodies);
+        if (everything_is_terrain_)
+            scene_.notices.push_back(file_.string() +
+                                     ": nothing in it is a plane, a heightmap or named as ground, so everything is "
+                                     "terrain, walls and furniture too. " +
+                                     labelling_advice(scene_));
     }
 
     std::vector<std::string> take_missing()
     {
         for (const auto& [uri, lost] : lost_)
-            missing_.push_back(file_.string() + ": " + lost.first + ": " + uri + " is found nowhere" +
+            missing_.push_back(file_.string() + ": " + lost.first + ": " + uri + " is not found" +
                                (lost.second > 1 ? " (" + std::to_string(lost.second) + " collisions)" : "") + ": it is left out");
         return std::move(missing_);
     }
@@ -106,7 +115,7 @@ private:
         for (CollisionBody& body : bodies) {
             CollisionGeometry& geometry = body.geometry;
             if (geometry.kind == Kind::Unknown && !geometry.element.empty() && geometry.element != "empty")
-                missing_.push_back(file_.string() + ": \"" + scoped_name(body) + "\": <" + geometry.element + "> is no geometry that is known here: it is left out");
+                leave_out(body, "<" + geometry.element + "> is no geometry that is known here");
             if (geometry.kind != Kind::Mesh && geometry.kind != Kind::Heightmap) continue;
             const fs::path found = paths_.find(geometry.uri, geometry.folder);
             if (fs::is_regular_file(found)) {
@@ -117,25 +126,34 @@ private:
             ++lost_.try_emplace(geometry.uri.empty() ? "a mesh without <uri>" : geometry.uri, "\"" + scoped_name(body) + "\"", std::size_t{0}).first->second.second;
             geometry.kind = Kind::Unknown;
             geometry.element.clear();
+            is_incomplete_ = true;
         }
     }
 
     void label(const std::vector<CollisionBody>& bodies)
     {
-        GroundRules rules;
+        GroundRules rules(options_.auto_slope.has_value());
         std::size_t unknown = 0;
         for (const CollisionBody& body : bodies) {
             const bool counts = body.geometry.kind != Kind::Unknown;
             unknown += !counts;
             const auto told = std::find_if(options_.labels.begin(), options_.labels.end(), [&](const LabelRule& rule) { return matches_body(rule.pattern, body); });
-            labels_.push_back(!counts ? Label::Ignore : told != options_.labels.end() ? told->label : rules.label_of(body));
+            const std::optional<Label> label = !counts                         ? Label::Ignore
+                                               : told != options_.labels.end() ? told->label
+                                                                               : rules.label_of(body);
+            labels_.push_back(label.value_or(Label::Obstacle));
+            by_slope_.push_back(!label && options_.auto_slope);
         }
-        if (!rules.has_ground() && options_.labels.empty()) {
+        const bool is_unlabelled = !rules.has_ground() && options_.labels.empty() && !options_.auto_slope;
+        if (is_unlabelled && !is_incomplete_) {
+            everything_is_terrain_ = true;
             scene_.rules.push_back({"all: nothing is a plane, a heightmap or named as ground", Label::Terrain, bodies.size() - unknown});
-            scene_.notices.push_back(file_.string() + ": nothing in it is a plane, a heightmap or named as ground, so everything is terrain (--label 'GLOB=LABEL' tells it apart)");
             std::replace(labels_.begin(), labels_.end(), Label::Obstacle, Label::Terrain);
             return;
         }
+        if (is_unlabelled)
+            scene_.notices.push_back(file_.string() + ": nothing in it is a plane, a heightmap or named as ground. As "
+                                                      "parts of it are missing, nothing is made terrain");
         scene_.rules = rules.take();
     }
 
@@ -144,7 +162,8 @@ private:
     {
         std::vector<FaceRule> out;
         for (const LabelRule& rule : options_.labels)
-            out.push_back({matches_body(rule.pattern, body) ? "*" : rule.pattern, true, true, rule.label});
+            out.push_back(matches_body(rule.pattern, body) ? FaceRule{"*", "*", rule.label}
+                                                           : FaceRule{rule.pattern, rule.pattern, rule.label, true});
         return out;
     }
 
@@ -153,14 +172,18 @@ private:
         return spawnfield::add_part(scene_, scoped_name(body), kind_names[std::size_t(body.geometry.kind)], label);
     }
 
-    void append_body(const CollisionBody& body, Label label)
+    /// By slope, unless that is nothing.
+    void append_body(const CollisionBody& body, Label label, std::optional<double> auto_slope)
     {
         const CollisionGeometry& geometry = body.geometry;
         if (geometry.kind == Kind::Unknown) return;
         const std::uint32_t part = add_part(body, label);
         if (const std::optional<Shape> shape = shape_of(geometry, body.pose)) {
             if (label == Label::Ignore) return;
-            scene_.primitives.push_back({*shape, part, label});
+            const std::optional<Label> by_slope = auto_slope ? label_by_slope(*shape, *auto_slope) : label;
+            if (!by_slope) return append_mesh_body(body, part, box_mesh(shape->size), Vec3::Ones(), auto_slope);
+            scene_.primitives.push_back({*shape, part, *by_slope});
+            scene_.parts[part].label = *by_slope;
             scene_.parts[part].solid_pieces = 1;
             return;
         }
@@ -172,14 +195,16 @@ private:
                 append_heightmap(scene_, part, found, middle, true);
                 for (const std::string& text : found.notices) scene_.notices.push_back(files_.at(&body).string() + ": " + text);
             } else if (geometry.kind == Kind::Polyline) {
-                append_mesh_body(body, part, extruded(geometry.outlines, geometry.size[0]), Vec3::Ones());
+                append_mesh_body(body, part, extruded(geometry.outlines, geometry.size[0]), Vec3::Ones(), auto_slope);
             } else if (geometry.kind == Kind::Ellipsoid) {
-                append_ellipsoid(body, part);
+                append_ellipsoid(body, part, auto_slope);
             } else {
                 const auto mesh = meshes_.read(files_.at(&body));
                 if (!has_submesh(*mesh, geometry)) return leave_out_part(body, "<submesh> \"" + geometry.submesh + "\" is no node of " + files_.at(&body).string());
-                if (geometry.submesh.empty()) append_mesh_body(body, part, *mesh, geometry.size);
-                else append_mesh_body(body, part, submesh_of(*mesh, geometry, files_.at(&body).string()), geometry.size);
+                if (geometry.submesh.empty()) append_mesh_body(body, part, *mesh, geometry.size, auto_slope);
+                else
+                    append_mesh_body(body, part, submesh_of(*mesh, geometry, files_.at(&body).string()), geometry.size,
+                                     auto_slope);
             }
         } catch (const std::domain_error& error) {
             throw FileError(file_.string(), "\"" + scoped_name(body) + "\": <polyline>: " + error.what());
@@ -188,31 +213,36 @@ private:
         }
     }
 
+    void leave_out(const CollisionBody& body, const std::string& why)
+    {
+        missing_.push_back(file_.string() + ": \"" + scoped_name(body) + "\": " + why + ": it is left out");
+        is_incomplete_ = true;
+    }
+
     /// The part that was added last.
     void leave_out_part(const CollisionBody& body, const std::string& why)
     {
         scene_.parts.pop_back();
-        missing_.push_back(file_.string() + ": \"" + scoped_name(body) + "\": " + why + ": it is left out");
+        leave_out(body, why);
     }
 
-    void append_mesh_body(const CollisionBody& body, std::uint32_t part, const FileMesh& mesh, const Vec3& scale)
+    void append_mesh_body(const CollisionBody& body, std::uint32_t part, const FileMesh& mesh, const Vec3& scale,
+                          std::optional<double> auto_slope)
     {
         MeshOptions options;
         options.pose = body.pose;
         options.scale = scale;
         options.up = 'z';  // as Gazebo: a file's own axes count, whatever it says is up
         options.rules = rules_for(body);
-        const MeshNames names = append_mesh(scene_, part, mesh, options);
-        if (options_.labels.empty()) return;
-        mesh_names_.insert(names.nodes.begin(), names.nodes.end());
-        mesh_names_.insert(names.materials.begin(), names.materials.end());
+        options.auto_slope = auto_slope;
+        append_mesh(scene_, part, mesh, options);
     }
 
-    void append_ellipsoid(const CollisionBody& body, std::uint32_t part)
+    void append_ellipsoid(const CollisionBody& body, std::uint32_t part, std::optional<double> auto_slope)
     {
         constexpr int rounds = 4;  // 5,120 triangles, within a thousandth of the ellipsoid
         const SphereMesh sphere = mesh_around_unit_sphere(rounds);
-        append_mesh_body(body, part, ellipsoid_mesh(sphere, body.geometry.size), Vec3::Ones());
+        append_mesh_body(body, part, ellipsoid_mesh(sphere, body.geometry.size), Vec3::Ones(), auto_slope);
         ++ellipsoids_;
         ellipsoid_growth_ = std::max(ellipsoid_growth_, (sphere.vertices[0].norm() - 1) * body.geometry.size.maxCoeff());
     }
@@ -224,23 +254,50 @@ private:
                                      " a mesh around it, at most " + number(std::ceil(ellipsoid_growth_ * 1e4) / 1e4) + " m larger");
     }
 
-    /// Those of the options; else all but the planes, and these as far as they are drawn.
+    /// Those of the options; else all but the planes, and these as far as they are drawn. Planes that are drawn no
+    /// larger than the rest, or not at all, say nothing about the world's extent: then the rest and some metres
+    /// around it.
     void choose_bounds(const std::vector<CollisionBody>& bodies)
     {
         scene_.map_bounds = options_.bounds;
-        if (!scene_.map_bounds.is_empty()) return;
-        bool has_plane = false;
-        Bounds all = scene_.bounds();
+        std::vector<const CollisionBody*> planes;
         for (const CollisionBody& body : bodies)
-            if (body.geometry.kind == Kind::Plane) {
-                has_plane = true;
-                for (const double u : {-0.5, 0.5})
-                    for (const double v : {-0.5, 0.5}) {
-                        const Pose pose = plane_pose(body);
-                        all.extend(pose.position + pose.rotation * Vec3(u * body.geometry.size[0], v * body.geometry.size[1], 0));
-                    }
-            }
-        if (has_plane) scene_.map_bounds = all;
+            if (body.geometry.kind == Kind::Plane) planes.push_back(&body);
+        if (!scene_.map_bounds.is_empty() || planes.empty()) return;
+        Bounds rest = scene_.bounds();
+        if (rest.is_empty())
+            for (const CollisionBody* const plane : planes) rest.extend(plane->pose.position);
+        Bounds all = rest;
+        bool is_larger = false;
+        for (const CollisionBody* const plane : planes) {
+            Bounds drawn = drawn_bounds(*plane);
+            if (plane->geometry.size.x() == 0)
+                drawn.min.head<2>() = drawn.max.head<2>() = rest.min.head<2>();  // its height alone counts
+            all.extend(drawn.min);
+            all.extend(drawn.max);
+            is_larger = is_larger || ((drawn.max - drawn.min) - (rest.max - rest.min)).head<2>().maxCoeff() > 0;
+        }
+        if (!is_larger) {
+            all.min.head<2>() = rest.min.head<2>().array() - around_the_rest;
+            all.max.head<2>() = rest.max.head<2>().array() + around_the_rest;
+            scene_.notices.push_back(file_.string() +
+                                     ": the ground plane is infinite and no <visual> draws it larger than the rest of "
+                                     "the world. The map covers " +
+                                     "the rest and " + number(around_the_rest) + " m around it (--bounds sets it)");
+        }
+        scene_.map_bounds = all;
+    }
+
+    /// Around the plane as far as it is drawn: its origin if nothing draws it.
+    static Bounds drawn_bounds(const CollisionBody& plane)
+    {
+        Bounds box;
+        const Pose pose = plane_pose(plane);
+        for (const double u : {-0.5, 0.5})
+            for (const double v : {-0.5, 0.5})
+                box.extend(pose.position +
+                           pose.rotation * Vec3(u * plane.geometry.size[0], v * plane.geometry.size[1], 0));
+        return box;
     }
 
     static Pose plane_pose(const CollisionBody& body)
@@ -266,9 +323,9 @@ private:
     /// Rules of the options that match nothing: most often slips of the pen.
     void tell_idle_rules(const std::vector<CollisionBody>& bodies)
     {
+        const Names mesh_names = options_.labels.empty() ? Names() : names_of(scene_.face_groups);
         for (const LabelRule& rule : options_.labels) {
-            const auto is_match = [&](const std::string& name) { return matches(rule.pattern, name); };
-            const bool is_used = std::any_of(mesh_names_.begin(), mesh_names_.end(), is_match) ||
+            const bool is_used = matches_one(rule.pattern, mesh_names) ||
                                  std::any_of(bodies.begin(), bodies.end(), [&](const CollisionBody& body) { return matches_body(rule.pattern, body); });
             if (!is_used)
                 scene_.notices.push_back(file_.string() + ": label \"" + rule.pattern + "\" matches no model, link, collision, node or material");
@@ -279,12 +336,14 @@ private:
     const fs::path file_;
     ModelPaths& paths_;
     const SceneOptions& options_;
+    bool is_incomplete_;  ///< something of the world is missing, which could be the ground
     MeshFiles meshes_;
-    std::vector<Label> labels_;  ///< one for each body
+    std::vector<Label> labels_;   ///< one for each body
+    std::vector<bool> by_slope_;  ///< one for each body: its label is one for want of a better
+    bool everything_is_terrain_ = false;
     std::map<const CollisionBody*, fs::path> files_;
     std::map<std::string, std::pair<std::string, std::size_t>> lost_;  ///< by URI: whose first, how often
     std::vector<std::string> missing_;
-    std::set<std::string> mesh_names_;
     std::size_t ellipsoids_ = 0;
     double ellipsoid_growth_ = 0;  ///< m
 };
@@ -294,7 +353,7 @@ private:
 void append_bodies(Scene& scene, const fs::path& file, std::vector<CollisionBody> bodies, ModelPaths& paths, const SceneOptions& options,
                    std::vector<std::string> missing)
 {
-    BodyAppender appender(scene, file, paths, options);
+    BodyAppender appender(scene, file, paths, options, !missing.empty());
     appender.append(bodies);
     for (std::string& line : appender.take_missing()) missing.push_back(std::move(line));
     if (options.strict && !missing.empty()) throw FileError(missing[0], std::to_string(missing.size()) + " in all are missing, and --strict does not allow it");

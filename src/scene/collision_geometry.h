@@ -10,8 +10,10 @@ namespace spawnfield {
 struct CollisionGeometry {
     enum class Kind { Box, Sphere, Cylinder, Capsule, Ellipsoid, Plane, Mesh, Heightmap, Polyline, Unknown };
     Kind kind = Kind::Unknown;
-    /// Box: side lengths; sphere: radius, -, -; cylinder, capsule: radius, straight length, -; ellipsoid: radii; plane: side
-    /// lengths as drawn, -; mesh: scale; heightmap: sides and the height of its brightest pixel; polyline: height, -, -.
+    /// Box: side lengths; sphere: radius, -, -; cylinder, capsule: radius, straight length, -; ellipsoid: radii;
+    /// plane: side lengths as drawn by a <visual> of its link, -, all 0 if none draws it (a plane has no end, so the
+    /// collision's own <size> means nothing); mesh: scale; heightmap: sides and the height of its brightest pixel;
+    /// polyline: height, -, -.
     Vec3 size = Vec3::Ones();
     Vec3 normal = Vec3::UnitZ();                ///< plane; not of unit length necessarily
     std::string uri;                            ///< mesh, heightmap: as the file has it

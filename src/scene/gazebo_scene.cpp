@@ -2,6 +2,7 @@
 
 #include "robot/urdf.h"
 #include "scene/bodies.h"
+#include "scene/built_in_models.h"
 #include "scene/label_rules.h"
 #include "scene/sdf_world.h"
 
@@ -24,14 +25,29 @@ void tell_guessed(const fs::path& file, const ModelPaths& paths, Scene& scene)
     tell_some(file, guessed, guessed.size() == 1 ? "folder of models was found above the file (--model-path names others)" : "folders of models were found above the file (--model-path names others)", scene);
 }
 
+void tell_built_in(const fs::path& file, const ModelPaths& paths, Scene& scene)
+{
+    for (const std::string& uri : paths.built_in())
+        if (built_in_model(uri) == "ground_plane")
+            scene.notices.push_back(file.string() + ": " + uri +
+                                    " is not on disk; the built-in ground plane stands for it");
+}
+
 }  // namespace
 
 Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
 {
     ModelPaths paths(options.model_paths, file);
-    SdfWorld world = read_sdf_world(file, paths);
-    if (world.model_count == 0)
-        throw FileError(file.string(), "has no models, so nothing to stand on; what is spawned into it at run time has to be in the file");
+    SdfWorld world = read_sdf_world(file, paths, options.allow_missing);
+    if (world.model_count == 0) {
+        std::string list;
+        for (const std::string& text : world.missing) list += "\n  " + text;
+        throw FileError(
+            file.string(),
+            list.empty()
+                ? "has no models, so nothing to stand on; what is spawned into it at run time has to be in the file"
+                : "has no models but those that are missing, so nothing to stand on:" + list);
+    }
     Scene scene;
     scene.name = world.name.empty() || world.name == "default" ? file.stem().string() : world.name;
     scene.notices = std::move(world.notices);
@@ -45,6 +61,7 @@ Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
     tell_count("actor", world.actor_count, " left out, as they move");
     tell_count("road", world.road_count, " left out, as they are only seen");
     tell_guessed(file, paths, scene);
+    tell_built_in(file, paths, scene);
     return scene;
 }
 

@@ -1,57 +1,59 @@
 #include "scene/ground_rules.h"
 
 #include "scene/glob.h"
+#include "scene/name_words.h"
 
 #include <algorithm>
-#include <cctype>
-#include <optional>
 
 namespace spawnfield {
 namespace {
 
 using Kind = CollisionGeometry::Kind;
 
-/// What stands for ground in most worlds; a name matches from the start of one of its words on.
-constexpr std::array ground_names{"ground*", "terrain*", "floor*", "road*", "street*", "sidewalk*", "pavement*", "asphalt*", "bridge*", "ramp*"};
+/// The ground of most worlds. A word of a name counts if it begins with one of these.
+constexpr std::array ground_words{"ground",   "terrain",  "floor",   "road",   "street",
+                                  "sidewalk", "pavement", "asphalt", "bridge", "ramp"};
 
-/// What stands on or beside such ground, in a name that begins like it: from the start of a word on, or of a hump ("bridgeRailing").
-constexpr std::array furniture_names{"light*", "lamp*", "sign*", "block*", "barrier*", "rail*", "cone*", "post*", "pole*",
-                                     "roadblock*", "roadsign*", "streetlight*", "streetlamp*", "floorlamp*", "rampart*"};
+/// What stands on, beside or above the ground, and may have a ground's name: "street_light", "Floor_01_ceiling",
+/// "bridgeRailing". Here too a word counts if it begins with one of these ("staircase", "doorway").
+constexpr std::array other_words{"ceiling",    "wall",      "roof",   "door",      "window",   "stair",
+                                 "lamp",       "light",     "sign",   "block",     "barrier",  "rail",
+                                 "cone",       "post",      "pole",   "roadblock", "roadsign", "streetlight",
+                                 "streetlamp", "floorlamp", "rampart"};
 
-/// Between "e" and "R" of "bridgeRailing".
-bool is_hump(unsigned char before, unsigned char after) { return std::islower(before) && std::isupper(after); }
+constexpr const char* other_rule =
+    "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, barrier, rail, cone, post or pole";
 
-/// Whether the glob matches the name from a word's start: "GroundB_01" in "warehouse_GroundB_01".
-bool matches_from_a_word(const std::string& glob, const std::string& name, bool from_humps = false)
-{
-    for (std::size_t start = 0; start < name.size(); ++start) {
-        const bool is_start = start == 0 || !std::isalnum(static_cast<unsigned char>(name[start - 1])) ||
-                              (from_humps && is_hump(static_cast<unsigned char>(name[start - 1]), static_cast<unsigned char>(name[start])));
-        if (is_start && matches(glob, name.substr(start))) return true;
-    }
-    return false;
-}
-
-bool is_furniture(const std::string& name)
-{
-    return std::any_of(furniture_names.begin(), furniture_names.end(), [&](const char* glob) { return matches_from_a_word(glob, name, true); });
-}
-
-/// By number of ground_names; nothing if no name of the body is one of ground.
-struct GroundName {
-    std::optional<std::size_t> ground;
-    bool has_furniture = false;  ///< a name that would be one of ground is one of furniture
+/// What one name says.
+struct NameSays {
+    std::optional<std::size_t> ground;  ///< index into ground_words
+    bool is_other = false;              ///< a word begins with one of other_words; then it is no ground
 };
 
-GroundName ground_name_of(const CollisionBody& body)
+NameSays look_at(const std::string& name)
 {
-    GroundName out;
-    for (std::size_t r = 0; r < ground_names.size(); ++r)
-        for (const std::string& name : body.names) {
-            if (!matches_from_a_word(ground_names[r], name)) continue;
-            if (is_furniture(name)) out.has_furniture = true;
-            else if (!out.ground) out.ground = r;
-        }
+    NameSays out;
+    for (const std::string& word : words_of_name(name)) {
+        const auto begins = [&](const char* stem) { return word.starts_with(stem); };
+        out.is_other = out.is_other || std::any_of(other_words.begin(), other_words.end(), begins);
+        const auto ground = std::find_if(ground_words.begin(), ground_words.end(), begins);
+        if (!out.ground && ground != ground_words.end()) out.ground = std::size_t(ground - ground_words.begin());
+    }
+    return out;
+}
+
+/// What the innermost of the names says that says something. `ground` and `is_other` together: another name, or
+/// another word of this one, would make it ground.
+NameSays look_at(const CollisionBody& body)
+{
+    NameSays out;
+    bool is_decided = false;
+    for (auto name = body.names.rbegin(); name != body.names.rend(); ++name) {
+        const NameSays says = look_at(*name);
+        if (!out.ground) out.ground = says.ground;
+        if (!is_decided) out.is_other = says.is_other;
+        is_decided = is_decided || says.ground || says.is_other;
+    }
     return out;
 }
 
@@ -63,24 +65,34 @@ bool matches_body(const std::string& glob, const CollisionBody& body)
            std::any_of(body.names.begin(), body.names.end(), [&](const std::string& name) { return matches(glob, name); });
 }
 
-GroundRules::GroundRules()
+std::string ground_word(const std::string& name)
+{
+    const NameSays says = look_at(name);
+    return says.ground && !says.is_other ? ground_words[*says.ground] : "";
+}
+
+GroundRules::GroundRules(bool by_slope)
 {
     rules_.push_back({"plane", Label::Terrain, 0});
     rules_.push_back({"heightmap", Label::Terrain, 0});
-    for (const char* const name : ground_names) rules_.push_back({std::string("name ") + name, Label::Terrain, 0});
-    rules_.push_back({"name of these with light, lamp, sign, block, barrier, rail, cone, post or pole", Label::Obstacle, 0});
-    rules_.push_back({"all else", Label::Obstacle, 0});
+    for (const char* const word : ground_words)
+        rules_.push_back({std::string("name ") + word + "*", Label::Terrain, 0});
+    rules_.push_back({other_rule, Label::Obstacle, 0});
+    rules_.push_back(
+        {by_slope ? "all else, but for what --auto-label makes terrain," : "all else", Label::Obstacle, 0});
 }
 
-Label GroundRules::label_of(const CollisionBody& body)
+std::optional<Label> GroundRules::label_of(const CollisionBody& body)
 {
-    const GroundName name = ground_name_of(body);
+    const NameSays says = look_at(body);
+    const std::size_t all_else = rules_.size() - 1, other = all_else - 1;
     const std::size_t rule = body.geometry.kind == Kind::Plane       ? 0
                              : body.geometry.kind == Kind::Heightmap ? 1
-                             : name.ground                           ? 2 + *name.ground
-                                                                     : rules_.size() - (name.has_furniture ? 2 : 1);
+                             : says.ground && !says.is_other         ? 2 + *says.ground
+                             : says.ground                           ? other
+                                                                     : all_else;
     ++rules_[rule].count;
-    return rules_[rule].label;
+    return rule == all_else ? std::nullopt : std::optional(rules_[rule].label);
 }
 
 bool GroundRules::has_ground() const

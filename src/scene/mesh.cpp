@@ -1,18 +1,24 @@
 #include "scene/mesh.h"
 
+#include "base/number.h"
 #include "scene/pieces.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 
 namespace spawnfield {
 namespace {
 
-Label label_of(const std::string& node, const std::string& material, const MeshOptions& options, Label fallback)
+/// By the first rule that matches.
+std::optional<Label> label_of(const std::string& node, const std::string& material, const std::vector<FaceRule>& rules)
 {
-    for (const FaceRule& rule : options.rules)
-        if ((rule.node && matches(rule.pattern, node)) || (rule.material && matches(rule.pattern, material))) return rule.label;
-    return fallback;
+    for (const FaceRule& rule : rules)
+        if (rule.matches(node, material)) return rule.label;
+    return {};
 }
 
 /// A watertight piece is filled unless some of its faces, but not all, are water, or any are left out.
@@ -27,12 +33,32 @@ bool is_filled(const std::vector<Label>& labels, const std::vector<std::uint32_t
     return count(Label::Ignore) == 0 && (water == 0 || water == std::ptrdiff_t(faces.size()));
 }
 
+/// Area of the shells' faces that are level enough to be ground, m2.
+struct ShellAreas {
+    double up = 0, down = 0;
+};
+
 /// Appends one node's kept faces piece by piece, with the vertices that they use.
 class NodeAppender {
 public:
     NodeAppender(Scene& scene, std::uint32_t part, const FileMesh::Node& node, const MeshOptions& options, char up)
         : scene_(scene), part_(part), node_(node), options_(options), up_(up), index_(node.vertices.size(), unused)
     {
+    }
+
+    /// Labels by slope those of the faces that have no rule. Adds to `areas` what the faces of shells show.
+    void label_by_slope(const std::vector<std::uint32_t>& faces, const std::vector<char>& has_rule,
+                        std::uint32_t open_edges, std::vector<Label>& labels, ShellAreas& areas) const
+    {
+        const bool filled = is_filled(labels, faces, open_edges == 0, options_.solid);
+        for (const std::uint32_t face : faces) {
+            if (has_rule[face] != 0) continue;
+            const Vec3 normal = up_normal(face);
+            const double level = std::cos(*options_.auto_slope) * normal.norm();
+            const bool looks_up = normal.z() > level, looks_down = -normal.z() > level;
+            labels[face] = looks_up || (filled && looks_down) ? Label::Terrain : Label::Obstacle;
+            if (!filled) (looks_down ? areas.down : areas.up) += looks_up || looks_down ? normal.norm() / 2 : 0;
+        }
     }
 
     void add_piece(const std::vector<std::uint32_t>& faces, const std::vector<Label>& labels, std::uint32_t open_edges)
@@ -55,6 +81,13 @@ public:
         scene_.pieces.push_back(piece);
     }
 
+    /// A vertex in the scene's frame.
+    Vec3 placed(std::uint32_t local) const
+    {
+        const Vec3 metres = turned_up(node_.vertices[local].cwiseProduct(options_.scale), up_);
+        return options_.pose.rotation * metres + options_.pose.position;
+    }
+
 private:
     void add_face(std::uint32_t face, Label label, Piece& piece)
     {
@@ -72,10 +105,18 @@ private:
     {
         if (index_[local] == unused) {
             index_[local] = static_cast<std::uint32_t>(scene_.vertices.size());
-            const Vec3 metres = turned_up(node_.vertices[local].cwiseProduct(options_.scale), up_);
-            scene_.vertices.push_back(options_.pose.rotation * metres + options_.pose.position);
+            scene_.vertices.push_back(placed(local));
         }
         return index_[local];
+    }
+
+    /// In the scene, towards the side from which the file's corners are counterclockwise, twice as long as the face
+    /// has area.
+    Vec3 up_normal(std::uint32_t face) const
+    {
+        const auto [a, b, c] = node_.triangles[face];
+        const Vec3 corner = placed(a), normal = (placed(b) - corner).cross(placed(c) - corner);
+        return options_.scale.prod() < 0 ? Vec3(-normal) : normal;  // the scale mirrors
     }
 
     static constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
@@ -87,27 +128,65 @@ private:
     std::vector<std::uint32_t> index_;
 };
 
+/// Appends the groups of a node's faces, in the order of their materials.
+void append_groups(Scene& scene, std::uint32_t part, const FileMesh& mesh, const FileMesh::Node& node,
+                   const std::vector<Label>& labels, const NodeAppender& appender)
+{
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    std::map<std::uint32_t, FaceGroup> groups;  // by material
+    for (std::size_t face = 0; face < node.triangles.size(); ++face) {
+        const auto [entry, is_new] = groups.try_emplace(node.materials[face]);
+        FaceGroup& group = entry->second;
+        if (is_new) group = {part, node.name, mesh.materials[node.materials[face]], {}, infinite, -infinite};
+        ++group.triangles[std::size_t(labels[face])];
+        for (const std::uint32_t corner : node.triangles[face]) {
+            const double z = appender.placed(corner).z();
+            group.low = std::min(group.low, z);
+            group.high = std::max(group.high, z);
+        }
+    }
+    for (auto& [material, group] : groups) scene.face_groups.push_back(std::move(group));
+}
+
+void append_node(Scene& scene, std::uint32_t part, const FileMesh& mesh, const FileMesh::Node& node,
+                 const MeshOptions& options, ShellAreas& areas)
+{
+    std::vector<std::optional<Label>> of_material;
+    for (const std::string& material : mesh.materials)
+        of_material.push_back(label_of(node.name, material, options.rules));
+    std::vector<Label> labels;
+    std::vector<char> has_rule;
+    for (const std::uint32_t material : node.materials) {
+        labels.push_back(of_material[material].value_or(scene.parts[part].label));
+        has_rule.push_back(of_material[material].has_value());
+    }
+    const FacePieces pieces = find_pieces(node.triangles);
+    std::vector<std::vector<std::uint32_t>> faces(pieces.open_edges.size());
+    for (std::uint32_t face = 0; face < pieces.of_face.size(); ++face) faces[pieces.of_face[face]].push_back(face);
+    NodeAppender appender(scene, part, node, options, options.up != 0 ? options.up : mesh.up);
+    for (std::size_t piece = 0; piece < faces.size(); ++piece) {
+        if (options.auto_slope)
+            appender.label_by_slope(faces[piece], has_rule, pieces.open_edges[piece], labels, areas);
+        appender.add_piece(faces[piece], labels, pieces.open_edges[piece]);
+    }
+    append_groups(scene, part, mesh, node, labels, appender);
+}
+
 }  // namespace
 
-MeshNames append_mesh(Scene& scene, std::uint32_t part, const FileMesh& mesh, const MeshOptions& options)
+std::span<const FaceGroup> append_mesh(Scene& scene, std::uint32_t part, const FileMesh& mesh,
+                                       const MeshOptions& options)
 {
-    const char up = options.up != 0 ? options.up : mesh.up;
-    MeshNames names{{}, mesh.materials};
-    for (const FileMesh::Node& node : mesh.nodes) {
-        std::vector<Label> labels;
-        for (const std::uint32_t material : node.materials)
-            labels.push_back(label_of(node.name, mesh.materials[material], options, scene.parts[part].label));
-        const FacePieces pieces = find_pieces(node.triangles);
-        std::vector<std::vector<std::uint32_t>> faces(pieces.open_edges.size());
-        for (std::uint32_t face = 0; face < pieces.of_face.size(); ++face) faces[pieces.of_face[face]].push_back(face);
-        NodeAppender appender(scene, part, node, options, up);
-        for (std::size_t piece = 0; piece < faces.size(); ++piece)
-            appender.add_piece(faces[piece], labels, pieces.open_edges[piece]);
-        names.nodes.push_back(node.name);
-    }
+    const std::size_t first = scene.face_groups.size();
+    ShellAreas areas;
+    for (const FileMesh::Node& node : mesh.nodes) append_node(scene, part, mesh, node, options, areas);
     for (const std::string& notice : mesh.notices)
         if (std::find(scene.notices.begin(), scene.notices.end(), notice) == scene.notices.end()) scene.notices.push_back(notice);
-    return names;
+    if (areas.up == 0 && areas.down > 0)
+        scene.notices.push_back("\"" + scene.parts[part].name + "\": no face of its shells looks up and " +
+                                number(std::round(areas.down * 1000) / 1000) +
+                                " m2 look down, so --auto-label makes them obstacles; is the mesh inside out?");
+    return std::span(scene.face_groups).subspan(first);
 }
 
 void append_plane(Scene& scene, std::uint32_t part, double size_x, double size_y, const Pose& pose, bool sides_up)

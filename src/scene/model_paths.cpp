@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/xml.h"
+#include "scene/built_in_models.h"
 
 #include <spawnfield/error.h>
 
@@ -71,6 +72,15 @@ ModelPaths::ModelPaths(const std::vector<Path>& given, const Path& file) : named
 }
 
 ModelPaths::Path ModelPaths::find(const std::string& uri, const Path& folder)
+{
+    const Path found = find_on_disk(uri, folder);
+    const std::string model = found.empty() ? built_in_model(uri) : "";
+    if (model.empty()) return found;
+    built_in_.insert(uri);
+    return built_in_file(model);
+}
+
+ModelPaths::Path ModelPaths::find_on_disk(const std::string& uri, const Path& folder)
 {
     if (uri.starts_with("https://") || uri.starts_with("http://")) return found_in_fuel_cache(uri);
     Path inside = uri;

@@ -12,19 +12,26 @@ class ModelPaths {
 public:
     using Path = std::filesystem::path;
 
-    /// Looks into the given folders first, then into those of GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH,
-    /// then into the folders above `file` and the `models` folders in them.
+    /// Looks into the given folders first, then into those of GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and
+    /// GAZEBO_MODEL_PATH, then into the folders above `file` and the `models` folders in them, at last at the
+    /// built-in models (built_in_models.h).
     ModelPaths(const std::vector<Path>& given, const Path& file);
 
     /// What the URI names, seen from a file in `folder`: a file or a folder that exists, or nothing.
     Path find(const std::string& uri, const Path& folder);
 
+    /// URIs for which a built-in model was taken, as nothing on disk has the name.
+    const std::set<std::string>& built_in() const { return built_in_; }
+
     /// Folders above the file's own in which something was found: nobody named them.
     const std::set<Path>& guessed() const { return guessed_; }
 
 private:
+    Path find_on_disk(const std::string& uri, const Path& folder);
+
     std::vector<Path> named_, above_;
     std::set<Path> guessed_;
+    std::set<std::string> built_in_;
 };
 
 /// The SDF file of a model folder: what its model.config names with the highest version, or else its only .sdf. Throws FileError.

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace spawnfield {
 
@@ -85,6 +86,8 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
         throw ArgumentError("load_scene", "scale", options.scale, "> 0 m per unit");
     if (!options.bounds.is_empty() && !is_near(options.bounds))
         throw ArgumentError("load_scene", "bounds are " + to_string(options.bounds, 3) + ", need to lie within " + number(farthest) + " m of 0, 0, 0");
+    if (options.auto_slope && !(*options.auto_slope > 0 && *options.auto_slope < std::numbers::pi / 2))
+        throw ArgumentError("load_scene", "auto_slope", *options.auto_slope, "> 0 and < pi/2 rad");
     const fs::path file = scene_file_of(scene_path);
     std::error_code unreachable;
     const fs::file_status status = fs::status(file, unreachable);

@@ -1,5 +1,6 @@
 #include "scene/scene_yaml.h"
 
+#include "base/number.h"
 #include "scene/heightmap.h"
 #include "scene/label_rules.h"
 #include "scene/octomap_part.h"
@@ -8,6 +9,8 @@
 
 #include <spawnfield/error.h>
 
+#include <algorithm>
+#include <numbers>
 #include <set>
 
 namespace spawnfield {
@@ -26,20 +29,24 @@ Label read_label(const YamlMap& map, const std::string& fallback)
 FaceRule read_rule(const YamlMap& rule)
 {
     rule.only({"node", "material", "label"});
-    if (rule.has("node") == rule.has("material")) rule.fail("needs one of node, material");
+    if (!rule.has("node") && !rule.has("material")) rule.fail("needs node, material, or both: both must match");
     if (!rule.has("label")) rule.fail("label", "is missing");
-    const bool by_node = rule.has("node");
-    return {rule.text(by_node ? "node" : "material"), by_node, !by_node, read_label(rule, "")};
+    return {rule.text("node", "*"), rule.text("material", "*"), read_label(rule, "")};
 }
 
 /// A rule that matches nothing is most often a slip of the pen.
-void tell_idle_rules(const YamlMap& part, const std::vector<FaceRule>& rules, const MeshNames& names, Scene& scene)
+void tell_idle_rules(const YamlMap& part, const std::vector<FaceRule>& rules, std::span<const FaceGroup> groups,
+                     Scene& scene)
 {
     for (const FaceRule& rule : rules) {
-        if (rule.node && rule.material) continue;  // from the caller; told when all parts are read
-        if (matches_one(rule.pattern, rule.node ? names.nodes : names.materials)) continue;
-        scene.notices.push_back(part.file() + ": " + part.place() + ": labels: " + (rule.node ? "node" : "material") + " \"" +
-                                rule.pattern + "\" matches nothing");
+        if (rule.either) continue;  // from the caller; told when all parts are read
+        if (std::any_of(groups.begin(), groups.end(),
+                        [&](const FaceGroup& group) { return rule.matches(group.node, group.material); }))
+            continue;
+        const std::string node = rule.node == "*" ? "" : "node \"" + rule.node + "\"",
+                          material = rule.material == "*" ? "" : "material \"" + rule.material + "\"";
+        scene.notices.push_back(part.file() + ": " + part.place() + ": labels: " + node +
+                                (node.empty() || material.empty() ? "" : " with ") + material + " matches nothing");
     }
 }
 
@@ -55,6 +62,18 @@ void in_part(const YamlMap& map, const std::string& key, Read read)
     }
 }
 
+/// rad, of the options or else of the part; nothing for a part with a label of its own.
+std::optional<double> read_auto_slope(const YamlMap& part, const SceneOptions& options)
+{
+    if (!part.has("auto_label")) return part.has("label") ? std::nullopt : options.auto_slope;
+    if (part.has("label")) part.fail("auto_label", "cannot stand beside label; labels: may");
+    const YamlMap keys = part.map("auto_label");
+    keys.only({"slope"});
+    const double degrees = keys.positive("slope");
+    if (!(degrees < 90)) keys.fail("slope", "is " + number(degrees) + ", needs > 0 and < 90 degrees");
+    return options.auto_slope ? options.auto_slope : degrees * std::numbers::pi / 180;
+}
+
 MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
 {
     MeshOptions mesh;
@@ -64,6 +83,7 @@ MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
     const std::string solid = part.one_of("solid", {"auto", "true", "false"}, "auto");
     mesh.solid = solid == "auto" ? MeshOptions::Solid::Auto : solid == "true" ? MeshOptions::Solid::Yes : MeshOptions::Solid::No;
     mesh.sides_up = part.one_of("sides", {"both", "up"}, "both") == "up";
+    mesh.auto_slope = read_auto_slope(part, options);
     mesh.rules = face_rules(options.labels);
     if (part.has("labels"))
         for (const YAML::Node& rule : part.list("labels"))
@@ -86,16 +106,24 @@ struct SceneFile {
 
 void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
 {
-    const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
-                                      {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels", "unknown"});
-    if (kind == "mesh") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "mesh", "up", "scale", "solid", "sides", "labels"});
+    const std::string kind = only_key(
+        map, {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap", "octomap"},
+        {"name", "label", "xyz", "rpy", "rpy_deg", "up", "scale", "solid", "sides", "labels", "auto_label", "unknown"});
+    if (kind == "mesh")
+        map.only({"name", "label", "xyz", "rpy", "rpy_deg", "mesh", "up", "scale", "solid", "sides", "labels",
+                  "auto_label"});
     else if (kind == "plane") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "plane", "sides"});
     else if (kind == "heightmap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "heightmap", "sides"});
-    else if (kind == "octomap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "octomap", "unknown"});
+    else if (kind == "octomap")
+        map.only({"name", "label", "xyz", "rpy", "rpy_deg", "octomap", "auto_label", "unknown"});
     else map.only({"name", "label", "xyz", "rpy", "rpy_deg", kind.c_str()});
 
     Label label = read_label(map, "obstacle");
     const std::string name = map.text("name");
+    const std::vector<LabelRule>& rules = file.options.labels;
+    const bool by_name = kind != "mesh" && std::any_of(rules.begin(), rules.end(), [&](const LabelRule& rule) {
+                             return matches(rule.pattern, name);
+                         });
     if (kind != "mesh") {
         file.add({name});
         label = label_by_name(name, file.options.labels, label);
@@ -104,10 +132,10 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
     if (kind == "mesh") {
         const MeshOptions mesh = read_mesh_options(map, file.options);
         in_part(map, "mesh", [&](const auto& path) {
-            const MeshNames found = append_mesh(scene, part, *file.meshes.read(file.folder / path), mesh);
-            tell_idle_rules(map, mesh.rules, found, scene);
-            file.add(found.nodes);
-            file.add(found.materials);
+            const std::span<const FaceGroup> groups = append_mesh(scene, part, *file.meshes.read(file.folder / path),
+                                                                  mesh);
+            tell_idle_rules(map, mesh.rules, groups, scene);
+            file.add(names_of(groups));
         });
     } else if (label == Label::Ignore) {
         return;
@@ -125,7 +153,8 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
     } else if (kind == "octomap") {
         const Unknown given = map.one_of("unknown", {"free", "blocked"}, "free") == "blocked" ? Unknown::Blocked : Unknown::Free;
         in_part(map, "octomap", [&](const auto& path) {
-            append_octomap(scene, part, file.folder / path, map.pose(), file.options.unknown.value_or(given));
+            append_octomap(scene, part, file.folder / path, map.pose(), file.options.unknown.value_or(given),
+                           by_name ? std::nullopt : read_auto_slope(map, file.options));
         });
     } else {
         scene.primitives.push_back({read_shape(map, kind), part, label});

@@ -84,6 +84,32 @@ fs::path included_file(const std::string& uri, const fs::path& folder, ModelPath
     return found.empty() || !fs::is_directory(found) ? found : sdf_file_of(found);
 }
 
+std::string words_of(const MissingIncludes::value_type& missing)
+{
+    const auto& [uri, place] = missing;
+    return place.first + ": <include> <uri> " + uri + " is not found" +
+           (place.second > 1 ? " (" + std::to_string(place.second) + " includes)" : "");
+}
+
+void refuse_missing(const fs::path& file, const MissingIncludes& missing)
+{
+    std::string list;
+    bool has_fuel = false;
+    const std::string prefix = file.string() + ": ";
+    for (const MissingIncludes::value_type& entry : missing) {
+        const std::string words = words_of(entry);
+        list += "\n  " + (words.starts_with(prefix) ? words.substr(prefix.size()) : words);
+        has_fuel = has_fuel || entry.first.starts_with("http");
+    }
+    const bool is_one = missing.size() == 1;
+    throw FileError(file.string(),
+                    std::to_string(missing.size()) +
+                        (is_one ? " model that it includes is" : " models that it includes are") +
+                        " not found; name the folder that holds " + (is_one ? "it" : "them") + " with --model-path" +
+                        (has_fuel ? ", download models of Fuel with `gz fuel download -u URI`" : "") +
+                        ", or pass --allow-missing to leave " + (is_one ? "it" : "them") + " out:" + list);
+}
+
 MissingIncludes check_includes(const fs::path& file, const tinyxml2::XMLDocument& document, ModelPaths& paths)
 {
     IncludeWalk walk(paths);

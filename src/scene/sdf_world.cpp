@@ -58,12 +58,18 @@ bool hangs_on_frames(const Xml& world)
 
 class WorldReader {
 public:
-    WorldReader(fs::path file, ModelPaths& paths) : file_(std::move(file)), paths_(paths) {}
+    WorldReader(fs::path file, ModelPaths& paths, bool allow_missing)
+        : file_(std::move(file)), paths_(paths), allow_missing_(allow_missing)
+    {
+    }
 
     SdfWorld read()
     {
         const auto document = read_sdf_xml(file_);
         missing_ = check_includes(file_, *document, paths_);
+        if (!allow_missing_ && !missing_.empty()) refuse_missing(file_, missing_);
+        for (const MissingIncludes::value_type& entry : missing_)
+            out_.missing.push_back(words_of(entry) + ": it is left out");
         const Xml* const world = document->RootElement()->FirstChildElement("world");
         if (world == nullptr) {
             read_lone_model();
@@ -78,9 +84,6 @@ public:
             append(read_sdf_file(file_, paths_, text_for_libsdformat(*document, *world, includes)));
             for (const Xml* const include : includes) append_include(*include);
         }
-        for (const auto& [uri, place] : missing_)
-            out_.missing.push_back(place.first + ": <include> <uri> " + uri + " is found nowhere" +
-                                   (place.second > 1 ? " (" + std::to_string(place.second) + " includes)" : "") + ": it is left out");
         return std::move(out_);
     }
 
@@ -217,14 +220,18 @@ private:
 
     const fs::path file_;
     ModelPaths& paths_;
+    const bool allow_missing_;
+    MissingIncludes missing_;
     SdfWorld out_;
     std::set<std::string> names_;
     std::map<fs::path, SdfContent> models_;
-    MissingIncludes missing_;
 };
 
 }  // namespace
 
-SdfWorld read_sdf_world(const fs::path& file, ModelPaths& paths) { return WorldReader(file, paths).read(); }
+SdfWorld read_sdf_world(const fs::path& file, ModelPaths& paths, bool allow_missing)
+{
+    return WorldReader(file, paths, allow_missing).read();
+}
 
 }  // namespace spawnfield

@@ -5,10 +5,34 @@
 
 #include <spawnfield/error.h>
 
+#include <tuple>
+
 namespace spawnfield {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Side lengths of the largest plane, box or heightmap that the link draws, as the first two numbers; 0 if it draws
+/// none.
+Vec3 drawn_size(const sdf::Link& link)
+{
+    constexpr double largest = 1e6;  // m, as of shapes that collide
+    Vec3 size = Vec3::Zero();
+    for (std::uint64_t v = 0; v < link.VisualCount(); ++v) {
+        const sdf::Geometry* const geometry = link.VisualByIndex(v)->Geom();
+        if (geometry == nullptr) continue;
+        double x = 0, y = 0;
+        if (geometry->PlaneShape() != nullptr)
+            std::tie(x, y) = std::pair(geometry->PlaneShape()->Size().X(), geometry->PlaneShape()->Size().Y());
+        if (geometry->BoxShape() != nullptr)
+            std::tie(x, y) = std::pair(geometry->BoxShape()->Size().X(), geometry->BoxShape()->Size().Y());
+        if (geometry->HeightmapShape() != nullptr)
+            std::tie(x, y) = std::pair(geometry->HeightmapShape()->Size().X(), geometry->HeightmapShape()->Size().Y());
+        const bool is_usable = x > 0 && y > 0 && x <= largest && y <= largest;
+        if (is_usable && x * y > size.x() * size.y()) size = Vec3(x, y, 0);
+    }
+    return size;
+}
 
 class SdfReader {
 public:
@@ -19,6 +43,7 @@ public:
         sdf::Root root;
         sdf::Errors errors = text ? root.LoadSdfString(*text, session_.config()) : root.Load(path_for_libsdformat(file_), session_.config());
         if (root.WorldCount() == 0 && root.Model() == nullptr) {
+            if (root.Light() != nullptr) return {};  // such as Gazebo's "sun"; what includes it is left to libsdformat
             if (!errors.empty()) throw FileError(words_of(errors[0], file_.string()), "cannot be read as SDF");
             throw FileError(file_.string(), "has no <world> and no <model>, needs one of them");
         }
@@ -105,6 +130,8 @@ private:
             }
             names_.push_back(collision.Name());
             content_.bodies.push_back({names_, pose * resolved(collision.SemanticPose()), geometry_of(*collision.Geom(), place_of(collision))});
+            CollisionGeometry& geometry = content_.bodies.back().geometry;
+            if (geometry.kind == CollisionGeometry::Kind::Plane) geometry.size = drawn_size(link);
             names_.pop_back();
         }
     }

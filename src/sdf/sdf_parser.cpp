@@ -41,7 +41,8 @@ public:
             break;
         case sdf::GeometryType::ELLIPSOID: set(out, Kind::Ellipsoid, "<ellipsoid> <radii>", vector_of(from.EllipsoidShape()->Radii())); break;
         case sdf::GeometryType::PLANE:
-            set(out, Kind::Plane, "<plane> <size>", Vec3(from.PlaneShape()->Size().X(), from.PlaneShape()->Size().Y(), 1));
+            out.kind = Kind::Plane;
+            out.size = Vec3::Zero();
             out.normal = vector_of(from.PlaneShape()->Normal());
             if (!(out.normal.norm() > 0) || !out.normal.allFinite()) fail("<plane> <normal> is (" + list(out.normal) + "), needs a direction");
             break;

@@ -38,7 +38,7 @@ int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
 
     reading.bounds = options.bounds;
     Scene scene = load_scene(args.scene, reading);
-    for (const std::string& text : scene.notices) notice(args, text);
+    notices(args, scene.notices);
     summary.lap("load");
     const BakeReport report = bake(std::move(scene), scene_file_of(args.scene), args.out, options);
     for (const std::string& text : report.notices) notice(args, text);

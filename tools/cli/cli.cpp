@@ -1,6 +1,7 @@
 #include "cli.h"
 
 #include "interrupt.h"
+#include "notices.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/output_file.h>
@@ -84,6 +85,11 @@ void notice(const CommonArgs& args, const std::string& text)
     if (args.quiet) return;
     clear_progress_bar();
     std::cerr << "notice: " << text << "\n";
+}
+
+void notices(const CommonArgs& args, const std::vector<std::string>& texts)
+{
+    for (const std::string& text : grouped(texts)) notice(args, text);
 }
 
 std::string number(double value)
@@ -220,7 +226,7 @@ std::unique_ptr<Session> open_session(const QueryArgs& args)
         return session;
     }
     session->robot = load_robot(args.robot, robot_options(args));
-    for (const std::string& text : session->robot.notices) notice(args, text);
+    notices(args, session->robot.notices);
     session->map = read_map(args.map);
     if (args.collision == "octree") {
         auto tree = std::make_shared<const OccupancyTree>(read_occupancy(session->map));

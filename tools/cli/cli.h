@@ -64,6 +64,9 @@ void tell_idle(const CommonArgs& args, const CLI::App& command, const std::vecto
 /// Words for people: notices, one at a time on standard error, unless --quiet.
 void notice(const CommonArgs& args, const std::string& text);
 
+/// The same for several: those of one kind are printed once, with a count (notices.h).
+void notices(const CommonArgs& args, const std::vector<std::string>& texts);
+
 /// The shortest text that reads back to the same double.
 std::string number(double value);
 

@@ -45,10 +45,43 @@ Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
     return out;
 }
 
+/// Labels of what each part holds, in the order of Label.
+Json labels_of_parts(const Scene& scene)
+{
+    std::vector<std::array<bool, 4>> found(scene.parts.size());
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+        found[scene.pieces[scene.triangle_pieces[t]].part][std::size_t(scene.triangle_labels[t])] = true;
+    for (const Primitive& primitive : scene.primitives) found[primitive.part][std::size_t(primitive.label)] = true;
+    Json out = Json::array();
+    for (const std::array<bool, 4>& of_part : found) {
+        Json labels = Json::array();
+        for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water})
+            if (of_part[std::size_t(label)]) labels.push_back(to_string(label));
+        out.push_back(std::move(labels));
+    }
+    return out;
+}
+
+/// What label rules can match in a mesh.
+Json json_of(const FaceGroup& group)
+{
+    Json triangles = Json::object();
+    for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water, Label::Ignore})
+        if (const std::uint64_t count = group.triangles[std::size_t(label)]; count > 0)
+            triangles[to_string(label)] = count;
+    return {
+        {"node", group.node}, {"material", group.material}, {"triangles", triangles}, {"z", {group.low, group.high}}};
+}
+
 Json scene_json(const Scene& scene)
 {
     Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds)}};
     out.update(json_of(scene.count_labels(), scene.parts));
+    const Json labels = labels_of_parts(scene);
+    for (std::size_t p = 0; p < scene.parts.size(); ++p) out["parts"][p]["labels"] = labels[p];
+    for (const FaceGroup& group : scene.face_groups)
+        if (scene.parts[group.part].kind == "mesh")
+            out["parts"][group.part]["names"].push_back(json_of(group)); // others are meshes of our own making
     for (const NameRule& rule : scene.rules)
         out["rules"].push_back({{"what", rule.what}, {"label", to_string(rule.label)}, {"collisions", rule.count}});
     if (scene.origin) out["origin"] = json_of(*scene.origin);
@@ -149,7 +182,12 @@ std::string origin_line(const Json& out)
 /// Says what is filled and what is a shell, as nothing surprises more.
 std::string part_line(const Json& part)
 {
-    std::string line = "  " + part["name"].get<std::string>() + ": " + part["kind"].get<std::string>() + ", " + part["label"].get<std::string>();
+    std::string labels = part["label"];
+    if (part.contains("labels") && !part["labels"].empty()) {
+        labels.clear();
+        for (const Json& label : part["labels"]) labels += (labels.empty() ? "" : " and ") + label.get<std::string>();
+    }
+    std::string line = "  " + part["name"].get<std::string>() + ": " + part["kind"].get<std::string>() + ", " + labels;
     if (part["triangles"] > 0) line += ", " + counted(part["triangles"], "triangle");
     if (part["solid_pieces"] > 0) line += ", " + part["solid_pieces"].dump() + " solid";
     if (part["sheet_pieces"] > 0) {
@@ -159,6 +197,46 @@ std::string part_line(const Json& part)
     }
     if (part["solid_pieces"] == 0 && part["sheet_pieces"] == 0) line += ", left out";
     return line + "\n";
+}
+
+constexpr std::size_t most_lines = 60;  // of a list; --json has all
+
+std::string more_line(std::size_t count)
+{
+    return count > most_lines ? "  … and " + std::to_string(count - most_lines) + " more (--json lists all)\n" : "";
+}
+
+/// A line for each node and material of the meshes, those of the most triangles first.
+std::string name_lines(const Json& parts)
+{
+    struct Line {
+        std::uint64_t triangles;
+        std::string text;
+    };
+    std::vector<Line> lines;
+    const auto has_names = [](const Json& part) { return part.contains("names"); };
+    const bool is_one = std::count_if(parts.begin(), parts.end(), has_names) <= 1;
+    for (const Json& part : parts)
+        for (const Json& group : part.value("names", Json::array())) {
+            std::uint64_t triangles = 0;
+            std::string labels;
+            for (const auto& [label, count] : group["triangles"].items()) {
+                triangles += count.get<std::uint64_t>();
+                labels += (labels.empty() ? "" : " and ") + label;
+            }
+            char heights[80];
+            std::snprintf(heights, sizeof heights, ", z %.6g to %.6g m, ", group["z"][0].get<double>(),
+                          group["z"][1].get<double>());
+            lines.push_back({triangles, "  " + (is_one ? "" : part["name"].get<std::string>() + ": ") + "node " +
+                                            group["node"].dump() + ", material " + group["material"].dump() + ": " +
+                                            counted(triangles, "triangle") + heights + labels + "\n"});
+        }
+    if (lines.empty()) return "";
+    std::stable_sort(lines.begin(), lines.end(),
+                     [](const Line& l, const Line& r) { return l.triangles > r.triangles; });
+    std::string out = "names in meshes, for --label\n";
+    for (std::size_t i = 0; i < std::min(most_lines, lines.size()); ++i) out += lines[i].text;
+    return out + more_line(lines.size());
 }
 
 std::string scene_lines(const Json& scene)
@@ -171,11 +249,9 @@ std::string scene_lines(const Json& scene)
         for (const Json& rule : scene["rules"])
             out += "  " + rule["what"].get<std::string>() + " is " + rule["label"].get<std::string>() + ": " + counted(rule["collisions"], "collision") + "\n";
     out += "parts\n";
-    constexpr std::size_t most = 60;
     const Json& parts = scene["parts"];
-    for (std::size_t i = 0; i < std::min(most, parts.size()); ++i) out += part_line(parts[i]);
-    if (parts.size() > most) out += "  … and " + std::to_string(parts.size() - most) + " more (--json lists all)\n";
-    return out;
+    for (std::size_t i = 0; i < std::min(most_lines, parts.size()); ++i) out += part_line(parts[i]);
+    return out + more_line(parts.size()) + name_lines(parts);
 }
 
 /// "floors: --floor K selects one", then a line for each, the highest first as they lie above each other.
@@ -306,14 +382,14 @@ int run_info(const InfoArgs& args, const CLI::App& command)
         refuse(command, scene_option_names, "is for a scene; " + args.what + " is a robot");
         refuse(command, {"--verify"}, "is for a map; " + args.what + " is a robot");
         const Robot robot = load_robot(args.what, robot_options(args));
-        for (const std::string& text : robot.notices) notice(args, text);
+        notices(args, robot.notices);
         if (picture_to) write_robot_picture(robot, picture_to->path);
         out = robot_json(robot);
     } else {
         refuse(command, robot_options_of_info, "is for a robot; " + args.what + " is none");
         refuse(command, {"--verify"}, "is for a map folder; " + args.what + " is none");
         const Scene scene = load_scene(args.what, scene_options(args, args));
-        for (const std::string& text : scene.notices) notice(args, text);
+        notices(args, scene.notices);
         out = scene_json(scene);
     }
     listen(1);

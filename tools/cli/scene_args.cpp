@@ -1,5 +1,8 @@
 #include "scene_args.h"
 
+#include <numbers>
+#include <sstream>
+
 namespace spawnfield::cli {
 namespace {
 
@@ -10,6 +13,18 @@ LabelRule parse_label(const std::string& text)
     for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water, Label::Ignore})
         if (name == to_string(label) && equals > 0) return {text.substr(0, equals), label};
     throw ArgumentError("--label is \"" + text + "\", needs GLOB=terrain, GLOB=obstacle, GLOB=water or GLOB=ignore");
+}
+
+/// rad
+double parse_slope(const std::string& text)
+{
+    const std::string key = "slope=";
+    std::istringstream number(text.starts_with(key) ? text.substr(key.size()) : "");
+    double degrees = 0;
+    if (!(number >> degrees) || !number.eof() || !(degrees > 0 && degrees < 90))
+        throw ArgumentError("--auto-label is \"" + text +
+                            "\", needs slope=DEG with more than 0 and less than 90 degrees, for example slope=30");
+    return degrees * std::numbers::pi / 180;
 }
 
 }  // namespace
@@ -24,7 +39,16 @@ void add_scene_options(CLI::App& command, SceneArgs& args)
     command.add_option("--wall-height", args.wall_height, "Of the walls of a 2D map (map.yaml of nav2 or ROS), m (default 2)");
     command.add_option("--label", args.labels,
                        "'GLOB=LABEL': label of the nodes, materials, parts, models, links or collisions whose name matches (repeatable; first match wins)");
-    command.add_flag("--strict", args.strict, "Refuse a world of which a model or a mesh is missing");
+    command.add_option("--auto-label", args.auto_label,
+                       "slope=DEG: what no label names is terrain where it looks up and is less steep than DEG "
+                       "degrees, else obstacle (meshes, OctoMaps, worlds)");
+    auto* strict = command.add_flag(
+        "--strict", args.strict,
+        "Refuse a world of which anything is missing: a mesh, for example (a missing include is always refused)");
+    command
+        .add_flag("--allow-missing", args.allow_missing,
+                  "Leave out the models that a world includes and that are not found")
+        ->excludes(strict);
 }
 
 SceneOptions scene_options(const SceneArgs& args, const ModelPathArgs& paths)
@@ -33,11 +57,13 @@ SceneOptions scene_options(const SceneArgs& args, const ModelPathArgs& paths)
     for (const std::string& label : args.labels) options.labels.push_back(parse_label(label));
     options.up = args.up.empty() ? char{0} : args.up[0];
     options.scale = parse_positive("--scale", args.scale);
+    if (!args.auto_label.empty()) options.auto_slope = parse_slope(args.auto_label);
     if (!args.unknown.empty()) options.unknown = args.unknown == "blocked" ? Unknown::Blocked : Unknown::Free;
     options.heightmap = args.heightmap;
     if (args.wall_height) options.wall_height = parse_positive("--wall-height", *args.wall_height);
     options.model_paths.assign(paths.model_paths.begin(), paths.model_paths.end());
     options.strict = args.strict;
+    options.allow_missing = args.allow_missing;
     return options;
 }
 
