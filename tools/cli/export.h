@@ -6,10 +6,10 @@ namespace spawnfield::cli {
 
 /// Options of `export`; which of them a format takes its row of the table says.
 struct ExportArgs : QueryArgs {
-    std::string format, out, layers, bounds, poses;
+    std::string format, out, layers, bounds, poses, yaw = "0";
     bool local = false;
     SimulatorArgs simulator;
-    double resolution = 0, step = 0, offset = 0.1, yaw = 0;
+    double resolution = 0, step = 0, offset = 0.1;
 };
 
 /// What a format's writer gets.

@@ -1,4 +1,6 @@
+#include "angle.h"
 #include "export.h"
+#include "streams.h"
 
 #include <spawnfield/map_export.h>
 
@@ -18,7 +20,7 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
     fill(options, args, "export");
     options.exact_time = &job.summary.exact_time;
     options.offset = parse_finite("--offset", args.offset, "m");
-    options.yaw = parse_finite("--yaw", args.yaw, "rad");
+    options.yaw = parse_yaw(args, args.yaw);
     options.layers = parse_layers(args.layers.empty() ? layers : args.layers);
     tell_idle(args, job.command, {"--max-height"}, "the robot stands on each layer");
     tell_if_no_layer(args, job.session.map, options.layers);
@@ -123,7 +125,7 @@ void write_glb(const ExportJob& job)
     } else {
         const PoseTable table = open_poses(job.args, job.args.poses);
         markers.poses = table.poses;
-        markers.verdicts = verdicts_of(table, job.args.poses);
+        markers.verdicts = verdicts_of(table, input_name(job.args.poses));
         markers.names = column_of(table, "name");
     }
     const Progress progress = progress_bar(job.args, "export");

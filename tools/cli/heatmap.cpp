@@ -1,4 +1,6 @@
+#include "angle.h"
 #include "area_args.h"
+#include "streams.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
@@ -10,8 +12,8 @@ namespace {
 
 struct HeatmapArgs : QueryArgs {
     AreaArgs area;
-    std::string out, quantity = "verdict", layers = "all", spawns, bounds;
-    double step = 0, offset = 0.1, yaw = 0;
+    std::string out, quantity = "verdict", layers = "all", spawns, bounds, yaw = "0";
+    double step = 0, offset = 0.1;
     int size = 1000;
 };
 
@@ -38,7 +40,7 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     options.exact_time = &summary.exact_time;
     tell_idle(args, command, {"--max-height"}, "the robot stands on each layer");
     options.offset = parse_finite("--offset", args.offset, "m");
-    options.yaw = parse_finite("--yaw", args.yaw, "rad");
+    options.yaw = parse_yaw(args, args.yaw);
     options.layers = parse_layers(args.layers);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     options.area = read_area(args, args.area);
@@ -57,7 +59,7 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     const RasterResult result = raster(session->map, *session->checker, options);
     summary.lap("query");
     picture.title = session->map.name + ", " + session->robot.name;
-    write_heatmap(session->map, terrain, result, picture, args.out);
+    write_heatmap(session->map, terrain, result, picture, output_name(args.out));
     summary.lap("write");
     summary.set_counts(result.counts);
     summary.exact_checks = result.exact_checks;
@@ -74,14 +76,15 @@ void add_heatmap(CLI::App& app, Run& run)
     auto args = std::make_shared<HeatmapArgs>();
     CLI::App& command = *app.add_subcommand("heatmap", "Picture of where the robot can stand");
     add_query(command, *args);
-    command.add_option("--out,-o", args->out, "PNG file to draw")->required()->check(not_empty());
+    command.add_option("--out,-o", args->out, "PNG file to draw (- for standard output)")->required()->check(not_empty());
     command.add_option("--quantity", args->quantity, "verdict, height, clearance or slope (default verdict)")
-        ->check(CLI::IsMember({"verdict", "height", "clearance", "slope"}));
-    command.add_option("--spawns", args->spawns, "CSV file of spawns to draw as arrows");
+        ->check(one_of({"verdict", "height", "clearance", "slope"}));
+    command.add_option("--spawns", args->spawns, "CSV file of spawns to draw as arrows (- for standard input)");
+    add_allow_empty(command, *args);
     command.add_option("--layers,--layer", args->layers, "all (valid if one layer is), top, bottom, or N from the top (0 first)");
     command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
     command.add_option("--offset", args->offset, "Of the robot's origin above its layer, m (default 0.1)");
-    command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
+    command.add_option("--yaw", args->yaw, "Of all poses, " + yaw_help + " (default 0)");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
     add_area(command, args->area);
     command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000)")->check(CLI::Range(200, 16000));

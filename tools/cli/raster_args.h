@@ -7,9 +7,9 @@ namespace spawnfield::cli {
 /// Options of rasters beside steps and outputs, as `raster` and `experiment` take them.
 struct RasterArgs : QueryArgs {
     int dims = 2;
-    double offset = 0.1, yaw = 0;
+    double offset = 0.1;
     AreaArgs area;
-    std::string bounds, layers = "all";
+    std::string bounds, layers = "all", yaw = "0";
     bool no_height_check = false, snap = false;
 };
 void add_raster_query(CLI::App& command, RasterArgs& args);

@@ -1,4 +1,6 @@
+#include "angle.h"
 #include "area_args.h"
+#include "avoid_args.h"
 #include "simulator_output.h"
 #include "spawn_args.h"
 #include "thesis_output.h"
@@ -14,6 +16,7 @@ struct SpawnArgs : QueryArgs {
     DrawArgs draws;
     SimulatorArgs simulator;
     AreaArgs area;
+    AvoidArgs avoid;
     double offset = 0.1;
     std::string bounds, layers = "all", yaw = "0", format = "csv", out;
 
@@ -24,11 +27,13 @@ std::string shortfall(const SpawnOptions& options, const SpawnList& list, const 
 {
     const std::string found = std::to_string(list.spawns.size()), of_count = found + " of " + std::to_string(options.count) + " spawns ";
     const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
+                               (list.near_avoided > 0 ? "a smaller --avoid-distance, " : "") +
                                (std::isfinite(options.max_slope) ? "a larger --max-slope, " : "") +
                                (command == "sample"               ? "another --offset or a wider --region"
                                 : options.area.is_everywhere() ? "more --max-failures or wider --bounds"
                                                                : "more --max-failures or a wider --region");
-    if (list.is_full && list.spawns.empty()) return "no spawn fits: it is proven that no pose is valid; " + advice + " may give some";
+    if (list.is_full && list.spawns.empty()) return std::string("no spawn fits: it is proven that no pose is valid") + (list.near_avoided > 0 ? " and far enough from the avoided poses; " : "; ") +
+                                                            advice + " may give some";
     if (list.is_full) return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice + " may give more";
     if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
     char area[32];
@@ -49,12 +54,14 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnO
     add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, command == "sample" ? 2 : 3));
     for (const Region& region : options.area.within) add("Region", region.name);
     for (const Region& region : options.area.keep_out) add("Keep out", region.name);
+    for (const AvoidedPoints& group : options.avoid) add("Avoid", words_of(group));
     add("Max water depth (m)", number(options.max_water_depth));
     if (std::isfinite(options.max_slope)) add("Max slope (rad)", number(options.max_slope));
     out.insert(out.end(), own.begin(), own.end());
     add("Spawns", std::to_string(list.spawns.size()));
     add("Draws", std::to_string(list.draws));
     if (!options.area.is_everywhere()) add("Draws off the region", std::to_string(list.off_area));
+    if (!options.avoid.empty()) add("Draws near avoided poses", std::to_string(list.near_avoided));
     add("Draws too close", std::to_string(list.too_close));
     add("Positions that are not valid", "counted, not written");
     return out;
@@ -79,7 +86,9 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
     summary.seed = options.seed;
     summary.extra = {std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns",
                      counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
+                         (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
                          (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region")};
+    summary.draws = {{"all", list.draws}, {"too_close", list.too_close}, {"near_avoided", list.near_avoided}, {"off_region", list.off_area}};
     summary.finish();
     if (list.spawns.size() == options.count) return done;
     notice(args, shortfall(options, list, command));
@@ -91,7 +100,10 @@ template <class Options>
 int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Options&), Summary& summary, const SpawnArgs& args,
               const CLI::App& app, Options options, const std::string& command, const Settings& own, const std::function<void(const Session&)>& tell)
 {
-    options.random_yaw = !parse_yaw(args.yaw, options.yaw);
+    const std::optional<double> yaw = parse_yaw_or_random(args, args.yaw);
+    options.random_yaw = !yaw;
+    options.yaw = yaw.value_or(0);
+    options.avoid = read_avoided(args, args.avoid, options.min_distance);
     options.exact_time = &summary.exact_time;
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     if (folder) tell_idle_options(args, app, args.format);
@@ -99,6 +111,7 @@ int run_spawn(SpawnList (*query)(const Map&, const CollisionChecker&, const Opti
     if (!folder) output.emplace(args, app, args.simulator, SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args)});
     const auto session = open_session(args);
     tell(*session);
+    tell_about_avoided(args, session->map, options.avoid);
     summary.lap("load");
     const SpawnList list = query(session->map, *session->checker, options);
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
@@ -151,11 +164,13 @@ void add_spawn_options(CLI::App& command, SpawnArgs& args)
     add_draws(command, args.draws);
     command.get_option("--count")->required();
     add_area(command, args.area);
-    command.add_option("--yaw", args.yaw, "rad, or random (default 0)");
+    add_avoid(command, args.avoid);
+    add_allow_empty(command, args);
+    command.add_option("--yaw", args.yaw, yaw_help + ", or random (default 0)");
     std::vector<std::string> formats = pose_formats;
     formats.push_back("thesis");
     command.add_option("--format", args.format, "csv, json; a file for a simulator; or thesis: a folder of Valid_Locations.txt and the like (default csv)")
-        ->check(CLI::IsMember(formats));
+        ->check(one_of(formats));
     command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
     add_simulator_options(command, args.simulator);
 }
