@@ -155,7 +155,7 @@ TEST_CASE("every mistake in a scene file is told by file, part, key, value and l
          "labels: label is \"sea\", needs one of terrain, obstacle, water, ignore (line 4)"},
         {"{name: tank, mesh: none.obj}",
          "mesh cannot be used: @/none.obj: does not exist; is the path right? (line 4)"},
-        {"{name: tank, mesh: .}", "mesh cannot be used: @/.: does not exist; is the path right? (line 4)"},
+        {"{name: tank, mesh: .}", "mesh cannot be used: @/.: is a folder, needs a file (line 4)"},
         {"{name: tank, mesh: [a]}", "mesh is a list, needs a text (line 4)"},
         {"{name: tank, octomap: none.bt}",
          "octomap cannot be used: @/none.bt: does not exist; is the path right? (line 4)"},
@@ -341,7 +341,8 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
     fs::remove(map / "map.yaml");
     CHECK(read() == "@/map: is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");
-    CHECK(complaint(folder, [&] { read_map(folder / "scene.yaml"); }) == "@/scene.yaml: is no map folder");
+    CHECK(complaint(folder, [&] { read_map(folder / "scene.yaml"); }) ==
+          "@/scene.yaml: is a file, and a map is a folder; bake a scene first: spawnfield bake @/scene.yaml -o MAP");
 }
 
 TEST_CASE("a folder of another program that has a map.yaml too is not replaced")

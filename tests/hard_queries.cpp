@@ -121,11 +121,24 @@ Options spawn_options(const HardCase& hard, Random& random)
     return options;
 }
 
+/// Points to avoid, anywhere in the map.
+std::vector<AvoidedPoints> some_points(const TestMap& map, Random& random)
+{
+    AvoidedPoints out;
+    const Vec3 size = map.bounds.max - map.bounds.min;
+    out.distance = random.between(0, 0.2) * size.head<2>().minCoeff();
+    for (int n = random.below(20); n > 0; --n)
+        out.points.push_back(map.bounds.min +
+                             size.cwiseProduct(Vec3(random.between(0, 1), random.between(0, 1), random.between(0, 1))));
+    return {out};
+}
+
 Tally samples(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
 {
     SampleOptions options = spawn_options<SampleOptions>(hard, random);
     options.offset = hard.offset;
     options.max_height = std::max(1.0, hard.offset);
+    if (Random more{hard.seed + 991}; more.chance(0.3)) options.avoid = some_points(map, more);
     return of_sample(map, checker, options);
 }
 

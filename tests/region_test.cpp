@@ -381,7 +381,7 @@ TEST_CASE("CSV polygons end at empty lines or where their name changes")
     CHECK(read("0,0\n4,0\n4,4\n0,0\n\n\n10,0\n12,0\n11,3\n").polygons == two);
     CHECK(read("x,y\r\n0,0\r\n4,0\r\n4,4\r\n\r\n# more\r\n10, 0\r\n12 ,0\r\n11,3").polygons == two);
     CHECK(read("polygon,y,x,note\na,0,0,\na,0,4,\na,4,4,\nb,0,10,\nb,0,12,\nb,3,11,end\n").polygons == two);
-    CHECK(read("x,y,z\n0,0,7\n4,0,7\n4,4,7\n").polygons.size() == 1);
+    CHECK(read("x,y,z,polygon\n0,0,7,a\n4,0,7,a\n4,4,7,a\n").polygons.size() == 1);
 }
 
 TEST_CASE("CSV regions of spreadsheets, with a byte order mark and quotes, are read")
@@ -453,7 +453,7 @@ TEST_CASE("regions that make no sense are refused with the place")
     check_refused("a.csv", "", "has no polygon: x,y of three corners or more are needed");
     check_refused("a.yaml", "format: spawnfield-scene/1\n", "is no 2D map of nav2 or ROS (keys image, resolution, origin, …)");
     CHECK_THROWS_WITH(read_region(folder / "none.json"), (folder / "none.json").string() + ": does not exist; is the path right?");
-    CHECK_THROWS_WITH(read_region(folder.path()), Contains("is no file"));
+    CHECK_THROWS_WITH(read_region(folder.path()), Contains("is a folder, needs a file"));
 }
 
 TEST_CASE("regions that are cut short are read or refused, whatever the byte")

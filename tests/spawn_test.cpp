@@ -95,6 +95,14 @@ std::size_t room_left(const Map& map, const CollisionChecker& checker, const Sam
     return count;
 }
 
+/// A pose on each layer, so many metres apart.
+RasterResult raster_of_tops(const Map& map, const CollisionChecker& checker, double step)
+{
+    RasterOptions options;
+    options.step = step;
+    return raster(map, checker, options);
+}
+
 /// 10 x 10 m of floor: a sheet, a box, a closed mesh; a ramp with things on it and in it.
 Scene floor_scene(int kind)
 {
@@ -375,8 +383,13 @@ TEST_CASE("cells that are proven closed hold no valid pose, in hard scenes")
         if (random.chance(0.2)) options.max_water_depth = random.between(0, 0.5);
         if (random.chance(0.2)) options.layers.kind = LayerChoice::Kind::Top;
         SpacedPoints taken(options.min_distance);
+        AvoidedPoints& group = options.avoid.emplace_back();
+        group.distance = random.between(0.1, 2);
+        for (const RasterPose& pose : raster_of_tops(map, checker, 1.5).poses)
+            if (random.chance(0.1)) group.points.emplace_back(pose.x, pose.y, pose.z);
+        const AvoidIndex avoided(options.avoid, map.bounds);
         const AreaIndex everywhere{Area{}};
-        CellProofs proofs(map, checker, options, everywhere, taken);
+        CellProofs proofs(map, checker, options, everywhere, taken, avoided);
         for (int n = 0; n < 60; ++n) {
             const double side = 2 * std::pow(0.5, random.below(8));
             const Bounds crop = compare::crop_near(map, random, side, 2);
@@ -388,6 +401,9 @@ TEST_CASE("cells that are proven closed hold no valid pose, in hard scenes")
                 const double x = random.between(cell.low_x, cell.high_x), y = random.between(cell.low_y, cell.high_y);
                 const Spawn spawn = valid_at(map, checker, options, x, y, random);
                 if (!spawn.position.allFinite() || !taken.is_clear(spawn.position)) continue;
+                if (!std::all_of(group.points.begin(), group.points.end(),
+                                 [&](const Vec3& p) { return (p - spawn.position).norm() >= group.distance; }))
+                    continue;
                 ++valid;
                 CAPTURE(seed, n, x, y, side);
                 CHECK_FALSE(is_closed);

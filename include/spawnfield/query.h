@@ -144,14 +144,22 @@ struct SpawnList {
     VerdictCounts counts{};       ///< of the positions that were judged
     std::uint64_t draws = 0;      ///< all of them
     std::uint64_t off_area = 0;   ///< draws that did not lie in SpawnOptions::area
+    std::uint64_t near_avoided = 0;  ///< draws too near to a point of SpawnOptions::avoid
     std::uint64_t too_close = 0;  ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
-    bool is_full = false;         ///< sample: fewer than count, and proven that none fits beside them
+    bool is_full = false;  ///< sample: fewer than count, and proven that none fits beside them and the avoided points
     double undecided_area = 0;    ///< sample, if fewer and not proven: horizontal m2 in which one may still fit
 };
 
 /// More than anybody starts, and what still fits into memory.
 inline constexpr std::size_t max_spawns = 100000000;
+
+/// Points that positions keep a distance from, for example robots that are placed already.
+struct AvoidedPoints {
+    std::string name = {};          ///< for the user: the file that they come from
+    std::vector<Vec3> points = {};  ///< finite, m
+    double distance = 0;  ///< m between a point and a position (in 3D), >= 0; exactly this distance is allowed
+};
 
 struct SpawnOptions : QueryOptions {
     std::size_t count = 1;       ///< 1 .. max_spawns
@@ -159,6 +167,9 @@ struct SpawnOptions : QueryOptions {
     Bounds bounds = {};          ///< empty: the map's; sample leaves z aside
     /// Positions lie in it. Draws elsewhere are failures that nobody judges (SpawnList::off_area); draws are made from its bounds only.
     Area area = {};
+    /// Draws nearer to one of these points than its distance are failures that are not judged
+    /// (SpawnList::near_avoided).
+    std::vector<AvoidedPoints> avoid = {};
     bool random_yaw = false;     ///< uniform in [-pi, pi), else yaw
     double yaw = 0;              ///< rad
     std::uint64_t seed = 0;
@@ -169,7 +180,7 @@ struct SearchOptions : SpawnOptions {
 };
 
 /// Random search (Ropelato): uniform draws in a box; each must keep min_distance to all positions checked before; stops
-/// after count valid ones or max_failures draws in a row without one.
+/// after count valid ones or max_failures draws in a row without one. Draws too near to an avoided point are failures.
 SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOptions& options);
 
 struct SampleOptions : SpawnOptions {
@@ -179,7 +190,7 @@ struct SampleOptions : SpawnOptions {
 };
 
 /// Valid poses distributed uniformly by horizontal area over the feasible region of all chosen layers, each confirmed
-/// exactly, at least min_distance apart.
+/// exactly, at least min_distance apart, none nearer to a point of `avoid` than its distance.
 ///
 /// When draws keep failing, it goes over to cells that cover the region: those in which no further spawn can stand are proven
 /// so from the scene's geometry and left out, the others are drawn from, uniformly by area as before, and split. It ends

@@ -1,6 +1,7 @@
 #include "base/bytes.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -17,11 +18,12 @@ Bytes bytes_of(std::string bytes)
 
 Bytes map_file(const std::filesystem::path& file)
 {
+    require_file(file);
     const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
     struct stat status {};
     if (descriptor < 0 || fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
         if (descriptor >= 0) close(descriptor);
-        throw FileError(file.string(), "is missing or cannot be read");
+        throw FileError(file.string(), "cannot be read");
     }
     const auto size = std::size_t(status.st_size);
     void* const start = size == 0 ? nullptr : mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);

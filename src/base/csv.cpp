@@ -1,8 +1,31 @@
 #include "base/csv.h"
 
+#include "base/number.h"
 #include "base/text.h"
 
+#include <algorithm>
+
 namespace spawnfield {
+namespace {
+
+/// Whether fields are separated by semicolons: then a comma can only be the point of a decimal.
+bool has_semicolons(std::string_view line)
+{
+    if (line.find(';') == std::string_view::npos) return false;
+    for (std::size_t start = 0; start <= line.size();) {
+        const std::size_t end = std::min(line.find(';', start), line.size());
+        std::string field = trimmed(line.substr(start, end - start));
+        start = end + 1;
+        const std::size_t comma = field.find(',');
+        if (comma == std::string::npos) continue;
+        field[comma] = '.';
+        double ignored = 0;
+        if (!parse_number(field, ignored)) return false;
+    }
+    return true;
+}
+
+}  // namespace
 
 std::vector<std::string> csv_fields(std::string_view line)
 {
@@ -20,6 +43,24 @@ std::vector<std::string> csv_fields(std::string_view line)
     }
     for (std::string& field : fields) field = trimmed(field);
     return fields;
+}
+
+bool are_numbers(const std::vector<std::string>& fields)
+{
+    double ignored = 0;
+    return !fields.empty() && std::all_of(fields.begin(), fields.end(),
+                                          [&](const std::string& field) { return parse_number(field, ignored); });
+}
+
+std::string separator_complaint(std::string_view line)
+{
+    if (has_semicolons(line))
+        return "has fields separated by semicolons, needs commas, and points in decimals: tr ',;' '.,' < IN.csv > "
+               "OUT.csv";
+    const bool has_comma = line.find(',') != std::string_view::npos;
+    return !has_comma && line.find('\t') != std::string_view::npos
+               ? "has fields separated by tabs, needs commas: tr '\\t' ',' < IN.csv > OUT.csv"
+               : "";
 }
 
 std::string csv_quoted(std::string_view text)

@@ -1,18 +1,67 @@
-#include "base/input_file.h"
-
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 
 namespace spawnfield {
 
-std::string read_file(const std::filesystem::path& file)
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string complaint_about(fs::file_type type, const std::error_code& error)
 {
+    switch (type) {
+    case fs::file_type::not_found: return "does not exist; is the path right?";
+    case fs::file_type::directory: return "is a folder, needs a file";
+    case fs::file_type::fifo:
+        return "is a pipe, needs a regular file; write it to one first, or give - (standard input) where the option "
+               "takes it";
+    case fs::file_type::character:
+    case fs::file_type::block: return "is a device, needs a regular file";
+    case fs::file_type::socket: return "is a socket, needs a regular file";
+    default: return "cannot be reached: " + error.message();
+    }
+}
+
+}  // namespace
+
+void require_file(const fs::path& file)
+{
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (status.type() != fs::file_type::regular) throw FileError(file.string(), complaint_about(status.type(), error));
+}
+
+namespace {
+
+std::ifstream opened(const fs::path& file)
+{
+    require_file(file);
     std::ifstream stream(file, std::ios::binary);
-    if (!stream || !std::filesystem::is_regular_file(file)) throw FileError(file.string(), "is missing or cannot be read");
-    std::string bytes(std::size_t(std::filesystem::file_size(file)), '\0');
+    if (!stream) throw FileError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
+    return stream;
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& file)
+{
+    std::ifstream stream = opened(file);
+    std::string bytes(std::size_t(fs::file_size(file)), '\0');
     stream.read(bytes.data(), std::streamsize(bytes.size()));
     if (std::size_t(stream.gcount()) != bytes.size()) throw FileError(file.string(), "cannot be read to its end");
+    return bytes;
+}
+
+std::string read_start(const fs::path& file, std::size_t most)
+{
+    std::ifstream stream = opened(file);
+    std::string bytes(most, '\0');
+    stream.read(bytes.data(), std::streamsize(most));
+    bytes.resize(std::size_t(stream.gcount()));
     return bytes;
 }
 

@@ -3,6 +3,7 @@
 #include "base/text.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <algorithm>
 #include <cstring>
@@ -11,6 +12,7 @@ namespace spawnfield {
 
 std::unique_ptr<tinyxml2::XMLDocument> read_xml(const std::filesystem::path& file, const std::string& expected)
 {
+    require_file(file);
     auto document = std::make_unique<tinyxml2::XMLDocument>();
     const tinyxml2::XMLError error = document->LoadFile(file.c_str());
     if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED || error == tinyxml2::XML_ERROR_FILE_READ_ERROR)

@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 void check_size(const fs::path& folder, const ListedFile& file)
 {
     std::error_code error;
+    if (fs::exists(folder / file.name, error)) require_file(folder / file.name);
     const auto bytes = fs::file_size(folder / file.name, error);
     if (error) throw FileError((folder / file.name).string(), "is missing; bake the map again");
     if (bytes != file.bytes)

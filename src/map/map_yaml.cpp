@@ -2,8 +2,10 @@
 #include "map/tiled_file.h"
 
 #include "base/checksum.h"
+#include "base/foreign_file.h"
 #include "base/input_file.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "scene/yaml_map.h"
 
 #include <spawnfield/error.h>
@@ -170,6 +172,20 @@ int version_of(const fs::path& file, const std::string& text)
                                        std::to_string(map_format_version) + "; bake the map again or use a newer spawnfield");
 }
 
+/// For what is given as a map and is not a folder.
+[[noreturn]] void refuse_as_map(const fs::path& file)
+{
+    require_file(file);
+    refuse_foreign_scene(file);
+    const std::string name = file.string(), text = read_start(file, 4096);
+    if (text.starts_with("format: " + format_prefix))
+        throw FileError(name, "is a file of a map; give its folder, " +
+                                  (file.parent_path().empty() ? fs::path(".") : file.parent_path()).string());
+    if (text.find("spawnfield-robot/") != std::string::npos || lower_case(file.extension().string()) == ".urdf")
+        throw FileError(name, "is a robot, not a map; give it as --robot " + name + ", and a map folder before it");
+    throw FileError(name, "is a file, and a map is a folder; bake a scene first: spawnfield bake " + name + " -o MAP");
+}
+
 }  // namespace
 
 std::string write_map_yaml(const fs::path& folder, const Map& map, const TerrainMap& terrain, std::pair<double, double> heightmap_range)
@@ -205,7 +221,8 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
 
 MapYaml read_map_yaml(const fs::path& folder)
 {
-    if (!fs::is_directory(folder)) throw FileError(folder.string(), fs::exists(folder) ? "is no map folder" : "does not exist; is the path right?");
+    std::error_code unreachable;
+    if (!fs::is_directory(folder, unreachable)) refuse_as_map(folder);
     const fs::path file = folder / "map.yaml";
     if (!fs::is_regular_file(file)) throw FileError(folder.string(), "is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
     const std::string text = read_file(file);

@@ -22,7 +22,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <unordered_map>
 
@@ -47,14 +46,30 @@ Mat4 matrix_of(const aiMatrix4x4& m)
     return out;
 }
 
-/// The disk, but for one file, which has this text. The text must outlive it.
-class RespeltFile : public Assimp::DefaultIOSystem {
+/// The disk's regular files: what a mesh names beside itself (materials, buffers) may be a pipe, on which assimp would
+/// wait.
+class RegularFiles : public Assimp::DefaultIOSystem {
+public:
+    bool Exists(const char* file) const override
+    {
+        std::error_code unreachable;
+        return std::filesystem::is_regular_file(file, unreachable);
+    }
+
+    Assimp::IOStream* Open(const char* file, const char* mode) override
+    {
+        return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+    }
+};
+
+/// The same, but for one file, which has this text. The text must outlive it.
+class RespeltFile : public RegularFiles {
 public:
     RespeltFile(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
 
     Assimp::IOStream* Open(const char* file, const char* mode) override
     {
-        if (file != file_) return DefaultIOSystem::Open(file, mode);
+        if (file != file_) return RegularFiles::Open(file, mode);
         return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
     }
 
@@ -66,10 +81,7 @@ private:
 /// The text of COLLADA's <up_axis>; "Y_UP" where the file has none (COLLADA 1.4.1 specification, asset).
 std::string collada_up_axis(const std::filesystem::path& file)
 {
-    std::ifstream stream(file, std::ios::binary);
-    std::string head(1 << 16, '\0');
-    stream.read(head.data(), std::streamsize(head.size()));
-    head.resize(std::size_t(stream.gcount()));
+    const std::string head = read_start(file, 1 << 16);
     const std::string tag = "<up_axis>";
     const std::size_t start = head.find(tag), end = head.find("</up_axis>");
     if (start == std::string::npos || end == std::string::npos) return "Y_UP";
@@ -212,7 +224,7 @@ void check_triangles(const aiScene& scene, std::size_t expected, const std::stri
 
 FileMesh read_mesh(const std::filesystem::path& file)
 {
-    if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
+    require_file(file);
     const std::string extension = lower_case(file.extension().string());
     ObjText obj = extension == ".obj" ? readable_obj(read_file(file)) : ObjText{};
     std::string text;  // in place of the file's, if not empty; outlives the importer
@@ -221,8 +233,8 @@ FileMesh read_mesh(const std::filesystem::path& file)
     if (extension == ".obj") text = std::move(obj.text);
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};
-    if (extension == ".obj" || !text.empty())
-        importer.SetIOHandler(new RespeltFile(file.string(), text));  // which the importer owns
+    if (extension == ".obj" || !text.empty()) importer.SetIOHandler(new RespeltFile(file.string(), text));
+    else importer.SetIOHandler(new RegularFiles);  // the importer owns either
     // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids

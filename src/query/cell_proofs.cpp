@@ -129,13 +129,23 @@ private:
 
     bool is_covered(const Interval& band) const
     {
-        const double distance = proofs_.taken_.distance();
+        const std::vector<SpacedPoints>& avoided = proofs_.avoided_.grids();
+        return is_covered(band, proofs_.taken_) ||
+               std::any_of(avoided.begin(), avoided.end(),
+                           [&](const SpacedPoints& points) { return is_covered(band, points); });
+    }
+
+    /// Whether all poses of the band are too near to one of the points.
+    bool is_covered(const Interval& band, const SpacedPoints& points) const
+    {
+        const double distance = points.distance();
         if (!(distance > 0)) return false;
         const double offset = proofs_.offset_, low = band.bottom + offset, high = band.top + offset;
         const Vec3 middle(rect_.centre_x(), rect_.centre_y(), (low + high) / 2);
         const Vec3 half((rect_.high_x - rect_.low_x) / 2, (rect_.high_y - rect_.low_y) / 2, (high - low) / 2);
         if (half.norm() >= distance) return false;
-        return proofs_.taken_.any_near(middle, [&](const Vec3& other) { return ((other - middle).cwiseAbs() + half).norm() < distance - slack; });
+        return points.any_near(
+            middle, [&](const Vec3& other) { return ((other - middle).cwiseAbs() + half).norm() < distance - slack; });
     }
 
     bool is_submerged(std::size_t b) const
@@ -258,10 +268,10 @@ private:
 };
 
 CellProofs::CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const AreaIndex& area,
-                       const SpacedPoints& taken)
+                       const SpacedPoints& taken, const AvoidIndex& avoided)
     : map_(map), options_(options), offset_(*options.offset),
       ground_z_(overlap(overlap(map.z_limits, options.z), ZRange{map.z_limits.low - offset_, map.z_limits.high - offset_})),
-      layer_z_(overlap(map.z_limits, options.z)), area_(area), taken_(taken)
+      layer_z_(overlap(map.z_limits, options.z)), area_(area), taken_(taken), avoided_(avoided)
 {
     if (checker.uses_occupancy()) return;  // not what the proofs see
     const std::vector<Footprint> prints = options.random_yaw ? yaw_free_footprints(checker.robot())

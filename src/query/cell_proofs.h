@@ -2,7 +2,7 @@
 
 #include "query/area_index.h"
 #include "query/cell_facets.h"
-#include "query/spaced_points.h"
+#include "query/avoid_index.h"
 
 #include <spawnfield/query.h>
 
@@ -10,18 +10,20 @@
 
 namespace spawnfield {
 
-/// Proofs that no further sample can stand anywhere in a cell, from the scene's own geometry: the mask has no part in them, so
-/// that they are the same with it and without it.
+/// Proofs that no further sample can stand anywhere in a cell, from the scene's own geometry: the mask has no part in
+/// them, so that they are the same with it and without it.
 ///
-/// A cell's layers lie between heights that the planes of its terrain give. At each such height, as far as layers are ground
-/// there, all poses must be off the area, outside, too close to one taken position, under water, or collide: the robot drawn in by half a cell does at its centre, or some point of
-/// the robot is inside the ground at every pose. Lines within 1e-9 m of an upright face are left aside. What is not
-/// proven stays open: cells half on an obstacle as flat as the offset, for one. A footing that is asked for (max_slope) only
-/// takes valid poses away, so what is closed without it is closed with it; cells where all is steep stay open.
+/// A cell's layers lie between heights that the planes of its terrain give. At each such height, as far as layers are
+/// ground there, all poses must be off the area, outside, too close to one taken or avoided position, under water, or
+/// collide: the robot drawn in by half a cell does at its centre, or some point of the robot is inside the ground at every
+/// pose. Lines within 1e-9 m of an upright face are left aside. What is not proven stays open: cells half on an obstacle as
+/// flat as the offset, for one. A footing that is asked for (max_slope) only takes valid poses away, so what is closed
+/// without it is closed with it; cells where all is steep stay open.
 class CellProofs {
 public:
     /// options.offset is given. `taken` may grow between calls of is_closed, never during them.
-    CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const AreaIndex& area, const SpacedPoints& taken);
+    CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const AreaIndex& area,
+               const SpacedPoints& taken, const AvoidIndex& avoided);
     ~CellProofs();
 
     /// For cells of these half sides, m. Not to be called while others ask.
@@ -46,6 +48,7 @@ private:
     const ZRange layer_z_;   ///< layers elsewhere are no ground
     const AreaIndex& area_;
     const SpacedPoints& taken_;
+    const AvoidIndex& avoided_;
     std::vector<Prism> prisms_;        ///< within the robot at every yaw that is drawn, relative to its origin
     std::vector<DrawnIn> drawn_in_;    ///< from the lowest range of heights on
 };

@@ -1,7 +1,6 @@
 #include "base/csv.h"
-#include "base/input_file.h"
 #include "base/number.h"
-#include "base/text.h"
+#include "query/pose_columns.h"
 #include "query/pose_json.h"
 
 #include <spawnfield/error.h>
@@ -15,18 +14,6 @@
 
 namespace spawnfield {
 namespace {
-
-bool is_pose_column(const std::string& name)
-{
-    constexpr std::array names{"x", "y", "z", "roll", "pitch", "yaw", "qx", "qy", "qz", "qw"};
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-bool is_verdict_column(const std::string& name)
-{
-    constexpr std::array names{"verdict", "ground", "height_above", "hit"};
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 /// The line's fields as they are written, quotes and all, each with a comma behind it, but those that are flagged.
 void append_fields(std::string& text, const std::string& line, const std::vector<std::uint8_t>& left_out)
@@ -44,114 +31,6 @@ void append_fields(std::string& text, const std::string& line, const std::vector
         start = i + 1;
     }
 }
-
-/// Which field holds what; -1: not in the file.
-struct PoseColumns {
-    int x, y, z, roll, pitch, yaw, qx, qy, qz, qw;
-    std::size_t count;
-    bool has_quaternion() const { return qx >= 0; }
-};
-
-class PoseReader {
-public:
-    explicit PoseReader(const std::filesystem::path& file) : file_(file.string()) {}
-
-    PoseTable read(const std::string& text)
-    {
-        PoseTable table;
-        PoseColumns columns{};
-        bool has_header = false;
-        for (std::size_t start = 0; start < text.size();) {
-            const std::size_t end = std::min(text.find('\n', start), text.size());
-            std::string line = text.substr(start, end - start);
-            start = end + 1;
-            ++line_;
-            if (line_ == 1 && line.starts_with(byte_order_mark)) line.erase(0, 3);  // byte order mark
-            if (!line.empty() && line.back() == '\r') line.pop_back();
-            if (line.find_first_not_of(" \t") == std::string::npos) continue;
-            if (!has_header) {
-                columns = read_header(line);
-                tell_other_case(line, table);
-                table.header = line;
-                has_header = true;
-                continue;
-            }
-            if (std::count(line.begin(), line.end(), '"') % 2 != 0) fail("has a quote that is not closed");
-            table.poses.push_back(read_pose(csv_fields(line), columns));
-            table.rows.push_back(std::move(line));
-        }
-        if (!has_header) throw FileError(file_, "is empty, needs a header x,y,z,roll,pitch,yaw");
-        if (table.poses.empty()) table.notices.push_back(file_ + ": has a header, but no poses");
-        return table;
-    }
-
-private:
-    PoseColumns read_header(const std::string& line) const
-    {
-        const auto names = csv_fields(line);
-        const auto find = [&](const std::string& name) {
-            const auto at = std::find(names.begin(), names.end(), name);
-            if (at != names.end() && std::find(at + 1, names.end(), name) != names.end()) fail("column " + name + " is given twice");
-            return at == names.end() ? -1 : int(at - names.begin());
-        };
-        PoseColumns c{find("x"),  find("y"),  find("z"),  find("roll"), find("pitch"),
-                      find("yaw"), find("qx"), find("qy"), find("qz"), find("qw"), names.size()};
-        for (const auto& [column, name] : {std::pair{c.x, "x"}, std::pair{c.y, "y"}, std::pair{c.z, "z"}})
-            if (column < 0) {
-                const auto other = std::find_if(names.begin(), names.end(), [&](const std::string& n) { return lower_case(n) == name; });
-                fail(std::string("column ") + name + " is missing, needs a header x,y,z,roll,pitch,yaw" +
-                     (other == names.end() ? "" : "; there is " + *other + ", but names are lower case"));
-            }
-        const int quaternions = (c.qx >= 0) + (c.qy >= 0) + (c.qz >= 0) + (c.qw >= 0);
-        if (quaternions != 0 && quaternions != 4) fail("has some of the columns qx,qy,qz,qw, needs all four or none");
-        if (quaternions == 4 && (c.roll >= 0 || c.pitch >= 0 || c.yaw >= 0))
-            fail("has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
-        return c;
-    }
-
-    /// A name that is known but for its case is read as any other: not at all.
-    void tell_other_case(const std::string& header, PoseTable& table) const
-    {
-        for (const std::string& name : csv_fields(header)) {
-            const std::string lower = lower_case(name);
-            if (name == lower || !is_pose_column(lower)) continue;
-            table.notices.push_back(file_ + ": column " + name + " is carried along, not read: names are lower case (" + lower + ")");
-        }
-    }
-
-    Pose read_pose(const std::vector<std::string>& fields, const PoseColumns& c) const
-    {
-        if (fields.size() != c.count)
-            fail("has " + std::to_string(fields.size()) + " fields, the header has " + std::to_string(c.count));
-        Pose pose;
-        pose.position = {number_in(fields, c.x, "x"), number_in(fields, c.y, "y"), number_in(fields, c.z, "z")};
-        if (!c.has_quaternion()) {
-            pose.rotation = rotation_from_rpy(number_in(fields, c.roll, "roll"), number_in(fields, c.pitch, "pitch"),
-                                              number_in(fields, c.yaw, "yaw"));
-            return pose;
-        }
-        const Eigen::Quaterniond q(number_in(fields, c.qw, "qw"), number_in(fields, c.qx, "qx"), number_in(fields, c.qy, "qy"),
-                                   number_in(fields, c.qz, "qz"));
-        if (!(std::abs(q.norm() - 1) <= 1e-3)) fail("the quaternion's length is " + number(q.norm()) + ", needs 1 (to 0.001)");
-        pose.rotation = q.normalized().toRotationMatrix();
-        return pose;
-    }
-
-    double number_in(const std::vector<std::string>& fields, int column, const char* name) const
-    {
-        if (column < 0) return 0;
-        double value = 0;
-        const std::string& text = fields[std::size_t(column)];
-        if (!parse_number(text, value)) fail(std::string("column ") + name + " is \"" + text + "\", needs a number");
-        if (!std::isfinite(value)) fail(std::string("column ") + name + " is " + text + ", needs a finite number");
-        return value;
-    }
-
-    [[noreturn]] void fail(const std::string& what) const { throw FileError(file_, "line " + std::to_string(line_) + ": " + what); }
-
-    const std::string file_;
-    int line_ = 0;
-};
 
 void append_numbers(std::string& text, std::initializer_list<double> values)
 {
@@ -209,6 +88,8 @@ Json settings_json(const SpawnOptions& options, const Map& map, int axes)
     if (std::isfinite(options.max_slope)) out["max_slope"] = options.max_slope;
     for (const Region& region : options.area.within) out["region"].push_back(region.name);
     for (const Region& region : options.area.keep_out) out["keep_out"].push_back(region.name);
+    for (const AvoidedPoints& group : options.avoid)
+        out["avoid"].push_back({{"poses", group.name}, {"count", group.points.size()}, {"distance", group.distance}});
     return out;
 }
 
@@ -227,12 +108,6 @@ void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& n
 }
 
 }  // namespace
-
-PoseTable read_poses(const std::filesystem::path& file)
-{
-    const std::string text = read_file(file);
-    return PoseReader(file).read(text);
-}
 
 std::vector<Spawn> spawns_of(const PoseTable& table)
 {

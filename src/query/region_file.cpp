@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "base/polygon2.h"
 #include "base/text.h"
+#include "query/pose_columns.h"
 #include "scene/nav2_map.h"
 
 #include <spawnfield/error.h>
@@ -156,6 +157,7 @@ public:
         const std::string trim = trimmed(text);
         if (trim.empty()) return close();
         if (trim[0] == '#') return;
+        if (const std::string complaint = first_ ? separator_complaint(trim) : ""; !complaint.empty()) fail(complaint);
         const std::vector<std::string> fields = csv_fields(trim);
         double number_there = 0;
         if (first_ && !parse_number(fields[0], number_there)) return header(fields);
@@ -192,7 +194,22 @@ private:
         columns_ = {find("x"), find("y")};
         if (std::max(columns_[0], columns_[1]) >= names.size()) fail("has neither numbers x,y nor the names of such columns");
         polygon_column_ = find("polygon");
+        if (polygon_column_ >= names.size()) refuse_poses(names);
         if (polygon_column_ >= names.size()) polygon_column_ = none - 1;  // other columns are not looked at
+    }
+
+    /// Positions of robots in a row would make a polygon that nobody meant.
+    void refuse_poses(const std::vector<std::string>& names) const
+    {
+        const auto is_of_pose = [](const std::string& name) {
+            return name != "x" && name != "y" && (is_pose_column(name) || is_verdict_column(name));
+        };
+        const auto found = std::find_if(names.begin(), names.end(), is_of_pose);
+        if (found != names.end())
+            fail("has a column " + *found +
+                 ": these are poses, not the corners of a polygon; `sample` and `search` keep a distance from poses "
+                 "with "
+                 "--avoid FILE --avoid-distance M; a polygon has columns x,y, and polygon if there are several");
     }
 
     void close()
@@ -295,9 +312,19 @@ void read_cells(const std::filesystem::path& file, MapCells cells, Region& out)
 
 }  // namespace
 
+Region parse_region(const std::string& text, const std::string& name)
+{
+    Region out;
+    out.name = name;
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first != std::string::npos && text[first] == '{') read_geojson(text, name, out);
+    else read_csv(text, name, out);
+    return out;
+}
+
 Region read_region(const std::filesystem::path& file, MapCells cells)
 {
-    if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), std::filesystem::exists(file) ? "is no file" : "does not exist; is the path right?");
+    require_file(file);
     Region out;
     out.name = file.filename().string();
     const std::string extension = lower_case(file.extension().string());

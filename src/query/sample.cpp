@@ -1,6 +1,7 @@
 #include "base/chosen_bounds.h"
 #include "base/polygon2.h"
 #include "query/area_index.h"
+#include "query/avoid_index.h"
 #include "query/cell_proofs.h"
 #include "query/spawning.h"
 
@@ -19,8 +20,9 @@ constexpr double least_share = 0.02;
 constexpr double fair_share = 0.05;  // with which it goes on in the same cells
 constexpr double first_cells = 1024, most_first_cells = 65536;
 constexpr std::size_t most_cells = 1 << 24;  // kept at a time
-/// Proofs made in all: some, half as many where next to nothing is left to decide, and more for each spawn found.
-constexpr std::size_t some_proofs = 1 << 19, proofs_per_spawn = 12;
+/// Proofs made in all: some, half as many where next to nothing is left to decide, and more for each spawn found and
+/// each avoided point.
+constexpr std::size_t some_proofs = 1 << 19, proofs_per_point = 12;
 constexpr double next_to_nothing = 2e-5;                        // of the region
 constexpr double smallest_cell = 0.0001;                        // m
 
@@ -103,7 +105,8 @@ public:
     Sampler(const Map& map, const CollisionChecker& checker, const SampleOptions& options, std::size_t slots)
         : map_(map), checker_(checker), options_(options), offset_(*options.offset), ground_z_(overlap(map.z_limits, options.z)),
           judging_(map, checker, options), area_(options.area),
-          box_(overlap(chosen_bounds("sample", options.bounds, map.bounds, 2), options.area.bounds())), slots_(slots), taken_(options.min_distance)
+          box_(overlap(chosen_bounds("sample", options.bounds, map.bounds, 2), options.area.bounds())), slots_(slots),
+          avoided_(options.avoid, box_), taken_(options.min_distance)
     {
     }
 
@@ -153,7 +156,7 @@ private:
     void fill(SpawnList& out)
     {
         Cells cells(within(box_, map_.bounds), options_.min_distance);
-        CellProofs proofs(map_, checker_, options_, area_, taken_.before());
+        CellProofs proofs(map_, checker_, options_, area_, taken_.before(), avoided_);
         std::size_t proofs_made = 0;
         const auto point = [&](Draw& from) {
             const Rect cell = cells.at(std::min(cells.size() - 1, std::size_t(from.unit() * double(cells.size()))));
@@ -170,7 +173,8 @@ private:
                 found = draw(out, round, point, [](std::uint64_t, std::uint64_t) { return true; });
             if (is_done(out)) return;
             const bool is_nearly_decided = cells.area() < next_to_nothing * cells.region_area();
-            const std::size_t affordable = some_proofs / (is_nearly_decided ? 2 : 1) + proofs_per_spawn * out.spawns.size();
+            const std::size_t affordable =
+                some_proofs / (is_nearly_decided ? 2 : 1) + proofs_per_point * (out.spawns.size() + avoided_.size());
             const bool is_smallest = std::max(cells.width(), cells.height()) < 2 * smallest_cell || !cells.can_split();
             if (!is_smallest && 4 * cells.size() <= most_cells && proofs_made + 4 * cells.size() <= affordable) cells.split();
             else is_last = double(found) < least_share * double(round) || proofs_made > affordable;
@@ -222,6 +226,8 @@ private:
         if (slot >= double(layers.size())) return out;
         out.on_ground = true;
         out.spawn.position = Vec3(x, y, layers[std::size_t(slot)] + offset_);
+        out.near_avoided = !avoided_.is_clear(out.spawn.position);
+        if (out.near_avoided) return out;
         out.clear = taken_.before().is_clear(out.spawn.position);
         if (!out.clear) return out;
         out.set(judge.at(y, out.spawn.yaw).at(column, x, out.spawn.position.z()));
@@ -230,6 +236,10 @@ private:
 
     bool take(const Candidate& candidate, SpawnList& out)
     {
+        if (candidate.near_avoided) {
+            ++out.near_avoided;
+            return false;
+        }
         if (!candidate.clear || !taken_.is_still_clear(candidate.spawn.position)) {
             ++out.too_close;
             return false;
@@ -251,6 +261,7 @@ private:
     const AreaIndex area_;
     const Bounds box_;
     const std::size_t slots_;
+    const AvoidIndex avoided_;
     TakenPoints taken_;
     std::uint64_t next_ = 0;  ///< draw
     std::atomic<bool> overfull_{false};

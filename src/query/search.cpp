@@ -2,6 +2,7 @@
 #include "base/number.h"
 #include "free_space/bounds_tile.h"
 #include "query/area_index.h"
+#include "query/avoid_index.h"
 #include "query/spawning.h"
 
 #include <spawnfield/error.h>
@@ -9,6 +10,19 @@
 #include <cmath>
 
 namespace spawnfield {
+
+namespace {
+
+void check_avoided(const char* function, const AvoidedPoints& group)
+{
+    if (!(group.distance >= 0) || !std::isfinite(group.distance))
+        throw ArgumentError(function, "avoid.distance", group.distance, ">= 0 m");
+    for (const Vec3& point : group.points)
+        for (const double value : point)
+            if (!std::isfinite(value)) throw ArgumentError(function, "avoid.points", value, "finite numbers, m");
+}
+
+}  // namespace
 
 void check_spawn_options(const char* function, const SpawnOptions& options)
 {
@@ -19,6 +33,7 @@ void check_spawn_options(const char* function, const SpawnOptions& options)
         throw ArgumentError(function, "min_distance", options.min_distance, ">= 0 m");
     if (!(options.max_height >= 0)) throw ArgumentError(function, "max_height", options.max_height, ">= 0 m");
     if (!(options.max_water_depth >= 0)) throw ArgumentError(function, "max_water_depth", options.max_water_depth, ">= 0 m");
+    for (const AvoidedPoints& group : options.avoid) check_avoided(function, group);
     check_max_slope(function, options);
     if (!std::isfinite(options.yaw)) throw ArgumentError(function, "yaw", options.yaw, "a finite number, rad");
 }
@@ -99,6 +114,7 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
     const Bounds box = overlap(chosen_bounds("search", options.bounds, map.bounds), options.area.bounds());
     const Judging judging(map, checker, options);
     const FarAbove far_above(options.exhaustive ? nullptr : &map, options.max_height);
+    const AvoidIndex avoided(options.avoid, box);
     TakenPoints checked(options.min_distance);
 
     const auto look = [&](std::uint64_t index, SpawnJudge& judge) {
@@ -109,6 +125,8 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
         out.spawn.yaw = draw_yaw(options, draw);
         out.off_area = !area.contains(p.head<2>(), p.z());
         if (out.off_area) return out;
+        out.near_avoided = !avoided.is_clear(p);
+        if (out.near_avoided) return out;
         out.clear = checked.before().is_clear(p);
         if (!out.clear) return out;
         if (far_above.holds(p)) out.verdict = Verdict::Aerial;
@@ -123,6 +141,8 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
         ++failures;
         if (candidate.off_area) {
             ++out.off_area;
+        } else if (candidate.near_avoided) {
+            ++out.near_avoided;
         } else if (!candidate.clear || !checked.is_still_clear(candidate.spawn.position)) {
             ++out.too_close;
         } else {

@@ -33,6 +33,7 @@ inline double draw_yaw(const SpawnOptions& options, Draw& draw)
 struct Candidate {
     bool on_ground = false;  ///< whether the draw gave a pose at all
     bool off_area = false;
+    bool near_avoided = false;
     bool clear = false;
     bool exact_check = false;
     Verdict verdict = Verdict::Outside;

@@ -1,3 +1,4 @@
+#include "base/foreign_file.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "robot/mesh_parts.h"
@@ -6,9 +7,11 @@
 #include "scene/yaml_map.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/robot.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 namespace spawnfield {
@@ -130,16 +133,39 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
 {
     const std::filesystem::path file = robot;
     const std::string extension = lower_case(file.extension().string());
-    if (std::filesystem::is_directory(file)) return read_sdf_robot(file, options);
-    if (!std::filesystem::is_regular_file(file)) throw FileError(robot, std::string("does not exist; a robot is ") + known_kinds);
+    std::error_code unreachable;
+    if (std::filesystem::is_directory(file, unreachable)) return read_sdf_robot(file, options);
+    if (!std::filesystem::exists(file, unreachable) && !unreachable)
+        throw FileError(robot, std::string("does not exist; a robot is ") + known_kinds);
+    require_file(file);
+    refuse_foreign_robot(file);
     if (extension == ".urdf") return read_urdf(file, options);
     if (extension == ".sdf" || extension == ".world") return read_sdf_robot(file, options);
-    if (extension == ".xacro")
-        throw FileError(robot, "is a xacro file; expand it first: xacro " + file.filename().string() + " > robot.urdf");
     if (extension != ".yaml" && extension != ".yml") throw FileError(robot, std::string("is no known robot format, needs ") + known_kinds);
     if (!options.joints.empty())
         throw ArgumentError("load_robot", "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
     return read_robot_yaml(file, options.mesh_parts);
+}
+
+/// How to make metres of a robot's millimetres; `text` is the robot as it was given.
+std::string millimetre_advice(const std::string& text)
+{
+    if (text.starts_with("box:")) return "divide its lengths by 1000";
+    return "scale: 0.001 beside mesh: in a robot.yaml, or scale=\"0.001 0.001 0.001\" in a URDF's <mesh>, makes metres "
+           "of them";
+}
+
+/// A notice on a robot that is as large as those that drive, written in millimetres, come out.
+std::vector<std::string> size_notices(const Robot& robot, const std::string& text)
+{
+    constexpr double usual = 50;  // m
+    const Bounds box = robot.bounds();
+    const Vec3 size = box.max - box.min;
+    if (size.maxCoeff() <= usual) return {};
+    char words[100];
+    std::snprintf(words, sizeof words, ": is %.6g x %.6g x %.6g m; if it is in millimetres, ", size.x(), size.y(),
+                  size.z());
+    return {text + words + millimetre_advice(text)};
 }
 
 /// The largest machines that drive are 200 m long; far beyond, distances have no 1e-6 m left.
@@ -149,7 +175,8 @@ void check_reach(const Robot& robot, const std::string& text)
     const Bounds box = robot.bounds();
     const double reach = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
     if (reach <= most) return;
-    throw FileError(text, "reaches " + number(reach) + " m from its origin, needs at most " + number(most) + " m; is it in other units than metres?");
+    throw FileError(text, "reaches " + number(reach) + " m from its origin, needs at most " + number(most) +
+                              " m; is it in millimetres? " + millimetre_advice(text));
 }
 
 }  // namespace
@@ -164,10 +191,12 @@ Robot load_robot(const std::string& robot, const RobotOptions& options)
             throw ArgumentError("load_robot", "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
         Robot box = box_robot(robot);
         check_reach(box, robot);
+        box.notices = size_notices(box, robot);
         return box;
     }
     Robot out = read_robot(robot, options);
     check_reach(out, robot);
+    for (std::string& notice : size_notices(out, robot)) out.notices.push_back(std::move(notice));
     out.joints = options.joints;
     out.mesh_parts = options.mesh_parts;
     for (std::string& text : growth_notices(out)) out.notices.push_back(robot + ": " + std::move(text));

@@ -15,19 +15,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 
 namespace spawnfield {
 namespace {
-
-std::string start_of(const std::filesystem::path& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    std::string start(64, '\0');
-    stream.read(start.data(), std::streamsize(start.size()));
-    start.resize(std::size_t(stream.gcount()));
-    return start;
-}
 
 /// Of a file that does not say what its coordinates are: cells of less than a hundredth on the globe's graticule.
 void refuse_likely_degrees(const HeightFile& found, const std::string& file)
@@ -154,9 +144,9 @@ HeightFile read_raw(const std::filesystem::path& file, const RawLayout& raw)
 HeightFile read_height_file(const std::filesystem::path& file, const std::optional<RawLayout>& raw, bool wants_frame,
                             std::vector<std::string>& notices)
 {
-    if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
+    require_file(file);
     if (raw) return read_raw(file, *raw);
-    const std::string start = start_of(file);
+    const std::string start = read_start(file, 64);
     if (is_tiff(start)) return read_geotiff(file, wants_frame, notices);
     if (is_ascii_grid(start)) return read_ascii_grid(file, wants_frame, notices);
     if (is_png(start)) return {read_grey_png(file, max_heights), {}, {}, 1};

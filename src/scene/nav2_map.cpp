@@ -9,11 +9,11 @@
 #include "scene/yaml_map.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <fstream>
 #include <map>
 
 namespace spawnfield {
@@ -52,11 +52,7 @@ Pixels pixels_of(const ColourImage& image)
 
 Pixels read_pixels(const std::filesystem::path& file)
 {
-    if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
-    std::ifstream stream(file, std::ios::binary);
-    std::string start(8, '\0');
-    stream.read(start.data(), 8);
-    start.resize(std::size_t(stream.gcount()));
+    const std::string start = read_start(file, 8);
     if (is_png(start)) return pixels_of(read_colour_png(file, max_heights));
     if (!is_pgm(start)) throw FileError(file.string(), "is neither PGM (P2, P5) nor PNG; a map's image needs to be one of them");
     const GreyImage image = read_pgm(file, max_heights);

@@ -122,7 +122,6 @@ std::unique_ptr<octomap::OcTree> read_full(const std::filesystem::path& file)
 
 std::unique_ptr<octomap::OcTree> read_octomap(const std::filesystem::path& file)
 {
-    if (!std::filesystem::is_regular_file(file)) throw FileError(file.string(), "does not exist; is the path right?");
     const std::string extension = file.extension().string();
     return extension == ".ot" || extension == ".OT" ? read_full(file) : read_binary(file);
 }

@@ -1,3 +1,4 @@
+#include "base/foreign_file.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/bare_scene.h"
@@ -9,6 +10,7 @@
 #include "scene/sdf_world.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/scene.h>
 
 #include <algorithm>
@@ -89,10 +91,8 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     if (options.auto_slope && !(*options.auto_slope > 0 && *options.auto_slope < std::numbers::pi / 2))
         throw ArgumentError("load_scene", "auto_slope", *options.auto_slope, "> 0 and < pi/2 rad");
     const fs::path file = scene_file_of(scene_path);
-    std::error_code unreachable;
-    const fs::file_status status = fs::status(file, unreachable);
-    if (status.type() == fs::file_type::not_found) throw FileError(file.string(), "does not exist; is the path right?");
-    if (!fs::is_regular_file(status)) throw FileError(file.string(), unreachable ? "cannot be reached: " + unreachable.message() : "is no file");
+    require_file(file);
+    refuse_foreign_scene(file);
     const std::string extension = lower_case(file.extension().string());
     const bool is_yaml = extension == ".yaml" || extension == ".yml", nav2 = is_yaml && is_nav2_map(file), yaml = is_yaml && !nav2;
     if (!nav2 && options.wall_height != 0) throw ArgumentError("load_scene", "wall_height is for a 2D map; " + file.string() + " is none");

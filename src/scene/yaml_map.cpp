@@ -3,10 +3,10 @@
 #include "base/number.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <set>
 
@@ -189,11 +189,10 @@ void YamlMap::fail(const std::string& what) const
 
 YamlMap read_yaml(const std::filesystem::path& file)
 {
-    std::ifstream stream(file);
-    if (!stream || std::filesystem::is_directory(file)) throw FileError(file.string(), "cannot be read; is the path right?");
+    const std::string text = read_file(file);
     YAML::Node root;
     try {
-        root = YAML::Load(stream);
+        root = YAML::Load(text);
     } catch (const YAML::Exception& error) {
         throw FileError(file.string(), "line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
     }

@@ -1,5 +1,7 @@
 #include "area_args.h"
 
+#include "streams.h"
+
 #include <filesystem>
 
 namespace spawnfield::cli {
@@ -18,7 +20,7 @@ Region read_one(const CommonArgs& common, const std::string& option, const std::
         out.name = text;
         return out;
     }
-    Region out = read_region(text, cells);
+    Region out = is_standard(text) ? parse_region(read_standard_input(), input_name(text)) : read_region(text, cells);
     for (const std::string& words : out.notices) notice(common, words);
     return out;
 }
@@ -40,7 +42,7 @@ void add_area(CLI::App& command, AreaArgs& args)
 {
     command.add_option("--region", args.regions,
                        "Where poses are wanted: x0,y0,x1,y1 or x0,y0,z0,x1,y1,z1 in m, or a file in the map's metres: GeoJSON, CSV (x,y), map.yaml of nav2 (free cells); "
-                       "repeatable: in any of them")
+                       "- for GeoJSON or CSV on standard input; repeatable: in any of them")
         ->allow_extra_args(false);
     command.add_option("--keep-out", args.keep_outs, "Where not, in the same ways; of a nav2 map the occupied cells (repeatable)")->allow_extra_args(false);
 }

@@ -71,11 +71,17 @@ void add_check(CLI::App& app, Run& run)
     auto args = std::make_shared<CheckArgs>();
     CLI::App& command = *app.add_subcommand("check", "Verdict and reason for each pose of a CSV file");
     add_query(command, *args);
-    command.add_option("--poses,-p", args->poses, "CSV file: x,y,z[,roll,pitch,yaw | ,qx,qy,qz,qw]; m, rad; other columns are kept, but verdict,ground,height_above,hit replaced")->required();
+    command
+        .add_option("--poses,-p", args->poses,
+                    "CSV file: x,y,z[,roll,pitch,yaw | ,roll_deg,pitch_deg,yaw_deg | ,qx,qy,qz,qw]; m, rad, degrees; "
+                    "other columns are kept, but "
+                    "verdict,ground,height_above,hit replaced (- for standard input)")
+        ->required();
+    add_allow_empty(command, *args);
     command.add_option("--out,-o", args->out, "File to write (default: standard output)");
     command.add_option("--format", args->format,
                        "csv: the input's columns and the verdict; json; or junit: a test case for each pose (default csv)")
-        ->check(CLI::IsMember({"csv", "json", "junit"}));
+        ->check(one_of({"csv", "json", "junit"}));
     command.add_flag("--require-valid", args->require_valid,
                      "End with status 3 if any pose is not valid; all rows are written in either case");
     command.footer("Example:\n"

@@ -2,6 +2,7 @@
 
 #include "interrupt.h"
 #include "notices.h"
+#include "streams.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/output_file.h>
@@ -46,7 +47,12 @@ void add_common(CLI::App& command, CommonArgs& args)
     command.add_option("--threads", args.threads, "Threads; 0: all cores. The result is the same at any number")
         ->check(CLI::Range(0, 1024));
     command.add_flag("--quiet,-q", args.quiet, "No notices, no progress, no summary line");
-    command.add_option("--summary", args.summary, "Write the summary to this file as JSON");
+    command.add_option("--summary", args.summary, "Write the summary to this file as JSON (- for standard output)");
+}
+
+void add_allow_empty(CLI::App& command, CommonArgs& args)
+{
+    command.add_flag("--allow-empty", args.allow_empty, "Accept a file of poses that has a header but no pose");
 }
 
 void add_query(CLI::App& command, QueryArgs& args)
@@ -58,7 +64,7 @@ void add_query(CLI::App& command, QueryArgs& args)
     command.add_option("--max-water-depth", args.max_water_depth, "Water higher than this above the ground does not count, m (default: all does)");
     command.add_option("--max-slope", args.max_slope, "Ask poses that would be valid how they stand too: steep above so many degrees, unstable over an edge (default: not asked)");
     command.add_option("--collision", args.collision, "What the robot must not touch: geometry (exact), or octree (the baked voxels)")
-        ->check(CLI::IsMember({"geometry", "octree"}));
+        ->check(one_of({"geometry", "octree"}));
     command.add_flag("--exhaustive", args.exhaustive, "Check every pose exactly, without the free-space mask: the same answers, slowly");
     add_common(command, args);
 }
@@ -189,15 +195,6 @@ LayerChoice parse_layers(const std::string& text)
     return {LayerChoice::Kind::Index, index};
 }
 
-bool parse_yaw(const std::string& text, double& yaw)
-{
-    if (text == "random") return false;
-    const auto values = parse_numbers("--yaw", text);
-    if (values.size() != 1) throw ArgumentError("--yaw is \"" + text + "\", needs radians or random");
-    yaw = values[0];
-    return true;
-}
-
 double parse_positive(const std::string& option, double value)
 {
     if (!(value > 0) || !std::isfinite(value)) throw bad_value(option, value, "> 0");
@@ -213,10 +210,29 @@ double parse_finite(const std::string& option, double value, const std::string& 
 
 PoseTable open_poses(const CommonArgs& args, const std::string& file)
 {
-    PoseTable table = read_poses(file);
+    PoseTable table = is_standard(file) ? parse_poses(read_standard_input(), input_name(file), args.allow_empty)
+                                        : read_poses(file, args.allow_empty);
     for (const std::string& text : table.notices) notice(args, text);
     return table;
 }
+
+namespace {
+
+/// Most likely units: a robot of a drawing in millimetres, or a world in kilometres.
+void tell_if_larger_than_map(const CommonArgs& args, const Robot& robot, const Map& map)
+{
+    const Bounds box = robot.bounds();
+    const Vec3 size = box.max - box.min, room = map.bounds.max - map.bounds.min;
+    if (size.head<2>().maxCoeff() <= room.head<2>().maxCoeff()) return;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "the robot is %.6g x %.6g m, larger than the map (%.6g x %.6g m); is one of them in other units than "
+                  "metres? `scale` in a robot.yaml or scene.yaml, or bake --scale, corrects it",
+                  size.x(), size.y(), room.x(), room.y());
+    notice(args, text);
+}
+
+}  // namespace
 
 std::unique_ptr<Session> open_session(const QueryArgs& args)
 {
@@ -228,6 +244,7 @@ std::unique_ptr<Session> open_session(const QueryArgs& args)
     session->robot = load_robot(args.robot, robot_options(args));
     notices(args, session->robot.notices);
     session->map = read_map(args.map);
+    tell_if_larger_than_map(args, session->robot, session->map);
     if (args.collision == "octree") {
         auto tree = std::make_shared<const OccupancyTree>(read_occupancy(session->map));
         session->checker = std::make_unique<CollisionChecker>(std::move(tree), session->robot);
@@ -267,7 +284,7 @@ void write_output(const std::string& file, const std::function<void(const std::f
                   const std::function<void()>& then)
 {
     clear_progress_bar();
-    if (file.empty() || file == "-") {
+    if (file.empty() || is_standard(file)) {
         writer([](std::string_view text) { std::cout << text; });
         std::cout.flush();
         if (!std::cout) throw OutputError("standard output", "cannot be written");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "robot_args.h"
+#include "spelling.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/output_file.h>
@@ -39,8 +40,12 @@ struct CommonArgs {
     int threads = 0;
     bool quiet = false;
     std::string summary;
+    bool allow_empty = false;  ///< files of poses may have none; set by --allow-empty
 };
 void add_common(CLI::App& command, CommonArgs& args);
+
+/// --allow-empty, for commands that read poses.
+void add_allow_empty(CLI::App& command, CommonArgs& args);
 
 /// Options of every command that asks a map about a robot.
 struct QueryArgs : CommonArgs, RobotArgs {
@@ -84,8 +89,6 @@ Bounds parse_bounds(const std::string& option, const std::string& text, bool fla
 /// As parse_bounds reads it: 6 numbers, or of 2 axes 4.
 std::string bounds_text(const Bounds& bounds, int axes);
 LayerChoice parse_layers(const std::string& text);  ///< all|top|bottom|N
-/// "random" or radians; false if it is random.
-bool parse_yaw(const std::string& text, double& yaw);
 double parse_positive(const std::string& option, double value);
 double parse_finite(const std::string& option, double value, const std::string& unit);
 /// "--step is 0, needs > 0", to be thrown.
@@ -114,6 +117,8 @@ public:
         double undecided_area;  // m2
     };
     std::optional<Fullness> fullness;  ///< of a sample
+    std::vector<std::pair<std::string, std::uint64_t>>
+        draws;  ///< of a sample or search: how many there were, and how many were dropped why
 
     void finish();  ///< tells standard error and writes the JSON
 
@@ -136,7 +141,7 @@ struct Session {
     Robot robot;
     std::unique_ptr<CollisionChecker> checker;
 };
-/// Poses of a CSV file; tells what is odd about it.
+/// Poses of a CSV file, or of standard input if it is `-`. Prints the file's notices.
 PoseTable open_poses(const CommonArgs& args, const std::string& file);
 
 /// Heap-held: the checker keeps references into it. Without --robot, where a command allows that, the map alone.
@@ -147,8 +152,8 @@ void fill(QueryOptions& options, const QueryArgs& args, const std::string& label
 void tell_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds);
 void tell_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice& layers);
 
-/// `-o FILE`, whole or not at all, or standard output where the file is empty or "-". `then` runs when all is written but
-/// the file has not its name yet: it gets that only if `then` succeeds too.
+/// `-o FILE`, whole or not at all, or standard output where the file is empty or `-`. `then` runs when all is written
+/// but the file has not its name yet: it gets that only if `then` succeeds too.
 void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer,
                   const std::function<void()>& then = [] {});
 

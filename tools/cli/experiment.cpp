@@ -1,3 +1,4 @@
+#include "angle.h"
 #include "experiment_report.h"
 #include "interrupt.h"
 #include "raster_args.h"
@@ -109,7 +110,7 @@ private:
     void prepare_searches()
     {
         search_ = search_options(args_, args_.draws, args_.bounds, "experiment", !args_.ground.z.empty());
-        search_.yaw = parse_finite("--yaw", args_.yaw, "rad");
+        search_.yaw = parse_yaw(args_, args_.yaw);
         search_.area = read_area(args_, args_.area);
         search_.exact_time = &summary_.exact_time;
     }

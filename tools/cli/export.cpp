@@ -1,3 +1,4 @@
+#include "angle.h"
 #include "export.h"
 
 #include <algorithm>
@@ -42,7 +43,8 @@ std::string users_of(const std::string& option)
 }
 
 /// Options that are there for all formats, or help.
-const std::vector<std::string> general{"map", "--format", "--out", "--threads", "--quiet", "--summary", "--help"};
+const std::vector<std::string> general{"map",     "--format",  "--out",  "--threads",
+                                       "--quiet", "--summary", "--help", "--allow-empty"};
 
 void check_options(const ExportArgs& args, const CLI::App& command)
 {
@@ -101,15 +103,18 @@ void add_export(CLI::App& app, Run& run)
     CLI::App& command = *app.add_subcommand("export", "A map, or poses in it, in a file of another program");
     add_query(command, *args);
     command.get_option("--robot")->required(false);
-    command.add_option("--format", args->format, "One of the formats below")->required()->check(CLI::IsMember(format_names()));
+    command.add_option("--format", args->format, "One of the formats below")->required()->check(one_of(format_names()));
     command.add_option("--out,-o", args->out, "File to write (default: standard output, where the format can)");
     add_ground(command, args->ground, "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
-    command.add_option("--yaw", args->yaw, "Of all poses, rad (default 0)");
+    command.add_option("--yaw", args->yaw, "Of all poses, " + yaw_help + " (default 0)");
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
     command.add_option("--step", args->step, "Between columns, m");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
     command.add_flag("--local", args->local, "In the map's own frame, though the survey's coordinates are known");
-    command.add_option("--poses,-p", args->poses, "CSV file of poses, as sample and check write them; a column name names the robots where --name does not");
+    command.add_option("--poses,-p", args->poses,
+                       "CSV file of poses, as sample and check write them; a column name names the robots where --name "
+                       "does not (- for standard input)");
+    add_allow_empty(command, *args);
     add_simulator_options(command, args->simulator);
     command.footer(help());
     command.callback([=, &command, &run] { run = [=, &command] { return run_export(*args, command); }; });

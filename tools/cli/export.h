@@ -8,10 +8,10 @@ namespace spawnfield::cli {
 /// Options of `export`; which of them a format takes its row of the table says.
 struct ExportArgs : QueryArgs {
     GroundArgs ground;
-    std::string format, out, bounds, poses;
+    std::string format, out, bounds, poses, yaw = "0";
     bool local = false;
     SimulatorArgs simulator;
-    double resolution = 0, step = 0, yaw = 0;
+    double resolution = 0, step = 0;
 };
 
 /// What a format's writer gets.

@@ -1,4 +1,6 @@
+#include "angle.h"
 #include "export.h"
+#include "streams.h"
 
 #include <spawnfield/map_export.h>
 
@@ -18,7 +20,7 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
     fill(options, args, "export");
     options.exact_time = &job.summary.exact_time;
     const std::optional<double> offset = parse_offset(args.ground.offset);
-    options.yaw = parse_finite("--yaw", args.yaw, "rad");
+    options.yaw = parse_yaw(args, args.yaw);
     options.layers = parse_layers(args.ground.layers.empty() ? layers : args.ground.layers);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     options.z = with_floor(heights_of(args.ground, options.bounds, "--bounds"), args.ground, job.session.map);
@@ -129,7 +131,7 @@ void write_glb(const ExportJob& job)
     } else {
         const PoseTable table = open_poses(job.args, job.args.poses);
         markers.poses = table.poses;
-        markers.verdicts = verdicts_of(table, job.args.poses);
+        markers.verdicts = verdicts_of(table, input_name(job.args.poses));
         markers.names = column_of(table, "name");
     }
     const Progress progress = progress_bar(job.args, "export");

@@ -1,3 +1,4 @@
+#include "angle.h"
 #include "area_args.h"
 #include "ground_args.h"
 #include "picture_args.h"
@@ -50,9 +51,8 @@ Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
 {
     Facing facing;
     if (!args.yaw.empty()) {
-        facing.is_any = !parse_yaw(args.yaw, facing.yaw);
-        if (!facing.is_any) parse_finite("--yaw", facing.yaw, "rad");
-        return facing;
+        const std::optional<double> yaw = parse_yaw_or_random(args, args.yaw);
+        return {!yaw, yaw.value_or(0)};
     }
     if (spawns.empty()) return facing;
     facing.yaw = spawns[0].yaw;
@@ -151,15 +151,16 @@ void add_heatmap(CLI::App& app, Run& run)
     auto args = std::make_shared<HeatmapArgs>();
     CLI::App& command = *app.add_subcommand("heatmap", "Picture of where the robot can stand");
     add_query(command, *args);
-    command.add_option("--out,-o", args->out, "Picture to write: .png, .svg or .pdf")->required()->check(not_empty());
-    command.add_option("--format", args->format, "png, svg or pdf (default: as the ending of -o says, else png)")->check(CLI::IsMember({"png", "svg", "pdf"}));
+    command.add_option("--out,-o", args->out, "Picture to write: .png, .svg or .pdf (- for standard output)")->required()->check(not_empty());
+    command.add_option("--format", args->format, "png, svg or pdf (default: as the ending of -o says, else png)")->check(one_of({"png", "svg", "pdf"}));
     command.add_option("--quantity", args->quantity, "verdict, height, clearance or slope (default verdict)")
-        ->check(CLI::IsMember({"verdict", "height", "clearance", "slope"}));
-    command.add_option("--spawns", args->spawns, "CSV file of spawns to draw, as footprints of the robot or as arrows; a column verdict (from `check`) gives their colours");
+        ->check(one_of({"verdict", "height", "clearance", "slope"}));
+    command.add_option("--spawns", args->spawns, "CSV file of spawns to draw (- for standard input), as footprints of the robot or as arrows; a column verdict (from `check`) gives their colours");
+    add_allow_empty(command, *args);
     command.add_flag("--names", args->names, "Write each spawn's name beside it: its column name, or else the number of its row, from 1");
     add_ground(command, args->ground, "all (valid if one layer is), top, bottom, or N from the top (0 first; default all)");
     command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
-    command.add_option("--yaw", args->yaw, "Of all poses, rad; random: show at how many of 16 headings the robot fits (default: as the spawns face, else 0)");
+    command.add_option("--yaw", args->yaw, "Of all poses, " + yaw_help + "; random: show at how many of 16 headings the robot fits (default: as the spawns face, else 0)");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
     add_area(command, args->area);
     command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000; texts can be read from about 500 on)")->check(CLI::Range(200, 16000));

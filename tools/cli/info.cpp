@@ -2,6 +2,7 @@
 #include "scene_args.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
 #include <spawnfield/map.h>
 #include <spawnfield/robot_picture.h>
 
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 namespace spawnfield::cli {
@@ -319,15 +319,12 @@ std::string robot_lines(const Json& robot)
     return out;
 }
 
-/// Of a file; of anything else, as a pipe, which could be without end, nothing.
+/// All bytes of a regular file; empty for anything else.
 std::string text_of(const fs::path& file)
 {
     std::error_code unreachable;
     if (!fs::is_regular_file(file, unreachable)) return "";
-    std::ifstream stream(file);
-    std::stringstream text;
-    text << stream.rdbuf();
-    return text.str();
+    return read_file(file);
 }
 
 /// False for links that go round in circles, too.

@@ -1,5 +1,6 @@
 #include "cli.h"
 #include "interrupt.h"
+#include "streams.h"
 
 #include <spawnfield/error.h>
 
@@ -20,9 +21,10 @@ int tell(int status, const std::string& message)
     return status;
 }
 
-int guarded(const Run& run)
+int guarded(const CLI::App& app, const Run& run)
 {
     try {
+        for (const CLI::App* const command : app.get_subcommands()) check_streams(*command);
         return run();
     } catch (const Interrupted&) {
         return tell(interrupted, "interrupted; nothing was written");
@@ -91,12 +93,15 @@ int main(int argc, char** argv)
     add_experiment(app, command_line(argc, argv), run);
     const std::vector<std::string> names = command_names(app);
     if (has_unknown_command(names, argc, argv))
-        return tell(wrong_usage, std::string(argv[1]) + " is no command, needs one of " + CLI::detail::join(names, ", "));
+        return tell(wrong_usage, std::string(argv[1]) + " is no command, needs one of " +
+                                     CLI::detail::join(names, ", ") + suggestion(argv[1], names));
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
+        if (const std::string words = error.get_exit_code() == 0 ? "" : unknown_option(app); !words.empty())
+            return tell(wrong_usage, words + "\nRun with --help for more information.");
         return app.exit(error) == 0 ? done : wrong_usage;
     }
     catch_interrupts();
-    return guarded(run);
+    return guarded(app, run);
 }

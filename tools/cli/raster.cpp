@@ -1,5 +1,6 @@
 #include "picture_args.h"
 #include "raster_args.h"
+#include "streams.h"
 #include "thesis_output.h"
 
 #include <spawnfield/error.h>
@@ -106,9 +107,9 @@ void add_raster(CLI::App& app, Run& run)
     command.add_option("--step-z", args->step_z, "Between heights, m (default: --step)");
     command.add_flag("--write-aerial", args->write_aerial, "3D: write aerial poses too; with --format thesis those off the terrain, in 2D as well");
     command.add_option("--format", args->format, "csv, or thesis: a folder of Valid_Locations.txt and the like in Unity's frame (default csv)")
-        ->check(CLI::IsMember({"csv", "thesis"}));
+        ->check(one_of({"csv", "thesis"}));
     command.add_option("--out,-o", args->out, "CSV file, or folder, to write (default: standard output, or none with --heatmap)");
-    command.add_option("--heatmap", args->heatmap, "Picture to draw: .png, .svg or .pdf");
+    command.add_option("--heatmap", args->heatmap, "Picture to draw: .png, .svg or .pdf (- for standard output)");
     command.footer("Example:\n"
                    "  spawnfield raster /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --step 0.5 --offset 0.5 -o /tmp/box_raster.csv");
     command.callback([=, &command, &run] { run = [=, &command] { return run_raster(*args, command); }; });

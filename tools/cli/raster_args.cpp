@@ -1,5 +1,7 @@
 #include "raster_args.h"
 
+#include "angle.h"
+
 namespace spawnfield::cli {
 namespace {
 
@@ -24,8 +26,8 @@ void check_snap(const RasterArgs& args)
 void add_raster_query(CLI::App& command, RasterArgs& args)
 {
     add_query(command, args);
-    command.add_option("--dims", args.dims, "2: a pose per column and layer; 3: a pose per column and height")->check(CLI::IsMember({2, 3}));
-    command.add_option("--yaw", args.yaw, "Of all poses, rad (default 0)");
+    command.add_option("--dims", args.dims, "2: a pose per column and layer; 3: a pose per column and height")->check(one_of({"2", "3"}));
+    command.add_option("--yaw", args.yaw, "Of all poses, " + yaw_help + " (default 0)");
     command.add_option("--bounds", args.bounds, "x0,y0,z0,x1,y1,z1 in m; or, in 2D and with --z, x0,y0,x1,y1. In 2D layers beyond z0 .. z1 are no ground (default: the map's)");
     add_area(command, args.area);
     add_ground(command, args.ground, "all, top, bottom, or N from the top (0 first; default all)");
@@ -42,7 +44,7 @@ RasterOptions raster_options(const RasterArgs& args, const CLI::App& command)
     fill(options, args, command.get_name());
     options.dims = args.dims;
     options.offset = parse_offset(args.ground.offset);
-    options.yaw = parse_finite("--yaw", args.yaw, "rad");
+    options.yaw = parse_yaw(args, args.yaw);
     options.layers = parse_layers(args.ground.layers);
     options.height_check = !args.no_height_check;
     options.snap = args.snap;

@@ -8,10 +8,9 @@ namespace spawnfield::cli {
 /// Options of rasters beside steps and outputs, as `raster` and `experiment` take them.
 struct RasterArgs : QueryArgs {
     int dims = 2;
-    double yaw = 0;
     AreaArgs area;
     GroundArgs ground;
-    std::string bounds;
+    std::string bounds, yaw = "0";
     bool no_height_check = false, snap = false;
 };
 void add_raster_query(CLI::App& command, RasterArgs& args);

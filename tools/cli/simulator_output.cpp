@@ -2,12 +2,12 @@
 
 #include "interrupt.h"
 
+#include <spawnfield/input_file.h>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 namespace spawnfield::cli {
 namespace {
@@ -53,20 +53,12 @@ TileGrid parse_tiles(const std::string& text)
     return grid;
 }
 
-std::string text_of_file(const std::string& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || !fs::is_regular_file(file)) throw FileError(file, "is missing or cannot be read");
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-}
-
 /// A path that holds wherever the file is read from. What a launcher fills in stays as it is.
 std::string lasting_path(const std::string& option, const std::string& file)
 {
     if (file.find("$(") != std::string::npos) return file;
     if (!fs::exists(file)) throw FileError(file, "does not exist (" + option + ")");
+    if (!fs::is_directory(file)) require_file(file);
     return fs::absolute(file).lexically_normal().string();
 }
 
@@ -130,12 +122,13 @@ void add_simulator_options(CLI::App& command, SimulatorArgs& args)
     add("--world-name", args.world_name, "ROS 2: Gazebo's name of the world (default: the one that runs); sdf: that of a new world, or which one of --world");
     add("--joint-qpos", args.joint_qpos, "mujoco: q,q,... of the joints that follow each free joint (default: none)");
     add("--keys", args.keys, "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")
-        ->check(CLI::IsMember({"each", "together"}));
-    add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw from 3 on (default wxyz)")->check(CLI::IsMember({"wxyz", "xyzw"}));
+        ->check(one_of({"each", "together"}));
+    add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw from 3 on (default wxyz)")
+        ->check(one_of({"wxyz", "xyzw"}));
     add("--tiles", args.tiles, "isaaclab: ROWS,COLS of the terrain patches, along x and y (default 1,1)");
     add("--blueprint", args.blueprint, "carla: what is spawned (default vehicle.tesla.model3)");
     add("--unity-axes", args.unity_axes, "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity exported as glTF, FBX or OBJ (default ros)")
-        ->check(CLI::IsMember({"ros", "gltf"}));
+        ->check(one_of({"ros", "gltf"}));
 }
 
 SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target)
@@ -228,7 +221,7 @@ void SimulatorOutput::settle_sdf()
         throw ArgumentError("--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF" + robot_is_neither());
     if (args_.world.empty()) return;
     sdf_.world_file = args_.world;
-    sdf_.world_text = text_of_file(args_.world);
+    sdf_.world_text = read_file(args_.world);
     sdf_.model_paths = target_.reading.model_paths;
     sdf_world({}, sdf_);  // to be told of a bad file now
     const std::string relative = first_relative_uri(sdf_.world_text);

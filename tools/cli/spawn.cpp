@@ -1,4 +1,6 @@
+#include "angle.h"
 #include "area_args.h"
+#include "avoid_args.h"
 #include "ground_args.h"
 #include "simulator_output.h"
 #include "spawn_args.h"
@@ -15,6 +17,7 @@ struct SpawnArgs : QueryArgs {
     DrawArgs draws;
     SimulatorArgs simulator;
     AreaArgs area;
+    AvoidArgs avoid;
     GroundArgs ground;
     std::string bounds, yaw = "0", format = "csv", out;
 
@@ -25,11 +28,14 @@ std::string shortfall(const SpawnOptions& options, const SpawnList& list, const 
 {
     const std::string found = std::to_string(list.spawns.size()), of_count = found + " of " + std::to_string(options.count) + " spawns ";
     const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
+                               (list.near_avoided > 0 ? "a smaller --avoid-distance, " : "") +
                                (std::isfinite(options.max_slope) ? "a larger --max-slope, " : "") +
                                (command == "sample"               ? "another --offset or a wider --region"
                                 : options.area.is_everywhere() ? "more --max-failures or wider --bounds"
                                                                : "more --max-failures or a wider --region");
-    if (list.is_full && list.spawns.empty()) return "no spawn fits: it is proven that no pose is valid; " + advice + " may give some";
+    if (list.is_full && list.spawns.empty())
+        return std::string("no spawn fits: it is proven that no pose is valid") +
+               (list.near_avoided > 0 ? " and far enough from the avoided poses; " : "; ") + advice + " may give some";
     if (list.is_full) return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice + " may give more";
     if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
     char area[32];
@@ -50,12 +56,14 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnO
     add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, command == "sample" ? 2 : 3));
     for (const Region& region : options.area.within) add("Region", region.name);
     for (const Region& region : options.area.keep_out) add("Keep out", region.name);
+    for (const AvoidedPoints& group : options.avoid) add("Avoid", words_of(group));
     add("Max water depth (m)", number(options.max_water_depth));
     if (std::isfinite(options.max_slope)) add("Max slope (rad)", number(options.max_slope));
     out.insert(out.end(), own.begin(), own.end());
     add("Spawns", std::to_string(list.spawns.size()));
     add("Draws", std::to_string(list.draws));
     if (!options.area.is_everywhere()) add("Draws off the region", std::to_string(list.off_area));
+    if (!options.avoid.empty()) add("Draws near avoided poses", std::to_string(list.near_avoided));
     add("Draws too close", std::to_string(list.too_close));
     add("Positions that are not valid", "counted, not written");
     return out;
@@ -81,7 +89,12 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
     summary.seed = options.seed;
     summary.extra.insert(summary.extra.begin(), std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns");
     summary.extra.push_back(counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
+                            (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
                             (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region"));
+    summary.draws = {{"all", list.draws},
+                     {"too_close", list.too_close},
+                     {"near_avoided", list.near_avoided},
+                     {"off_region", list.off_area}};
     summary.finish();
     if (list.spawns.size() == options.count) return done;
     notice(args, hopeless.empty() ? shortfall(options, list, command) : hopeless);
@@ -110,7 +123,10 @@ template <class Options>
 int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArgs& args, const CLI::App& app, Options options,
               const std::string& command)
 {
-    options.random_yaw = !parse_yaw(args.yaw, options.yaw);
+    const std::optional<double> yaw = parse_yaw_or_random(args, args.yaw);
+    options.random_yaw = !yaw;
+    options.yaw = yaw.value_or(0);
+    options.avoid = read_avoided(args, args.avoid, options.min_distance);
     options.exact_time = &summary.exact_time;
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     if (folder) tell_idle_options(args, app, args.format);
@@ -119,6 +135,7 @@ int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArg
     const auto session = open_session(args);
     const Settings own = query.prepare(*session, options, summary);
     const std::string hopeless = query.find_hopeless(*session, options);
+    tell_about_avoided(args, session->map, options.avoid);
     summary.lap("load");
     const SpawnList list = hopeless.empty() ? query.run(session->map, *session->checker, options) : nothing_drawn(session->map, options);
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
@@ -179,11 +196,13 @@ void add_spawn_options(CLI::App& command, SpawnArgs& args)
     add_draws(command, args.draws);
     command.get_option("--count")->required();
     add_area(command, args.area);
-    command.add_option("--yaw", args.yaw, "rad, or random (default 0)");
+    add_avoid(command, args.avoid);
+    add_allow_empty(command, args);
+    command.add_option("--yaw", args.yaw, yaw_help + ", or random (default 0)");
     std::vector<std::string> formats = pose_formats;
     formats.push_back("thesis");
     command.add_option("--format", args.format, "csv, json; a file for a simulator; or thesis: a folder of Valid_Locations.txt and the like (default csv)")
-        ->check(CLI::IsMember(formats));
+        ->check(one_of(formats));
     command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
     add_simulator_options(command, args.simulator);
 }

@@ -1,4 +1,5 @@
 #include "cli.h"
+#include "streams.h"
 
 #include <nlohmann/json.hpp>
 
@@ -32,7 +33,7 @@ Summary::Summary(std::string command, const CommonArgs& args) : command_(std::mo
 {
     std::error_code ignored;
     const bool is_pipe = std::filesystem::is_fifo(args.summary, ignored);  // to open it is to wait for its reader
-    if (!args.summary.empty() && !is_pipe) file_.emplace(args.summary);
+    if (!args.summary.empty() && !is_standard(args.summary) && !is_pipe) file_.emplace(args.summary);
 }
 
 void Summary::lap(const std::string& stage)
@@ -94,6 +95,7 @@ std::string Summary::json(double total) const
         out["undecided_area"] = fullness->undecided_area;
     }
     if (offset) out["offset"] = *offset;
+    for (const auto& [what, count] : draws) out["draws"][what] = count;
     const double load = seconds_of("load"), write = seconds_of("write");
     // Exact checks run on all threads: their share of the query's time is told.
     const double query = total - load - write, judging = seconds_of("query");
@@ -114,9 +116,13 @@ void Summary::finish()
 {
     const double total = elapsed();
     if (!args_.summary.empty()) {
-        if (!file_) file_.emplace(args_.summary);
-        file_->write(json(total));
-        file_->commit();
+        if (is_standard(args_.summary)) {
+            write_output(args_.summary, [&](const auto& sink) { sink(json(total)); });
+        } else {
+            if (!file_) file_.emplace(args_.summary);
+            file_->write(json(total));
+            file_->commit();
+        }
     }
     clear_progress_bar();
     if (!args_.quiet) std::cerr << line(total) << "\n";

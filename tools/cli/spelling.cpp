@@ -1,0 +1,101 @@
+#include "spelling.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace spawnfield::cli {
+namespace {
+
+/// Fewest letters to insert, delete, replace or swap with their neighbour (Damerau: optimal string alignment).
+std::size_t edit_distance(const std::string& a, const std::string& b)
+{
+    std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
+    std::iota(last.begin(), last.end(), std::size_t(0));
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = std::min(row[j], before[j - 2] + 1);
+        }
+        before = std::exchange(last, row);
+    }
+    return last.back();
+}
+
+std::vector<std::string> words_that(const std::vector<std::string>& words,
+                                    const std::function<bool(const std::string&)>& test)
+{
+    std::vector<std::string> out;
+    std::copy_if(words.begin(), words.end(), std::back_inserter(out), test);
+    return out;
+}
+
+/// Words that begin with the text; else those that are nearest to it; else those that it is a part of.
+std::vector<std::string> likely(const std::string& text, const std::vector<std::string>& words)
+{
+    const std::string core = text.substr(std::min(text.find_first_not_of('-'), text.size()));
+    if (core.size() > 1)
+        if (auto longer = words_that(words, [&](const std::string& word) { return word.starts_with(text); });
+            !longer.empty())
+            return longer;
+    std::size_t nearest = 1 + core.size() / 4;
+    for (const std::string& word : words) nearest = std::min(nearest, edit_distance(text, word));
+    const auto near = words_that(words, [&](const std::string& word) {
+        return word.size() > nearest + 1 && edit_distance(text, word) == nearest;
+    });
+    if (!near.empty() || core.size() < 4) return near;
+    return words_that(words, [&](const std::string& word) { return word.find(core) != std::string::npos; });
+}
+
+/// "a", "a or b", "a, b or c".
+std::string choice_of(const std::vector<std::string>& words)
+{
+    std::string out;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+    return out;
+}
+
+std::vector<std::string> option_names(const CLI::App& command)
+{
+    std::vector<std::string> names;
+    for (const CLI::Option* const option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    }
+    return names;
+}
+
+}  // namespace
+
+std::string suggestion(const std::string& text, const std::vector<std::string>& words)
+{
+    constexpr std::size_t most = 4;
+    const std::vector<std::string> found = likely(text, words);
+    return found.empty() || found.size() > most ? "" : "; did you mean " + choice_of(found) + "?";
+}
+
+CLI::Validator one_of(std::vector<std::string> words)
+{
+    const std::string all = "{" + CLI::detail::join(words, ",") + "}";
+    return {[words = std::move(words)](const std::string& text) {
+                if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+                return "\"" + text + "\" is not one of " + CLI::detail::join(words, ", ") + suggestion(text, words);
+            },
+            all};
+}
+
+std::string unknown_option(const CLI::App& app)
+{
+    const auto chosen = app.get_subcommands();
+    const CLI::App& command = chosen.empty() ? app : *chosen.back();
+    for (const std::string& text : command.remaining(true)) {
+        if (text.size() < 2 || text[0] != '-') continue;
+        const std::string name = text.substr(0, text.find('='));
+        return name + " is not an option of " + command.get_name() + suggestion(name, option_names(command));
+    }
+    return "";
+}
+
+}  // namespace spawnfield::cli
