@@ -515,8 +515,10 @@ TEST_CASE("a PLY has the raster's poses as points, to the bit, coloured as in he
     constexpr std::size_t point = 3 * sizeof(double) + 4;
     REQUIRE(bytes.size() == body + point * result.poses.size());
     REQUIRE((result.counts[std::size_t(Verdict::Valid)] > 100 && result.counts[std::size_t(Verdict::Collision)] > 100));
-    const std::map<Verdict, std::string> colours{{Verdict::Valid, "\xbd\xd5\xa7"}, {Verdict::Collision, "\xa5\x4c\x31"},
-                                                 {Verdict::OffTerrain, "\x91\x82\xff"}, {Verdict::Outside, "\x72\x6e\x77"}};
+    const std::map<Verdict, std::string> colours{{Verdict::Valid, "\xbd\xd5\xa7"},
+                                                 {Verdict::Collision, "\xa5\x4c\x31"},
+                                                 {Verdict::OffTerrain, "\x91\x82\xff"},
+                                                 {Verdict::Outside, "\x72\x6e\x77"}};
     std::size_t wrong = 0;
     for (std::size_t p = 0; p < result.poses.size(); ++p) {
         const RasterPose& pose = result.poses[p];

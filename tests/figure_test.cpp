@@ -32,7 +32,8 @@ Figure each_mark()
 std::vector<const tinyxml2::XMLElement*> elements_of(const tinyxml2::XMLNode& node, const std::string& name)
 {
     std::vector<const tinyxml2::XMLElement*> out;
-    for (const tinyxml2::XMLElement* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    for (const tinyxml2::XMLElement* child = node.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
         if (child->Name() == name) out.push_back(child);
         for (const tinyxml2::XMLElement* below : elements_of(*child, name)) out.push_back(below);
     }
@@ -125,7 +126,8 @@ TEST_CASE("a file's ending says its format, and others are refused")
     CHECK(picture_format("a.pdf") == PictureFormat::Pdf);
     CHECK(picture_format("folder.x/a") == PictureFormat::Png);
     CHECK(picture_format("/dev/stdout") == PictureFormat::Png);
-    CHECK_THROWS_WITH(picture_format("a.jpg"), Contains("a.jpg ends in .jpg, but pictures are written as .png, .svg or .pdf"));
+    CHECK_THROWS_WITH(picture_format("a.jpg"),
+                      Contains("a.jpg ends in .jpg, but pictures are written as .png, .svg or .pdf"));
     CHECK_THROWS_AS(picture_format("a.png.gz"), ArgumentError);
     CHECK_THROWS_AS(picture_format("a."), ArgumentError);
 }

@@ -11,14 +11,17 @@ void add_texts(const tinyxml2::XMLElement& element, std::vector<std::string>& ou
 {
     const bool is_halo = element.Attribute("fill", "none") != nullptr;
     if (std::string(element.Name()) == "text" && !is_halo) out.emplace_back(element.GetText() ? element.GetText() : "");
-    for (const tinyxml2::XMLElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) add_texts(*child, out);
+    for (const tinyxml2::XMLElement* child = element.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement())
+        add_texts(*child, out);
 }
 
 std::string inflated(const std::string& bytes)
 {
     std::string out(1 << 22, '\0');
     uLongf size = out.size();
-    const int result = uncompress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+    const int result = uncompress(reinterpret_cast<Bytef*>(out.data()), &size,
+                                  reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
     if (result != Z_OK) return "";
     out.resize(size);
     return out;

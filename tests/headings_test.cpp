@@ -40,7 +40,8 @@ TEST_CASE("a raster at 16 headings counts the valid ones of 16 rasters, and take
     VerdictCounts counts{};
     for (std::size_t p = 0; p < count; ++p) {
         const auto& tally = tallies[p];
-        const int fitting = tally[std::size_t(Verdict::Valid)], seen = tally[std::size_t(result.raster.poses[p].verdict)];
+        const int fitting = tally[std::size_t(Verdict::Valid)],
+                  seen = tally[std::size_t(result.raster.poses[p].verdict)];
         const int most = *std::max_element(tally.begin(), tally.end());
         wrong += result.valid_headings[p] != fitting;
         wrong += fitting > 0 ? result.raster.poses[p].verdict != Verdict::Valid : seen != most;
@@ -56,7 +57,8 @@ TEST_CASE("a raster at headings refuses counts out of range and 3D rasters")
 {
     const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
-    CHECK_THROWS_WITH(raster_at_headings(map, checker, half_metres(), 0), "raster_at_headings: headings is 0, needs 1 .. 255");
+    CHECK_THROWS_WITH(raster_at_headings(map, checker, half_metres(), 0),
+                      "raster_at_headings: headings is 0, needs 1 .. 255");
     CHECK_THROWS_AS(raster_at_headings(map, checker, half_metres(), 256), ArgumentError);
     RasterOptions options = half_metres();
     options.dims = 3;

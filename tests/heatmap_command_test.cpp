@@ -11,11 +11,15 @@ ProgramRun heatmap(const Arena& arena, const std::string& arguments)
     return arena("heatmap map --step 0.5" + husky_option + arguments);
 }
 
-std::vector<std::string> texts_in(const Arena& arena, const std::string& file) { return svg_texts(bytes_of(arena / file)); }
+std::vector<std::string> texts_in(const Arena& arena, const std::string& file)
+{
+    return svg_texts(bytes_of(arena / file));
+}
 
 bool has(const std::vector<std::string>& texts, const std::string& part)
 {
-    return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) { return text.find(part) != std::string::npos; });
+    return std::any_of(texts.begin(), texts.end(),
+                       [&](const std::string& text) { return text.find(part) != std::string::npos; });
 }
 
 }  // namespace
@@ -23,8 +27,9 @@ bool has(const std::vector<std::string>& texts, const std::string& part)
 TEST_CASE("endings that no picture is written with are refused before any work")
 {
     const Arena arena;
-    for (const std::string& command : {"heatmap map -o x.jpg" + husky_option, "raster map --dims 2 --step 1 --heatmap x.jpg -o x.csv" + husky_option,
-                                      std::string("info 'box:1,1,1' --picture x.jpg"), "heatmap none -o x.jpg" + husky_option}) {
+    for (const std::string& command :
+         {"heatmap map -o x.jpg" + husky_option, "raster map --dims 2 --step 1 --heatmap x.jpg -o x.csv" + husky_option,
+          std::string("info 'box:1,1,1' --picture x.jpg"), "heatmap none -o x.jpg" + husky_option}) {
         CAPTURE(command);
         const ProgramRun run = arena(command);
         CHECK(run.status == 2);
@@ -32,7 +37,8 @@ TEST_CASE("endings that no picture is written with are refused before any work")
     }
     const ProgramRun contradiction = heatmap(arena, "-o x.png --format svg");
     CHECK(contradiction.status == 2);
-    CHECK(contradiction.err == "spawnfield: --format is svg, but x.png ends in .png; make them agree, or leave --format out\n");
+    CHECK(contradiction.err ==
+          "spawnfield: --format is svg, but x.png ends in .png; make them agree, or leave --format out\n");
     CHECK(arena.names() == std::set<std::string>{"map"});
 }
 
@@ -71,11 +77,17 @@ TEST_CASE("the ground is shown for the way in which the spawns face")
     arena.write("same.csv", "x,y,z,yaw\n0,3,0.1,1.5\n2,3,0.1,7.783185307179586\n");  // 1.5, and a turn more
     arena.write("mixed.csv", "x,y,z,yaw\n0,3,0.1,0\n2,3,0.1,1\n50,3,0.1,1\n");
     const ProgramRun same = heatmap(arena, "-o same.svg --spawns same.csv");
-    CHECK_THAT(same.err, Contains("notice: the ground is shown for yaw 1.5 rad, which all spawns have (--yaw RAD shows another)\n"));
+    CHECK_THAT(
+        same.err,
+        Contains("notice: the ground is shown for yaw 1.5 rad, which all spawns have (--yaw RAD shows another)\n"));
     CHECK(has(texts_in(arena, "same.svg"), "yaw 85.94 deg"));
 
     const ProgramRun mixed = heatmap(arena, "-o mixed.svg --spawns mixed.csv");
-    CHECK_THAT(mixed.err, Contains("notice: the spawns have different yaws: the ground shows at how many of 16 headings the robot fits (--yaw RAD shows one)\n"));
+    CHECK_THAT(
+        mixed.err,
+        Contains(
+            "notice: the spawns have different yaws: the ground shows at how many of 16 "
+            "headings the robot fits (--yaw RAD shows one)\n"));
     CHECK(has(texts_in(arena, "mixed.svg"), "16 headings"));
     CHECK(has(texts_in(arena, "mixed.svg"), "valid at some headings"));
     CHECK(has(texts_in(arena, "mixed.svg"), "2 of 3 spawns in view"));
@@ -95,7 +107,8 @@ TEST_CASE("what check wrote is drawn by verdict, with names")
     REQUIRE(arena("check map --poses poses.csv -o checked.csv" + husky_option).status == 0);
     REQUIRE(heatmap(arena, "-o a.svg --spawns checked.csv --names").status == 0);
     std::vector<std::string> texts = texts_in(arena, "a.svg");
-    for (const char* const text : {"3 spawns", "1 valid", "1 collision", "1 submerged", "start", "wall", "lake"}) CHECK(has(texts, text));
+    for (const char* const text : {"3 spawns", "1 valid", "1 collision", "1 submerged", "start", "wall", "lake"})
+        CHECK(has(texts, text));
     arena.write("plain.csv", "x,y,z\n0,3,0.1\n-1,3,0.1\n");
     REQUIRE(heatmap(arena, "-o a.svg --spawns plain.csv --names").status == 0);
     texts = texts_in(arena, "a.svg");

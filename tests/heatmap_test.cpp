@@ -156,7 +156,8 @@ Picture read_picture(const std::filesystem::path& file, const View& view)
     return picture;
 }
 
-Picture draw(const RasterResult& raster, const HeatmapOptions& options = {}, const TerrainMap& terrain = level_terrain(20, 20), const Map& map = {})
+Picture draw(const RasterResult& raster, const HeatmapOptions& options = {},
+             const TerrainMap& terrain = level_terrain(20, 20), const Map& map = {})
 {
     const TempFolder folder;
     write_heatmap(map, terrain, raster, options, folder / "picture.png");
@@ -166,14 +167,18 @@ Picture draw(const RasterResult& raster, const HeatmapOptions& options = {}, con
 }
 
 /// Texts of the picture, as its SVG has them.
-std::vector<std::string> texts_of(const RasterResult& raster, const HeatmapOptions& options = {}, const TerrainMap& terrain = level_terrain(20, 20), const Map& map = {})
+std::vector<std::string> texts_of(const RasterResult& raster, const HeatmapOptions& options = {},
+                                  const TerrainMap& terrain = level_terrain(20, 20), const Map& map = {})
 {
     const TempFolder folder;
     write_heatmap(map, terrain, raster, options, folder / "picture.svg");
     return svg_texts(bytes_of(folder / "picture.svg"));
 }
 
-bool contains(const std::vector<std::string>& texts, const std::string& text) { return std::find(texts.begin(), texts.end(), text) != texts.end(); }
+bool contains(const std::vector<std::string>& texts, const std::string& text)
+{
+    return std::find(texts.begin(), texts.end(), text) != texts.end();
+}
 
 int count_outside_plot(const Picture& picture, Colour colour)
 {
@@ -468,7 +473,8 @@ TEST_CASE("the legend counts columns as they are shown, not poses")
 
 TEST_CASE("a caption stands below the title")
 {
-    const std::vector<std::string> texts = texts_of(raster_of({"V"}), {.title = "arena, husky", .caption = "offset 0.1 m, yaw 0 deg"});
+    const std::vector<std::string> texts =
+        texts_of(raster_of({"V"}), {.title = "arena, husky", .caption = "offset 0.1 m, yaw 0 deg"});
     CHECK(texts[0] == "arena, husky");
     CHECK(texts[1] == "offset 0.1 m, yaw 0 deg");
 }
@@ -504,13 +510,15 @@ TEST_CASE("with several headings a column is valid at all, at some or at none")
     options.valid_headings = {16, 15, 1, 0, 16};
     CHECK(draw(raster, options).at(3, 1) == valid);
     options.valid_headings.pop_back();
-    CHECK_THROWS_WITH(draw(raster, options), Contains("size of valid_headings is 4, needs as many as the raster's poses, or none"));
+    CHECK_THROWS_WITH(draw(raster, options),
+                      Contains("size of valid_headings is 4, needs as many as the raster's poses, or none"));
 }
 
 TEST_CASE("quantities count as valid what fits at all headings")
 {
     const RasterResult raster = raster_of({"VVV", "VVV", "VVV"});
-    const HeatmapOptions options{.quantity = HeatmapQuantity::Clearance, .headings = 4, .valid_headings = {4, 4, 4, 4, 3, 4, 4, 4, 4}};
+    const HeatmapOptions options{
+        .quantity = HeatmapQuantity::Clearance, .headings = 4, .valid_headings = {4, 4, 4, 4, 3, 4, 4, 4, 4}};
     const Picture picture = draw(raster, options);
     CHECK(picture.at(3, 3) == rgb(0x9a9a9a));
     CHECK(picture.at(1, 3) != rgb(0x9a9a9a));
@@ -551,8 +559,11 @@ parts:
     // 49 columns in y; the wall's own are those at x = 6, and its margin reaches 1 m + 0.15 m to each side.
     const std::vector<std::string> texts = texts_of(result, {.robot = &low}, terrain, map);
     CHECK(contains(texts, "49   2.0 %"));
-    const auto row = std::count_if(result.poses.begin(), result.poses.end(), [](const RasterPose& pose) { return pose.y == 2 && pose.verdict == Verdict::Collision; });
-    CHECK(contains(texts, with_commas(std::uint64_t(49 * (row - 1))) + "   " + fixed(100.0 * double(row - 1) / 49, 1) + " %"));
+    const auto row = std::count_if(result.poses.begin(), result.poses.end(), [](const RasterPose& pose) {
+        return pose.y == 2 && pose.verdict == Verdict::Collision;
+    });
+    CHECK(contains(texts,
+                   with_commas(std::uint64_t(49 * (row - 1))) + "   " + fixed(100.0 * double(row - 1) / 49, 1) + " %"));
 }
 
 TEST_CASE("obstacles on a slope are found at the height of the ground below them")
@@ -580,7 +591,8 @@ parts:
 namespace {
 
 /// Polygons of an SVG picture that have this fill.
-std::vector<std::vector<cv::Point2d>> polygons_of(const RasterResult& raster, const HeatmapOptions& options, const std::string& fill)
+std::vector<std::vector<cv::Point2d>> polygons_of(const RasterResult& raster, const HeatmapOptions& options,
+                                                  const std::string& fill)
 {
     const TempFolder folder;
     write_heatmap({}, level_terrain(20, 20), raster, options, folder / "picture.svg");
@@ -610,7 +622,8 @@ const std::string white_fill = "#ffffff";
 
 TEST_CASE("spawns are footprints to scale where those are 6 pixels long or more, else arrows")
 {
-    const RasterResult raster = raster_of({"VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV"});  // 20 x 10 m
+    const RasterResult raster =
+        raster_of({"VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV"});  // 20 x 10 m
     const Robot robot = load_robot("box:2,1,0.5@0.5,0,0.25");
     HeatmapOptions options{.spawns = {{{10, 5, 0.1}, pi / 2}}, .robot = &robot};
     const Picture picture = draw(raster, options);
@@ -633,7 +646,8 @@ TEST_CASE("spawns are footprints to scale where those are 6 pixels long or more,
     CHECK(polygons_of(large, options, white_fill)[0].size() == 4);
 
     // Just below and above the limit of 6 pixels.
-    const Robot five = load_robot("box:" + std::to_string(5.5 / metre) + ",0.01,0.5"), seven = load_robot("box:" + std::to_string(7 / metre) + ",0.01,0.5");
+    const Robot five = load_robot("box:" + std::to_string(5.5 / metre) + ",0.01,0.5"),
+                seven = load_robot("box:" + std::to_string(7 / metre) + ",0.01,0.5");
     options.spawns[0].position /= 1000;
     options.robot = &five;
     CHECK(size_of(polygons_of(raster, options, white_fill)[0]).height > 12);
@@ -646,7 +660,8 @@ TEST_CASE("spawns with verdicts have their colours, and the legend counts those 
     const RasterResult raster = raster_of({"AAAAA", "AAAAA", "AAAAA"});  // 10 x 6 m
     const Robot robot = load_robot("box:1,0.6,0.5");
     HeatmapOptions options{.spawns = {{{1, 1, 0}, 0}, {{5, 3, 0}, 1}, {{9, 5, 0}, 2}, {{30, 5, 0}, 2}},
-                           .spawn_verdicts = {Verdict::Valid, Verdict::Collision, Verdict::Valid, Verdict::Submerged}, .robot = &robot};
+                           .spawn_verdicts = {Verdict::Valid, Verdict::Collision, Verdict::Valid, Verdict::Submerged},
+                           .robot = &robot};
     const Picture picture = draw(raster, options);
     CHECK(picture.at(0.9, 1.1) == valid);
     CHECK(picture.at(4.9, 2.9) == collision);
@@ -675,7 +690,9 @@ TEST_CASE("names are written beside spawns, and those without room are counted")
         options.spawn_names.push_back("n" + std::to_string(k));
     }
     texts = texts_of(raster, options);
-    const auto written = std::count_if(texts.begin(), texts.end(), [](const std::string& text) { return text.starts_with("n") && std::isdigit(text[1]); });
+    const auto written = std::count_if(texts.begin(), texts.end(), [](const std::string& text) {
+        return text.starts_with("n") && std::isdigit(text[1]);
+    });
     CHECK(written < 20);
     CHECK(contains(texts, std::to_string(written + 2) + " of 22 names shown: no room"));
 }
@@ -684,7 +701,8 @@ TEST_CASE("heat maps are SVG and PDF by the file's ending, with texts as texts")
 {
     const TempFolder folder;
     const RasterResult raster = raster_of({"VC"});
-    for (const char* const name : {"a.svg", "b.svg", "a.pdf", "b.pdf"}) write_heatmap({}, level_terrain(4, 2), raster, {.title = "two columns"}, folder / name);
+    for (const char* const name : {"a.svg", "b.svg", "a.pdf", "b.pdf"})
+        write_heatmap({}, level_terrain(4, 2), raster, {.title = "two columns"}, folder / name);
     CHECK(contains(svg_texts(bytes_of(folder / "a.svg")), "two columns"));
     CHECK_THAT(pdf_page(bytes_of(folder / "a.pdf")), Contains("(two columns) Tj"));
     CHECK(bytes_of(folder / "a.svg") == bytes_of(folder / "b.svg"));

@@ -34,7 +34,8 @@ Lab lab(const Eigen::Vector3d& rgb)
     Eigen::Matrix3d xyz_from_rgb;
     xyz_from_rgb << 0.4124564, 0.3575761, 0.1804375, 0.2126729, 0.7151522, 0.0721750, 0.0193339, 0.1191920, 0.9503041;
     const Eigen::Vector3d xyz = (xyz_from_rgb * rgb).cwiseQuotient(Eigen::Vector3d(0.95047, 1, 1.08883));
-    const Eigen::Vector3d f = xyz.unaryExpr([](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; });
+    const Eigen::Vector3d f =
+        xyz.unaryExpr([](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; });
     return {116 * f.y() - 16, 500 * (f.x() - f.y()), 200 * (f.y() - f.z())};
 }
 
@@ -46,7 +47,9 @@ double difference(const Lab& one, const Lab& other)
     const double stretch = 1 + 0.5 * (1 - power7(mean_chroma));
     const double a1 = stretch * one[1], a2 = stretch * other[1];
     const double c1 = std::hypot(a1, one[2]), c2 = std::hypot(a2, other[2]);
-    const auto hue = [](double a, double b) { return a == 0 && b == 0 ? 0 : std::fmod(degrees(std::atan2(b, a)) + 360, 360); };
+    const auto hue = [](double a, double b) {
+        return a == 0 && b == 0 ? 0 : std::fmod(degrees(std::atan2(b, a)) + 360, 360);
+    };
     const double h1 = hue(a1, one[2]), h2 = hue(a2, other[2]);
     double turn = h2 - h1, mean_hue = (h1 + h2) / 2;
     if (std::abs(turn) > 180) {
@@ -57,13 +60,16 @@ double difference(const Lab& one, const Lab& other)
         turn = 0;
         mean_hue = h1 + h2;
     }
-    const double lightness = other[0] - one[0], chroma = c2 - c1, dh = 2 * std::sqrt(c1 * c2) * std::sin(radians(turn / 2));
+    const double lightness = other[0] - one[0], chroma = c2 - c1,
+                 dh = 2 * std::sqrt(c1 * c2) * std::sin(radians(turn / 2));
     const double l = (one[0] + other[0]) / 2, c = (c1 + c2) / 2;
     const double t = 1 - 0.17 * std::cos(radians(mean_hue - 30)) + 0.24 * std::cos(radians(2 * mean_hue)) +
                      0.32 * std::cos(radians(3 * mean_hue + 6)) - 0.2 * std::cos(radians(4 * mean_hue - 63));
-    const double sl = 1 + 0.015 * std::pow(l - 50, 2) / std::sqrt(20 + std::pow(l - 50, 2)), sc = 1 + 0.045 * c, sh = 1 + 0.015 * c * t;
+    const double sl = 1 + 0.015 * std::pow(l - 50, 2) / std::sqrt(20 + std::pow(l - 50, 2)), sc = 1 + 0.045 * c,
+                 sh = 1 + 0.015 * c * t;
     const double rotation = -2 * power7(c) * std::sin(radians(60 * std::exp(-std::pow((mean_hue - 275) / 25, 2))));
-    return std::sqrt(std::pow(lightness / sl, 2) + std::pow(chroma / sc, 2) + std::pow(dh / sh, 2) + rotation * chroma / sc * dh / sh);
+    return std::sqrt(std::pow(lightness / sl, 2) + std::pow(chroma / sc, 2) + std::pow(dh / sh, 2) +
+                     rotation * chroma / sc * dh / sh);
 }
 
 struct Vision {
@@ -86,7 +92,10 @@ std::vector<Vision> visions()
     return out;
 }
 
-Lab seen(std::uint32_t colour, const Vision& vision) { return lab((vision.seen * linear(colour)).cwiseMax(0).cwiseMin(1)); }
+Lab seen(std::uint32_t colour, const Vision& vision)
+{
+    return lab((vision.seen * linear(colour)).cwiseMax(0).cwiseMin(1));
+}
 
 /// All ten verdicts of the design, also those that no query gives yet.
 std::vector<std::pair<std::string, std::uint32_t>> all_verdicts()
@@ -141,7 +150,9 @@ TEST_CASE("the other colours of a heat map are told from verdicts and from each 
 {
     auto colours = all_verdicts();
     const std::size_t verdicts = colours.size();
-    colours.insert(colours.end(), {{"some headings", some_headings_colour}, {"obstacle", obstacle_colour}, {"no pose", no_pose_colour}});
+    colours.insert(
+        colours.end(),
+        {{"some headings", some_headings_colour}, {"obstacle", obstacle_colour}, {"no pose", no_pose_colour}});
     for (const Vision& vision : visions())
         for (std::size_t i = verdicts; i < colours.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) {

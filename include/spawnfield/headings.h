@@ -6,13 +6,15 @@ namespace spawnfield {
 
 /// A 2D raster at several yaws, for robots that may look anywhere.
 struct HeadingRaster {
-    RasterResult raster;  ///< each pose is Valid if it is at one heading or more, else it has its commonest verdict; yaw is 0
+    /// Each pose is Valid if it is valid at one heading or more, else it has its commonest verdict. Its yaw is 0.
+    RasterResult raster;
     int headings = 16;
     std::vector<std::uint8_t> valid_headings;  ///< of each pose: at how many headings it is valid
 };
 
 /// The raster at yaws 2 pi k / headings. options.yaw is not used. Takes as long as `headings` rasters.
 /// Throws ArgumentError unless headings is in 1 .. 255 and options.dims is 2, and what raster() throws.
-HeadingRaster raster_at_headings(const Map& map, const CollisionChecker& checker, const RasterOptions& options, int headings = 16);
+HeadingRaster raster_at_headings(const Map& map, const CollisionChecker& checker, const RasterOptions& options,
+                                 int headings = 16);
 
 }  // namespace spawnfield

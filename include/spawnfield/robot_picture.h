@@ -19,8 +19,8 @@ struct RobotContacts {
 RobotContacts robot_contacts(const Robot& robot);
 
 /// Draws the robot from above, from its right side and from the front, to one scale: parts coloured by link, footprint,
-/// contacts, the axes of its frame, scale bar and sizes, in 1000 pixels of width. The file's ending chooses the format, as
-/// picture_format() says. Throws ArgumentError for another ending, OutputError.
+/// contacts, the axes of its frame, scale bar and sizes, in 1000 pixels of width. The file's ending chooses the
+/// format, as picture_format() says. Throws ArgumentError for another ending, OutputError.
 /// Colours: Okabe, Ito, Color Universal Design, 2008, lightened.
 void write_robot_picture(const Robot& robot, const std::filesystem::path& file);
 

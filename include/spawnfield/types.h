@@ -88,6 +88,6 @@ const char* to_string(Verdict verdict);  ///< as in CSV files: "off_terrain", â€
 /// May throw to stop the work.
 using Progress = std::function<void(double)>;
 
-std::string version();  ///< "0.1.0"
+std::string version();  ///< "0.2.0"
 
 }  // namespace spawnfield

@@ -114,12 +114,14 @@ void append_chunk(std::string& out, const char* type, std::string_view data)
 /// Every row as differences from the one above (filter 2): good for heights and pictures alike, and the same choice always.
 /// libpng, which deflates with zlib, would take three times as long. put_row(row, out) writes the bytes of one.
 template <class PutRow>
-std::string png_bytes(const std::string& name, int rows, int cols, int bits, int colour, std::size_t row_bytes, const PutRow& put_row)
+std::string png_bytes(const std::string& name, int rows, int cols, int bits, int colour, std::size_t row_bytes,
+                      const PutRow& put_row)
 {
     constexpr int most = 1000000;  // that libpng reads
     if (rows < 1 || cols < 1 || rows > most || cols > most)
-        throw OutputError(name, "cannot be written as PNG: it has " + std::to_string(cols) + " x " + std::to_string(rows) +
-                                             " pixels, needs 1 to " + std::to_string(most) + " along each side");
+        throw OutputError(name, "cannot be written as PNG: it has " + std::to_string(cols) + " x " +
+                                    std::to_string(rows) + " pixels, needs 1 to " + std::to_string(most) +
+                                    " along each side");
     const std::size_t count = std::size_t(rows);
     std::string filtered(count * (row_bytes + 1), '\2');
     std::vector<std::uint8_t> above(row_bytes), here(row_bytes);
@@ -252,13 +254,15 @@ void write_bgr_png(const std::filesystem::path& file, int rows, int cols, const 
 
 void write_grey_png(const std::filesystem::path& file, int rows, int cols, const std::uint16_t* pixels)
 {
-    write_file_atomically(file, png_bytes(file.string(), rows, cols, 16, PNG_COLOR_TYPE_GRAY, 2 * std::size_t(cols), [&](std::size_t row, std::uint8_t* out) {
+    const auto put_row = [&](std::size_t row, std::uint8_t* out) {
         const std::uint16_t* const from = pixels + row * std::size_t(cols);
         for (std::size_t col = 0; col < std::size_t(cols); ++col) {
             out[2 * col] = std::uint8_t(from[col] >> 8);
             out[2 * col + 1] = std::uint8_t(from[col]);
         }
-    }));
+    };
+    const std::size_t row_bytes = 2 * std::size_t(cols);
+    write_file_atomically(file, png_bytes(file.string(), rows, cols, 16, PNG_COLOR_TYPE_GRAY, row_bytes, put_row));
 }
 
 }  // namespace spawnfield

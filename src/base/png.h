@@ -26,7 +26,8 @@ struct ColourImage {
 /// `most` pixels before any is read.
 ColourImage read_colour_png(const std::filesystem::path& file, std::uint64_t most = max_pixels);
 
-/// Bytes of a PNG file of 8-bit blue, green, red. Same pixels, same bytes. Throws OutputError, which begins with `name`.
+/// Bytes of a PNG file of 8-bit blue, green, red. Same pixels, same bytes. Throws OutputError that begins
+/// with `name`.
 std::string bgr_png(const std::string& name, int rows, int cols, const std::uint8_t* pixels);
 
 /// Writes those bytes to a file. Throws OutputError.

@@ -21,7 +21,7 @@ std::string python_quoted(std::string_view text);
 /// "x y z r p y" in m and rad.
 std::string spaced(const RobotStart& robot);
 
-/// "10 robots by spawnfield 0.1.0".
+/// "10 robots by spawnfield 0.2.0".
 std::string made_by(std::size_t robots);
 
 }  // namespace spawnfield

@@ -103,7 +103,8 @@ void draw_text(Image& image, const std::string& text, cv::Point2d baseline, cons
         large.create(size * finer);
         large = 0;
         const int thickness = std::max(1, cvRound(pen_width * finer));
-        cv::putText(large, printable(text), origin, font, style.cap * finer / font_cap, cv::Scalar(255), thickness, cv::LINE_AA);
+        cv::putText(large, printable(text), origin, font, style.cap * finer / font_cap, cv::Scalar(255), thickness,
+                    cv::LINE_AA);
         cv::resize(large, cover, size, 0, 0, cv::INTER_AREA);
         blend(image, cover, corner, colour);
     };
@@ -137,7 +138,8 @@ std::array<cv::Rect, 4> sides_around(const cv::Rect& area, int thickness)
 {
     const cv::Rect outer(area.x - thickness, area.y - thickness, area.width + 2 * thickness, area.height + 2 * thickness);
     return {cv::Rect(outer.x, outer.y, outer.width, thickness), cv::Rect(outer.x, area.br().y, outer.width, thickness),
-            cv::Rect(outer.x, outer.y, thickness, outer.height), cv::Rect(area.br().x, outer.y, thickness, outer.height)};
+            cv::Rect(outer.x, outer.y, thickness, outer.height),
+            cv::Rect(area.br().x, outer.y, thickness, outer.height)};
 }
 
 void fill_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour colour)

@@ -19,8 +19,14 @@ public:
         if (mark.inside) fill_polygon(target_, corners, *mark.inside);
         if (mark.edge_width > 0) draw_outline(target_, corners, mark.edge, mark.edge_width);
     }
-    void operator()(const DotMark& mark) { draw_dot(target_, shifted(mark.centre), mark.radius, mark.inside, mark.edge, mark.edge_width); }
-    void operator()(const ImageMark& mark) { mark.pixels.copyTo(target_(cv::Rect(mark.corner - origin_, mark.pixels.size()))); }
+    void operator()(const DotMark& mark)
+    {
+        draw_dot(target_, shifted(mark.centre), mark.radius, mark.inside, mark.edge, mark.edge_width);
+    }
+    void operator()(const ImageMark& mark)
+    {
+        mark.pixels.copyTo(target_(cv::Rect(mark.corner - origin_, mark.pixels.size())));
+    }
     void operator()(const ClipMark& mark)
     {
         target_ = mark.area.empty() ? image_ : Image(image_(mark.area));
@@ -42,7 +48,10 @@ void draw_text(Figure& figure, const std::string& text, cv::Point2d baseline, co
     if (!text.empty()) figure.marks.emplace_back(TextMark{text, baseline, style});
 }
 
-void draw_image(Figure& figure, cv::Point corner, const Image& pixels) { figure.marks.emplace_back(ImageMark{corner, pixels}); }
+void draw_image(Figure& figure, cv::Point corner, const Image& pixels)
+{
+    figure.marks.emplace_back(ImageMark{corner, pixels});
+}
 
 void fill(Figure& figure, const cv::Rect& area, Colour colour) { figure.marks.emplace_back(AreaMark{area, colour}); }
 

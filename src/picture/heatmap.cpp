@@ -22,7 +22,8 @@ std::string name_of(Kind kind, const HeatmapOptions& options)
 {
     if (kind == obstacle) return "obstacle";
     if (kind == some_headings) return "valid at some headings";
-    if (kind == kind_of(Verdict::Valid) && options.headings > 1) return "valid at all " + std::to_string(options.headings) + " headings";
+    if (kind == kind_of(Verdict::Valid) && options.headings > 1)
+        return "valid at all " + std::to_string(options.headings) + " headings";
     std::string name = to_string(static_cast<Verdict>(kind));
     std::replace(name.begin(), name.end(), '_', ' ');
     return name;
@@ -44,7 +45,8 @@ std::string count_and_share(std::uint64_t count, std::uint64_t total)
 
 void check_size(const char* what, std::size_t size, std::size_t wanted, const char* limit)
 {
-    if (size != 0 && size != wanted) throw ArgumentError("write_heatmap", std::string("size of ") + what, static_cast<double>(size), limit);
+    if (size != 0 && size != wanted)
+        throw ArgumentError("write_heatmap", std::string("size of ") + what, static_cast<double>(size), limit);
 }
 
 void check(const RasterResult& raster, const HeatmapOptions& options)
@@ -55,10 +57,12 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
     if (!(grid.step > 0) || !std::isfinite(grid.step)) throw ArgumentError("write_heatmap", "raster.grid.step", grid.step, "> 0 m");
     if (grid.cols < 1) throw ArgumentError("write_heatmap", "raster.grid.cols", grid.cols, ">= 1");
     if (grid.rows < 1) throw ArgumentError("write_heatmap", "raster.grid.rows", grid.rows, ">= 1");
-    if (options.headings < 1 || options.headings > 255) throw ArgumentError("write_heatmap", "headings", options.headings, "1 .. 255");
+    if (options.headings < 1 || options.headings > 255)
+        throw ArgumentError("write_heatmap", "headings", options.headings, "1 .. 255");
     check_size("spawn_verdicts", options.spawn_verdicts.size(), options.spawns.size(), "as many as spawns, or none");
     check_size("spawn_names", options.spawn_names.size(), options.spawns.size(), "as many as spawns, or none");
-    check_size("valid_headings", options.valid_headings.size(), raster.poses.size(), "as many as the raster's poses, or none");
+    check_size("valid_headings", options.valid_headings.size(), raster.poses.size(),
+               "as many as the raster's poses, or none");
 }
 
 // ---------------------------------------------------------------- obstacles
@@ -68,7 +72,8 @@ GridFrame fine_frame(const View& view, cv::Size pixels)
 {
     constexpr double most = 2000;
     const double cell = std::max(view.width / pixels.width, std::max(view.width, view.height) / most);
-    return {view.x0, view.y0, cell, static_cast<int>(std::ceil(view.height / cell)), static_cast<int>(std::ceil(view.width / cell))};
+    return {view.x0, view.y0, cell, static_cast<int>(std::ceil(view.height / cell)),
+            static_cast<int>(std::ceil(view.width / cell))};
 }
 
 ObstacleSearch obstacle_search(const ShownPoses& shown, const RasterResult& raster, const HeatmapOptions& options)
@@ -84,7 +89,8 @@ ObstacleSearch obstacle_search(const ShownPoses& shown, const RasterResult& rast
     search.without_layer = raster.dims == 2 && raster.area.is_everywhere();
     search.threads = options.threads;
     search.layer_near = [=, &shown](double x, double y) -> std::optional<double> {
-        const int col = cell_index((x - view.x0) / grid.step, grid.cols), from_below = cell_index((y - view.y0) / grid.step, grid.rows);
+        const int col = cell_index((x - view.x0) / grid.step, grid.cols),
+                  from_below = cell_index((y - view.y0) / grid.step, grid.rows);
         const RasterPose* const pose = col < 0 || from_below < 0 ? nullptr : shown.at(grid.rows - 1 - from_below, col);
         return pose ? std::optional(pose->z - above_layer) : std::nullopt;
     };
@@ -122,7 +128,10 @@ KindCounts counts_of(const Kinds& kinds)
 }
 
 /// Columns that have an answer: shares are of these.
-std::uint64_t answered(const KindCounts& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}) - counts[no_pose]; }
+std::uint64_t answered(const KindCounts& counts)
+{
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}) - counts[no_pose];
+}
 
 std::string columns_heading(const RasterResult& raster, std::uint64_t columns)
 {
@@ -144,24 +153,30 @@ void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend
 /// Kinds that can occur, or did, with the numbers of columns that show them.
 Legend verdict_legend(const RasterResult& raster, const Kinds& kinds, const HeatmapOptions& options)
 {
-    constexpr std::array order{kind_of(Verdict::Valid), some_headings, kind_of(Verdict::Steep), kind_of(Verdict::Unstable),
-                               kind_of(Verdict::Collision), obstacle, kind_of(Verdict::Submerged), kind_of(Verdict::OffTerrain),
-                               kind_of(Verdict::Aerial), kind_of(Verdict::Outside)};
-    constexpr std::array always{kind_of(Verdict::Valid), kind_of(Verdict::Collision), kind_of(Verdict::Submerged), kind_of(Verdict::OffTerrain)};
+    constexpr std::array order{kind_of(Verdict::Valid),     some_headings,
+                               kind_of(Verdict::Steep),     kind_of(Verdict::Unstable),
+                               kind_of(Verdict::Collision), obstacle,
+                               kind_of(Verdict::Submerged), kind_of(Verdict::OffTerrain),
+                               kind_of(Verdict::Aerial),    kind_of(Verdict::Outside)};
+    constexpr std::array always{kind_of(Verdict::Valid), kind_of(Verdict::Collision), kind_of(Verdict::Submerged),
+                                kind_of(Verdict::OffTerrain)};
     const KindCounts counts = counts_of(kinds);
     const std::uint64_t columns = answered(counts);
     Legend legend;
     legend.heading = columns_heading(raster, columns);
     for (const Kind kind : order) {
-        const bool possible = std::find(always.begin(), always.end(), kind) != always.end() || (kind == some_headings && options.headings > 1) ||
+        const bool possible = std::find(always.begin(), always.end(), kind) != always.end() ||
+                              (kind == some_headings && options.headings > 1) ||
                               (kind == kind_of(Verdict::Aerial) && raster.dims == 3);
-        if (counts[kind] > 0 || possible) legend.entries.push_back({colour_of(kind), name_of(kind, options), count_and_share(counts[kind], columns)});
+        if (counts[kind] > 0 || possible)
+            legend.entries.push_back({colour_of(kind), name_of(kind, options), count_and_share(counts[kind], columns)});
     }
     append_no_pose(raster, counts, legend);
     return legend;
 }
 
-Legend quantity_legend(const RasterResult& raster, const Kinds& kinds, const ColourScale& scale, const HeatmapOptions& options)
+Legend quantity_legend(const RasterResult& raster, const Kinds& kinds, const ColourScale& scale,
+                       const HeatmapOptions& options)
 {
     const KindCounts counts = counts_of(kinds);
     const std::uint64_t columns = answered(counts);
@@ -170,8 +185,10 @@ Legend quantity_legend(const RasterResult& raster, const Kinds& kinds, const Col
     legend.heading = columns_heading(raster, columns);
     legend.scale = scale;
     legend.scale->detail = "valid   " + count_and_share(valid, columns);
-    legend.entries.push_back({not_valid, options.headings > 1 ? "not valid at all headings" : "not valid", count_and_share(others, columns)});
-    if (counts[obstacle] > 0) legend.entries.push_back({colour_of(obstacle), "obstacle", count_and_share(counts[obstacle], columns)});
+    legend.entries.push_back({not_valid, options.headings > 1 ? "not valid at all headings" : "not valid",
+                              count_and_share(others, columns)});
+    if (counts[obstacle] > 0)
+        legend.entries.push_back({colour_of(obstacle), "obstacle", count_and_share(counts[obstacle], columns)});
     append_no_pose(raster, counts, legend);
     return legend;
 }
@@ -192,7 +209,9 @@ Image quantity_colours(const Kinds& kinds, const cv::Mat_<float>& values, const 
         for (int col = 0; col < kinds.cols; ++col) {
             const float value = values(row, col);
             const Kind kind = kinds(row, col);
-            colours(row, col) = std::isfinite(value) ? scale.at(value) : kind == obstacle || kind == no_pose ? colour_of(kind) : not_valid;
+            colours(row, col) = std::isfinite(value)                  ? scale.at(value)
+                                : kind == obstacle || kind == no_pose ? colour_of(kind)
+                                                                      : not_valid;
         }
     return colours;
 }
@@ -224,7 +243,8 @@ void shade(Image& plot, const cv::Mat_<float>& light, float depth)
 }
 
 /// Over the shading: on the ground below obstacles relief says nothing. White room around thin views has none.
-void draw_obstacles(Image& plot, const cv::Mat_<std::uint8_t>& obstacles, const GridFrame& frame, const View& columns, const View& view)
+void draw_obstacles(Image& plot, const cv::Mat_<std::uint8_t>& obstacles, const GridFrame& frame, const View& columns,
+                    const View& view)
 {
     for (int row = 0; row < plot.rows; ++row) {
         const double y = view.y0 + view.height - (row + 0.5) / plot.rows * view.height;
@@ -233,7 +253,8 @@ void draw_obstacles(Image& plot, const cv::Mat_<std::uint8_t>& obstacles, const 
         for (int col = 0; col < plot.cols; ++col) {
             const double x = view.x0 + (col + 0.5) / plot.cols * view.width;
             const int cell = cell_index((x - frame.x0) / frame.cell, frame.cols);
-            if (cell >= 0 && cell_index((x - columns.x0) / columns.width, 1) >= 0 && obstacles(frame.rows - 1 - from_below, cell))
+            if (cell >= 0 && cell_index((x - columns.x0) / columns.width, 1) >= 0 &&
+                obstacles(frame.rows - 1 - from_below, cell))
                 plot(row, col) = colour_of(obstacle);
         }
     }
@@ -251,7 +272,8 @@ VisibleSpawns visible_spawns(const std::vector<Spawn>& spawns, const View& view,
 {
     VisibleSpawns visible;
     for (std::size_t i = 0; i < spawns.size(); ++i) {
-        const double across = (spawns[i].position.x() - view.x0) / view.width, down = (view.y0 + view.height - spawns[i].position.y()) / view.height;
+        const double across = (spawns[i].position.x() - view.x0) / view.width,
+                     down = (view.y0 + view.height - spawns[i].position.y()) / view.height;
         if (!(across >= 0 && across <= 1 && down >= 0 && down <= 1)) continue;
         visible.numbers.push_back(i);
         visible.places.emplace_back(plot.x + across * plot.width, plot.y + down * plot.height);
@@ -264,12 +286,14 @@ Colour spawn_colour(const HeatmapOptions& options, std::size_t spawn)
     return options.spawn_verdicts.empty() ? white : colour_of(kind_of(options.spawn_verdicts[spawn]));
 }
 
-/// "12 of 30 spawns in view", with the symbols of their verdicts. Symbols draw nothing before draw_spawns() gives them a look.
+/// "12 of 30 spawns in view", with the symbols of their verdicts. Symbols draw nothing before draw_spawns() gives them
+/// a look.
 void append_spawns(const HeatmapOptions& options, const VisibleSpawns& visible, Legend& legend)
 {
     const std::size_t all = options.spawns.size(), seen = visible.numbers.size();
     if (all == 0) return;
-    const std::string text = seen == all ? counted(all, "spawn") : with_commas(seen) + " of " + counted(all, "spawn") + " in view";
+    const std::string text =
+        seen == all ? counted(all, "spawn") : with_commas(seen) + " of " + counted(all, "spawn") + " in view";
     const auto later = [](Figure&, cv::Point2d) {};
     if (options.spawn_verdicts.empty()) {
         legend.symbols.push_back({text, later});
@@ -277,25 +301,35 @@ void append_spawns(const HeatmapOptions& options, const VisibleSpawns& visible, 
     }
     legend.symbols.push_back({text});
     for (std::size_t v = verdict_count; v-- > 0;) {
-        const auto count = std::count_if(visible.numbers.begin(), visible.numbers.end(),
-                                         [&](std::size_t i) { return options.spawn_verdicts[i] == static_cast<Verdict>(v); });
-        if (count > 0) legend.symbols.push_back({with_commas(static_cast<std::uint64_t>(count)) + ' ' + name_of(static_cast<Kind>(v), {}), later, colour_of(static_cast<Kind>(v))});
+        const auto count = std::count_if(visible.numbers.begin(), visible.numbers.end(), [&](std::size_t i) {
+            return options.spawn_verdicts[i] == static_cast<Verdict>(v);
+        });
+        if (count > 0)
+            legend.symbols.push_back(
+                {with_commas(static_cast<std::uint64_t>(count)) + ' ' + name_of(static_cast<Kind>(v), {}), later,
+                 colour_of(static_cast<Kind>(v))});
     }
 }
 
-void draw_spawns(Figure& figure, const HeatmapOptions& options, const VisibleSpawns& visible, const SpawnLook& look, const Layout& layout, Legend& legend)
+void draw_spawns(Figure& figure, const HeatmapOptions& options, const VisibleSpawns& visible, const SpawnLook& look,
+                 const Layout& layout, Legend& legend)
 {
     for (LegendSymbol& symbol : legend.symbols)
-        if (symbol.draw) symbol.draw = [=, colour = symbol.colour](Figure& into, cv::Point2d centre) { draw_spawn_symbol(into, look, centre, colour); };
+        if (symbol.draw)
+            symbol.draw = [=, colour = symbol.colour](Figure& into, cv::Point2d centre) {
+                draw_spawn_symbol(into, look, centre, colour);
+            };
     clip(figure, layout.plot);
     for (std::size_t k = 0; k < visible.numbers.size(); ++k)
-        draw_spawn(figure, look, visible.places[k], options.spawns[visible.numbers[k]].yaw, spawn_colour(options, visible.numbers[k]));
+        draw_spawn(figure, look, visible.places[k], options.spawns[visible.numbers[k]].yaw,
+                   spawn_colour(options, visible.numbers[k]));
     clip(figure, {});
     if (options.spawn_names.empty()) return;
     std::vector<std::string> names;
     for (const std::size_t i : visible.numbers) names.push_back(options.spawn_names[i]);
     const std::size_t written = write_names(figure, look, visible.places, names, layout.plot);
-    if (written < names.size()) legend.symbols.back().name = with_commas(written) + " of " + counted(names.size(), "name") + " shown: no room";
+    if (written < names.size())
+        legend.symbols.back().name = with_commas(written) + " of " + counted(names.size(), "name") + " shown: no room";
     else legend.symbols.pop_back();
 }
 
@@ -311,7 +345,8 @@ void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult
     Kinds kinds = column_kinds(shown, raster, options);
     mark_obstacles(kinds, obstacle_mask(map.geometry, frame_of(raster.grid), search));
     const View columns = view_of(raster.grid);
-    Frame frame{with_room(columns), options.pixels, options.title.empty() ? map.name : options.title, {}, options.caption};
+    Frame frame{
+        with_room(columns), options.pixels, options.title.empty() ? map.name : options.title, {}, options.caption};
 
     Image colours;
     if (options.quantity == HeatmapQuantity::Verdict) {
@@ -324,7 +359,8 @@ void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult
         frame.legend = quantity_legend(raster, kinds, scale, options);
     }
     append_spawns(options, visible_spawns(options.spawns, frame.view, {0, 0, 1, 1}), frame.legend);
-    if (!options.spawn_names.empty()) frame.legend.symbols.push_back({"names: no room for all of them"});  // its place in the layout
+    if (!options.spawn_names.empty())
+        frame.legend.symbols.push_back({"names: no room for all of them"});  // its place in the layout
 
     const Layout layout = lay_out(frame);
     Image plot = draw_columns(colours, columns, frame.view, layout.plot.size());

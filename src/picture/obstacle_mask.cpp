@@ -47,7 +47,8 @@ cv::Mat_<std::uint8_t> obstacle_mask(const Geometry& geometry, const GridFrame& 
     parallel_for(std::size_t((frame.rows + strip - 1) / strip), search.threads, {}, [&](std::size_t s) {
         const int first_row = int(s) * strip, rows = std::min(strip, frame.rows - first_row);
         for (int first_col = 0; first_col < frame.cols; first_col += block) {
-            const ColumnGrid grid{frame.x0, frame.y0, frame.cell, first_col, first_row, std::min(block, frame.cols - first_col), rows, 0.5};
+            const int cols = std::min(block, frame.cols - first_col);
+            const ColumnGrid grid{frame.x0, frame.y0, frame.cell, first_col, first_row, cols, rows, 0.5};
             const Columns columns(geometry, grid);
             for (int j = 0; j < rows; ++j)
                 for (int i = 0; i < grid.cols; ++i)

@@ -23,8 +23,8 @@ struct ObstacleSearch {
     int threads = 0;
 };
 
-/// 1 where an obstacle stands at the height of a robot on the shown layer, at the centres of the frame's cells, from the
-/// exact geometry. Row 0 is the largest y. O(elements + cells).
+/// 1 where an obstacle stands at the height of a robot on the shown layer, at the centres of the frame's cells, from
+/// the exact geometry. Row 0 is the largest y. O(elements + cells).
 cv::Mat_<std::uint8_t> obstacle_mask(const Geometry& geometry, const GridFrame& frame, const ObstacleSearch& search);
 
 }  // namespace spawnfield

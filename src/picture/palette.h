@@ -4,11 +4,12 @@
 
 namespace spawnfield {
 
-// Colours as 0xRRGGBB, in pictures and in files of other programs. They were searched for, from Okabe and Ito's hues, such
-// that people with any kind of colour vision can tell them apart; tests/palette_test.cpp holds what they reach:
-// Valid and Collision differ in lightness (CIE L*) by 25 or more, and no two verdicts are closer than 20 (both CIEDE2000:
-// Sharma, Wu, Dalal 2005, and CIE76), in normal vision, protanopia, deuteranopia and tritanopia (Machado, Oliveira,
-// Fernandes, A physiologically-based model for simulation of color vision deficiency, 2009, full severity).
+// Colours as 0xRRGGBB, in pictures and in files of other programs. They were searched for, from Okabe and Ito's hues,
+// such that people with any kind of colour vision can tell them apart. tests/palette_test.cpp holds what they reach:
+// Valid and Collision differ in lightness (CIE L*) by 25 or more, and no two verdicts are closer than 20 (both
+// CIEDE2000: Sharma, Wu, Dalal 2005, and CIE76), in normal vision, protanopia, deuteranopia and tritanopia
+// (Machado, Oliveira, Fernandes, A physiologically-based model for simulation of color vision deficiency, 2009, full
+// severity).
 
 /// By Verdict.
 inline constexpr std::array<std::uint32_t, verdict_count> verdict_palette{0x726e77, 0xfff516, 0x9182ff, 0x033cd9,

@@ -20,7 +20,8 @@ void keep_first(HPDF_STATUS error, HPDF_STATUS, void* first)
 /// Calls after an error do nothing; the error is thrown at the end.
 class PdfWriter {
 public:
-    explicit PdfWriter(cv::Size size) : document_(HPDF_New(&keep_first, &error_)), height_(static_cast<float>(size.height))
+    explicit PdfWriter(cv::Size size)
+        : document_(HPDF_New(&keep_first, &error_)), height_(static_cast<float>(size.height))
     {
         if (!document_) throw std::bad_alloc();
         HPDF_SetCompressionMode(document_.get(), HPDF_COMP_ALL);
@@ -37,7 +38,9 @@ public:
         const std::string text = printable(mark.text);
         HPDF_Page_SetFontAndSize(page_, font_, static_cast<float>(mark.style.cap / cap_height));
         const float width = HPDF_Page_TextWidth(page_, text.c_str());
-        const float before = mark.style.align == Align::Left ? 0 : mark.style.align == Align::Centre ? width / 2 : width;
+        const float before = mark.style.align == Align::Left     ? 0
+                             : mark.style.align == Align::Centre ? width / 2
+                                                                 : width;
         if (mark.style.halo) {
             set_edge(*mark.style.halo, halo_width(mark.style.cap));
             write(text, mark.baseline, before, HPDF_STROKE);
@@ -56,7 +59,8 @@ public:
         if (mark.corners.empty() || (!mark.inside && !(mark.edge_width > 0))) return;
         set_colours(mark.inside, mark.edge, mark.edge_width);
         HPDF_Page_MoveTo(page_, x_of(mark.corners[0]), y_of(mark.corners[0]));
-        for (std::size_t k = 1; k < mark.corners.size(); ++k) HPDF_Page_LineTo(page_, x_of(mark.corners[k]), y_of(mark.corners[k]));
+        for (std::size_t k = 1; k < mark.corners.size(); ++k)
+            HPDF_Page_LineTo(page_, x_of(mark.corners[k]), y_of(mark.corners[k]));
         HPDF_Page_ClosePath(page_);
         paint(mark.inside.has_value(), mark.edge_width > 0);
     }
@@ -72,7 +76,8 @@ public:
         bytes.reserve(3 * mark.pixels.total());
         for (const Colour& pixel : mark.pixels) bytes.insert(bytes.end(), {pixel[2], pixel[1], pixel[0]});
         const auto cols = static_cast<HPDF_UINT>(mark.pixels.cols), rows = static_cast<HPDF_UINT>(mark.pixels.rows);
-        const HPDF_Image image = HPDF_LoadRawImageFromMem(document_.get(), bytes.data(), cols, rows, HPDF_CS_DEVICE_RGB, 8);
+        const HPDF_Image image =
+            HPDF_LoadRawImageFromMem(document_.get(), bytes.data(), cols, rows, HPDF_CS_DEVICE_RGB, 8);
         const cv::Point2d lower(mark.corner.x, mark.corner.y + mark.pixels.rows);
         HPDF_Page_DrawImage(page_, image, x_of(lower), y_of(lower), static_cast<float>(cols), static_cast<float>(rows));
     }
@@ -91,7 +96,8 @@ public:
     {
         (*this)(ClipMark{});
         HPDF_SaveToStream(document_.get());
-        if (error_ != HPDF_OK) throw std::runtime_error("the PDF cannot be made: libharu reports error " + std::to_string(error_));
+        if (error_ != HPDF_OK)
+            throw std::runtime_error("the PDF cannot be made: libharu reports error " + std::to_string(error_));
         std::string bytes(HPDF_GetStreamSize(document_.get()), '\0');
         auto size = static_cast<HPDF_UINT32>(bytes.size());
         HPDF_ResetStream(document_.get());
@@ -108,7 +114,10 @@ private:
     float y_of(cv::Point2d place) const { return height_ - static_cast<float>(place.y); }  // PDF's y points up
     static float share(std::uint8_t channel) { return static_cast<float>(channel) / 255; }
 
-    void set_inside(Colour colour) { HPDF_Page_SetRGBFill(page_, share(colour[2]), share(colour[1]), share(colour[0])); }
+    void set_inside(Colour colour)
+    {
+        HPDF_Page_SetRGBFill(page_, share(colour[2]), share(colour[1]), share(colour[0]));
+    }
     void set_edge(Colour colour, double width)
     {
         HPDF_Page_SetRGBStroke(page_, share(colour[2]), share(colour[1]), share(colour[0]));
@@ -117,7 +126,8 @@ private:
     void add_box(const cv::Rect& area)
     {
         const cv::Point2d lower(area.x, area.y + area.height);
-        HPDF_Page_Rectangle(page_, x_of(lower), y_of(lower), static_cast<float>(area.width), static_cast<float>(area.height));
+        HPDF_Page_Rectangle(page_, x_of(lower), y_of(lower), static_cast<float>(area.width),
+                            static_cast<float>(area.height));
     }
     /// PDF takes them before a path begins.
     void set_colours(const std::optional<Colour>& inside, Colour edge, double edge_width)

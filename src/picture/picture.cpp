@@ -50,7 +50,8 @@ Item symbol_item(const LegendSymbol& symbol, double unit)
 /// The ends of the scale, and the ticks that are not too near to them, with their labels.
 std::vector<std::pair<double, std::string>> bar_labels(const ColourScale& scale, double height, double unit)
 {
-    const double apart = 1.6 * small_cap * unit / height * (scale.high - scale.low), same = 1e-6 * (scale.high - scale.low);
+    const double apart = 1.6 * small_cap * unit / height * (scale.high - scale.low),
+                 same = 1e-6 * (scale.high - scale.low);
     const auto near = [](double a, double b, double distance) { return std::abs(a - b) < distance; };
     std::vector<std::pair<double, std::string>> labels;
     for (const double end : {scale.low, scale.high}) {
@@ -61,7 +62,8 @@ std::vector<std::pair<double, std::string>> bar_labels(const ColourScale& scale,
     }
     for (int i = 0; i < scale.ticks.count; ++i) {
         const double tick = scale.ticks.at(i);
-        if (!near(tick, scale.low, apart) && !near(tick, scale.high, apart)) labels.emplace_back(tick, scale.ticks.label(i));
+        if (!near(tick, scale.low, apart) && !near(tick, scale.high, apart))
+            labels.emplace_back(tick, scale.ticks.label(i));
     }
     return labels;
 }
@@ -70,7 +72,8 @@ void draw_bar(Figure& figure, const cv::Rect& bar, const ColourScale& scale, dou
 {
     const double low = scale.low, high = scale.high;
     Image colours(bar.size());
-    for (int row = 0; row < bar.height; ++row) colours.row(row) = scale.at(high + (low - high) * (row + 0.5) / bar.height);
+    for (int row = 0; row < bar.height; ++row)
+        colours.row(row) = scale.at(high + (low - high) * (row + 0.5) / bar.height);
     draw_image(figure, bar.tl(), colours);
     const int thickness = whole(unit), tick = whole(tick_length * unit);
     outline(figure, bar, thickness, line);
@@ -92,7 +95,8 @@ Item scale_item(const ColourScale& scale, double unit, double bar_height)
     return {width, head + bar_height + 18 * unit, [=](Figure& figure, cv::Point2d at) {
                 draw_text(figure, scale.heading, {at.x, at.y + cap}, {cap});
                 draw_text(figure, scale.detail, {at.x, at.y + cap + 17 * unit}, {small, muted});
-                draw_bar(figure, {cvRound(at.x), cvRound(at.y + head), whole(bar_width), whole(bar_height)}, scale, unit);
+                draw_bar(figure, {cvRound(at.x), cvRound(at.y + head), whole(bar_width), whole(bar_height)}, scale,
+                         unit);
             }};
 }
 
@@ -262,7 +266,8 @@ void draw_axes(Figure& figure, const View& view, const Layout& layout)
     for (int i = 0; i < layout.x_ticks.count; ++i) {
         const double x = plot.x + (layout.x_ticks.at(i) - view.x0) / view.width * plot.width;
         fill(figure, {cvRound(x - thickness / 2.0), plot.br().y, thickness, thickness + tick}, line);
-        draw_text(figure, layout.x_ticks.label(i), {x, plot.br().y + tick + gap * unit + cap}, {cap, ink, Align::Centre});
+        draw_text(figure, layout.x_ticks.label(i), {x, plot.br().y + tick + gap * unit + cap},
+                  {cap, ink, Align::Centre});
     }
     for (int i = 0; i < layout.y_ticks.count; ++i) {
         const double y = plot.y + (view.y0 + view.height - layout.y_ticks.at(i)) / view.height * plot.height;

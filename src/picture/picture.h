@@ -39,7 +39,8 @@ struct LegendEntry {
 /// What stands in the plot, as spawns do.
 struct LegendSymbol {
     std::string name;
-    std::function<void(Figure&, cv::Point2d centre)> draw = {};  ///< in a square of symbol_size units; empty: words alone
+    /// Draws into a square of symbol_size units. Empty: the symbol is words alone.
+    std::function<void(Figure&, cv::Point2d centre)> draw = {};
     Colour colour = white;
 };
 inline constexpr double symbol_size = 22;

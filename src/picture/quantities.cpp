@@ -33,19 +33,22 @@ cv::Mat_<float> clearances(const ShownPoses& shown, double step, int headings)
     cv::Mat_<float> values(shown.rows, shown.cols, no_value);
     for (int row = 0; row < shown.rows; ++row)
         for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col, headings)) values(row, col) = static_cast<float>(columns(row + 1, col + 1) * step);
+            if (shown.is_valid(row, col, headings))
+                values(row, col) = static_cast<float>(columns(row + 1, col + 1) * step);
     return values;
 }
 
 /// A valid column with the 3 x 3 terrain cells around it.
 struct Place {
-    int row, col;        ///< of the column
+    int row, col;  ///< of the column
     int cell_row, cell_col;
-    double layer;        ///< height of the layer that its pose stands on, m
-    HeightImage around;  ///< of each cell the layer nearest to that: beside a column the same surface may have another number
+    double layer;  ///< height of the layer that its pose stands on, m
+    /// The layer of each cell that is nearest to that height: beside a column the same surface may have another number.
+    HeightImage around;
 };
 
-std::vector<Place> valid_places(const ShownPoses& shown, const RasterResult& raster, const GridFrame& frame, int headings)
+std::vector<Place> valid_places(const ShownPoses& shown, const RasterResult& raster, const GridFrame& frame,
+                                int headings)
 {
     const RasterGrid& grid = raster.grid;
     std::vector<Place> out;
@@ -56,7 +59,8 @@ std::vector<Place> valid_places(const ShownPoses& shown, const RasterResult& ras
             const int from_below = cell_index((grid.y_of(grid.rows - 1 - row) - frame.y0) / frame.cell, frame.rows);
             if (cell_col < 0 || from_below < 0) continue;
             const double layer = shown.at(row, col)->z - (raster.dims == 2 ? raster.offset : 0);
-            out.push_back({row, col, frame.rows - 1 - from_below, cell_col, layer, HeightImage::Constant(3, 3, no_value)});
+            out.push_back(
+                {row, col, frame.rows - 1 - from_below, cell_col, layer, HeightImage::Constant(3, 3, no_value)});
         }
     return out;
 }
@@ -66,9 +70,12 @@ void take_nearer(Place& place, const HeightImage& heights)
     for (int dr = -1; dr <= 1; ++dr)
         for (int dc = -1; dc <= 1; ++dc) {
             const int row = place.cell_row + dr, col = place.cell_col + dc;
-            if (row < 0 || col < 0 || row >= heights.rows() || col >= heights.cols() || !std::isfinite(heights(row, col))) continue;
+            if (row < 0 || col < 0 || row >= heights.rows() || col >= heights.cols() ||
+                !std::isfinite(heights(row, col)))
+                continue;
             float& nearest = place.around(dr + 1, dc + 1);
-            if (!(std::abs(heights(row, col) - place.layer) >= std::abs(nearest - place.layer))) nearest = heights(row, col);
+            if (!(std::abs(heights(row, col) - place.layer) >= std::abs(nearest - place.layer)))
+                nearest = heights(row, col);
         }
 }
 
@@ -90,7 +97,8 @@ cv::Mat_<float> slopes(const ShownPoses& shown, const RasterResult& raster, cons
 
 }  // namespace
 
-cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain, const HeatmapOptions& options)
+cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain,
+                                const HeatmapOptions& options)
 {
     switch (options.quantity) {
     case HeatmapQuantity::Height: return pose_heights(shown, options.headings);

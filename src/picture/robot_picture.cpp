@@ -147,7 +147,8 @@ void draw_parts(Figure& figure, const Pane& pane, const Robot& robot, const Link
     }
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return nearness[a] < nearness[b]; });
     for (const auto& corners : outlines) draw_polygon(figure, corners, ink, ink, 5);
-    for (const std::size_t k : order) draw_polygon(figure, outlines[k], colours.of(robot.parts[k].name), rgb(0x4d4d4d), 1);
+    for (const std::size_t k : order)
+        draw_polygon(figure, outlines[k], colours.of(robot.parts[k].name), rgb(0x4d4d4d), 1);
     for (const auto& corners : outlines) draw_outline(figure, corners, rgb(0x8c8c8c), 1);
 }
 
@@ -222,7 +223,8 @@ public:
         fill(figure_, {area_.x, y, length, 3}, ink);
         fill(figure_, {area_.x, y - 4, 2, 11}, ink);
         fill(figure_, {area_.x + length - 2, y - 4, 2, 11}, ink);
-        draw_text(figure_, fixed(step.value, step.decimals) + " m", {area_.x + length + 10.0, y + text_cap / 2 + 1}, {text_cap});
+        draw_text(figure_, fixed(step.value, step.decimals) + " m", {area_.x + length + 10.0, y + text_cap / 2 + 1},
+                  {text_cap});
         y_ += line + 4;
     }
     void gap() { y_ += line / 2; }
@@ -234,7 +236,8 @@ private:
     double y_;
 };
 
-void write_legend(Figure& figure, const Sheet& sheet, const Robot& robot, const RobotContacts& contacts, const LinkColours& colours)
+void write_legend(Figure& figure, const Sheet& sheet, const Robot& robot, const RobotContacts& contacts,
+                  const LinkColours& colours)
 {
     LegendWriter legend(figure, sheet.legend);
     const Bounds bounds = robot.bounds();

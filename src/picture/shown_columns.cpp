@@ -35,12 +35,15 @@ ShownPoses shown_poses(const RasterResult& raster, const HeatmapOptions& options
     for (std::size_t p = 0; p < raster.poses.size(); ++p) {
         const RasterPose& pose = raster.poses[p];
         const double i = std::round((pose.x - grid.x0) / grid.step), j = std::round((pose.y - grid.y0) / grid.step);
-        if (!(i >= 0 && i < grid.cols)) throw ArgumentError("write_heatmap", "x of a pose", pose.x, "a column of the raster");
-        if (!(j >= 0 && j < grid.rows)) throw ArgumentError("write_heatmap", "y of a pose", pose.y, "a column of the raster");
+        if (!(i >= 0 && i < grid.cols))
+            throw ArgumentError("write_heatmap", "x of a pose", pose.x, "a column of the raster");
+        if (!(j >= 0 && j < grid.rows))
+            throw ArgumentError("write_heatmap", "y of a pose", pose.y, "a column of the raster");
         const std::size_t column = shown.index(grid.rows - 1 - static_cast<int>(j), static_cast<int>(i));
         const RasterPose* const current = shown.poses[column];
         const int headings = headings_of(raster, options, p);
-        if (current && (headings != shown.headings[column] ? headings < shown.headings[column] : pose.z <= current->z)) continue;
+        if (current && (headings != shown.headings[column] ? headings < shown.headings[column] : pose.z <= current->z))
+            continue;
         shown.poses[column] = &pose;
         shown.headings[column] = headings;
     }
@@ -49,7 +52,8 @@ ShownPoses shown_poses(const RasterResult& raster, const HeatmapOptions& options
 
 bool is_aerial_without_pose(const RasterResult& raster)
 {
-    return raster.dims == 3 && raster.counts[static_cast<std::size_t>(Verdict::Aerial)] > 0 && raster.area.is_everywhere();
+    return raster.dims == 3 && raster.counts[static_cast<std::size_t>(Verdict::Aerial)] > 0 &&
+           raster.area.is_everywhere();
 }
 
 Kinds column_kinds(const ShownPoses& shown, const RasterResult& raster, const HeatmapOptions& options)
@@ -72,7 +76,8 @@ void mark_obstacles(Kinds& kinds, const cv::Mat_<std::uint8_t>& obstacles)
     for (int row = 0; row < kinds.rows; ++row)
         for (int col = 0; col < kinds.cols; ++col) {
             const Kind kind = kinds(row, col);
-            if (obstacles(row, col) && kind != kind_of(Verdict::Valid) && kind != some_headings) kinds(row, col) = obstacle;
+            if (obstacles(row, col) && kind != kind_of(Verdict::Valid) && kind != some_headings)
+                kinds(row, col) = obstacle;
         }
 }
 

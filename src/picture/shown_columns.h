@@ -9,7 +9,8 @@ namespace spawnfield {
 
 /// What a column is shown as: a verdict, or one of these.
 using Kind = std::uint8_t;
-constexpr Kind some_headings = verdict_count, obstacle = verdict_count + 1, no_pose = verdict_count + 2, kind_count = verdict_count + 3;
+constexpr Kind some_headings = verdict_count, obstacle = verdict_count + 1, no_pose = verdict_count + 2,
+               kind_count = verdict_count + 3;
 
 constexpr Kind kind_of(Verdict verdict) { return static_cast<Kind>(verdict); }
 
@@ -23,7 +24,10 @@ struct ShownPoses {
 
     std::size_t index(int row, int col) const { return static_cast<std::size_t>(row) * cols + col; }
     const RasterPose* at(int row, int col) const { return poses[index(row, col)]; }
-    bool is_valid(int row, int col, int at_headings) const { return at(row, col) && headings[index(row, col)] >= at_headings; }
+    bool is_valid(int row, int col, int at_headings) const
+    {
+        return at(row, col) && headings[index(row, col)] >= at_headings;
+    }
 };
 
 /// Valid at more headings first, then the higher one. Throws ArgumentError for poses that stand on no column.

@@ -43,10 +43,12 @@ Polygon2 silhouette(const RobotPart& part, const ViewAxes& axes)
     case ShapeKind::Sphere: add_circle(axes, pose.position, size[0] * axes.u, size[0] * axes.v, out); break;
     case ShapeKind::Cylinder:
         for (const double end : {-1.0, 1.0})
-            add_circle(axes, pose.position + end * half_axis, size[0] * pose.rotation.col(0), size[0] * pose.rotation.col(1), out);
+            add_circle(axes, pose.position + end * half_axis, size[0] * pose.rotation.col(0),
+                       size[0] * pose.rotation.col(1), out);
         break;
     case ShapeKind::Capsule:
-        for (const double end : {-1.0, 1.0}) add_circle(axes, pose.position + end * half_axis, size[0] * axes.u, size[0] * axes.v, out);
+        for (const double end : {-1.0, 1.0})
+            add_circle(axes, pose.position + end * half_axis, size[0] * axes.u, size[0] * axes.v, out);
         break;
     }
     return convex_hull(std::move(out));

@@ -37,7 +37,8 @@ std::vector<Polygon2> footprint_of(const Robot& robot)
     std::vector<Polygon2> outlines;
     for (const RobotPart& part : robot.parts) {
         Polygon2 outline = silhouette(part, view_from_above);
-        if (std::none_of(outlines.begin(), outlines.end(), [&](const Polygon2& other) { return holds(other, outline); }))
+        if (std::none_of(outlines.begin(), outlines.end(),
+                         [&](const Polygon2& other) { return holds(other, outline); }))
             outlines.push_back(std::move(outline));
     }
     return outlines;
@@ -77,12 +78,20 @@ bool is_small(const SpawnLook& look)
 /// Pixels that this line sticks out.
 double length_ahead(double unit) { return std::clamp(10 * unit, 3.0, 6.0); }
 
-void draw_heading(Figure& figure, const Placement& placement, const Extent& extent, bool small, double unit, Colour colour)
+void draw_heading(Figure& figure, const Placement& placement, const Extent& extent, bool small, double unit,
+                  Colour colour)
 {
     const Vec2 size = extent.size(), centre = extent.centre();
-    const double tip = extent.max.x() - 0.12 * size.x(), back = extent.max.x() - 0.45 * size.x(), half = 0.28 * size.y();
-    if (small) draw_outline(figure, placement.of(Polygon2{centre, {extent.max.x() + length_ahead(unit) / placement.scale, centre.y()}}), ink, 1.4 * unit);
-    else draw_polygon(figure, placement.of(Polygon2{{tip, centre.y()}, {back, centre.y() + half}, {back, centre.y() - half}}), contrast_to(colour), ink, 0);
+    const double tip = extent.max.x() - 0.12 * size.x(), back = extent.max.x() - 0.45 * size.x(),
+                 half = 0.28 * size.y();
+    if (small)
+        draw_outline(
+            figure, placement.of(Polygon2{centre, {extent.max.x() + length_ahead(unit) / placement.scale, centre.y()}}),
+            ink, 1.4 * unit);
+    else
+        draw_polygon(figure,
+                     placement.of(Polygon2{{tip, centre.y()}, {back, centre.y() + half}, {back, centre.y() - half}}),
+                     contrast_to(colour), ink, 0);
 }
 
 // A dark rim in a white one: seen on ground of any colour, also of the mark's own. Half of each line is covered.
@@ -103,9 +112,11 @@ void draw_arrow(Figure& figure, cv::Point2d centre, double yaw, const SpawnLook&
         draw_dot(figure, centre, std::max(1.2, 2.2 * look.unit), colour, ink, look.unit);
         return;
     }
-    const cv::Point2d along = look.arrow * look.unit * cv::Point2d(std::cos(yaw), -std::sin(yaw)), left(along.y, -along.x);
+    const cv::Point2d along = look.arrow * look.unit * cv::Point2d(std::cos(yaw), -std::sin(yaw)),
+                      left(along.y, -along.x);
     const cv::Point2d tail = centre - 0.4 * along;
-    const std::vector<cv::Point2d> corners{centre + 0.6 * along, tail + 0.36 * left, centre - 0.2 * along, tail - 0.36 * left};
+    const std::vector<cv::Point2d> corners{centre + 0.6 * along, tail + 0.36 * left, centre - 0.2 * along,
+                                           tail - 0.36 * left};
     if (colour != white) draw_outline(figure, corners, white, 4 * look.unit);
     draw_polygon(figure, corners, colour, ink, 1.4 * look.unit);
 }
@@ -147,7 +158,8 @@ void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre
         return;
     }
     const Extent extent = extent_of(look.footprint);
-    const double size = symbol_size * look.unit, room = is_small(look) ? std::max(size - length_ahead(look.unit), size / 2) : size;
+    const double size = symbol_size * look.unit,
+                 room = is_small(look) ? std::max(size - length_ahead(look.unit), size / 2) : size;
     const double scale = room / extent.size().maxCoeff();
     const Vec2 middle = extent.centre();
     draw_footprint(figure, look, {{centre.x - scale * middle.x(), centre.y + scale * middle.y()}, 0, scale}, colour);
@@ -156,18 +168,22 @@ void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre
 std::size_t write_names(Figure& figure, const SpawnLook& look, const std::vector<cv::Point2d>& places,
                         const std::vector<std::string>& names, const cv::Rect& area)
 {
-    const double cap = std::max(9 * look.unit, 5.0), radius = radius_of(look), away = radius + 0.5 * cap, room = 0.3 * cap;
+    const double cap = std::max(9 * look.unit, 5.0), radius = radius_of(look), away = radius + 0.5 * cap,
+                 room = 0.3 * cap;
     std::vector<cv::Rect2d> taken, marks;
-    for (const cv::Point2d& at : places) marks.emplace_back(at.x - 0.7 * radius, at.y - 0.7 * radius, 1.4 * radius, 1.4 * radius);
+    for (const cv::Point2d& at : places)
+        marks.emplace_back(at.x - 0.7 * radius, at.y - 0.7 * radius, 1.4 * radius, 1.4 * radius);
     const auto covers = [](const std::vector<cv::Rect2d>& boxes, const cv::Rect2d& box) {
-        return std::any_of(boxes.begin(), boxes.end(), [&](const cv::Rect2d& other) { return (box & other).area() > 0; });
+        return std::any_of(boxes.begin(), boxes.end(),
+                           [&](const cv::Rect2d& other) { return (box & other).area() > 0; });
     };
     for (std::size_t i = 0; i < places.size(); ++i) {
         const double width = text_width(names[i], cap);
         const cv::Point2d& at = places[i];
         // Lower left corners of the text: to the right, to the left, above, below.
-        for (const cv::Point2d& corner : {cv::Point2d(at.x + away, at.y + cap / 2), cv::Point2d(at.x - away - width, at.y + cap / 2),
-                                          cv::Point2d(at.x - width / 2, at.y - away), cv::Point2d(at.x - width / 2, at.y + away + cap)}) {
+        for (const cv::Point2d& corner :
+             {cv::Point2d(at.x + away, at.y + cap / 2), cv::Point2d(at.x - away - width, at.y + cap / 2),
+              cv::Point2d(at.x - width / 2, at.y - away), cv::Point2d(at.x - width / 2, at.y + away + cap)}) {
             const cv::Rect2d box(corner.x - room, corner.y - cap - room, width + 2 * room, cap + 2 * room);
             if ((box & cv::Rect2d(area)).area() < box.area() || covers(marks, box) || covers(taken, box)) continue;
             draw_text(figure, names[i], corner, {cap, ink, Align::Left, white});

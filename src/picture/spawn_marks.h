@@ -26,7 +26,8 @@ void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d at, double ya
 /// The same as a symbol of the legend, around `centre`.
 void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre, Colour colour);
 
-/// Writes each name beside its place, where it covers no mark and no other name and stays within the area. Returns how many it wrote.
+/// Writes each name beside its place, where it covers no mark and no other name and stays within the area. Returns how
+/// many it wrote.
 std::size_t write_names(Figure& figure, const SpawnLook& look, const std::vector<cv::Point2d>& places,
                         const std::vector<std::string>& names, const cv::Rect& area);
 

@@ -27,7 +27,10 @@ std::string hex(Colour colour)
     return text;
 }
 
-std::string attribute(const char* name, const std::string& value) { return std::string(" ") + name + "=\"" + value + '"'; }
+std::string attribute(const char* name, const std::string& value)
+{
+    return std::string(" ") + name + "=\"" + value + '"';
+}
 
 std::string escaped(const std::string& text)
 {
@@ -48,7 +51,8 @@ std::string base64(std::string_view bytes)
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
         std::uint32_t three = 0;
-        for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 3; ++k)
+            three = three << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
         for (std::size_t k = 0; k < 4; ++k) out += k <= count ? digits[three >> (18 - 6 * k) & 63] : '=';
     }
     return out;
@@ -59,7 +63,8 @@ public:
     void operator()(const TextMark& mark)
     {
         constexpr std::array anchors{"start", "middle", "end"};
-        std::string element = "<text" + attribute("x", number(mark.baseline.x)) + attribute("y", number(mark.baseline.y)) +
+        std::string element = "<text" + attribute("x", number(mark.baseline.x)) +
+                              attribute("y", number(mark.baseline.y)) +
                               attribute("font-size", number(mark.style.cap / cap_height)) +
                               attribute("text-anchor", anchors[static_cast<std::size_t>(mark.style.align)]);
         const std::string text = ">" + escaped(printable(mark.text)) + "</text>\n";
@@ -68,21 +73,28 @@ public:
                     attribute("stroke-width", number(halo_width(mark.style.cap))) + text;
         out_ += element + attribute("fill", hex(mark.style.colour)) + text;
     }
-    void operator()(const AreaMark& mark) { out_ += "<rect" + box(mark.area) + attribute("fill", hex(mark.colour)) + "/>\n"; }
+    void operator()(const AreaMark& mark)
+    {
+        out_ += "<rect" + box(mark.area) + attribute("fill", hex(mark.colour)) + "/>\n";
+    }
     void operator()(const PolygonMark& mark)
     {
         std::string points;
-        for (const cv::Point2d& corner : mark.corners) points += (points.empty() ? "" : " ") + number(corner.x) + ',' + number(corner.y);
-        out_ += "<polygon" + attribute("points", points) + attribute("fill", mark.inside ? hex(*mark.inside) : "none") + edge(mark.edge, mark.edge_width) + "/>\n";
+        for (const cv::Point2d& corner : mark.corners)
+            points += (points.empty() ? "" : " ") + number(corner.x) + ',' + number(corner.y);
+        out_ += "<polygon" + attribute("points", points) + attribute("fill", mark.inside ? hex(*mark.inside) : "none") +
+                edge(mark.edge, mark.edge_width) + "/>\n";
     }
     void operator()(const DotMark& mark)
     {
-        out_ += "<circle" + attribute("cx", number(mark.centre.x)) + attribute("cy", number(mark.centre.y)) + attribute("r", number(mark.radius)) +
-                attribute("fill", hex(mark.inside)) + edge(mark.edge, mark.edge_width) + "/>\n";
+        out_ += "<circle" + attribute("cx", number(mark.centre.x)) + attribute("cy", number(mark.centre.y)) +
+                attribute("r", number(mark.radius)) + attribute("fill", hex(mark.inside)) +
+                edge(mark.edge, mark.edge_width) + "/>\n";
     }
     void operator()(const ImageMark& mark)
     {
-        out_ += "<image" + box({mark.corner, mark.pixels.size()}) + attribute("preserveAspectRatio", "none") + " xlink:href=\"data:image/png;base64," +
+        out_ += "<image" + box({mark.corner, mark.pixels.size()}) + attribute("preserveAspectRatio", "none") +
+                " xlink:href=\"data:image/png;base64," +
                 base64(bgr_png("picture", mark.pixels.rows, mark.pixels.cols, mark.pixels.ptr())) + "\"/>\n";
     }
     void operator()(const ClipMark& mark)
@@ -91,7 +103,8 @@ public:
         is_clipped_ = !mark.area.empty();
         if (!is_clipped_) return;
         const std::string id = "clip" + std::to_string(++clips_);
-        out_ += "<clipPath" + attribute("id", id) + "><rect" + box(mark.area) + "/></clipPath>\n<g" + attribute("clip-path", "url(#" + id + ")") + ">\n";
+        out_ += "<clipPath" + attribute("id", id) + "><rect" + box(mark.area) + "/></clipPath>\n<g" +
+                attribute("clip-path", "url(#" + id + ")") + ">\n";
     }
     std::string take()
     {
@@ -104,11 +117,14 @@ private:
 
     static std::string box(const cv::Rect& area)
     {
-        return attribute("x", number(area.x)) + attribute("y", number(area.y)) + attribute("width", number(area.width)) + attribute("height", number(area.height));
+        return attribute("x", number(area.x)) + attribute("y", number(area.y)) +
+               attribute("width", number(area.width)) + attribute("height", number(area.height));
     }
     static std::string edge(Colour colour, double width)
     {
-        return width > 0 ? attribute("stroke", hex(colour)) + attribute("stroke-width", number(width)) + attribute("stroke-linejoin", "round") : "";
+        return width > 0 ? attribute("stroke", hex(colour)) + attribute("stroke-width", number(width)) +
+                               attribute("stroke-linejoin", "round")
+                         : "";
     }
 
     std::string out_;
@@ -125,9 +141,11 @@ std::string svg_of(const Figure& figure)
     for (const Mark& mark : figure.marks) std::visit(writer, mark);
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
            "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" version=\"1.1\"" +
-           attribute("width", width) + attribute("height", height) + attribute("viewBox", "0 0 " + width + ' ' + height) +
-           " font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\" xml:space=\"preserve\">\n<rect" + attribute("width", width) +
-           attribute("height", height) + attribute("fill", "#ffffff") + "/>\n" + writer.take() + "</svg>\n";
+           attribute("width", width) + attribute("height", height) +
+           attribute("viewBox", "0 0 " + width + ' ' + height) +
+           " font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\" xml:space=\"preserve\">\n<rect" +
+           attribute("width", width) + attribute("height", height) + attribute("fill", "#ffffff") + "/>\n" +
+           writer.take() + "</svg>\n";
 }
 
 }  // namespace spawnfield

@@ -24,7 +24,8 @@ Progress part_of(const Progress& progress, int part, int parts)
 
 }  // namespace
 
-HeadingRaster raster_at_headings(const Map& map, const CollisionChecker& checker, const RasterOptions& options, int headings)
+HeadingRaster raster_at_headings(const Map& map, const CollisionChecker& checker, const RasterOptions& options,
+                                 int headings)
 {
     if (headings < 1 || headings > 255) throw ArgumentError("raster_at_headings", "headings", headings, "1 .. 255");
     if (options.dims != 2) throw ArgumentError("raster_at_headings", "dims", options.dims, "2");

@@ -56,9 +56,14 @@ Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
     }
     if (spawns.empty()) return facing;
     facing.yaw = spawns[0].yaw;
-    facing.is_any = std::any_of(spawns.begin(), spawns.end(), [&](const Spawn& spawn) { return !is_same_yaw(spawn.yaw, facing.yaw); });
-    if (facing.is_any) notice(args, "the spawns have different yaws: the ground shows at how many of 16 headings the robot fits (--yaw RAD shows one)");
-    else if (!is_same_yaw(facing.yaw, 0)) notice(args, "the ground is shown for yaw " + number(facing.yaw) + " rad, which all spawns have (--yaw RAD shows another)");
+    facing.is_any = std::any_of(spawns.begin(), spawns.end(),
+                                [&](const Spawn& spawn) { return !is_same_yaw(spawn.yaw, facing.yaw); });
+    if (facing.is_any)
+        notice(args, "the spawns have different yaws: the ground shows at how many of 16 headings the robot fits "
+                     "(--yaw RAD shows one)");
+    else if (!is_same_yaw(facing.yaw, 0))
+        notice(args, "the ground is shown for yaw " + number(facing.yaw) +
+                         " rad, which all spawns have (--yaw RAD shows another)");
     return facing;
 }
 
@@ -99,7 +104,8 @@ HeatmapOptions picture_options(const HeatmapArgs& args)
 }
 
 /// The raster that the picture shows; what belongs to several headings goes to the picture's options.
-RasterResult shown_raster(const Session& session, const RasterOptions& options, bool any_heading, HeatmapOptions& picture)
+RasterResult shown_raster(const Session& session, const RasterOptions& options, bool any_heading,
+                          HeatmapOptions& picture)
 {
     if (!any_heading) return raster(session.map, *session.checker, options);
     HeadingRaster result = raster_at_headings(session.map, *session.checker, options);
@@ -131,7 +137,8 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     const RasterResult result = shown_raster(*session, options, facing.is_any, picture);
     summary.lap("query");
     picture.title = session->map.name + ", " + session->robot.name;
-    picture.caption = heatmap_caption(options, args.ground, session->map, facing.is_any ? std::to_string(picture.headings) + " headings" : "");
+    const std::string headings = facing.is_any ? std::to_string(picture.headings) + " headings" : "";
+    picture.caption = heatmap_caption(options, args.ground, session->map, headings);
     picture.robot = &session->robot;
     picture.format = file.format;
     write_heatmap(session->map, terrain, result, picture, file.path);
@@ -151,19 +158,31 @@ void add_heatmap(CLI::App& app, Run& run)
     auto args = std::make_shared<HeatmapArgs>();
     CLI::App& command = *app.add_subcommand("heatmap", "Picture of where the robot can stand");
     add_query(command, *args);
-    command.add_option("--out,-o", args->out, "Picture to write: .png, .svg or .pdf (- for standard output)")->required()->check(not_empty());
-    command.add_option("--format", args->format, "png, svg or pdf (default: as the ending of -o says, else png)")->check(one_of({"png", "svg", "pdf"}));
+    command.add_option("--out,-o", args->out, "Picture to write: .png, .svg or .pdf (- for standard output)")
+        ->required()
+        ->check(not_empty());
+    command.add_option("--format", args->format, "png, svg or pdf (default: as the ending of -o says, else png)")
+        ->check(one_of({"png", "svg", "pdf"}));
     command.add_option("--quantity", args->quantity, "verdict, height, clearance or slope (default verdict)")
         ->check(one_of({"verdict", "height", "clearance", "slope"}));
-    command.add_option("--spawns", args->spawns, "CSV file of spawns to draw (- for standard input), as footprints of the robot or as arrows; a column verdict (from `check`) gives their colours");
+    command.add_option("--spawns", args->spawns,
+                       "CSV file of spawns to draw (- for standard input), as footprints of the robot or as arrows; "
+                       "a column verdict (from `check`) gives their colours");
     add_allow_empty(command, *args);
-    command.add_flag("--names", args->names, "Write each spawn's name beside it: its column name, or else the number of its row, from 1");
+    command.add_flag("--names", args->names,
+                     "Write each spawn's name beside it: its column name, or else the number of its row, from 1");
     add_ground(command, args->ground, "all (valid if one layer is), top, bottom, or N from the top (0 first; default all)");
     command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
-    command.add_option("--yaw", args->yaw, "Of all poses, " + yaw_help + "; random: show at how many of 16 headings the robot fits (default: as the spawns face, else 0)");
-    command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
+    command.add_option("--yaw", args->yaw,
+                       "Of all poses, " + yaw_help + "; random: show at how many of 16 headings the robot fits "
+                       "(default: as the spawns face, else 0)");
+    command.add_option("--bounds", args->bounds,
+                       "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
     add_area(command, args->area);
-    command.add_option("--size", args->size, "Longer side of the picture, pixels (default 1000; texts can be read from about 500 on)")->check(CLI::Range(200, 16000));
+    command
+        .add_option("--size", args->size,
+                    "Longer side of the picture, pixels (default 1000; texts can be read from about 500 on)")
+        ->check(CLI::Range(200, 16000));
     command.footer("Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png");
     command.callback([=, &command, &run] { run = [=, &command] { return run_heatmap(*args, command); }; });
 }

@@ -357,7 +357,8 @@ bool is_robot(const std::string& what, bool has_robot_options, bool has_scene_op
 
 int run_info(const InfoArgs& args, const CLI::App& command)
 {
-    const std::optional<PictureFile> picture_to = args.picture.empty() ? std::nullopt : std::optional(picture_file(args.picture));
+    const std::optional<PictureFile> picture_to =
+        args.picture.empty() ? std::nullopt : std::optional(picture_file(args.picture));
     const Progress listen = progress_bar(args, "info");
     Summary summary("info", args);
     Json out;
@@ -411,7 +412,8 @@ void add_info(CLI::App& app, Run& run)
     CLI::App& command = *app.add_subcommand("info", "What a map, a scene or a robot holds");
     command.add_option("what", args->what, "Map folder, scene or world file, model folder, robot.yaml, .urdf, SDF model or box:LX,LY,LZ")->required();
     command.add_flag("--json", args->json, "As JSON");
-    command.add_option("--picture", args->picture, "Picture (.png, .svg or .pdf): draw a robot from above, from the side and from the front");
+    command.add_option("--picture", args->picture,
+                       "Picture (.png, .svg or .pdf): draw a robot from above, from the side and from the front");
     command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
     add_scene_options(command, *args);
     add_robot_options(command, *args);

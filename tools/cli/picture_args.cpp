@@ -37,7 +37,8 @@ PictureFile picture_file(const std::string& file, const std::string& format)
     const PictureFormat by_ending = picture_format(path);
     const PictureFormat chosen = format.empty() ? by_ending : format_named(format);
     if (std::filesystem::path(path).has_extension() && chosen != by_ending)
-        throw ArgumentError("--format is " + format + ", but " + path + " ends in ." + to_string(by_ending) + "; make them agree, or leave --format out");
+        throw ArgumentError("--format is " + format + ", but " + path + " ends in ." + to_string(by_ending) +
+                            "; make them agree, or leave --format out");
     return {path, chosen};
 }
 
@@ -46,9 +47,11 @@ std::string heatmap_caption(const RasterOptions& options, const GroundArgs& grou
     std::string text;
     if (options.offset) text = "offset " + rounded(*options.offset) + " m, ";
     text += yaw.empty() ? "yaw " + rounded(options.yaw * 180 / std::numbers::pi) + " deg" : yaw;
-    if (const std::string words = height_words(ground, options.z, map); options.dims == 2 && !words.empty()) text += ", " + words;
+    if (const std::string words = height_words(ground, options.z, map); options.dims == 2 && !words.empty())
+        text += ", " + words;
     if (options.height_check) text += ", " + layer_words(ground.layers);
-    if (std::isfinite(options.max_slope)) text += ", slope up to " + rounded(options.max_slope * 180 / std::numbers::pi) + " deg";
+    if (std::isfinite(options.max_slope))
+        text += ", slope up to " + rounded(options.max_slope * 180 / std::numbers::pi) + " deg";
     return text;
 }
 

@@ -65,7 +65,8 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     Summary summary("raster", args);
     RasterOptions options = options_of(args, command);
     options.exact_time = &summary.exact_time;
-    const std::optional<PictureFile> picture_to = args.heatmap.empty() ? std::nullopt : std::optional(picture_file(args.heatmap));
+    const std::optional<PictureFile> picture_to =
+        args.heatmap.empty() ? std::nullopt : std::optional(picture_file(args.heatmap));
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     const auto session = open_session(args);
     complete(options, args, *session, summary);

@@ -4,7 +4,7 @@
 
 namespace tools {
 
-/// "spawnfield 0.1.0 on <CPU>, 2 cores".
+/// "spawnfield 0.2.0 on <CPU>, 2 cores".
 std::string machine();
 
 /// What follows `key` on its line of a file under /proc, without the colon; empty if there is none.

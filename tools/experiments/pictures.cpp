@@ -41,7 +41,8 @@ Picture draw_case(const Settings& settings, const Environment& environment, cons
     const Robot box = robot(settings, "box");
     Picture picture{std::string("case_") + environment.name + "_" + shown.landmark + ".png", shown.title};
     std::replace(picture.file.begin(), picture.file.end(), '-', '_');
-    write_heatmap(environment.map, read_terrain(environment.map), verdicts, {.pixels = case_pixels, .title = shown.title, .robot = &box}, folder / picture.file);
+    write_heatmap(environment.map, read_terrain(environment.map), verdicts,
+                  {.pixels = case_pixels, .title = shown.title, .robot = &box}, folder / picture.file);
     return picture;
 }
 

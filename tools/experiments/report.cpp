@@ -242,7 +242,10 @@ std::string plots_section(const Results& results, const std::string& pictures)
     text += formatted("At 2.5 m steps and up to 1 m above the ground, low-complexity. Of %s columns in which the 2D raster finds a place to stand, the 3D raster has a step\n"
                       "in reach above the ground in some alone: it misses %s of them (%s). With `--snap` it misses %s.\n\n",
                       grouped(in_2d).c_str(), grouped(missed).c_str(), percent(missed, in_2d).c_str(), grouped(missed_snapped).c_str());
-    text += image("columns_2d_3d.png", "2D beside 3D") + "\n## Special cases\n\nVerdicts of the box 0.3 m above the ground. What is brown beside an obstacle is too near to it for a robot that looks along x.\n\n";
+    text +=
+        image("columns_2d_3d.png", "2D beside 3D") +
+        "\n## Special cases\n\nVerdicts of the box 0.3 m above the ground. "
+        "What is brown beside an obstacle is too near to it for a robot that looks along x.\n\n";
     for (const Picture& picture : results.cases) text += image(picture.file, picture.title);
     text += "\n## Random spawns\n\nThe first runs of tests 7 and 8, over the verdicts of the box 1 m above the ground.\n\n";
     for (const Picture& picture : results.spawns) text += image(picture.file, picture.title);
