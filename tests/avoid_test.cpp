@@ -27,7 +27,8 @@ SampleOptions sample_options(std::size_t count, double min_distance)
 Verdict judged(const Map& map, const CollisionChecker& checker, const QueryOptions& options, const Spawn& spawn)
 {
     const Vec3& p = spawn.position;
-    return judge(map, checker, column_at(map.geometry, p.x(), p.y()), {p, rotation_from_rpy(0, 0, spawn.yaw)}, options).verdict;
+    return judge(map, checker, column_at(map.geometry, p.x(), p.y()), {p, rotation_from_rpy(0, 0, spawn.yaw)}, options)
+        .verdict;
 }
 
 QueryOptions without_height(const SpawnOptions& options)
@@ -45,7 +46,10 @@ bool is_clear(const std::vector<AvoidedPoints>& avoid, const Vec3& p)
     return true;
 }
 
-bool is_clear(const std::vector<Vec3>& points, double distance, const Vec3& p) { return is_clear({{"", points, distance}}, p); }
+bool is_clear(const std::vector<Vec3>& points, double distance, const Vec3& p)
+{
+    return is_clear({{"", points, distance}}, p);
+}
 
 /// Two groups of points, anywhere within the map and a little beyond.
 std::vector<AvoidedPoints> random_avoided(const Bounds& bounds, Random& random)
@@ -63,7 +67,8 @@ std::vector<AvoidedPoints> random_avoided(const Bounds& bounds, Random& random)
     return out;
 }
 
-/// A list of spawns with the numbers of draws that gave none, by the definitions: one draw after the other, all distances.
+/// A list of spawns with the numbers of draws that gave none, by the definitions: one draw after the other, all
+/// distances.
 struct SlowList {
     std::vector<Vec3> found;
     std::uint64_t draws = 0, near_avoided = 0, too_close = 0;
@@ -74,7 +79,8 @@ SlowList slow_search(const Map& map, const CollisionChecker& checker, const Sear
 {
     SlowList out;
     std::vector<Vec3> checked;
-    for (std::uint64_t index = 0, failures = 0; out.found.size() < options.count && failures < options.max_failures; ++index) {
+    for (std::uint64_t index = 0, failures = 0; out.found.size() < options.count && failures < options.max_failures;
+         ++index) {
         Draw draw(options.seed, index);
         Vec3 p;
         for (int axis = 0; axis < 3; ++axis) p[axis] = draw.uniform(map.bounds.min[axis], map.bounds.max[axis]);
@@ -100,7 +106,8 @@ SlowList slow_sample(const Map& map, const CollisionChecker& checker, const Samp
         out.gave_up = failures++ >= 2000;
         if (out.gave_up) return out;
         Draw draw(options.seed, index);
-        const double x = draw.uniform(map.bounds.min.x(), map.bounds.max.x()), y = draw.uniform(map.bounds.min.y(), map.bounds.max.y());
+        const double x = draw.uniform(map.bounds.min.x(), map.bounds.max.x()),
+                     y = draw.uniform(map.bounds.min.y(), map.bounds.max.y());
         const double slot = draw.uniform(0, slots), yaw = draw.uniform(-std::numbers::pi, std::numbers::pi);
         ++out.draws;
         const std::vector<double> layers = column_at(map.geometry, x, y).layers;
@@ -128,7 +135,8 @@ void check_same(const SpawnList& list, const SlowList& slow)
 }
 
 /// Positions of a grid at which a spawn could still be added.
-std::size_t room_left(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const SpawnList& list, int cells)
+std::size_t room_left(const Map& map, const CollisionChecker& checker, const SampleOptions& options,
+                      const SpawnList& list, int cells)
 {
     std::vector<Vec3> taken;
     for (const Spawn& spawn : list.spawns) taken.push_back(spawn.position);
@@ -136,11 +144,14 @@ std::size_t room_left(const Map& map, const CollisionChecker& checker, const Sam
     std::size_t count = 0;
     for (int i = 0; i <= cells; ++i)
         for (int j = 0; j <= cells; ++j) {
-            const Vec3 p = map.bounds.min + (map.bounds.max - map.bounds.min).cwiseProduct(Vec3(double(i) / cells, double(j) / cells, 0));
+            const Vec3 p =
+                map.bounds.min +
+                (map.bounds.max - map.bounds.min).cwiseProduct(Vec3(double(i) / cells, double(j) / cells, 0));
             for (const double layer : column_at(map.geometry, p.x(), p.y()).layers) {
                 const Vec3 at(p.x(), p.y(), layer + options.offset);
                 if (!is_clear(options.avoid, at) || !is_clear(taken, options.min_distance, at)) continue;
-                count += judged(map, checker, without_height(options), {at, random.between(-M_PI, M_PI)}) == Verdict::Valid;
+                count +=
+                    judged(map, checker, without_height(options), {at, random.between(-M_PI, M_PI)}) == Verdict::Valid;
             }
         }
     return count;
@@ -151,8 +162,10 @@ Scene room(int kind)
 {
     Scene scene;
     if (kind == 0) hand::add_mesh(scene, Label::Terrain, hand::rectangle(8, 6));
-    if (kind == 1) hand::add_shape(scene, Label::Terrain, {ShapeKind::Box, {8, 6, 0.5}, {{0, 0, -0.25}, Mat3::Identity()}});
-    if (kind == 2) hand::add_mesh(scene, Label::Terrain, hand::moved(hand::box({8, 6, 0.5}), {{0, 0, -0.25}, Mat3::Identity()}));
+    if (kind == 1)
+        hand::add_shape(scene, Label::Terrain, {ShapeKind::Box, {8, 6, 0.5}, {{0, 0, -0.25}, Mat3::Identity()}});
+    if (kind == 2)
+        hand::add_mesh(scene, Label::Terrain, hand::moved(hand::box({8, 6, 0.5}), {{0, 0, -0.25}, Mat3::Identity()}));
     for (const double side : {-1.0, 1.0}) {
         hand::add_shape(scene, Label::Obstacle, {ShapeKind::Box, {0.2, 6, 2}, {{3.9 * side, 0, 1}, Mat3::Identity()}});
         hand::add_shape(scene, Label::Obstacle, {ShapeKind::Box, {8, 0.2, 2}, {{0, 2.9 * side, 1}, Mat3::Identity()}});
@@ -263,7 +276,8 @@ TEST_CASE("the gap between avoided points is filled, and then proven full")
     options.avoid = {{"", grid_points(0.25, gap), 0.7}};
     const SpawnList list = sample(map, checker, options);
     CHECK(list.spawns.size() >= 3);
-    for (const Spawn& spawn : list.spawns) CHECK(((spawn.position - gap).norm() < 0.8 && is_clear(options.avoid, spawn.position)));
+    for (const Spawn& spawn : list.spawns)
+        CHECK(((spawn.position - gap).norm() < 0.8 && is_clear(options.avoid, spawn.position)));
     CHECK(list.is_full);
     CHECK(list.undecided_area == 0);
     CHECK(room_left(map, checker, options, list, 400) == 0);
@@ -303,7 +317,8 @@ TEST_CASE("avoided points at no distance, or far away, change no byte")
     searching.min_distance = 1;
     searching.max_failures = 2000;
     const SpawnList sampled = sample(map, checker, options), searched = search(map, checker, searching);
-    for (const AvoidedPoints& group : {AvoidedPoints{"", {Vec3(0, 0, 0), Vec3(1, 2, 0.1)}, 0}, AvoidedPoints{"", {}, 3}, AvoidedPoints{"", {Vec3(500, 0, 0)}, 2}}) {
+    for (const AvoidedPoints& group : {AvoidedPoints{"", {Vec3(0, 0, 0), Vec3(1, 2, 0.1)}, 0}, AvoidedPoints{"", {}, 3},
+                                       AvoidedPoints{"", {Vec3(500, 0, 0)}, 2}}) {
         options.avoid = searching.avoid = {group};
         const SpawnList list = sample(map, checker, options);
         CHECK(spawns_csv(list) == spawns_csv(sampled));
@@ -325,7 +340,8 @@ TEST_CASE("avoiding gives the same bytes at any number of threads")
     options.threads = 7;
     const SpawnList many = sample(map, checker, options);
     CHECK(spawns_csv(many) == spawns_csv(one));
-    CHECK((many.draws == one.draws && many.near_avoided == one.near_avoided && many.undecided_area == one.undecided_area));
+    CHECK((many.draws == one.draws && many.near_avoided == one.near_avoided &&
+           many.undecided_area == one.undecided_area));
 }
 
 TEST_CASE("distances and points that are no numbers are refused")

@@ -333,7 +333,8 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
     fs::remove(map / "map.yaml");
     CHECK(read() == "@/map: is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");
-    CHECK(complaint(folder, [&] { read_map(folder / "scene.yaml"); }) == "@/scene.yaml: is a file, and a map is a folder; bake a scene first: spawnfield bake @/scene.yaml -o MAP");
+    CHECK(complaint(folder, [&] { read_map(folder / "scene.yaml"); }) ==
+          "@/scene.yaml: is a file, and a map is a folder; bake a scene first: spawnfield bake @/scene.yaml -o MAP");
 }
 
 TEST_CASE("a folder of another program that has a map.yaml too is not replaced")

@@ -128,7 +128,8 @@ std::vector<AvoidedPoints> some_points(const TestMap& map, Random& random)
     const Vec3 size = map.bounds.max - map.bounds.min;
     out.distance = random.between(0, 0.2) * size.head<2>().minCoeff();
     for (int n = random.below(20); n > 0; --n)
-        out.points.push_back(map.bounds.min + size.cwiseProduct(Vec3(random.between(0, 1), random.between(0, 1), random.between(0, 1))));
+        out.points.push_back(map.bounds.min +
+                             size.cwiseProduct(Vec3(random.between(0, 1), random.between(0, 1), random.between(0, 1))));
     return {out};
 }
 

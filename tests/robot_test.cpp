@@ -287,7 +287,9 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
     CHECK_THROWS_WITH(load_urdf(folder, "<xacro:property name=\"a\" value=\"1\"/>"),
                       xml + ": holds xacro macros; expand them first: xacro robot.urdf > robot.urdf");
     const auto xacro = folder.write("husky.urdf.xacro", "");
-    CHECK_THROWS_WITH(load_robot(xacro.string()), xacro.string() + ": is a xacro file, which is not read; expand it first: xacro husky.urdf.xacro > robot.urdf");
+    CHECK_THROWS_WITH(load_robot(xacro.string()),
+                      xacro.string() +
+                          ": is a xacro file, which is not read; expand it first: xacro husky.urdf.xacro > robot.urdf");
 
     CHECK_THROWS_WITH(load_robot((folder / "none.yaml").string()),
                       (folder / "none.yaml").string() + ": does not exist; a robot is a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
@@ -386,7 +388,8 @@ TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not kno
 
 TEST_CASE("a robot beyond all measure is refused, a chain longer than the call stack is not")
 {
-    CHECK_THROWS_WITH(load_robot("box:1e10,1,1"), "box:1e10,1,1: reaches 5e+09 m from its origin, needs at most 1000 m; is it in millimetres? divide its lengths by 1000");
+    CHECK_THROWS_WITH(load_robot("box:1e10,1,1"), "box:1e10,1,1: reaches 5e+09 m from its origin, needs at most 1000 "
+                                                  "m; is it in millimetres? divide its lengths by 1000");
     CHECK(load_robot("box:2000,1,1@0,0,0.5").parts.size() == 1);
     const TempFolder folder;
     const std::string box = "<collision><geometry><box size='1 1 1'/></geometry></collision>";

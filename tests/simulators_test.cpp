@@ -413,7 +413,8 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
     CHECK_THAT(refused("--format ros2-launch-py --topic a --robot-file none.urdf", 2), Contains("--topic and --robot-file"));
     CHECK_THAT(refused("--format ros2-launch-py --topic a --name 'a-{i}'", 2), Contains("\"a-1\" has \"-\""));
     CHECK_THAT(refused("--format sdf --robot-uri model://a --name 'a::{i}'", 2), Contains("which no model's name may"));
-    CHECK_THAT(refused("--format sdf --robot-uri model://a --world none.world", 4), Contains("none.world: does not exist"));
+    CHECK_THAT(refused("--format sdf --robot-uri model://a --world none.world", 4),
+               Contains("none.world: does not exist"));
     CHECK_THAT(refused("--format sdf --robot-uri model://a --world yard.world --world-name meadow", 4), Contains("has no world \"meadow\""));
     CHECK_THAT(refused("--name robot", 2), Contains("gives all 3 robots one name"));
     const ProgramRun idle = arena(query + "--format csv --tiles 1,1 --topic a");

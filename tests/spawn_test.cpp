@@ -398,7 +398,9 @@ TEST_CASE("cells that are proven closed hold no valid pose, in hard scenes")
                 const double x = random.between(cell.low_x, cell.high_x), y = random.between(cell.low_y, cell.high_y);
                 const Spawn spawn = valid_at(map, checker, options, x, y, random);
                 if (!spawn.position.allFinite() || !taken.is_clear(spawn.position)) continue;
-                if (!std::all_of(group.points.begin(), group.points.end(), [&](const Vec3& p) { return (p - spawn.position).norm() >= group.distance; })) continue;
+                if (!std::all_of(group.points.begin(), group.points.end(),
+                                 [&](const Vec3& p) { return (p - spawn.position).norm() >= group.distance; }))
+                    continue;
                 ++valid;
                 CAPTURE(seed, n, x, y, side);
                 CHECK_FALSE(is_closed);

@@ -5,8 +5,8 @@
 
 namespace spawnfield {
 
-/// Throws FileError unless there is a regular file (links are followed). To be called before a file is opened: opening a pipe
-/// waits for its writer, and a device may never end.
+/// Throws FileError unless there is a regular file (links are followed). To be called before a file is opened: opening
+/// a pipe waits for its writer, and a device may never end.
 void require_file(const std::filesystem::path& file);
 
 /// All bytes of a file. Throws FileError.

@@ -18,9 +18,9 @@ struct PoseTable {
     std::vector<std::string> notices;  ///< what may be a slip of the pen, for the user to see
 };
 
-/// Reads a header x,y,z,roll,pitch,yaw in any order, and a pose in each further line. Metres and radians; columns roll_deg,
-/// pitch_deg, yaw_deg are degrees. Angles default to 0; qx,qy,qz,qw may stand for them; other columns are carried through.
-/// Throws FileError that names line and column; without `allow_empty` also for a file without a pose.
+/// Reads a header x,y,z,roll,pitch,yaw in any order, and a pose in each further line. Metres and radians; columns
+/// roll_deg, pitch_deg, yaw_deg are degrees. Angles default to 0; qx,qy,qz,qw may stand for them; other columns are
+/// carried through. Throws FileError that names line and column; without `allow_empty` also for a file without a pose.
 PoseTable read_poses(const std::filesystem::path& file, bool allow_empty = false);
 
 /// The same for a file's text; `name` stands for the file in messages.

@@ -134,7 +134,7 @@ struct SpawnList {
     std::uint64_t near_avoided = 0;  ///< draws too near to a point of SpawnOptions::avoid
     std::uint64_t too_close = 0;  ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
-    bool is_full = false;         ///< sample: fewer than count, and proven that none fits beside them and the avoided points
+    bool is_full = false;  ///< sample: fewer than count, and proven that none fits beside them and the avoided points
     double undecided_area = 0;    ///< sample, if fewer and not proven: horizontal m2 in which one may still fit
 };
 
@@ -145,7 +145,7 @@ inline constexpr std::size_t max_spawns = 100000000;
 struct AvoidedPoints {
     std::string name = {};          ///< for the user: the file that they come from
     std::vector<Vec3> points = {};  ///< finite, m
-    double distance = 0;            ///< m between a point and a position (in 3D), >= 0; exactly this distance is allowed
+    double distance = 0;  ///< m between a point and a position (in 3D), >= 0; exactly this distance is allowed
 };
 
 struct SpawnOptions : QueryOptions {
@@ -154,7 +154,8 @@ struct SpawnOptions : QueryOptions {
     Bounds bounds = {};          ///< empty: the map's; sample leaves z aside
     /// Positions lie in it. Draws elsewhere are failures that nobody judges (SpawnList::off_area); draws are made from its bounds only.
     Area area = {};
-    /// Draws nearer to one of these points than its distance are failures that are not judged (SpawnList::near_avoided).
+    /// Draws nearer to one of these points than its distance are failures that are not judged
+    /// (SpawnList::near_avoided).
     std::vector<AvoidedPoints> avoid = {};
     bool random_yaw = false;     ///< uniform in [-pi, pi), else yaw
     double yaw = 0;              ///< rad

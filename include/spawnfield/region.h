@@ -43,7 +43,8 @@ enum class MapCells { Free, Occupied };
 /// geometries without area.
 Region read_region(const std::filesystem::path& file, MapCells cells = MapCells::Free);
 
-/// The same for the text of a GeoJSON or CSV file; it is GeoJSON if it starts with a brace. `name` stands for the file in messages.
+/// The same for the text of a GeoJSON or CSV file; it is GeoJSON if it starts with a brace. `name` stands for the file
+/// in messages.
 Region parse_region(const std::string& text, const std::string& name);
 
 }  // namespace spawnfield

@@ -48,15 +48,19 @@ std::vector<std::string> csv_fields(std::string_view line)
 bool are_numbers(const std::vector<std::string>& fields)
 {
     double ignored = 0;
-    return !fields.empty() && std::all_of(fields.begin(), fields.end(), [&](const std::string& field) { return parse_number(field, ignored); });
+    return !fields.empty() && std::all_of(fields.begin(), fields.end(),
+                                          [&](const std::string& field) { return parse_number(field, ignored); });
 }
 
 std::string separator_complaint(std::string_view line)
 {
     if (has_semicolons(line))
-        return "has fields separated by semicolons, needs commas, and points in decimals: tr ',;' '.,' < IN.csv > OUT.csv";
+        return "has fields separated by semicolons, needs commas, and points in decimals: tr ',;' '.,' < IN.csv > "
+               "OUT.csv";
     const bool has_comma = line.find(',') != std::string_view::npos;
-    return !has_comma && line.find('\t') != std::string_view::npos ? "has fields separated by tabs, needs commas: tr '\\t' ',' < IN.csv > OUT.csv" : "";
+    return !has_comma && line.find('\t') != std::string_view::npos
+               ? "has fields separated by tabs, needs commas: tr '\\t' ',' < IN.csv > OUT.csv"
+               : "";
 }
 
 std::string csv_quoted(std::string_view text)

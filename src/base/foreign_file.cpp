@@ -23,17 +23,38 @@ struct ForeignKind {
 constexpr const char* give_urdf = "give the robot's URDF, or a robot.yaml (docs/robots.md)";
 
 constexpr std::array kinds = {
-    ForeignKind{{".usd", ".usda", ".usdc", ".usdz"}, "a USD file",
-                "turn it into GLB, for example in Blender (File > Import > Universal Scene Description, then File > Export > glTF 2.0)", give_urdf},
-    ForeignKind{{".unity"}, "a Unity scene", "export it to GLB in Unity (package com.unity.cloud.gltfast: File > Export Scene > glTF-Binary)", give_urdf},
-    ForeignKind{{".umap", ".uasset"}, "an Unreal Engine file", "export the level to GLB in Unreal (plugin glTF Exporter: File > Export All)", give_urdf},
-    ForeignKind{{".blend"}, "a Blender file", "export it to GLB in Blender (File > Export > glTF 2.0)",
+    ForeignKind{{".usd", ".usda", ".usdc", ".usdz"},
+                "a USD file",
+                "turn it into GLB, for example in Blender (File > Import > Universal Scene Description, then File > "
+                "Export > glTF 2.0)",
+                give_urdf},
+    ForeignKind{{".unity"},
+                "a Unity scene",
+                "export it to GLB in Unity (package com.unity.cloud.gltfast: File > Export Scene > glTF-Binary)",
+                give_urdf},
+    ForeignKind{{".umap", ".uasset"},
+                "an Unreal Engine file",
+                "export the level to GLB in Unreal (plugin glTF Exporter: File > Export All)",
+                give_urdf},
+    ForeignKind{{".blend"},
+                "a Blender file",
+                "export it to GLB in Blender (File > Export > glTF 2.0)",
                 "export the robot as STL in Blender and name it in a robot.yaml (docs/robots.md)"},
-    ForeignKind{{".xacro"}, "a xacro file", "expand it first: xacro FILE > scene.urdf", "expand it first: xacro FILE > robot.urdf"},
-    ForeignKind{{".rviz"}, "an RViz configuration", "it has no geometry: give the world (.world, .sdf) or a mesh", "give the URDF that RViz shows"},
+    ForeignKind{{".xacro"},
+                "a xacro file",
+                "expand it first: xacro FILE > scene.urdf",
+                "expand it first: xacro FILE > robot.urdf"},
+    ForeignKind{{".rviz"},
+                "an RViz configuration",
+                "it has no geometry: give the world (.world, .sdf) or a mesh",
+                "give the URDF that RViz shows"},
 };
 
-constexpr ForeignKind mjcf{{".mjcf"}, "a MuJoCo model (MJCF)", "write its geoms as parts of a scene.yaml (docs/input-files.md), or give the meshes that it names", give_urdf};
+constexpr ForeignKind mjcf{
+    {".mjcf"},
+    "a MuJoCo model (MJCF)",
+    "write its geoms as parts of a scene.yaml (docs/input-files.md), or give the meshes that it names",
+    give_urdf};
 
 /// Name of the first element of an XML file; empty if it has none within the first 64 KiB.
 std::string first_element(const fs::path& file)
@@ -64,7 +85,8 @@ void refuse(const fs::path& file, const char* const ForeignKind::* advice)
     const ForeignKind* const kind = kind_of(file);
     if (kind == nullptr) return;
     std::string words = kind->*advice;
-    if (const std::size_t at = words.find("FILE"); at != std::string::npos) words.replace(at, 4, file.filename().string());
+    if (const std::size_t at = words.find("FILE"); at != std::string::npos)
+        words.replace(at, 4, file.filename().string());
     throw FileError(file.string(), std::string("is ") + kind->name + ", which is not read; " + words);
 }
 

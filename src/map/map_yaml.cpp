@@ -136,7 +136,9 @@ void check_version(const fs::path& file, const std::string& text)
     require_file(file);
     refuse_foreign_scene(file);
     const std::string name = file.string(), text = read_start(file, 4096);
-    if (text.starts_with("format: " + format_prefix)) throw FileError(name, "is a file of a map; give its folder, " + (file.parent_path().empty() ? fs::path(".") : file.parent_path()).string());
+    if (text.starts_with("format: " + format_prefix))
+        throw FileError(name, "is a file of a map; give its folder, " +
+                                  (file.parent_path().empty() ? fs::path(".") : file.parent_path()).string());
     if (text.find("spawnfield-robot/") != std::string::npos || lower_case(file.extension().string()) == ".urdf")
         throw FileError(name, "is a robot, not a map; give it as --robot " + name + ", and a map folder before it");
     throw FileError(name, "is a file, and a map is a folder; bake a scene first: spawnfield bake " + name + " -o MAP");

@@ -46,7 +46,8 @@ Mat4 matrix_of(const aiMatrix4x4& m)
     return out;
 }
 
-/// The disk's regular files: what a mesh names beside itself (materials, buffers) may be a pipe, on which assimp would wait.
+/// The disk's regular files: what a mesh names beside itself (materials, buffers) may be a pipe, on which assimp would
+/// wait.
 class RegularFiles : public Assimp::DefaultIOSystem {
 public:
     bool Exists(const char* file) const override
@@ -55,7 +56,10 @@ public:
         return std::filesystem::is_regular_file(file, unreachable);
     }
 
-    Assimp::IOStream* Open(const char* file, const char* mode) override { return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr; }
+    Assimp::IOStream* Open(const char* file, const char* mode) override
+    {
+        return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+    }
 };
 
 /// The same, but for one file, which has this text. The text must outlive it.
@@ -227,7 +231,8 @@ FileMesh read_mesh(const std::filesystem::path& file)
     check_mesh_file(file, importer);
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};
-    importer.SetIOHandler(extension == ".obj" ? new RespeltFile(file.string(), obj.text) : new RegularFiles);  // the importer owns it
+    importer.SetIOHandler(extension == ".obj" ? new RespeltFile(file.string(), obj.text)
+                                              : new RegularFiles);  // the importer owns it
     // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids

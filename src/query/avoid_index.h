@@ -28,7 +28,8 @@ public:
     /// Whether no avoided point is nearer than its group's distance.
     bool is_clear(const Vec3& point) const
     {
-        return std::all_of(grids_.begin(), grids_.end(), [&](const SpacedPoints& grid) { return grid.is_clear(point); });
+        return std::all_of(grids_.begin(), grids_.end(),
+                           [&](const SpacedPoints& grid) { return grid.is_clear(point); });
     }
 
     const std::vector<SpacedPoints>& grids() const { return grids_; }

@@ -121,7 +121,8 @@ private:
     {
         const std::vector<SpacedPoints>& avoided = proofs_.avoided_.grids();
         return is_covered(band, proofs_.taken_) ||
-               std::any_of(avoided.begin(), avoided.end(), [&](const SpacedPoints& points) { return is_covered(band, points); });
+               std::any_of(avoided.begin(), avoided.end(),
+                           [&](const SpacedPoints& points) { return is_covered(band, points); });
     }
 
     /// Whether all poses of the band are too near to one of the points.
@@ -133,7 +134,8 @@ private:
         const Vec3 middle(rect_.centre_x(), rect_.centre_y(), (low + high) / 2);
         const Vec3 half((rect_.high_x - rect_.low_x) / 2, (rect_.high_y - rect_.low_y) / 2, (high - low) / 2);
         if (half.norm() >= distance) return false;
-        return points.any_near(middle, [&](const Vec3& other) { return ((other - middle).cwiseAbs() + half).norm() < distance - slack; });
+        return points.any_near(
+            middle, [&](const Vec3& other) { return ((other - middle).cwiseAbs() + half).norm() < distance - slack; });
     }
 
     bool is_submerged(std::size_t b) const
@@ -255,8 +257,8 @@ private:
     std::vector<Interval> bands_;
 };
 
-CellProofs::CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const SpacedPoints& taken,
-                       const AvoidIndex& avoided)
+CellProofs::CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options,
+                       const SpacedPoints& taken, const AvoidIndex& avoided)
     : map_(map), options_(options), taken_(taken), avoided_(avoided)
 {
     if (checker.uses_occupancy()) return;  // not what the proofs see

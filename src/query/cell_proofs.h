@@ -9,14 +9,15 @@
 
 namespace spawnfield {
 
-/// Proofs that no further sample can stand anywhere in a cell, from the scene's own geometry: the mask has no part in them, so
-/// that they are the same with it and without it.
+/// Proofs that no further sample can stand anywhere in a cell, from the scene's own geometry: the mask has no part in
+/// them, so that they are the same with it and without it.
 ///
-/// A cell's layers lie between heights that the planes of its terrain give. At each such height, all poses must be too close
-/// to one taken or avoided position, under water, or collide: the robot drawn in by half a cell does at its centre, or some point of
-/// the robot is inside the ground at every pose. Lines within 1e-9 m of an upright face are left aside. What is not
-/// proven stays open: cells half on an obstacle as flat as the offset, for one. A footing that is asked for (max_slope) only
-/// takes valid poses away, so what is closed without it is closed with it; cells where all is steep stay open.
+/// A cell's layers lie between heights that the planes of its terrain give. At each such height, all poses must be too
+/// close to one taken or avoided position, under water, or collide: the robot drawn in by half a cell does at its
+/// centre, or some point of the robot is inside the ground at every pose. Lines within 1e-9 m of an upright face are
+/// left aside. What is not proven stays open: cells half on an obstacle as flat as the offset, for one. A footing that
+/// is asked for (max_slope) only takes valid poses away, so what is closed without it is closed with it; cells where
+/// all is steep stay open.
 class CellProofs {
 public:
     /// `taken` may grow between calls of is_closed, never during them.

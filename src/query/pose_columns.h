@@ -9,7 +9,8 @@ namespace spawnfield {
 /// Whether a column of this name is part of a pose.
 inline bool is_pose_column(const std::string& name)
 {
-    constexpr std::array names{"x", "y", "z", "roll", "pitch", "yaw", "roll_deg", "pitch_deg", "yaw_deg", "qx", "qy", "qz", "qw"};
+    constexpr std::array names{"x",         "y",       "z",  "roll", "pitch", "yaw", "roll_deg",
+                               "pitch_deg", "yaw_deg", "qx", "qy",   "qz",    "qw"};
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 

@@ -76,28 +76,33 @@ private:
     {
         if (const std::string complaint = separator_complaint(line); !complaint.empty()) fail(complaint);
         const auto names = csv_fields(line);
-        if (are_numbers(names)) fail("has numbers, needs a header before them: add the line " + likely_header(names.size()));
+        if (are_numbers(names))
+            fail("has numbers, needs a header before them: add the line " + likely_header(names.size()));
         const auto find = [&](const std::string& name) {
             const auto at = std::find(names.begin(), names.end(), name);
-            if (at != names.end() && std::find(at + 1, names.end(), name) != names.end()) fail("column " + name + " is given twice");
+            if (at != names.end() && std::find(at + 1, names.end(), name) != names.end())
+                fail("column " + name + " is given twice");
             return at == names.end() ? -1 : int(at - names.begin());
         };
         const auto angle = [&](const std::string& name) {
             const int radians = find(name), degrees = find(name + "_deg");
-            if (radians >= 0 && degrees >= 0) fail("has columns " + name + " and " + name + "_deg, needs one of the two");
+            if (radians >= 0 && degrees >= 0)
+                fail("has columns " + name + " and " + name + "_deg, needs one of the two");
             return degrees >= 0 ? AngleColumn{name + "_deg", degrees, true} : AngleColumn{name, radians};
         };
         PoseColumns c{find("x"),  find("y"),  find("z"),  find("qx"), find("qy"), find("qz"), find("qw"),
                       {angle("roll"), angle("pitch"), angle("yaw")}, names.size()};
         for (const auto& [column, name] : {std::pair{c.x, "x"}, std::pair{c.y, "y"}, std::pair{c.z, "z"}})
             if (column < 0) {
-                const auto other = std::find_if(names.begin(), names.end(), [&](const std::string& n) { return lower_case(n) == name; });
+                const auto other = std::find_if(names.begin(), names.end(),
+                                                [&](const std::string& n) { return lower_case(n) == name; });
                 fail(std::string("column ") + name + " is missing, needs a header x,y,z,roll,pitch,yaw" +
                      (other == names.end() ? "" : "; there is " + *other + ", but names are lower case"));
             }
         const int quaternions = (c.qx >= 0) + (c.qy >= 0) + (c.qz >= 0) + (c.qw >= 0);
         if (quaternions != 0 && quaternions != 4) fail("has some of the columns qx,qy,qz,qw, needs all four or none");
-        const bool has_angle = std::any_of(c.angles.begin(), c.angles.end(), [](const AngleColumn& a) { return a.field >= 0; });
+        const bool has_angle =
+            std::any_of(c.angles.begin(), c.angles.end(), [](const AngleColumn& a) { return a.field >= 0; });
         if (quaternions == 4 && has_angle) fail("has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
         return c;
     }
@@ -116,7 +121,8 @@ private:
         for (const std::string& name : csv_fields(header)) {
             const std::string lower = lower_case(name);
             if (name == lower || !is_pose_column(lower)) continue;
-            table.notices.push_back(file_ + ": column " + name + " is carried along, not read: names are lower case (" + lower + ")");
+            table.notices.push_back(file_ + ": column " + name + " is carried along, not read: names are lower case (" +
+                                    lower + ")");
         }
     }
 
@@ -124,8 +130,11 @@ private:
     {
         for (const AngleColumn& angle : columns.angles) {
             if (angle.beyond_turn == 0) continue;
-            const std::string more = angle.beyond_turn == 1 ? "" : " (the first of " + std::to_string(angle.beyond_turn) + " rows)";
-            table.notices.push_back(file_ + ": " + angle.first + more + ", which is more than a turn of 2 pi rad; for degrees name the column " + angle.name + "_deg");
+            const std::string more =
+                angle.beyond_turn == 1 ? "" : " (the first of " + std::to_string(angle.beyond_turn) + " rows)";
+            table.notices.push_back(file_ + ": " + angle.first + more +
+                                    ", which is more than a turn of 2 pi rad; for degrees name the column " +
+                                    angle.name + "_deg");
         }
     }
 
@@ -136,13 +145,15 @@ private:
         Pose pose;
         pose.position = {number_in(fields, c.x, "x"), number_in(fields, c.y, "y"), number_in(fields, c.z, "z")};
         if (!c.has_quaternion()) {
-            const double roll = angle_in(fields, c.angles[0]), pitch = angle_in(fields, c.angles[1]), yaw = angle_in(fields, c.angles[2]);
+            const double roll = angle_in(fields, c.angles[0]), pitch = angle_in(fields, c.angles[1]),
+                         yaw = angle_in(fields, c.angles[2]);
             pose.rotation = rotation_from_rpy(roll, pitch, yaw);
             return pose;
         }
-        const Eigen::Quaterniond q(number_in(fields, c.qw, "qw"), number_in(fields, c.qx, "qx"), number_in(fields, c.qy, "qy"),
-                                   number_in(fields, c.qz, "qz"));
-        if (!(std::abs(q.norm() - 1) <= 1e-3)) fail("the quaternion's length is " + number(q.norm()) + ", needs 1 (to 0.001)");
+        const Eigen::Quaterniond q(number_in(fields, c.qw, "qw"), number_in(fields, c.qx, "qx"),
+                                   number_in(fields, c.qy, "qy"), number_in(fields, c.qz, "qz"));
+        if (!(std::abs(q.norm() - 1) <= 1e-3))
+            fail("the quaternion's length is " + number(q.norm()) + ", needs 1 (to 0.001)");
         pose.rotation = q.normalized().toRotationMatrix();
         return pose;
     }
@@ -168,7 +179,10 @@ private:
         return value;
     }
 
-    [[noreturn]] void fail(const std::string& what) const { throw FileError(file_, "line " + std::to_string(line_) + ": " + what); }
+    [[noreturn]] void fail(const std::string& what) const
+    {
+        throw FileError(file_, "line " + std::to_string(line_) + ": " + what);
+    }
 
     const std::string file_;
     int line_ = 0;
@@ -176,8 +190,14 @@ private:
 
 }  // namespace
 
-PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty) { return PoseReader(name).read(text, allow_empty); }
+PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty)
+{
+    return PoseReader(name).read(text, allow_empty);
+}
 
-PoseTable read_poses(const std::filesystem::path& file, bool allow_empty) { return parse_poses(read_file(file), file.string(), allow_empty); }
+PoseTable read_poses(const std::filesystem::path& file, bool allow_empty)
+{
+    return parse_poses(read_file(file), file.string(), allow_empty);
+}
 
 }  // namespace spawnfield

@@ -201,10 +201,14 @@ private:
     /// Positions of robots in a row would make a polygon that nobody meant.
     void refuse_poses(const std::vector<std::string>& names) const
     {
-        const auto is_of_pose = [](const std::string& name) { return name != "x" && name != "y" && (is_pose_column(name) || is_verdict_column(name)); };
+        const auto is_of_pose = [](const std::string& name) {
+            return name != "x" && name != "y" && (is_pose_column(name) || is_verdict_column(name));
+        };
         const auto found = std::find_if(names.begin(), names.end(), is_of_pose);
         if (found != names.end())
-            fail("has a column " + *found + ": these are poses, not the corners of a polygon; `sample` and `search` keep a distance from poses with "
+            fail("has a column " + *found +
+                 ": these are poses, not the corners of a polygon; `sample` and `search` keep a distance from poses "
+                 "with "
                  "--avoid FILE --avoid-distance M; a polygon has columns x,y, and polygon if there are several");
     }
 

@@ -20,7 +20,8 @@ constexpr double least_share = 0.02;
 constexpr double fair_share = 0.05;  // with which it goes on in the same cells
 constexpr double first_cells = 1024, most_first_cells = 65536;
 constexpr std::size_t most_cells = 1 << 24;  // kept at a time
-/// Proofs made in all: some, half as many where next to nothing is left to decide, and more for each spawn found and each avoided point.
+/// Proofs made in all: some, half as many where next to nothing is left to decide, and more for each spawn found and
+/// each avoided point.
 constexpr std::size_t some_proofs = 1 << 19, proofs_per_point = 12;
 constexpr double next_to_nothing = 2e-5;                        // of the region
 constexpr double smallest_cell = 0.0001;                        // m
@@ -181,7 +182,8 @@ private:
                 found = draw(out, round, point, [](std::uint64_t, std::uint64_t) { return true; });
             if (is_done(out)) return;
             const bool is_nearly_decided = cells.area() < next_to_nothing * cells.region_area();
-            const std::size_t affordable = some_proofs / (is_nearly_decided ? 2 : 1) + proofs_per_point * (out.spawns.size() + avoided_.size());
+            const std::size_t affordable =
+                some_proofs / (is_nearly_decided ? 2 : 1) + proofs_per_point * (out.spawns.size() + avoided_.size());
             const bool is_smallest = std::max(cells.width(), cells.height()) < 2 * smallest_cell || !cells.can_split();
             if (!is_smallest && 4 * cells.size() <= most_cells && proofs_made + 4 * cells.size() <= affordable) cells.split();
             else is_last = double(found) < least_share * double(round) || proofs_made > affordable;

@@ -14,7 +14,8 @@ namespace {
 
 void check_avoided(const char* function, const AvoidedPoints& group)
 {
-    if (!(group.distance >= 0) || !std::isfinite(group.distance)) throw ArgumentError(function, "avoid.distance", group.distance, ">= 0 m");
+    if (!(group.distance >= 0) || !std::isfinite(group.distance))
+        throw ArgumentError(function, "avoid.distance", group.distance, ">= 0 m");
     for (const Vec3& point : group.points)
         for (const double value : point)
             if (!std::isfinite(value)) throw ArgumentError(function, "avoid.points", value, "finite numbers, m");

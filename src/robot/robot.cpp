@@ -135,7 +135,8 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
     const std::string extension = lower_case(file.extension().string());
     std::error_code unreachable;
     if (std::filesystem::is_directory(file, unreachable)) return read_sdf_robot(file, options);
-    if (!std::filesystem::exists(file, unreachable) && !unreachable) throw FileError(robot, std::string("does not exist; a robot is ") + known_kinds);
+    if (!std::filesystem::exists(file, unreachable) && !unreachable)
+        throw FileError(robot, std::string("does not exist; a robot is ") + known_kinds);
     require_file(file);
     refuse_foreign_robot(file);
     if (extension == ".urdf") return read_urdf(file, options);
@@ -150,7 +151,8 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
 std::string millimetre_advice(const std::string& text)
 {
     if (text.starts_with("box:")) return "divide its lengths by 1000";
-    return "scale: 0.001 beside mesh: in a robot.yaml, or scale=\"0.001 0.001 0.001\" in a URDF's <mesh>, makes metres of them";
+    return "scale: 0.001 beside mesh: in a robot.yaml, or scale=\"0.001 0.001 0.001\" in a URDF's <mesh>, makes metres "
+           "of them";
 }
 
 /// A notice on a robot that is as large as those that drive, written in millimetres, come out.
@@ -161,7 +163,8 @@ std::vector<std::string> size_notices(const Robot& robot, const std::string& tex
     const Vec3 size = box.max - box.min;
     if (size.maxCoeff() <= usual) return {};
     char words[100];
-    std::snprintf(words, sizeof words, ": is %.6g x %.6g x %.6g m; if it is in millimetres, ", size.x(), size.y(), size.z());
+    std::snprintf(words, sizeof words, ": is %.6g x %.6g x %.6g m; if it is in millimetres, ", size.x(), size.y(),
+                  size.z());
     return {text + words + millimetre_advice(text)};
 }
 
@@ -172,7 +175,8 @@ void check_reach(const Robot& robot, const std::string& text)
     const Bounds box = robot.bounds();
     const double reach = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
     if (reach <= most) return;
-    throw FileError(text, "reaches " + number(reach) + " m from its origin, needs at most " + number(most) + " m; is it in millimetres? " + millimetre_advice(text));
+    throw FileError(text, "reaches " + number(reach) + " m from its origin, needs at most " + number(most) +
+                              " m; is it in millimetres? " + millimetre_advice(text));
 }
 
 }  // namespace

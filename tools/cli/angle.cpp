@@ -18,7 +18,8 @@ double parse(const CommonArgs& args, const std::string& text, const std::string&
         throw ArgumentError("--yaw is \"" + text + "\", needs rad, as 1.57, or degrees, as 90deg" + others);
     parse_finite("--yaw", value, unit.empty() ? "rad" : "degrees");
     if (!unit.empty()) return value * radians_per_degree;
-    if (std::abs(value) > turn) notice(args, "--yaw " + text + " is more than a turn of 2 pi rad; did you mean degrees? --yaw " + text + "deg");
+    if (std::abs(value) > turn)
+        notice(args, "--yaw " + text + " is more than a turn of 2 pi rad; did you mean degrees? --yaw " + text + "deg");
     return value;
 }
 

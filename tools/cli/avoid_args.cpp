@@ -12,13 +12,15 @@ std::vector<double> distances_of(const AvoidArgs& args, double min_distance)
 {
     if (args.files.empty() && !args.distances.empty()) throw ArgumentError("--avoid-distance needs --avoid FILE");
     for (const double distance : args.distances)
-        if (parse_finite("--avoid-distance", distance, "m") < 0) throw bad_value("--avoid-distance", distance, ">= 0 m");
+        if (parse_finite("--avoid-distance", distance, "m") < 0)
+            throw bad_value("--avoid-distance", distance, ">= 0 m");
     if (args.distances.size() == args.files.size()) return args.distances;
     if (args.distances.size() == 1) return std::vector<double>(args.files.size(), args.distances[0]);
     if (!args.distances.empty())
-        throw ArgumentError("--avoid-distance is given " + std::to_string(args.distances.size()) + " times, needs once or once for each --avoid (" +
-                            std::to_string(args.files.size()) + ")");
-    if (!(min_distance > 0)) throw ArgumentError("--avoid needs --avoid-distance M, or a --min-distance > 0, which is its default");
+        throw ArgumentError("--avoid-distance is given " + std::to_string(args.distances.size()) +
+                            " times, needs once or once for each --avoid (" + std::to_string(args.files.size()) + ")");
+    if (!(min_distance > 0))
+        throw ArgumentError("--avoid needs --avoid-distance M, or a --min-distance > 0, which is its default");
     return std::vector<double>(args.files.size(), min_distance);
 }
 
@@ -26,13 +28,17 @@ std::vector<double> distances_of(const AvoidArgs& args, double min_distance)
 
 void add_avoid(CLI::App& command, AvoidArgs& args)
 {
-    command.add_option("--avoid", args.files,
-                       "CSV file of poses, for example of robots that are placed already: no spawn is nearer to one than --avoid-distance "
-                       "(repeatable; - for standard input)")
+    command
+        .add_option("--avoid", args.files,
+                    "CSV file of poses, for example of robots that are placed already: no spawn is nearer to one than "
+                    "--avoid-distance "
+                    "(repeatable; - for standard input)")
         ->allow_extra_args(false);
-    command.add_option("--avoid-distance", args.distances,
-                       "Between a spawn and each pose of --avoid, from origin to origin in 3D as --min-distance, m (default: --min-distance; once for all "
-                       "files, or once for each)")
+    command
+        .add_option("--avoid-distance", args.distances,
+                    "Between a spawn and each pose of --avoid, from origin to origin in 3D as --min-distance, m "
+                    "(default: --min-distance; once for all "
+                    "files, or once for each)")
         ->allow_extra_args(false);
 }
 
@@ -55,10 +61,14 @@ void tell_about_avoided(const CommonArgs& common, const Map& map, const std::vec
     for (const AvoidedPoints& group : avoid) {
         const auto is_off = [&](const Vec3& p) { return !map.bounds.contains_xy(p.x(), p.y(), group.distance); };
         if (!group.points.empty() && std::all_of(group.points.begin(), group.points.end(), is_off))
-            notice(common, "--avoid " + group.name + ": all of its " + counted(group.points.size(), "pose") + " lie off the map, which is " + to_string(map.bounds, 2));
+            notice(common, "--avoid " + group.name + ": all of its " + counted(group.points.size(), "pose") +
+                               " lie off the map, which is " + to_string(map.bounds, 2));
     }
 }
 
-std::string words_of(const AvoidedPoints& group) { return group.name + ": " + counted(group.points.size(), "pose") + ", " + number(group.distance) + " m"; }
+std::string words_of(const AvoidedPoints& group)
+{
+    return group.name + ": " + counted(group.points.size(), "pose") + ", " + number(group.distance) + " m";
+}
 
 }  // namespace spawnfield::cli

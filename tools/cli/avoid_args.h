@@ -11,7 +11,8 @@ struct AvoidArgs {
 };
 void add_avoid(CLI::App& command, AvoidArgs& args);
 
-/// Reads the files. Without --avoid-distance the distance is `min_distance`, if that is > 0 m. Throws ArgumentError, FileError.
+/// Reads the files. Without --avoid-distance the distance is `min_distance`, if that is > 0 m. Throws ArgumentError,
+/// FileError.
 std::vector<AvoidedPoints> read_avoided(const CommonArgs& common, const AvoidArgs& args, double min_distance);
 
 /// A notice for each file whose poses all lie off the map.

@@ -39,9 +39,11 @@ void add_check(CLI::App& app, Run& run)
     auto args = std::make_shared<CheckArgs>();
     CLI::App& command = *app.add_subcommand("check", "Verdict and reason for each pose of a CSV file");
     add_query(command, *args);
-    command.add_option("--poses,-p", args->poses,
-                       "CSV file: x,y,z[,roll,pitch,yaw | ,roll_deg,pitch_deg,yaw_deg | ,qx,qy,qz,qw]; m, rad, degrees; other columns are kept, but "
-                       "verdict,ground,height_above,hit replaced (- for standard input)")
+    command
+        .add_option("--poses,-p", args->poses,
+                    "CSV file: x,y,z[,roll,pitch,yaw | ,roll_deg,pitch_deg,yaw_deg | ,qx,qy,qz,qw]; m, rad, degrees; "
+                    "other columns are kept, but "
+                    "verdict,ground,height_above,hit replaced (- for standard input)")
         ->required();
     add_allow_empty(command, *args);
     command.add_option("--out,-o", args->out, "CSV file to write (default: standard output)");

@@ -203,7 +203,8 @@ double parse_finite(const std::string& option, double value, const std::string& 
 
 PoseTable open_poses(const CommonArgs& args, const std::string& file)
 {
-    PoseTable table = is_standard(file) ? parse_poses(read_standard_input(), input_name(file), args.allow_empty) : read_poses(file, args.allow_empty);
+    PoseTable table = is_standard(file) ? parse_poses(read_standard_input(), input_name(file), args.allow_empty)
+                                        : read_poses(file, args.allow_empty);
     for (const std::string& text : table.notices) notice(args, text);
     return table;
 }
@@ -217,7 +218,9 @@ void tell_if_larger_than_map(const CommonArgs& args, const Robot& robot, const M
     const Vec3 size = box.max - box.min, room = map.bounds.max - map.bounds.min;
     if (size.head<2>().maxCoeff() <= room.head<2>().maxCoeff()) return;
     char text[300];
-    std::snprintf(text, sizeof text, "the robot is %.6g x %.6g m, larger than the map (%.6g x %.6g m); is one of them in other units than metres? `scale` in a robot.yaml or scene.yaml, or bake --scale, corrects it",
+    std::snprintf(text, sizeof text,
+                  "the robot is %.6g x %.6g m, larger than the map (%.6g x %.6g m); is one of them in other units than "
+                  "metres? `scale` in a robot.yaml or scene.yaml, or bake --scale, corrects it",
                   size.x(), size.y(), room.x(), room.y());
     notice(args, text);
 }

@@ -100,7 +100,8 @@ public:
         double undecided_area;  // m2
     };
     std::optional<Fullness> fullness;  ///< of a sample
-    std::vector<std::pair<std::string, std::uint64_t>> draws;  ///< of a sample or search: how many there were, and how many were dropped why
+    std::vector<std::pair<std::string, std::uint64_t>>
+        draws;  ///< of a sample or search: how many there were, and how many were dropped why
 
     void finish();  ///< tells standard error and writes the JSON
 
@@ -136,8 +137,8 @@ void tell_if_off_map(const CommonArgs& args, const Map& map, const std::string& 
 void tell_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice& layers);
 void tell_if_in_ground(const CommonArgs& args, const Robot& robot, double offset);
 
-/// `-o FILE`, whole or not at all, or standard output where the file is empty or `-`. `then` runs when all is written but
-/// the file has not its name yet: it gets that only if `then` succeeds too.
+/// `-o FILE`, whole or not at all, or standard output where the file is empty or `-`. `then` runs when all is written
+/// but the file has not its name yet: it gets that only if `then` succeeds too.
 void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer,
                   const std::function<void()>& then = [] {});
 

@@ -43,7 +43,8 @@ std::string users_of(const std::string& option)
 }
 
 /// Options that are there for all formats, or help.
-const std::vector<std::string> general{"map", "--format", "--out", "--threads", "--quiet", "--summary", "--help", "--allow-empty"};
+const std::vector<std::string> general{"map",     "--format",  "--out",  "--threads",
+                                       "--quiet", "--summary", "--help", "--allow-empty"};
 
 void check_options(const ExportArgs& args, const CLI::App& command)
 {
@@ -111,7 +112,9 @@ void add_export(CLI::App& app, Run& run)
     command.add_option("--step", args->step, "Between columns, m");
     command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m (default: the map's)");
     command.add_flag("--local", args->local, "In the map's own frame, though the survey's coordinates are known");
-    command.add_option("--poses,-p", args->poses, "CSV file of poses, as sample and check write them; a column name names the robots where --name does not (- for standard input)");
+    command.add_option("--poses,-p", args->poses,
+                       "CSV file of poses, as sample and check write them; a column name names the robots where --name "
+                       "does not (- for standard input)");
     add_allow_empty(command, *args);
     add_simulator_options(command, args->simulator);
     command.footer(help());

@@ -76,7 +76,9 @@ void add_heatmap(CLI::App& app, Run& run)
     auto args = std::make_shared<HeatmapArgs>();
     CLI::App& command = *app.add_subcommand("heatmap", "Picture of where the robot can stand");
     add_query(command, *args);
-    command.add_option("--out,-o", args->out, "PNG file to draw (- for standard output)")->required()->check(not_empty());
+    command.add_option("--out,-o", args->out, "PNG file to draw (- for standard output)")
+        ->required()
+        ->check(not_empty());
     command.add_option("--quantity", args->quantity, "verdict, height, clearance or slope (default verdict)")
         ->check(one_of({"verdict", "height", "clearance", "slope"}));
     command.add_option("--spawns", args->spawns, "CSV file of spawns to draw as arrows (- for standard input)");

@@ -91,7 +91,8 @@ int main(int argc, char** argv)
     add_experiment(app, command_line(argc, argv), run);
     const std::vector<std::string> names = command_names(app);
     if (has_unknown_command(names, argc, argv))
-        return tell(wrong_usage, std::string(argv[1]) + " is no command, needs one of " + CLI::detail::join(names, ", ") + suggestion(argv[1], names));
+        return tell(wrong_usage, std::string(argv[1]) + " is no command, needs one of " +
+                                     CLI::detail::join(names, ", ") + suggestion(argv[1], names));
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -26,7 +26,8 @@ void check_snap(const RasterArgs& args)
 void add_raster_query(CLI::App& command, RasterArgs& args)
 {
     add_query(command, args);
-    command.add_option("--dims", args.dims, "2: a pose per column and layer; 3: a pose per column and height")->check(one_of({"2", "3"}));
+    command.add_option("--dims", args.dims, "2: a pose per column and layer; 3: a pose per column and height")
+        ->check(one_of({"2", "3"}));
     command.add_option("--offset", args.offset, "Of the robot's origin above its layer in 2D and with --snap, m (default 0.1)");
     command.add_option("--yaw", args.yaw, "Of all poses, " + yaw_help + " (default 0)");
     command.add_option("--bounds", args.bounds, "x0,y0,z0,x1,y1,z1 in m; 2D takes x0,y0,x1,y1 too and leaves z aside (default: the map's)");

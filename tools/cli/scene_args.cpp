@@ -16,7 +16,8 @@ LabelRule parse_label(const std::string& text)
 
 void add_scene_options(CLI::App& command, SceneArgs& args)
 {
-    command.add_option("--up", args.up, "Up axis of a bare mesh: y or z (default: what the format says, else z)")->check(one_of({"y", "z"}));
+    command.add_option("--up", args.up, "Up axis of a bare mesh: y or z (default: what the format says, else z)")
+        ->check(one_of({"y", "z"}));
     command.add_option("--scale", args.scale, "Metres per unit of a bare mesh (default 1)");
     command.add_option("--heightmap", args.heightmap, "Keys of a bare elevation model as in scene.yaml: 'size: [513, 513], z: [0, 75]'");
     command.add_option("--unknown", args.unknown, "What an OctoMap has not seen, within the box around what it has: free or blocked (default: free, or what scene.yaml says)")

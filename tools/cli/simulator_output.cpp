@@ -123,7 +123,8 @@ void add_simulator_options(CLI::App& command, SimulatorArgs& args)
     add("--joint-qpos", args.joint_qpos, "mujoco: q,q,... of the joints that follow each free joint (default: none)");
     add("--keys", args.keys, "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")
         ->check(one_of({"each", "together"}));
-    add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw from 3 on (default wxyz)")->check(one_of({"wxyz", "xyzw"}));
+    add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw from 3 on (default wxyz)")
+        ->check(one_of({"wxyz", "xyzw"}));
     add("--tiles", args.tiles, "isaaclab: ROWS,COLS of the terrain patches, along x and y (default 1,1)");
     add("--blueprint", args.blueprint, "carla: what is spawned (default vehicle.tesla.model3)");
     add("--unity-axes", args.unity_axes, "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity exported as glTF, FBX or OBJ (default ros)")

@@ -32,8 +32,9 @@ std::string shortfall(const SpawnOptions& options, const SpawnList& list, const 
                                (command == "sample"               ? "another --offset or a wider --region"
                                 : options.area.is_everywhere() ? "more --max-failures or wider --bounds"
                                                                : "more --max-failures or a wider --region");
-    if (list.is_full && list.spawns.empty()) return std::string("no spawn fits: it is proven that no pose is valid") + (list.near_avoided > 0 ? " and far enough from the avoided poses; " : "; ") +
-                                                            advice + " may give some";
+    if (list.is_full && list.spawns.empty())
+        return std::string("no spawn fits: it is proven that no pose is valid") +
+               (list.near_avoided > 0 ? " and far enough from the avoided poses; " : "; ") + advice + " may give some";
     if (list.is_full) return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice + " may give more";
     if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
     char area[32];
@@ -84,11 +85,15 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
     summary.exact_checks = list.exact_checks;
     summary.map_hash = session.map.hash;
     summary.seed = options.seed;
-    summary.extra = {std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns",
-                     counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
-                         (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
-                         (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region")};
-    summary.draws = {{"all", list.draws}, {"too_close", list.too_close}, {"near_avoided", list.near_avoided}, {"off_region", list.off_area}};
+    summary.extra = {
+        std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns",
+        counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
+            (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
+            (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region")};
+    summary.draws = {{"all", list.draws},
+                     {"too_close", list.too_close},
+                     {"near_avoided", list.near_avoided},
+                     {"off_region", list.off_area}};
     summary.finish();
     if (list.spawns.size() == options.count) return done;
     notice(args, shortfall(options, list, command));

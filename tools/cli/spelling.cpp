@@ -15,14 +15,16 @@ std::size_t edit_distance(const std::string& a, const std::string& b)
         row[0] = i;
         for (std::size_t j = 1; j <= b.size(); ++j) {
             row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = std::min(row[j], before[j - 2] + 1);
         }
         before = std::exchange(last, row);
     }
     return last.back();
 }
 
-std::vector<std::string> words_that(const std::vector<std::string>& words, const std::function<bool(const std::string&)>& test)
+std::vector<std::string> words_that(const std::vector<std::string>& words,
+                                    const std::function<bool(const std::string&)>& test)
 {
     std::vector<std::string> out;
     std::copy_if(words.begin(), words.end(), std::back_inserter(out), test);
@@ -34,7 +36,9 @@ std::vector<std::string> likely(const std::string& text, const std::vector<std::
 {
     const std::string core = text.substr(std::min(text.find_first_not_of('-'), text.size()));
     if (core.size() > 1)
-        if (auto longer = words_that(words, [&](const std::string& word) { return word.starts_with(text); }); !longer.empty()) return longer;
+        if (auto longer = words_that(words, [&](const std::string& word) { return word.starts_with(text); });
+            !longer.empty())
+            return longer;
     std::size_t nearest = 1 + core.size() / 4;
     for (const std::string& word : words) nearest = std::min(nearest, edit_distance(text, word));
     const auto near = words_that(words, [&](const std::string& word) {
@@ -48,7 +52,8 @@ std::vector<std::string> likely(const std::string& text, const std::vector<std::
 std::string choice_of(const std::vector<std::string>& words)
 {
     std::string out;
-    for (std::size_t i = 0; i < words.size(); ++i) out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+    for (std::size_t i = 0; i < words.size(); ++i)
+        out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
     return out;
 }
 

@@ -13,7 +13,8 @@ std::string suggestion(const std::string& text, const std::vector<std::string>& 
 /// Accepts one of these words; the complaint about another lists them, with a suggestion.
 CLI::Validator one_of(std::vector<std::string> words);
 
-/// A line on what cannot be an option of the chosen command: its first unknown one, with a suggestion. Empty if there is none.
+/// A line on what cannot be an option of the chosen command: its first unknown one, with a suggestion. Empty if there
+/// is none.
 std::string unknown_option(const CLI::App& app);
 
 }  // namespace spawnfield::cli

@@ -57,7 +57,8 @@ void check_folder(const CLI::App& command)
 {
     const std::string name = command.get_name();
     if ((name == "bake" || name == "experiment") && standard_uses(command, "--out") > 0)
-        throw ArgumentError("--out is \"-\": the result of " + name + " is a folder, which cannot go to standard output");
+        throw ArgumentError("--out is \"-\": the result of " + name +
+                            " is a folder, which cannot go to standard output");
 }
 
 }  // namespace
@@ -72,14 +73,18 @@ std::string read_standard_input()
 void check_streams(const CLI::App& command)
 {
     for (const auto& [option, what] : unable)
-        if (standard_uses(command, option) > 0) throw ArgumentError("\"-\" (standard input) cannot be " + std::string(what) + "; give its path");
+        if (standard_uses(command, option) > 0)
+            throw ArgumentError("\"-\" (standard input) cannot be " + std::string(what) + "; give its path");
     check_folder(command);
     std::vector<std::string> in, out;
     for (const char* const option : inputs) in.insert(in.end(), standard_uses(command, option), option);
-    if (in.size() > 1) throw ArgumentError(in[0] + " and " + in[1] + " are both \"-\", but standard input can be read only once; give one of them a file");
+    if (in.size() > 1)
+        throw ArgumentError(in[0] + " and " + in[1] +
+                            " are both \"-\", but standard input can be read only once; give one of them a file");
     if (prints_by_default(command)) out.push_back("the result");
     for (const char* const option : outputs) out.insert(out.end(), standard_uses(command, option), option);
-    if (out.size() > 1) throw ArgumentError(out[0] + " and " + out[1] + " would both go to standard output; give one of them a file");
+    if (out.size() > 1)
+        throw ArgumentError(out[0] + " and " + out[1] + " would both go to standard output; give one of them a file");
 }
 
 }  // namespace spawnfield::cli

@@ -18,7 +18,8 @@ inline std::string output_name(const std::string& file) { return is_standard(fil
 /// All of standard input.
 std::string read_standard_input();
 
-/// Refuses `-` for an option that cannot take it, and two inputs or two outputs that are both `-`. Throws ArgumentError.
+/// Refuses `-` for an option that cannot take it, and two inputs or two outputs that are both `-`. Throws
+/// ArgumentError.
 void check_streams(const CLI::App& command);
 
 }  // namespace spawnfield::cli
