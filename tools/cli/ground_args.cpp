@@ -1,6 +1,7 @@
 #include "ground_args.h"
 
 #include <cmath>
+#include <cstdio>
 
 namespace spawnfield::cli {
 namespace {
@@ -12,6 +13,14 @@ const std::vector<Floor>& floor_checked(int floor, const std::vector<Floor>& flo
     for (std::size_t k = 0; k < floors.size(); ++k)
         list += (k == 0 ? ": " : ", ") + std::to_string(k) + " at " + number(floors[k].height) + " m";
     throw ArgumentError("--floor is " + std::to_string(floor) + "; the map has " + counted(floors.size(), "floor") + list);
+}
+
+/// For people to read: an automatic offset is not a round number.
+std::string rounded(double metres)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", metres);
+    return text;
 }
 
 }  // namespace
@@ -97,14 +106,14 @@ double chosen_offset(const QueryArgs& args, const std::optional<double>& offset,
 {
     const double chosen = offset.value_or(auto_offset(robot));
     if (chosen <= args.max_height + touch_tolerance) return chosen;
-    const std::string value = number(chosen);
+    const std::string value = rounded(chosen);
     throw ArgumentError("--offset is " + value + " m" + (offset ? "" : " (auto)") + ", needs at most --max-height, " + number(args.max_height) +
                         " m: `check` calls higher poses aerial; give --max-height " + value + " or more");
 }
 
 std::string offset_words(const std::optional<double>& wanted, double chosen)
 {
-    return "offset " + number(chosen) + " m" + (wanted ? "" : " (auto)");
+    return "offset " + (wanted ? number(chosen) : rounded(chosen)) + " m" + (wanted ? "" : " (auto)");
 }
 
 std::string flat_ground_complaint(const Robot& robot, double offset)
