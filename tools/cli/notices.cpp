@@ -9,16 +9,20 @@ namespace {
 
 constexpr std::size_t most_shown = 5;  // of what further notices of a kind are about
 
-/// Words between spaces; text in quotation marks is in one word, with its spaces.
+/// Words between spaces, without the colon or comma behind them. Text in quotation marks or parentheses is in one word, with its
+/// spaces.
 std::vector<std::string> words_of(const std::string& text)
 {
     std::vector<std::string> out(1);
     bool is_quoted = false;
+    int depth = 0;
     for (const char c : text) {
         if (c == '"') is_quoted = !is_quoted;
-        if (c == ' ' && !is_quoted) out.emplace_back();
+        depth += c == '(' ? 1 : c == ')' && depth > 0 ? -1 : 0;
+        if (c == ' ' && !is_quoted && depth == 0) out.emplace_back();
         else out.back() += c;
     }
+    for (std::string& word : out) word.resize(word.find_last_not_of(":,;") + 1);
     return out;
 }
 
@@ -28,23 +32,26 @@ bool is_detail(const std::string& word)
     return word.find_first_of("\"/0123456789") != std::string::npos || word.find("::") != std::string::npos;
 }
 
-/// The text with "*" in place of each detail.
+/// The text with "*" in place of each detail, and without counts in parentheses, which some notices of a kind have.
 std::string kind_of(const std::vector<std::string>& words)
 {
     std::string out;
-    for (const std::string& word : words) out += (is_detail(word) ? "*" : word) + " ";
+    for (const std::string& word : words)
+        if (!is_detail(word)) out += word + " ";
+        else if (word.front() != '(') out += "* ";
     return out;
 }
 
-/// The first detail that the example does not have, without a colon or comma behind it; "" if there is none.
+/// The first name or path that the example does not have; "" if there is none.
 std::string subject_of(const std::vector<std::string>& words, const std::vector<std::string>& example)
 {
-    for (std::size_t i = 0; i < std::min(words.size(), example.size()); ++i) {
-        if (words[i] == example[i]) continue;
-        const std::size_t last = words[i].find_last_not_of(":,;");
-        return words[i].substr(0, last + 1);
-    }
-    return "";
+    const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
+    const auto is_subject = [&](const std::string& word) {
+        return is_detail(word) && word.front() != '(' && std::any_of(word.begin(), word.end(), is_letter) &&
+               std::find(example.begin(), example.end(), word) == example.end();
+    };
+    const auto found = std::find_if(words.begin(), words.end(), is_subject);
+    return found == words.end() ? "" : *found;
 }
 
 struct Kind {
