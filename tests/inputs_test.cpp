@@ -528,7 +528,7 @@ TEST_CASE("a robot that is likely in millimetres, or larger than the map, is not
     arena.write("mm.yaml", "format: spawnfield-robot/1\nparts: [{box: [990, 670, 390]}]\n");
     const ProgramRun run = arena("check map --poses p.csv --robot mm.yaml");
     CHECK(run.status == 0);
-    CHECK_THAT(run.err, Contains("notice: mm.yaml: is 990 x 670 x 390 m; if it is in millimetres, scale: 0.001 ") &&
+    CHECK_THAT(run.err, Contains("notice: mm.yaml: is 990 x 670 x 390 m; if it is in millimetres, divide lengths and positions by 1000, ") &&
                             Contains("notice: the robot is 990 x 670 m, larger than the map (20.2 x 20.2 m); "));
     CHECK_THAT(arena("info mm.yaml").err, Contains("if it is in millimetres"));
     CHECK_THAT(arena("check map --poses p.csv --robot box:60,1,1").err,

@@ -151,8 +151,8 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
 std::string millimetre_advice(const std::string& text)
 {
     if (text.starts_with("box:")) return "divide its lengths by 1000";
-    return "scale: 0.001 beside mesh: in a robot.yaml, or scale=\"0.001 0.001 0.001\" in a URDF's <mesh>, makes metres "
-           "of them";
+    return "divide lengths and positions by 1000, and give meshes scale: 0.001 (robot.yaml) or "
+           "scale=\"0.001 0.001 0.001\" (URDF)";
 }
 
 /// A notice on a robot that is as large as those that drive, written in millimetres, come out.

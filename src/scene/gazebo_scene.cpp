@@ -51,6 +51,8 @@ Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
     Scene scene;
     scene.name = world.name.empty() || world.name == "default" ? file.stem().string() : world.name;
     scene.notices = std::move(world.notices);
+    if (!world.missing.empty())  // a model of nothing but missing ones: the list of those says enough
+        std::erase_if(scene.notices, [](const std::string& text) { return text.find("A model must have at least one link") != std::string::npos; });
     append_bodies(scene, file, std::move(world.bodies), paths, options, std::move(world.missing));
     tell_some(file, world.bare_models, world.bare_models.size() == 1 ? "model has no collision and is not there for a robot" : "models have no collision and are not there for a robot", scene);
     const auto tell_count = [&](const char* element, std::size_t count, const char* what) {

@@ -114,6 +114,35 @@ RasterResult shown_raster(const Session& session, const RasterOptions& options, 
     return std::move(result.raster);
 }
 
+/// What has ground at these heights, with 2 m around it, as far as the map goes; nothing if that is all of it or none.
+std::optional<Bounds> ground_bounds(const Map& map, const TerrainMap& terrain, const ZRange& z)
+{
+    constexpr double around = 2;  // m
+    const HeightImage heights = highest_within(terrain, z);
+    Bounds ground;
+    for (int row = 0; row < terrain.frame.rows; ++row)
+        for (int col = 0; col < terrain.frame.cols; ++col)
+            if (!std::isnan(heights(row, col))) ground.extend({terrain.frame.x_of(col), terrain.frame.y_of(row), 0});
+    if (ground.is_empty()) return std::nullopt;
+    Bounds out = map.bounds;
+    for (int axis = 0; axis < 2; ++axis) {
+        out.min[axis] = std::max(out.min[axis], ground.min[axis] - around);
+        out.max[axis] = std::min(out.max[axis], ground.max[axis] + around);
+    }
+    if (out.min == map.bounds.min && out.max == map.bounds.max) return std::nullopt;
+    return out;
+}
+
+/// A picture of some heights shows the part of the map that has ground there, unless --bounds says what it shows.
+void crop_to_ground(const HeatmapArgs& args, const Map& map, const TerrainMap& terrain, RasterOptions& options)
+{
+    if (options.z.is_unlimited() || !options.bounds.is_empty()) return;
+    const std::optional<Bounds> ground = ground_bounds(map, terrain, options.z);
+    if (!ground) return;
+    options.bounds = *ground;
+    notice(args, "the picture shows " + to_string(*ground, 2) + ", where there is ground at these heights (--bounds shows another part)");
+}
+
 int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
 {
     Summary summary("heatmap", args);
@@ -124,7 +153,6 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     const Facing facing = facing_of(args, picture.spawns);
     options.yaw = facing.yaw;
     const auto session = open_session(args);
-    options.step = command.count("--step") > 0 ? parse_positive("--step", args.step) : default_step(session->map, options);
     tell_if_off_map(args, session->map, "--bounds", options.bounds);
     tell_about_area(args, session->map, options.area);
     tell_if_no_layer(args, session->map, options.layers);
@@ -133,6 +161,8 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     options.offset = summary.offset = chosen_offset(args, offset, session->robot);
     require_above_ground(session->robot, *options.offset);
     const TerrainMap terrain = read_terrain(session->map);
+    crop_to_ground(args, session->map, terrain, options);
+    options.step = command.count("--step") > 0 ? parse_positive("--step", args.step) : default_step(session->map, options);
     summary.lap("load");
     const RasterResult result = shown_raster(*session, options, facing.is_any, picture);
     summary.lap("query");

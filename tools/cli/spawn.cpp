@@ -8,6 +8,7 @@
 
 #include <spawnfield/error.h>
 
+#include <cctype>
 #include <cstdio>
 
 namespace spawnfield::cli {
@@ -23,6 +24,12 @@ struct SpawnArgs : QueryArgs {
 
     bool is_thesis() const { return format == "thesis"; }
 };
+
+std::string upper_first(std::string text)
+{
+    if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
+    return text;
+}
 
 std::string shortfall(const SpawnOptions& options, const SpawnList& list, const std::string& command)
 {
@@ -40,7 +47,8 @@ std::string shortfall(const SpawnOptions& options, const SpawnList& list, const 
     if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
     char area[32];
     std::snprintf(area, sizeof area, "%.3g", list.undecided_area);
-    return "only " + of_count + "were found; one more may fit within " + area + " m2 that are neither proven full nor blocked, and nowhere else; " + advice + " may give more";
+    return "only " + of_count + "were found. Another one may fit in " + area + " m2 of the region; it is proven that none fits elsewhere. " +
+           upper_first(advice) + " may give more";
 }
 
 /// What was asked for, and by `own` what the command alone has; then what was found.

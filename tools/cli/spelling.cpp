@@ -72,7 +72,9 @@ std::vector<std::string> option_names(const CLI::App& command)
 std::string suggestion(const std::string& text, const std::vector<std::string>& words)
 {
     constexpr std::size_t most = 4;
-    const std::vector<std::string> found = likely(text, words);
+    std::vector<std::string> found = likely(text, words);
+    const std::string other = "--region";  // what `sample` calls the --bounds of other commands
+    if (found.empty() && text == "--bounds" && std::find(words.begin(), words.end(), other) != words.end()) found = {other};
     return found.empty() || found.size() > most ? "" : "; did you mean " + choice_of(found) + "?";
 }
 
