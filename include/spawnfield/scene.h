@@ -100,8 +100,8 @@ enum class Unknown : std::uint8_t { Free, Blocked };
 
 struct SceneOptions {
     std::vector<LabelRule> labels = {};  ///< come before the file's own rules; the first match wins
-    /// Labels by slope what no rule matches in meshes, OctoMaps and worlds: what looks up and is less steep than this is terrain, the rest
-    /// obstacle (docs/input-files.md). rad, 0 .. pi/2, both excluded; nothing: not asked for.
+    /// Labels by slope what no rule matches in meshes, OctoMaps and worlds: what looks up and is less steep than this
+    /// is terrain, the rest obstacle (docs/input-files.md). rad, 0 .. pi/2, both excluded; nothing: not asked for.
     std::optional<double> auto_slope = {};
     char up = 0;                         ///< 'y' or 'z' for a bare mesh; 0: what the format says, else z
     double scale = 1.0;                  ///< m per unit of a bare mesh, > 0
@@ -109,8 +109,8 @@ struct SceneOptions {
     /// Folders that hold models or ROS packages, for model:// and package:// URIs; then come GZ_SIM_RESOURCE_PATH,
     /// IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH, and the folders above the file with their `models`.
     std::vector<std::filesystem::path> model_paths = {};
-    bool allow_missing = false;          ///< included models that are not found are left out with a notice, not an error
-    bool strict = false;                 ///< anything else that is missing (a mesh, for example) is an error too, not a notice
+    bool allow_missing = false; ///< included models that are not found are left out with a notice, not an error
+    bool strict = false;        ///< anything else that is missing (a mesh, for example) is an error too, not a notice
     std::string heightmap = {};          ///< of a bare elevation model: keys as under `heightmap:`, "size: [513, 513], z: [0, 75]"
     Bounds bounds = {};                  ///< infinite planes are cut to these, and 50 m beyond; empty: to all the rest and their drawn size
     std::optional<Unknown> unknown = {}; ///< of all OctoMaps; nothing: what the scene file says, else Free

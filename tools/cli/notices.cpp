@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t most_shown = 5;  // of what further notices of a kind are about
 
-/// Words between spaces, without the colon or comma behind them. Text in quotation marks or parentheses is in one word, with its
-/// spaces.
+/// Words between spaces, without the colon or comma behind them. Text in quotation marks or parentheses is in one word,
+/// with its spaces.
 std::vector<std::string> words_of(const std::string& text)
 {
     std::vector<std::string> out(1);
