@@ -33,20 +33,39 @@ std::vector<float> tile_of(const TerrainMap::Page& page, std::size_t tile)
     return heights;
 }
 
+/// How often each bin occurs. Bins of one tile mostly lie close together: then a table counts them, without a look-up for
+/// each cell.
+Histogram counted(const std::vector<std::int64_t>& bins)
+{
+    Histogram out;
+    if (bins.empty()) return out;
+    const auto [low, high] = std::minmax_element(bins.begin(), bins.end());
+    constexpr std::int64_t largest_table = 1 << 20;
+    if (*high - *low >= largest_table) {
+        for (const std::int64_t bin : bins) ++out[bin];
+        return out;
+    }
+    std::vector<std::uint32_t> table(std::size_t(*high - *low + 1));
+    for (const std::int64_t bin : bins) ++table[std::size_t(bin - *low)];
+    for (std::size_t i = 0; i < table.size(); ++i)
+        if (table[i] > 0) out.emplace_hint(out.end(), *low + std::int64_t(i), table[i]);
+    return out;
+}
+
 /// Cells of a tile with at least this much free height, m.
 Histogram ground_in_tile(const std::vector<const TerrainMap::Page*>& layers, std::size_t tile, double room)
 {
-    Histogram out;
+    std::vector<std::int64_t> bins;
     std::vector<float> above;
     for (const TerrainMap::Page* layer : layers) {
         std::vector<float> heights = tile_of(*layer, tile);
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
             const bool is_low = !above.empty() && above[cell] - heights[cell] < room;
-            if (!std::isnan(heights[cell]) && !is_low) ++out[std::int64_t(std::round(double(heights[cell]) / step))];
+            if (!std::isnan(heights[cell]) && !is_low) bins.push_back(std::int64_t(std::round(double(heights[cell]) / step)));
         }
         above = std::move(heights);
     }
-    return out;
+    return counted(bins);
 }
 
 Histogram ground_of(const TerrainMap& terrain, double room, int threads)
