@@ -25,12 +25,6 @@ Ramp hypsometric()
 /// Without a hue, which tells obstacles from terrain; higher is lighter.
 Ramp greys() { return ramp_through({rgb(0x4a4a4a), rgb(0x8a8a8a), rgb(0xb8b8b8)}); }
 
-/// Heights that a picture shows, m; NaN where there is nothing of its kind. A page of size 0 is all nothing.
-struct Scenery {
-    GridFrame frame;
-    HeightImage terrain, solid, water;  ///< solid: the highest obstacle, or else the terrain
-};
-
 /// What a look from above meets at each pixel, m; NaN where there is nothing of its kind.
 struct TopView {
     cv::Mat_<float> terrain, solid, water;
@@ -133,30 +127,43 @@ Legend legend_of(const Drawing& drawing, const ColourScale& heights)
     return legend;
 }
 
-Scenery from_above(const TerrainMap& terrain)
+/// What a picture shows, at its pixels.
+struct Scenery {
+    View view;
+    TopView top;
+    cv::Mat_<float> light;
+};
+
+/// Pixels that a picture is drawn at, two or three times as fine as its plot will be, then shrunk: smooth edges, and thin
+/// walls do not vanish.
+cv::Size fine_pixels(const View& view, int pixels)
 {
-    Scenery out{terrain.frame, page_image(terrain, "height.0"), {}, page_or_nothing(terrain, "water")};
-    out.solid = out.terrain;
-    add_obstacles(terrain, out.solid);
+    const double scale = 2.0 * pixels / std::max(view.width, view.height);
+    return {std::max(1, cvRound(scale * view.width)), std::max(1, cvRound(scale * view.height))};
+}
+
+View view_of(const GridFrame& frame) { return with_room({frame.x0, frame.y0, frame.cols * frame.cell, frame.rows * frame.cell}); }
+
+/// One page of the terrain is in memory at a time, or two where obstacles are added to it.
+Scenery from_above(const TerrainMap& terrain, int pixels)
+{
+    const GridFrame& grid = terrain.frame;
+    Scenery out{view_of(grid), {}, {}};
+    const cv::Size fine = fine_pixels(out.view, pixels);
+    out.top.water = samples(grid, page_or_nothing(terrain, "water"), out.view, fine);
+    HeightImage solid = page_image(terrain, "height.0");
+    out.top.terrain = samples(grid, solid, out.view, fine);
+    add_obstacles(terrain, solid);
+    out.top.solid = samples(grid, solid, out.view, fine);
+    out.light = relief(grid, solid, out.view, fine);
     return out;
 }
 
 Image picture_of(const Scenery& scenery, const std::string& title, int pixels)
 {
-    const GridFrame& grid = scenery.frame;
-    const View view = with_room({grid.x0, grid.y0, grid.cols * grid.cell, grid.rows * grid.cell});
-    // Drawn two or three times as fine as the plot will be, then shrunk: smooth edges, and thin walls do not vanish.
-    const double scale = 2.0 * pixels / std::max(view.width, view.height);
-    const cv::Size fine(std::max(1, cvRound(scale * view.width)), std::max(1, cvRound(scale * view.height)));
-
-    TopView top;
-    top.water = samples(grid, scenery.water, view, fine);
-    top.terrain = samples(grid, scenery.terrain, view, fine);
-    top.solid = samples(grid, scenery.solid, view, fine);
-    const ColourScale heights = scale_over(top.terrain, "terrain height, m", hypsometric());
-    const Drawing drawing = draw_top(top, relief(grid, scenery.solid, view, fine), heights);
-
-    const Frame frame{view, pixels, title, legend_of(drawing, heights)};
+    const ColourScale heights = scale_over(scenery.top.terrain, "terrain height, m", hypsometric());
+    const Drawing drawing = draw_top(scenery.top, scenery.light, heights);
+    const Frame frame{scenery.view, pixels, title, legend_of(drawing, heights)};
     const Layout layout = lay_out(frame);
     Image plot;
     cv::resize(drawing.image, plot, layout.plot.size(), 0, 0, cv::INTER_AREA);
@@ -219,18 +226,19 @@ double hidden_share(const Map& map, const std::vector<Floor>& floors)
 /// The terrain of a floor with what stands on it, cut above it.
 Scenery floor_plan(const Map& map, const Floor& floor, int pixels)
 {
-    Scenery out;
-    out.frame = coarse_frame(map, pixels);
-    out.terrain = out.solid = out.water = HeightImage::Constant(out.frame.rows, out.frame.cols, no_height);
-    visit_columns(map.geometry, out.frame, [&](int row, int col, const ColumnView& column) {
+    const GridFrame grid = coarse_frame(map, 2 * pixels);
+    HeightImage terrain = HeightImage::Constant(grid.rows, grid.cols, no_height), solid = terrain, water = terrain;
+    visit_columns(map.geometry, grid, [&](int row, int col, const ColumnView& column) {
         const double ground = ground_of(column, floor, map), level = std::isnan(ground) ? floor.height : ground;
-        out.terrain(row, col) = out.solid(row, col) = float(ground);
+        terrain(row, col) = solid(row, col) = float(ground);
         // Where there is no ground, what rises through the floor's height is an obstacle: a wall, say.
-        if (const auto top = obstacle_above(column, {&level, 1}, {level, level + cut_height})) out.solid(row, col) = float(std::min(*top, level + cut_height));
-        const std::span<const double> water = heights_within(column.water, {level, level + cut_height});
-        if (!water.empty()) out.water(row, col) = float(water.front());
+        if (const auto top = obstacle_above(column, {&level, 1}, {level, level + cut_height})) solid(row, col) = float(std::min(*top, level + cut_height));
+        const std::span<const double> surfaces = heights_within(column.water, {level, level + cut_height});
+        if (!surfaces.empty()) water(row, col) = float(surfaces.front());
     });
-    return out;
+    const View view = view_of(grid);
+    const cv::Size fine = fine_pixels(view, pixels);
+    return {view, {samples(grid, terrain, view, fine), samples(grid, solid, view, fine), samples(grid, water, view, fine)}, relief(grid, solid, view, fine)};
 }
 
 /// A small picture for each floor, the lowest first, in rows.
@@ -245,7 +253,7 @@ Image floor_pictures(const Map& map, const std::vector<Floor>& floors)
     for (std::size_t k = 0; k < count; ++k) {
         std::string title = map.name + ", floor " + std::to_string(k) + " at " + number(floors[k].height) + " m";
         if (k + 1 == count && count < floors.size()) title += " (" + std::to_string(floors.size() - count) + " more are not drawn)";
-        pictures.push_back(picture_of(floor_plan(map, floors[k], 2 * pixels), title, pixels));
+        pictures.push_back(picture_of(floor_plan(map, floors[k], pixels), title, pixels));
         largest = {std::max(largest.width, pictures[k].cols), std::max(largest.height, pictures[k].rows)};
     }
     Image sheet(rows * (largest.height + border) - border, cols * (largest.width + border) - border, white);
@@ -264,7 +272,7 @@ void write_preview(const Map& map, const TerrainMap& terrain, const std::filesys
         throw ArgumentError("write_preview", "terrain.frame.rows * cols", 0, ">= 1");
     const std::vector<Floor> floors = map.floors.value_or(std::vector<Floor>{});
     const bool by_floor = !floors.empty() && hidden_share(map, floors) > most_hidden;
-    write_png(by_floor ? floor_pictures(map, floors) : picture_of(from_above(terrain), map.name, 1000), file);
+    write_png(by_floor ? floor_pictures(map, floors) : picture_of(from_above(terrain, 1000), map.name, 1000), file);
 }
 
 }  // namespace spawnfield
