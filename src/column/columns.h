@@ -19,7 +19,7 @@ struct ColumnView {
 
 std::optional<Ground> ground_below(const ColumnView& column, double z);
 
-/// Those of a column's layers or water surfaces, from the top down, that lie in the range, to touch_tolerance.
+/// The part of `heights` (a column's layers or water surfaces, from the top down) that lies in the range, to touch_tolerance.
 inline std::span<const double> heights_within(std::span<const double> heights, const ZRange& z)
 {
     std::size_t first = 0, end = heights.size();

@@ -239,7 +239,7 @@ private:
         return -1;
     }
 
-    /// Of a 3D raster: the heights beyond the map's z limits.
+    /// Heights of a 3D raster beyond the map's z limits.
     Steps steps_outside() const
     {
         Steps out;
