@@ -19,13 +19,11 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
     RasterOptions options;
     fill(options, args, "export");
     options.exact_time = &job.summary.exact_time;
-    const std::optional<double> offset = parse_offset(args.ground.offset);
     options.yaw = parse_yaw(args, args.yaw);
     options.layers = parse_layers(args.ground.layers.empty() ? layers : args.ground.layers);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     options.z = with_floor(heights_of(args.ground, options.bounds, "--bounds"), args.ground, job.session.map);
-    options.offset = job.summary.offset = chosen_offset(args, offset, job.session.robot);
-    job.summary.extra.push_back(offset_words(offset, *options.offset));
+    options.offset = choose_offset(args, parse_offset(args.ground.offset), job.session.robot, job.summary);
     tell_if_no_layer(args, job.session.map, options.layers);
     require_above_ground(job.session.robot, *options.offset);
     return options;

@@ -6,13 +6,14 @@
 namespace spawnfield::cli {
 namespace {
 
-const std::vector<Floor>& floor_checked(int floor, const std::vector<Floor>& floors)
+Floor floor_of(const GroundArgs& args, const Map& map)
 {
-    if (std::size_t(floor) < floors.size()) return floors;
+    const std::vector<Floor> floors = floors_of(map);
+    if (std::size_t(args.floor) < floors.size()) return floors[std::size_t(args.floor)];
     std::string list;
     for (std::size_t k = 0; k < floors.size(); ++k)
         list += (k == 0 ? ": " : ", ") + std::to_string(k) + " at " + number(floors[k].height) + " m";
-    throw ArgumentError("--floor is " + std::to_string(floor) + "; the map has " + counted(floors.size(), "floor") + list);
+    throw ArgumentError("--floor is " + std::to_string(args.floor) + "; the map has " + counted(floors.size(), "floor") + list);
 }
 
 /// For people to read: an automatic offset is not a round number.
@@ -30,11 +31,6 @@ void add_ground(CLI::App& command, GroundArgs& args, const std::string& layers_h
     command.add_option("--offset", args.offset,
                        "Height of the robot's origin above its layer, m; auto: the robot's lowest point is 0.1 m above the layer (default auto)");
     command.add_option("--layers,--layer", args.layers, layers_help);
-    add_heights(command, args);
-}
-
-void add_heights(CLI::App& command, GroundArgs& args)
-{
     command.add_option("--z", args.z, "LOW:HIGH in m: layers at other heights are no ground (5: and :8 have one limit)");
     command.add_option("--floor", args.floor, "Layers of this floor alone, 0 the lowest; `spawnfield info MAP` lists floors")
         ->check(CLI::Range(0, 1000000));
@@ -79,7 +75,7 @@ ZRange with_floor(const ZRange& heights, const GroundArgs& args, const Map& map)
 {
     if (args.floor < 0) return heights;
     if (!heights.is_unlimited()) throw ArgumentError("--floor and --z (or six numbers for a box) both limit heights; give one of them");
-    return floor_checked(args.floor, floors_of(map))[std::size_t(args.floor)].z;
+    return floor_of(args, map).z;
 }
 
 Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map)
@@ -98,22 +94,19 @@ std::string height_words(const GroundArgs& args, const ZRange& heights, const Ma
 {
     if (args.floor < 0 && heights.is_unlimited()) return "";
     if (args.floor < 0) return "heights " + z_text(heights) + " m";
-    const std::vector<Floor> floors = floors_of(map);
-    return "floor " + std::to_string(args.floor) + " at " + number(floor_checked(args.floor, floors)[std::size_t(args.floor)].height) + " m";
+    return "floor " + std::to_string(args.floor) + " at " + number(floor_of(args, map).height) + " m";
 }
 
-double chosen_offset(const QueryArgs& args, const std::optional<double>& offset, const Robot& robot)
+double choose_offset(const QueryArgs& args, const std::optional<double>& wanted, const Robot& robot, Summary& summary)
 {
-    const double chosen = offset.value_or(auto_offset(robot));
-    if (chosen <= args.max_height + touch_tolerance) return chosen;
-    const std::string value = rounded(chosen);
-    throw ArgumentError("--offset is " + value + " m" + (offset ? "" : " (auto)") + ", needs at most --max-height, " + number(args.max_height) +
-                        " m: `check` calls higher poses aerial; give --max-height " + value + " or more");
-}
-
-std::string offset_words(const std::optional<double>& wanted, double chosen)
-{
-    return "offset " + (wanted ? number(chosen) : rounded(chosen)) + " m" + (wanted ? "" : " (auto)");
+    const double chosen = wanted.value_or(auto_offset(robot));
+    const std::string value = rounded(chosen), how = wanted ? "" : " (auto)";
+    if (chosen > args.max_height + touch_tolerance)
+        throw ArgumentError("--offset is " + value + " m" + how + ", needs at most --max-height, " + number(args.max_height) +
+                            " m: `check` calls higher poses aerial; give --max-height " + value + " or more");
+    summary.offset = chosen;
+    summary.extra.push_back("offset " + (wanted ? number(chosen) : value) + " m" + how);
+    return chosen;
 }
 
 std::string flat_ground_complaint(const Robot& robot, double offset)

@@ -12,8 +12,6 @@ struct GroundArgs {
 
 /// --offset, --layers, --z and --floor. `layers_help` says what the default layers are.
 void add_ground(CLI::App& command, GroundArgs& args, const std::string& layers_help);
-/// --z and --floor alone.
-void add_heights(CLI::App& command, GroundArgs& args);
 
 /// "LOW:HIGH" in m; one of them may be missing: "5:", ":8". Throws ArgumentError.
 ZRange parse_z(const std::string& option, const std::string& text);
@@ -37,12 +35,9 @@ Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map)
 /// "floor 1 at 5.2 m" or "heights 2:4 m", for people; empty if the heights are unlimited.
 std::string height_words(const GroundArgs& args, const ZRange& heights, const Map& map);
 
-/// The offset that a robot gets; empty optional: auto. Throws ArgumentError if it is above --max-height, as `check` would
-/// call such poses aerial.
-double chosen_offset(const QueryArgs& args, const std::optional<double>& offset, const Robot& robot);
-
-/// "offset 0.1 m (auto)".
-std::string offset_words(const std::optional<double>& wanted, double chosen);
+/// The offset that a robot gets, m; nothing wanted: auto. The summary contains it, as a number and in words. Throws
+/// ArgumentError if it is above --max-height, because `check` would call such poses aerial.
+double choose_offset(const QueryArgs& args, const std::optional<double>& wanted, const Robot& robot, Summary& summary);
 
 /// Why no pose on flat ground can be valid: the robot reaches down to its layer or below. Empty if it does not.
 std::string flat_ground_complaint(const Robot& robot, double offset);

@@ -157,8 +157,7 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     tell_about_area(args, session->map, options.area);
     tell_if_no_layer(args, session->map, options.layers);
     options.z = with_floor(options.z, args.ground, session->map);
-    const std::optional<double> offset = options.offset;
-    options.offset = summary.offset = chosen_offset(args, offset, session->robot);
+    options.offset = choose_offset(args, options.offset, session->robot, summary);
     require_above_ground(session->robot, *options.offset);
     const TerrainMap terrain = read_terrain(session->map);
     crop_to_ground(args, session->map, terrain, options);
@@ -176,7 +175,7 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     summary.set_counts(result.counts);
     summary.exact_checks = result.exact_checks;
     summary.map_hash = session->map.hash;
-    summary.extra = {args.out, offset_words(offset, *options.offset)};
+    summary.extra.insert(summary.extra.begin(), args.out);
     summary.finish();
     return done;
 }

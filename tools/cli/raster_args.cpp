@@ -63,9 +63,7 @@ void complete(RasterOptions& options, const RasterArgs& args, const Session& ses
     tell_about_area(args, session.map, options.area);
     tell_if_no_layer(args, session.map, options.layers);
     if (options.dims == 3 && !options.snap) return;
-    const std::optional<double> wanted = options.offset;
-    options.offset = summary.offset = chosen_offset(args, wanted, session.robot);
-    summary.extra.push_back(offset_words(wanted, *options.offset));
+    options.offset = choose_offset(args, options.offset, session.robot, summary);
     if (options.dims == 2) require_above_ground(session.robot, *options.offset);
     else if (const std::string why = flat_ground_complaint(session.robot, *options.offset); !why.empty()) notice(args, why);
 }

@@ -112,7 +112,7 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
 /// A command's own part of run_spawn, once the map and the robot are known.
 template <class Options>
 struct SpawnQuery {
-    std::function<Settings(const Session&, Options&, Summary&)> prepare;  ///< returns settings that the other command does not have
+    std::function<Settings(const Session&, Options&)> prepare;  ///< returns settings that the other command does not have
     SpawnList (*run)(const Map&, const CollisionChecker&, const Options&);
     std::function<std::string(const Session&, const Options&)> find_hopeless = [](const auto&, const auto&) { return ""; };
 };
@@ -141,7 +141,7 @@ int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArg
     std::optional<SimulatorOutput> output;
     if (!folder) output.emplace(args, app, args.simulator, SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args)});
     const auto session = open_session(args);
-    const Settings own = query.prepare(*session, options, summary);
+    const Settings own = query.prepare(*session, options);
     const std::string hopeless = query.find_hopeless(*session, options);
     tell_about_avoided(args, session->map, options.avoid);
     summary.lap("load");
@@ -161,7 +161,7 @@ int run_search(const SpawnArgs& args, const CLI::App& command)
     SearchOptions options = search_options(args, args.draws, args.bounds, "search", !args.ground.z.empty());
     options.area = read_area(args, args.area);
     const ZRange heights = heights_of(args.ground, options.bounds, "--bounds");
-    const auto prepare = [&](const Session& session, SearchOptions& asked, Summary&) {
+    const auto prepare = [&](const Session& session, SearchOptions& asked) {
         asked.bounds = with_heights(asked.bounds, heights, session.map);
         tell_if_off_map(args, session.map, "--bounds", asked.bounds);
         tell_about_area(args, session.map, asked.area);
@@ -180,13 +180,12 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
         options.bounds = *box;
         options.area.within.clear();
     }
-    const std::optional<double> offset = parse_offset(args.ground.offset);
+    options.offset = parse_offset(args.ground.offset);
     options.layers = parse_layers(args.ground.layers);
     const ZRange heights = heights_of(args.ground, options.bounds, "--region");
-    const auto prepare = [&](const Session& session, SampleOptions& asked, Summary& told) {
+    const auto prepare = [&](const Session& session, SampleOptions& asked) {
         asked.z = with_floor(heights, args.ground, session.map);
-        asked.offset = told.offset = chosen_offset(args, offset, session.robot);
-        told.extra.push_back(offset_words(offset, *asked.offset));
+        asked.offset = choose_offset(args, asked.offset, session.robot, summary);
         tell_if_off_map(args, session.map, "--region", asked.bounds);
         tell_about_area(args, session.map, asked.area);
         tell_if_no_layer(args, session.map, asked.layers);
