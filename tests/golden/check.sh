@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Compares what this build writes at 1, 2 and 8 threads with digests.txt: check.sh BIN_FOLDER SOURCE_FOLDER WORK_FOLDER.
+# A change that is meant to change results writes the digests anew, and its commit says why:
+#   tests/golden/run.sh $PWD/build/release/bin $PWD /tmp/golden 1 > tests/golden/digests.txt
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+
+for threads in 1 2 8; do
+  "$here/run.sh" "$1" "$2" "$3/$threads" "$threads" >"$3-$threads.txt"
+  if ! diff "$here/digests.txt" "$3-$threads.txt"; then
+    echo "check.sh: with --threads $threads the files above differ from tests/golden/digests.txt; they are in $3/$threads/results" >&2
+    exit 1
+  fi
+done
+echo "$(wc -l <"$here/digests.txt") files are as in tests/golden/digests.txt at 1, 2 and 8 threads"
