@@ -26,7 +26,7 @@ endif()
 add_library(spawnfield_options INTERFACE)
 target_compile_options(spawnfield_options INTERFACE
   -ffp-contract=off -Wall -Wextra -Wconversion -Wshadow -Wno-sign-conversion
-  -Wno-restrict  # gcc 12 warns of std::string + std::string (GCC bug 105329)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # gcc 12 warns about std::string + std::string (GCC bug 105329)
   $<$<BOOL:${SPAWNFIELD_WERROR}>:-Werror>)
 # Eigen's own asserts cost more than ours and find nothing after the debug tests.
 target_compile_definitions(spawnfield_options INTERFACE $<$<NOT:$<CONFIG:Debug>>:EIGEN_NO_DEBUG>)

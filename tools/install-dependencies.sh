@@ -8,13 +8,13 @@ set -euo pipefail
 packages=(
   ccache cmake g++ ninja-build pkg-config
   libassimp-dev libccd-dev libcli11-dev libdeflate-dev libeigen3-dev libfcl-dev libhpdf-dev liboctomap-dev
-  libopencv-core-dev libopencv-imgproc-dev libpng-dev libproj-dev libqhull-dev libsdformat-dev libtbb-dev libtiff-dev libtinyxml2-dev
-  liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
+  libopencv-core-dev libopencv-imgproc-dev libpng-dev libproj-dev libqhull-dev libsdformat-dev
+  libtbb-dev libtiff-dev libtinyxml2-dev liburdfdom-dev libxxhash-dev libyaml-cpp-dev nlohmann-json3-dev zlib1g-dev
 )
 for argument in "$@"; do
   case "$argument" in
     --tests)
-      packages+=(catch2 libembree-dev libopencv-imgcodecs-dev librecast-dev)
+      packages+=(catch2 clang-format libembree-dev libopencv-imgcodecs-dev librecast-dev)
       packages+=(python3-matplotlib python3-roslaunch python3-venv)
       ;;
     --experiments) packages+=(python3-matplotlib) ;;

@@ -47,13 +47,13 @@ struct GeoTiffOptions {
 
 /// Bands of float32 over a frame's cells, at their centres; no-data is NaN. In this order, by their descriptions:
 ///
-/// elevation, elevation_1, …   layers of the column from the top down, m; as many as the highest stack of the frame has
-/// layers                      how many the column has; 0 where there is no terrain
-/// clearance                   from the chosen layer up to the next solid, m; 0 where something stands on it; no-data under the open sky
-/// slope                       of the chosen layer, degrees; by its neighbours' heights, so a layer's edge is steep
-/// water                       highest water surface, m
-/// obstacle                    highest obstacle that stands above elevation, or where there is no terrain, m
-/// verdict                     with `verdicts` (of the same frame) only: the number of the Verdict
+/// - elevation, elevation_1, …: layers of the column from the top down, m; as many as the highest stack of the frame has
+/// - layers: how many the column has; 0 where there is no terrain
+/// - clearance: from the chosen layer up to the next solid, m; 0 where something stands on it; no-data under the open sky
+/// - slope: of the chosen layer, degrees; by its neighbours' heights, so a layer's edge is steep
+/// - water: highest water surface, m
+/// - obstacle: highest obstacle that stands above elevation, or where there is no terrain, m
+/// - verdict: with `verdicts` (of the same frame) only: the number of the Verdict
 ///
 /// A local metric frame, or the survey's: pixels are areas, upper left corner first, x right, y up. Tiles deflated with predictor 3; BigTIFF
 /// where it might pass 4 GB. O(elements + cells), in rows of tiles. Throws ArgumentError for LayerChoice All, OutputError.

@@ -98,7 +98,7 @@ std::optional<Interval> local_interval(const Shape& shape, double x, double y)
     }
     case ShapeKind::Hull: break;
     }
-    assert(!"hulls have no closed form");
+    assert(false && "hulls have no closed form");
     return std::nullopt;
 }
 
@@ -125,7 +125,7 @@ Bounds bounds_of(const Shape& shape)
         half = r.col(2).cwiseAbs() * (shape.size[1] / 2) + disc;
         break;
     }
-    case ShapeKind::Hull: assert(!"a hull's corners are not in its Shape"); break;
+    case ShapeKind::Hull: assert(false && "a hull's corners are not in its Shape"); break;
     }
     return {shape.pose.position - half, shape.pose.position + half};
 }

@@ -260,9 +260,9 @@ private:
     /// Which elements of a tile were visited: several bins hold the same one.
     class Visits {
     public:
-        void start(std::size_t elements)
+        void start(std::size_t element_count)
         {
-            if (stamps_.size() < elements) stamps_.resize(elements, 0);
+            if (stamps_.size() < element_count) stamps_.resize(element_count, 0);
             if (++round_ != 0) return;
             std::fill(stamps_.begin(), stamps_.end(), 0);
             round_ = 1;

@@ -92,11 +92,11 @@ private:
         };
         PoseColumns c{find("x"),  find("y"),  find("z"),  find("qx"), find("qy"), find("qz"), find("qw"),
                       {angle("roll"), angle("pitch"), angle("yaw")}, names.size()};
-        for (const auto& [column, name] : {std::pair{c.x, "x"}, std::pair{c.y, "y"}, std::pair{c.z, "z"}})
-            if (column < 0) {
+        for (const auto& axis : {std::pair{c.x, "x"}, std::pair{c.y, "y"}, std::pair{c.z, "z"}})
+            if (axis.first < 0) {
                 const auto other = std::find_if(names.begin(), names.end(),
-                                                [&](const std::string& n) { return lower_case(n) == name; });
-                fail(std::string("column ") + name + " is missing, needs a header x,y,z,roll,pitch,yaw" +
+                                                [&](const std::string& n) { return lower_case(n) == axis.second; });
+                fail(std::string("column ") + axis.second + " is missing, needs a header x,y,z,roll,pitch,yaw" +
                      (other == names.end() ? "" : "; there is " + *other + ", but names are lower case"));
             }
         const int quaternions = (c.qx >= 0) + (c.qy >= 0) + (c.qz >= 0) + (c.qw >= 0);
