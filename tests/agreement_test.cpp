@@ -19,7 +19,8 @@ std::string described(const Pose& pose, Verdict fast, Verdict slow)
 {
     std::ostringstream out;
     out.precision(17);
-    out << "at " << pose.position.transpose() << ": " << to_string(fast) << ", slowly " << to_string(slow) << "\n" << pose.rotation;
+    out << "at " << pose.position.transpose() << ": " << to_string(fast) << ", slowly " << to_string(slow) << "\n"
+        << pose.rotation;
     return out.str();
 }
 
@@ -54,7 +55,8 @@ TEST_CASE("check agrees with an independent decision on 20,000 random poses in t
     INFO(tally.first);
     CHECK(tally.wrong == 0);
     CHECK(tally.decided > 19000);
-    for (const Verdict verdict : {Verdict::Outside, Verdict::Aerial, Verdict::OffTerrain, Verdict::Submerged, Verdict::Collision, Verdict::Valid}) {
+    for (const Verdict verdict : {Verdict::Outside, Verdict::Aerial, Verdict::OffTerrain, Verdict::Submerged,
+                                  Verdict::Collision, Verdict::Valid}) {
         INFO(to_string(verdict));
         CHECK(tally.verdicts[verdict] > 50);
     }
@@ -74,7 +76,8 @@ TEST_CASE("check agrees with an independent decision on 20,000 random poses in 3
         for (const auto& [verdict, count] : tally.verdicts) all.verdicts[verdict] += count;
     }
     CHECK(all.decided > 15000);
-    for (const Verdict verdict : {Verdict::Aerial, Verdict::OffTerrain, Verdict::Submerged, Verdict::Collision, Verdict::Valid}) {
+    for (const Verdict verdict :
+         {Verdict::Aerial, Verdict::OffTerrain, Verdict::Submerged, Verdict::Collision, Verdict::Valid}) {
         INFO(to_string(verdict));
         CHECK(all.verdicts[verdict] > 50);
     }

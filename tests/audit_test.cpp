@@ -28,7 +28,9 @@ const std::vector<Case>& cases()
         {"mine/worlds/pittsburgh_mine.world", 0.2},
         {"mine/models/pittsburgh_mine", 0.2},
         {"inspection/cpr_inspection_gazebo/models/water_table", 0.3},
-        {"inspection/cpr_inspection_gazebo/urdf/inspection_geometry.urdf", 0.3, {{"HEIGHT*", Label::Terrain}, {"WoodPlanks*", Label::Terrain}}},
+        {"inspection/cpr_inspection_gazebo/urdf/inspection_geometry.urdf",
+         0.3,
+         {{"HEIGHT*", Label::Terrain}, {"WoodPlanks*", Label::Terrain}}},
         {"lunar_pit/models/lunar_tranquillitatis_pit", 0.3, {}, 1.0},
         {"interchange/models/cloverleaf_interchange", 0.2, {}, 0.5},
         {"parking_garage/models/parking_garage", 0.2},
@@ -48,7 +50,8 @@ const std::vector<Case>& cases()
 Scene near(const Scene& scene, const Vec3& place, double reach)
 {
     const auto is_near = [&](const Bounds& box) {
-        return box.min.x() <= place.x() + reach && box.max.x() >= place.x() - reach && box.min.y() <= place.y() + reach && box.max.y() >= place.y() - reach;
+        return box.min.x() <= place.x() + reach && box.max.x() >= place.x() - reach &&
+               box.min.y() <= place.y() + reach && box.max.y() >= place.y() - reach;
     };
     Scene out;
     out.parts = scene.parts;
@@ -101,7 +104,8 @@ TEST_CASE("200 spawns in each shared world, as it is shipped, are valid by the i
         std::size_t decided = 0, wrong = 0;
         for (const Spawn& spawn : list.spawns) {
             const Pose pose{spawn.position, rotation_from_rpy(0, 0, spawn.yaw)};
-            const slow::Decision decision = slow::decide(near(map.scene, spawn.position, 3), map.bounds, robot, pose, options.max_height, options.max_water_depth, 1e-6);
+            const slow::Decision decision = slow::decide(near(map.scene, spawn.position, 3), map.bounds, robot, pose,
+                                                         options.max_height, options.max_water_depth, 1e-6);
             decided += decision.verdict.has_value();
             wrong += decision.verdict && *decision.verdict != Verdict::Valid;
         }

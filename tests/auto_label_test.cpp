@@ -117,8 +117,9 @@ TEST_CASE("a shell that is inside out is told")
                                    by_slope);
     CHECK_FALSE(scene.has_terrain());
     REQUIRE(scene.notices.size() == 1);
-    CHECK(scene.notices[0] == "\"scan\": no face of its shells looks up and 12 m2 look down, so --auto-label makes "
-                              "them obstacles; is the mesh inside out?");
+    CHECK(scene.notices[0] ==
+          "\"scan\": no face of its shells looks up and 12 m2 look down, so --auto-label makes "
+          "them obstacles; is the mesh inside out?");
 }
 
 TEST_CASE("auto_label in a scene file holds for its part, and the option for parts without a label")
@@ -196,9 +197,9 @@ TEST_CASE("in an OctoMap floors and gentle hills are terrain, steep ones, walls 
     const auto middle = [](int i) { return (i + 0.5) * 0.1; };
     for (int i = 0; i < 40; ++i)
         for (int j = 0; j < 20; ++j) {
-            fill(middle(i), middle(j), middle(0));                                        // a floor
+            fill(middle(i), middle(j), middle(0));  // a floor
             for (int k = 0; k < 20; ++k)
-                if (i == 20 || i == 21) fill(middle(i), middle(j), middle(1 + k)); // a wall of two voxels
+                if (i == 20 || i == 21) fill(middle(i), middle(j), middle(1 + k));  // a wall of two voxels
             fill(10 + middle(i), middle(j), middle(int(std::floor(i * std::tan(20 * degree)))));  // hills
             for (int k = 0; k < 2; ++k)
                 fill(20 + middle(i), middle(j), middle(k + int(std::floor(i * std::tan(45 * degree)))));

@@ -150,8 +150,8 @@ std::size_t room_left(const Map& map, const CollisionChecker& checker, const Sam
             for (const double layer : column_at(map.geometry, p.x(), p.y()).layers) {
                 const Vec3 at(p.x(), p.y(), layer + options.offset.value_or(auto_offset(checker.robot())));
                 if (!is_clear(options.avoid, at) || !is_clear(taken, options.min_distance, at)) continue;
-                count +=
-                    judged(map, checker, without_height(options), {at, random.between(-M_PI, M_PI)}) == Verdict::Valid;
+                count += judged(map, checker, without_height(options), {at, random.between(-M_PI, M_PI)}) ==
+                         Verdict::Valid;
             }
         }
     return count;

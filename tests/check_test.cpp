@@ -5,14 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <tinyxml2.h>
 
-
 namespace {
 
 using tinyxml2::XMLElement;
 
 const std::string header = "name,x,y,z,yaw\n", start = "start,0,3,0.1,0\n", wall = "wall,-6.5,-5,0.1,0\n",
-                  lake = "lake,7,-7,0.1,0\n", sky = "sky,0,3,2.5,0\n",
-                  cube = "cube,6.5,0,3,0\n", away = "away,99,0,0,0\n";
+                  lake = "lake,7,-7,0.1,0\n", sky = "sky,0,3,2.5,0\n", cube = "cube,6.5,0,3,0\n",
+                  away = "away,99,0,0,0\n";
 
 /// One test case of a JUnit file; `type` is empty if it passed.
 struct Case {
@@ -75,8 +74,9 @@ TEST_CASE("check --require-valid ends with status 3 if a pose is not valid, and 
     CHECK(required.status == 3);
     CHECK(required.out.empty());
     CHECK(bytes_of(arena / "out.csv") == plain.out);
-    CHECK(required.err.ends_with("spawnfield: --require-valid: 2 of 3 poses are not valid:\n"
-                                 "  wall: collision with thin_wall\n  lake: submerged\n"));
+    CHECK(
+        required.err.ends_with("spawnfield: --require-valid: 2 of 3 poses are not valid:\n"
+                               "  wall: collision with thin_wall\n  lake: submerged\n"));
     const ProgramRun quiet = arena(command + "--require-valid -q");
     CHECK(quiet.status == 3);
     CHECK(quiet.out == plain.out);
@@ -103,13 +103,14 @@ TEST_CASE("check --require-valid says why each of the first five poses is not va
     arena.write("poses.csv", header + start + away + sky + cube + wall + ",7,-7,0.1,0\n" + wall + lake);
     const ProgramRun run = arena("check map --poses poses.csv --require-valid -q --max-height 2" + husky_option);
     CHECK(run.status == 3);
-    CHECK(run.err == "spawnfield: --require-valid: 7 of 8 poses are not valid:\n"
-                     "  away: outside the map's bounds\n"
-                     "  sky: aerial: 2.55 m above the ground, the limit is 2 m\n"
-                     "  cube: off_terrain: the ground is cube_east\n"
-                     "  wall (pose 5): collision with thin_wall\n"
-                     "  pose 6: submerged\n"
-                     "  and 2 more\n");
+    CHECK(run.err ==
+          "spawnfield: --require-valid: 7 of 8 poses are not valid:\n"
+          "  away: outside the map's bounds\n"
+          "  sky: aerial: 2.55 m above the ground, the limit is 2 m\n"
+          "  cube: off_terrain: the ground is cube_east\n"
+          "  wall (pose 5): collision with thin_wall\n"
+          "  pose 6: submerged\n"
+          "  and 2 more\n");
     arena.write("poses.csv", "x,y,z\n0,0,-3\n");
     CHECK(arena("check map --poses poses.csv --require-valid -q --robot box:0.5,0.5,1").err ==
           "spawnfield: --require-valid: 1 of 1 pose is not valid:\n  pose 1: aerial: no ground below the origin\n");
@@ -144,8 +145,9 @@ TEST_CASE("check --format junit has a test case for each pose, with its verdict 
         CHECK(cases[i].type == types[i]);
     }
     CHECK(cases[1].message == "collision with thin_wall");
-    CHECK(cases[1].text == "row 2: wall,-6.5,-5,0.1,0\nposition -6.5, -5, 0.1 m; roll, pitch, yaw 0, 0, 0 rad\n"
-                           "ground at -0.05 m, 0.15 m below the origin\nhit thin_wall\n");
+    CHECK(cases[1].text ==
+          "row 2: wall,-6.5,-5,0.1,0\nposition -6.5, -5, 0.1 m; roll, pitch, yaw 0, 0, 0 rad\n"
+          "ground at -0.05 m, 0.15 m below the origin\nhit thin_wall\n");
     CHECK(cases[3].message == "aerial: 2.55 m above the ground, the limit is 2 m");
     CHECK_THAT(cases[5].text, Contains("no ground below the origin"));
     CHECK_THAT(run.out, Contains("<property name=\"max_height\" value=\"2.0\"/>"));
@@ -173,13 +175,15 @@ TEST_CASE("JUnit names are unique: the column name, or else the pose's number")
 TEST_CASE("reports hold hostile names: XML and JSON stay valid")
 {
     const TempFolder folder;
-    folder.write("scene.yaml", "format: spawnfield-scene/1\nname: \"a<&\\\">'\\x01 world\"\nparts:\n"
-                               "- {name: floor, label: terrain, box: [9, 9, 1]}\n"
-                               "- {name: \"]]><failure type=\\\"x\\\"/>\\n\\x07\\uFFFE&amp;\", label: obstacle, "
-                               "box: [1, 1, 3]}\n");
+    folder.write("scene.yaml",
+                 "format: spawnfield-scene/1\nname: \"a<&\\\">'\\x01 world\"\nparts:\n"
+                 "- {name: floor, label: terrain, box: [9, 9, 1]}\n"
+                 "- {name: \"]]><failure type=\\\"x\\\"/>\\n\\x07\\uFFFE&amp;\", label: obstacle, "
+                 "box: [1, 1, 3]}\n");
     REQUIRE(run_program(folder, "bake scene.yaml -o map -q").status == 0);
-    folder.write("poses.csv", "name,x,y,z\n\"<&\"\"'>\",0,0,0.6\n\"]]>\x01\x1b[31m\",0,0,0.6\n\xff\xc0\xaf,0,0,0.6\n"
-                              "\xef\xbf\xbf,0,0,0.6\n\xc3\xa9\xe2\x98\x83,3,3,0.6\n");
+    folder.write("poses.csv",
+                 "name,x,y,z\n\"<&\"\"'>\",0,0,0.6\n\"]]>\x01\x1b[31m\",0,0,0.6\n\xff\xc0\xaf,0,0,0.6\n"
+                 "\xef\xbf\xbf,0,0,0.6\n\xc3\xa9\xe2\x98\x83,3,3,0.6\n");
     const std::string command = "check map --robot box:0.5,0.5,1 -p poses.csv --require-valid -q --format ";
     CHECK(run_program(folder, command + "junit -o a.xml").status == 3);
     CHECK(is_strict_xml(folder / "a.xml"));
@@ -207,8 +211,9 @@ TEST_CASE("reports hold hostile names: XML and JSON stay valid")
 TEST_CASE("check --format json has each pose with its verdict, ground, hit and the fields of its row")
 {
     const Arena arena;
-    arena.write("poses.csv", "id,name,x,y,z,yaw,verdict\n1,start,0,3,0.1,0.5,aerial\n02,\"a, b\",-6.5,-5,0.1,0,\n"
-                             "3,,99,0,0,0,\n");
+    arena.write("poses.csv",
+                "id,name,x,y,z,yaw,verdict\n1,start,0,3,0.1,0.5,aerial\n02,\"a, b\",-6.5,-5,0.1,0,\n"
+                "3,,99,0,0,0,\n");
     const std::string command = "check map --poses poses.csv --format json -q" + husky_option;
     const std::string text = arena(command).out;
     const auto json = nlohmann::json::parse(text);
@@ -237,7 +242,8 @@ TEST_CASE("check --format json has each pose with its verdict, ground, hit and t
     CHECK((json["poses"][2]["ground"].is_null() && json["poses"][2]["height_above"].is_null()));
     CHECK_FALSE(json["poses"][2].contains("name"));
 
-    const auto more = nlohmann::json::parse(arena(command + "--max-slope 45 --max-water-depth 2 --collision octree").out);
+    const auto more = nlohmann::json::parse(
+        arena(command + "--max-slope 45 --max-water-depth 2 --collision octree").out);
     CHECK(more["settings"]["max_slope"].get<double>() == Approx(0.785398163));
     CHECK(more["settings"]["max_water_depth"] == 2.0);
     CHECK(more["settings"]["collision"] == "octree");

@@ -20,7 +20,9 @@ class Desk : public TempFolder {
 public:
     Desk()
     {
-        write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: floor, label: terrain, box: [8, 8, 1]}, {name: b, sphere: 1}]\n");
+        write("scene.yaml",
+              "format: spawnfield-scene/1\nparts: [{name: floor, label: terrain, box: [8, 8, 1]}, {name: b, sphere: "
+              "1}]\n");
         write("poses.csv", "x,y,z\n3,3,0.6\n");
         write("out", "old");
         REQUIRE(run_program(*this, "bake scene.yaml -o map --resolution 0.5").status == 0);
@@ -63,8 +65,8 @@ const std::string hint = "\nRun with --help for more information.";
 TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
 {
     const Desk desk;
-    const std::string raster = "raster map -o out --dims 2 --step 1" + husky, raster3 = "raster map -o out --dims 3 --step 1" + husky,
-                      sample = "sample map -o out" + husky,
+    const std::string raster = "raster map -o out --dims 2 --step 1" + husky,
+                      raster3 = "raster map -o out --dims 3 --step 1" + husky, sample = "sample map -o out" + husky,
                       experiment = "experiment map -o out" + husky,
                       search = "search map -o out --min-distance 1" + husky;
     const Refusal refusals[] = {
@@ -109,8 +111,9 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {raster + "--snap", "spawnfield: --snap is for --dims 3: in 2D poses stand on their layers"},
         {raster3 + "--snap --no-height-check",
          "spawnfield: --snap needs the height check: --no-height-check looks for collisions alone"},
-        {raster3 + "--snap --offset 0.6 --max-height 0.5", "spawnfield: --offset is 0.6, needs 0 .. --max-height (0.5 "
-                                                           "m) with --snap: poses on their layers would be aerial"},
+        {raster3 + "--snap --offset 0.6 --max-height 0.5",
+         "spawnfield: --offset is 0.6, needs 0 .. --max-height (0.5 "
+         "m) with --snap: poses on their layers would be aerial"},
         {sample + "-n 0", "spawnfield: -n is 0, needs >= 1"},
         {sample + "-n 5 --min-distance -1", "spawnfield: --min-distance is -1, needs >= 0 m"},
         {sample + "-n 5 --yaw north",
@@ -165,17 +168,22 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
          "spawnfield: --bounds has 4 numbers, needs 6: x0,y0,z0,x1,y1,z1"},
         {experiment + "--search -n 5 --max-failures 0", "spawnfield: --max-failures is 0, needs >= 1"},
         {"experiment map --dims 2 --steps 1" + husky, "--out is required" + hint},
-        {"frob map", "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap, "
-                     "export, experiment"},
+        {"frob map",
+         "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap, "
+         "export, experiment"},
         {sample + "-n 5 --seed -1", "--seed: -1 is no whole number from 0 to 18446744073709551615" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);
-    for (const std::string arguments : {"fly map", "raster map --dims 4 --step 1", "raster map --dims 2 --step x", "sample map -n many",
-                                        "sample map -n 5 --format xml", "info map --threads -1",
-                                        "heatmap map -o out --size 20", "check map --poses poses.csv --collision guess"}) {
+    for (const std::string arguments :
+         {"fly map", "raster map --dims 4 --step 1", "raster map --dims 2 --step x", "sample map -n many",
+          "sample map -n 5 --format xml", "info map --threads -1", "heatmap map -o out --size 20",
+          "check map --poses poses.csv --collision guess"}) {
         CAPTURE(arguments);
-        const ProgramRun run = run_program(desk, arguments + (arguments.starts_with("raster") || arguments.starts_with("sample") ||
-                                                              arguments.starts_with("heatmap") || arguments.starts_with("check") ? husky : ""));
+        const ProgramRun run = run_program(
+            desk, arguments + (arguments.starts_with("raster") || arguments.starts_with("sample") ||
+                                       arguments.starts_with("heatmap") || arguments.starts_with("check")
+                                   ? husky
+                                   : ""));
         CHECK(run.status == 2);
         CHECK(run.err.size() > 20);
         CHECK(run.out.empty());
@@ -196,8 +204,10 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
     desk.write("upper.csv", "X,Y,Z\n1,2,3\n");
     std::filesystem::create_symlink("/dev/zero", desk / "endless.yaml");
     desk.remember();
-    const std::string keys = "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, scale, solid, "
-                             "sides, labels, auto_label, unknown";
+    const std::string keys =
+        "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, scale, "
+        "solid, "
+        "sides, labels, auto_label, unknown";
     const Refusal refusals[] = {
         {"bake none.yaml -o map", "spawnfield: none.yaml: does not exist; is the path right?"},
         {"bake no_terrain.yaml -o map",
@@ -205,8 +215,9 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
          "(--label 'GLOB=terrain') or pass --allow-no-terrain"},
         {"bake typo.yaml -o map",
          "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
-        {"bake label.yaml -o new", "spawnfield: label.yaml: part \"b\": label is \"lava\", needs one of terrain, "
-                                   "obstacle, water, ignore (line 3)"},
+        {"bake label.yaml -o new",
+         "spawnfield: label.yaml: part \"b\": label is \"lava\", needs one of terrain, "
+         "obstacle, water, ignore (line 3)"},
         {"bake nan.obj -q -o new",
          "spawnfield: nan.obj: node \"a\": a vertex is (0, 0, nan), needs finite coordinates"},
         {"bake scene.yaml -o new --bounds 90,0,-1,95,5,1",
@@ -245,27 +256,39 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
 TEST_CASE("a damaged map is refused by every command, with the file named")
 {
     Desk desk;
-    const std::string queries[] = {"info map", "check map --poses poses.csv -o out" + husky, "raster map -o out --dims 2 --step 1" + husky,
-                                   "search map -o out -n 1 --min-distance 0" + husky, "sample map -o out -n 1" + husky,
+    const std::string queries[] = {"info map",
+                                   "check map --poses poses.csv -o out" + husky,
+                                   "raster map -o out --dims 2 --step 1" + husky,
+                                   "search map -o out -n 1 --min-distance 0" + husky,
+                                   "sample map -o out -n 1" + husky,
                                    "heatmap map -o out" + husky};
     const std::string good = bytes_of(desk / "map/geometry.bin");
     std::string bad = good;
     bad[40] = char(bad[40] ^ 4);
     desk.write("map/geometry.bin", bad);
     for (const std::string& query : queries)
-        desk.check({query, "spawnfield: map/geometry.bin: is damaged (the checksum of its head differs from map.yaml's); bake the map again"}, 4);
+        desk.check({query,
+                    "spawnfield: map/geometry.bin: is damaged (the checksum of its head differs from map.yaml's); bake "
+                    "the map again"},
+                   4);
     bad = good;
     bad[bad.size() / 2] = char(bad[bad.size() / 2] ^ 4);
     desk.write("map/geometry.bin", bad);
-    desk.check({"raster map -o out --dims 2 --step 1" + husky, "spawnfield: map/geometry.bin: is damaged (the checksum of a tile differs); bake the map again"}, 4);
-    desk.check({"info map --verify", "spawnfield: map/geometry.bin: differs from its checksum in map.yaml: it was altered; bake the map again"}, 4);
+    desk.check({"raster map -o out --dims 2 --step 1" + husky,
+                "spawnfield: map/geometry.bin: is damaged (the checksum of a tile differs); bake the map again"},
+               4);
+    desk.check(
+        {"info map --verify",
+         "spawnfield: map/geometry.bin: differs from its checksum in map.yaml: it was altered; bake the map again"},
+        4);
     desk.write("map/geometry.bin", good);
 
     const std::string tree = bytes_of(desk / "map/occupancy.bt");
     bad = tree;
     bad.back() = char(bad.back() ^ 1);
     desk.write("map/occupancy.bt", bad);
-    const std::string altered = "spawnfield: map/occupancy.bt: differs from its checksum in map.yaml: it was altered; bake the map again";
+    const std::string altered =
+        "spawnfield: map/occupancy.bt: differs from its checksum in map.yaml: it was altered; bake the map again";
     desk.check({"check map --poses poses.csv -o out --collision octree" + husky, altered}, 4);
     desk.check({"info map --verify", altered}, 4);
     desk.write("map/occupancy.bt", tree);
@@ -273,35 +296,50 @@ TEST_CASE("a damaged map is refused by every command, with the file named")
     const std::string yaml = bytes_of(desk / "map/map.yaml");
     desk.write("map/map.yaml", "format: spawnfield-map/99" + yaml.substr(yaml.find('\n')));
     for (const std::string& query : queries)
-        desk.check({query, "spawnfield: map/map.yaml: has format version 99, this program reads 2 and 3; bake the map again or use a newer spawnfield"}, 4);
+        desk.check({query,
+                    "spawnfield: map/map.yaml: has format version 99, this program reads 2 and 3; bake the map again "
+                    "or use a newer spawnfield"},
+                   4);
 }
 
 TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
 {
     const Desk desk;
     const std::string sample = "sample map -n 1 -q" + husky;
-    desk.check({sample + "-o none/spawns.csv", "spawnfield: none/spawns.csv: cannot be written: No such file or directory"}, 1);
+    desk.check(
+        {sample + "-o none/spawns.csv", "spawnfield: none/spawns.csv: cannot be written: No such file or directory"},
+        1);
     desk.check({sample + "-o map", "spawnfield: map: cannot be written: is a folder"}, 1);
     desk.check({sample + "-o /dev/full", "spawnfield: /dev/full: cannot be written: No space left on device"}, 1);
     const ProgramRun full = run_program(desk, sample + ">/dev/full 2>err || (cat err >&2; rm err; exit 1)");
     CHECK(full.status == 1);
     CHECK(full.err == "spawnfield: standard output: cannot be written\n");
-    desk.check({"bake scene.yaml -q -o out", "spawnfield: out: exists and is no map; choose another name or remove it"}, 1);
+    desk.check({"bake scene.yaml -q -o out", "spawnfield: out: exists and is no map; choose another name or remove it"},
+               1);
     const std::string raster = "raster map -q --dims 2 --step 1" + husky;
-    desk.check({raster + "-o /dev/full --heatmap new.png", "spawnfield: /dev/full: cannot be written: No space left on device"}, 1);
-    desk.check({"experiment map -q --dims 2 --steps 1 -o out" + husky, "spawnfield: out: exists and is no folder; choose another name or remove it"}, 1);
+    desk.check({raster + "-o /dev/full --heatmap new.png",
+                "spawnfield: /dev/full: cannot be written: No space left on device"},
+               1);
+    desk.check({"experiment map -q --dims 2 --steps 1 -o out" + husky,
+                "spawnfield: out: exists and is no folder; choose another name or remove it"},
+               1);
     desk.check({"experiment map -q --dims 2 --steps 1 -o map" + husky,
-                "spawnfield: map: holds bounds.bin, which is no part of a former experiment; choose another name or remove it"}, 1);
-    desk.check({raster + "-o new.csv --heatmap none/new.png", "spawnfield: none/new.png: cannot be written: No such file or directory"}, 1);
+                "spawnfield: map: holds bounds.bin, which is no part of a former experiment; choose another name or "
+                "remove it"},
+               1);
+    desk.check({raster + "-o new.csv --heatmap none/new.png",
+                "spawnfield: none/new.png: cannot be written: No such file or directory"},
+               1);
 }
 
 TEST_CASE("a summary that cannot be written is told before all work, and nothing is written")
 {
     const Desk desk;
     const std::string told = "spawnfield: none/s.json: cannot be written: No such file or directory";
-    for (const std::string& arguments : {std::string("bake scene.yaml -o new"), std::string("info map"), "check map --poses poses.csv -o out" + husky,
-                                         "raster map -o out --dims 2 --step 1" + husky, "sample map -o out -n 1" + husky,
-                                         "search map -o out -n 1" + husky, "heatmap map -o out" + husky,
-                                         "experiment map -o new --dims 2 --steps 1" + husky})
+    for (const std::string& arguments :
+         {std::string("bake scene.yaml -o new"), std::string("info map"), "check map --poses poses.csv -o out" + husky,
+          "raster map -o out --dims 2 --step 1" + husky, "sample map -o out -n 1" + husky,
+          "search map -o out -n 1" + husky, "heatmap map -o out" + husky,
+          "experiment map -o new --dims 2 --steps 1" + husky})
         desk.check({arguments + " --summary none/s.json", told}, 1);
 }

@@ -14,7 +14,8 @@ using spawnfield::read_poses;
 namespace {
 
 const std::string &scene = training_scene, &husky = husky_option;
-const std::vector<std::string> commands = {"bake", "info", "check", "raster", "search", "sample", "heatmap", "export", "experiment"};
+const std::vector<std::string> commands = {"bake",   "info",    "check",  "raster",    "search",
+                                           "sample", "heatmap", "export", "experiment"};
 
 std::size_t lines(const std::string& text) { return std::size_t(std::count(text.begin(), text.end(), '\n')); }
 
@@ -32,12 +33,14 @@ nlohmann::json summary(const fs::path& file, const std::string& command)
 {
     const auto json = nlohmann::json::parse(bytes_of(file));
     CHECK(json["command"] == command);
-    for (const char* key : {"poses", "exact_checks", "peak_memory_bytes", "threads", "seed"}) CHECK(json.at(key).is_number_unsigned());
+    for (const char* key : {"poses", "exact_checks", "peak_memory_bytes", "threads", "seed"})
+        CHECK(json.at(key).is_number_unsigned());
     for (const char* key : {"load", "query", "mask", "exact", "write", "total"}) {
         CHECK(json.at("seconds").at(key).is_number());
         CHECK(json["seconds"][key] >= 0.0);
     }
-    CHECK(json["seconds"]["load"].get<double>() + json["seconds"]["query"].get<double>() + json["seconds"]["write"].get<double>() ==
+    CHECK(json["seconds"]["load"].get<double>() + json["seconds"]["query"].get<double>() +
+              json["seconds"]["write"].get<double>() ==
           Approx(json["seconds"]["total"].get<double>()));
     CHECK(json.at("counts").is_object());
     CHECK(json.at("map_hash").is_string());
@@ -75,7 +78,8 @@ TEST_CASE("every example works after README's steps, and leaves their files as t
     for (const std::string& command : commands) {
         const std::string help = run_program(folder, command + " --help").out;
         std::string script = help.substr(help.find("Example:") + 8);
-        for (std::size_t at = script.find("/tmp/"); at != std::string::npos; at = script.find("/tmp/")) script.erase(at, 5);
+        for (std::size_t at = script.find("/tmp/"); at != std::string::npos; at = script.find("/tmp/"))
+            script.erase(at, 5);
         INFO(script);
         CHECK(run_program(folder, "--version && set -e && PATH=$PWD:$PATH\n" + script).status == 0);
     }
@@ -101,13 +105,17 @@ TEST_CASE("bake passes its options on")
 {
     const TempFolder folder;
     folder.write("a.obj", "o road\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no house\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 4 5 6\n");
-    CHECK(run_program(folder, "bake a.obj -o map --scale 2 --up y --label 'ro*=terrain' --resolution 0.5 --occupancy-resolution 0.5 "
-                              "--bounds -1,-4,-1,3,1,5").status == 0);
+    CHECK(run_program(
+              folder,
+              "bake a.obj -o map --scale 2 --up y --label 'ro*=terrain' --resolution 0.5 --occupancy-resolution 0.5 "
+              "--bounds -1,-4,-1,3,1,5")
+              .status == 0);
     const spawnfield::Map map = spawnfield::read_map(folder / "map");
     CHECK(map.bounds.min == spawnfield::Vec3(-1, -4, -1));
     CHECK(map.bounds.max == spawnfield::Vec3(3, 1, 5));
     CHECK(map.occupancy_resolution == 0.5);
-    const spawnfield::Column column = column_at(map.geometry, 0.2, -0.1);  // y is up and twice as large: upright triangles
+    const spawnfield::Column column = column_at(map.geometry, 0.2,
+                                                -0.1);  // y is up and twice as large: upright triangles
     CHECK(column.spans.empty());
     CHECK(map.geometry.labels()[std::size_t(spawnfield::Label::Terrain)].triangles == 1);
     CHECK(map.geometry.labels()[std::size_t(spawnfield::Label::Obstacle)].triangles == 1);
@@ -117,9 +125,11 @@ TEST_CASE("bake passes its options on")
     const ProgramRun plain = run_program(folder, "bake a.obj -o map --quiet");
     CHECK(plain.status == 0);
     CHECK(plain.err.empty());
-    CHECK_THAT(run_program(folder, "bake a.obj -o map").err, Contains("notice: a.obj: no label given, so everything is terrain"));
+    CHECK_THAT(run_program(folder, "bake a.obj -o map").err,
+               Contains("notice: a.obj: no label given, so everything is terrain"));
     CHECK_THAT(run_program(folder, "bake a.obj -o map --bounds 0.8,0.8,0,3,3,1").err,
-               Contains("notice: no robot can stand in the bounds 0.8, 0.8, 0 to 3, 3, 1 m: there is no terrain at any cell's centre; the scene is "
+               Contains("notice: no robot can stand in the bounds 0.8, 0.8, 0 to 3, 3, 1 m: there is no terrain at any "
+                        "cell's centre; the scene is "
                         "0, 0, 0 to 1, 1, 1 m\n"));
     CHECK(run_program(folder, "bake a.obj -o map --label '*=obstacle'").status == 4);
     CHECK(run_program(folder, "bake a.obj -o map --label '*=obstacle' --allow-no-terrain").status == 0);
@@ -170,7 +180,8 @@ TEST_CASE("info tells of maps, scenes and robots, in words or JSON")
     const auto robot = nlohmann::json::parse(arena("info box:1,2,3 --json").out);
     CHECK(robot["kind"] == "robot");
     CHECK(robot["bounds"]["max"] == std::vector<double>{0.5, 1, 3});
-    CHECK_THAT(arena("info '" + source_folder() + "/maps/robots/husky.yaml'").out, Contains("robot husky\n  from  -0.495, -0.335, 0 m"));
+    CHECK_THAT(arena("info '" + source_folder() + "/maps/robots/husky.yaml'").out,
+               Contains("robot husky\n  from  -0.495, -0.335, 0 m"));
     CHECK(arena("info map --summary s.json").status == 0);
     summary(arena / "s.json", "info");
 }
@@ -192,8 +203,9 @@ TEST_CASE(
     "info lists nodes and materials of meshes with their triangles and heights, those of the most triangles first")
 {
     const TempFolder folder;
-    folder.write("a.obj", "o wall\nv 0 0 0.5\nv 1 0 0.5\nv 0 1 2.25\nusemtl brick\nf 1 2 3\no Floor 1\nv 0 0 -1\nv 1 0 "
-                          "-1\nv 0 1 -1\nv 1 1 -1\nusemtl tar\nf 4 5 6\nf 6 5 7\n");
+    folder.write("a.obj",
+                 "o wall\nv 0 0 0.5\nv 1 0 0.5\nv 0 1 2.25\nusemtl brick\nf 1 2 3\no Floor 1\nv 0 0 -1\nv 1 0 "
+                 "-1\nv 0 1 -1\nv 1 1 -1\nusemtl tar\nf 4 5 6\nf 6 5 7\n");
     const ProgramRun run = run_program(folder, "info a.obj --label 'floor*=terrain' --label 'bri*=ignore'");
     CHECK_THAT(
         run.out,
@@ -203,8 +215,9 @@ TEST_CASE(
     const auto json = nlohmann::json::parse(run_program(folder, "info a.obj --json").out);
     CHECK(json["parts"][0]["names"][0] ==
           nlohmann::json{{"node", "wall"}, {"material", "brick"}, {"triangles", {{"terrain", 1}}}, {"z", {0.5, 2.25}}});
-    folder.write("two.yaml", "format: spawnfield-scene/1\nname: two\nparts:\n  - {name: a, mesh: a.obj}\n  - {name: b, "
-                             "mesh: a.obj, xyz: [0, 0, 10]}\n");
+    folder.write("two.yaml",
+                 "format: spawnfield-scene/1\nname: two\nparts:\n  - {name: a, mesh: a.obj}\n  - {name: b, "
+                 "mesh: a.obj, xyz: [0, 0, 10]}\n");
     CHECK_THAT(run_program(folder, "info two.yaml").out,
                Contains("  a: node \"wall\"") &&
                    Contains("  b: node \"wall\", material \"brick\": 1 triangle, z 10.5 to 12.25 m, obstacle\n"));
@@ -244,14 +257,16 @@ TEST_CASE("notices of one kind are printed once, with a count; --json has all")
 TEST_CASE("a world that includes what is not there is refused by the program, and a map of 1 x 1 m gets a notice")
 {
     const TempFolder folder;
-    folder.write("a.world", "<sdf version='1.9'><world name='w'><include><uri>model://house</uri></include><model "
-                            "name='rock'><link name='l'><collision name='c'><geometry>"
-                            "<box><size>1 1 1</size></box></geometry></collision></link></model></world></sdf>");
+    folder.write("a.world",
+                 "<sdf version='1.9'><world name='w'><include><uri>model://house</uri></include><model "
+                 "name='rock'><link name='l'><collision name='c'><geometry>"
+                 "<box><size>1 1 1</size></box></geometry></collision></link></model></world></sdf>");
     const ProgramRun refused = run_program(folder, "bake a.world -o map");
     CHECK(refused.status == 4);
-    CHECK(refused.err == "spawnfield: a.world: 1 model that it includes is not found; name the folder that holds it "
-                         "with --model-path, or pass --allow-missing to leave it out:\n"
-                         "  line 1: <include> <uri> model://house is not found\n");
+    CHECK(refused.err ==
+          "spawnfield: a.world: 1 model that it includes is not found; name the folder that holds it "
+          "with --model-path, or pass --allow-missing to leave it out:\n"
+          "  line 1: <include> <uri> model://house is not found\n");
     const ProgramRun obstacle = run_program(folder, "bake a.world -o map --allow-missing");
     CHECK(obstacle.status == 4);
     CHECK_THAT(obstacle.err,
@@ -281,7 +296,9 @@ TEST_CASE("info lists the first 60 of many parts")
 TEST_CASE("check adds verdicts to the poses it is given, on standard output or into a file")
 {
     const Arena arena;
-    arena.write("poses.csv", "id,x,y,z,yaw\n1,0,0,0.1,0\n2,0,0,5,0\n3,99,0,0.1,0\n4,7.5,-7.5,0.1,0\n5,-2,0,0.1,0\n6,6.5,0,4,0\n7,0,9.9,0.1,0\n");
+    arena.write("poses.csv",
+                "id,x,y,z,yaw\n1,0,0,0.1,0\n2,0,0,5,0\n3,99,0,0.1,0\n4,7.5,-7.5,0.1,0\n5,-2,0,0.1,0\n6,6.5,0,4,0\n7,0,"
+                "9.9,0.1,0\n");
     const ProgramRun run = arena("check map --poses poses.csv --max-height 2 --summary s.json" + husky);
     CHECK(run.status == 0);
     CHECK(row(run.out, 0) == "id,x,y,z,yaw,verdict,ground,height_above,hit");
@@ -292,7 +309,8 @@ TEST_CASE("check adds verdicts to the poses it is given, on standard output or i
     CHECK(row(run.out, 5).ends_with(",collision,-0.05,0.15000000000000002,diagonal_wall"));
     CHECK_THAT(row(run.out, 6), Contains(",off_terrain,2.95,"));
     CHECK(row(run.out, 7).ends_with(",wall_north"));
-    CHECK_THAT(run.err, Contains("spawnfield check: 7 poses: 1 valid, 2 collision, 1 submerged, 1 off_terrain, 1 aerial, 1 outside; 2 exact checks; "));
+    CHECK_THAT(run.err, Contains("spawnfield check: 7 poses: 1 valid, 2 collision, 1 submerged, 1 off_terrain, 1 "
+                                 "aerial, 1 outside; 2 exact checks; "));
     const auto json = summary(arena / "s.json", "check");
     CHECK(json["poses"] == 7);
     CHECK(json["counts"]["collision"] == 2);
@@ -311,13 +329,15 @@ TEST_CASE("check adds verdicts to the poses it is given, on standard output or i
 TEST_CASE("raster writes each column's layers, and its counts are those of the rows")
 {
     const Arena arena;
-    const ProgramRun run = arena("raster map --dims 2 --step 0.5 --offset 0.5 --bounds -10,-10,10,10 --summary s.json" + husky);
+    const ProgramRun run = arena("raster map --dims 2 --step 0.5 --offset 0.5 --bounds -10,-10,10,10 --summary s.json" +
+                                 husky);
     CHECK(run.status == 0);
     const auto json = summary(arena / "s.json", "raster");
     CHECK(lines(run.out) == json["poses"].get<std::size_t>() + 1);
     CHECK(json["poses"] > 41 * 41);
     std::size_t valid = 0;
-    for (std::size_t at = run.out.find(",valid\n"); at != std::string::npos; at = run.out.find(",valid\n", at + 1)) ++valid;
+    for (std::size_t at = run.out.find(",valid\n"); at != std::string::npos; at = run.out.find(",valid\n", at + 1))
+        ++valid;
     CHECK(json["counts"]["valid"] == valid);
     CHECK(valid > 100);
     CHECK(row(run.out, 1).starts_with("-10,-10,0.45,0,0,"));
@@ -339,9 +359,11 @@ TEST_CASE("raster --snap gives each layer its pose, --offset above it")
     CHECK_THAT(run.err, !Contains("notice"));
     CHECK_THAT(run.out, Contains(",0.2,0,0,valid\n"));  // the floor is at -0.05
     CHECK_THAT(arena(command + husky).out, !Contains(",valid"));
-    CHECK_THAT(arena(command + "--snap --offset 0.26 --robot box:0.5,0.5,0.5@0,0,0").err, !Contains("collides with all flat ground"));
+    CHECK_THAT(arena(command + "--snap --offset 0.26 --robot box:0.5,0.5,0.5@0,0,0").err,
+               !Contains("collides with all flat ground"));
     CHECK_THAT(arena(command + "--snap --robot box:0.5,0.5,0.5@0,0,0").err, Contains("offset 0.35 m (auto)"));
-    CHECK_THAT(arena(command + "--snap --offset 0.25 --robot box:0.5,0.5,0.5@0,0,0").err, Contains("notice: at --offset 0.25 m the robot collides with all flat ground"));
+    CHECK_THAT(arena(command + "--snap --offset 0.25 --robot box:0.5,0.5,0.5@0,0,0").err,
+               Contains("notice: at --offset 0.25 m the robot collides with all flat ground"));
 }
 
 TEST_CASE("sample and search find what they are asked for, the same at any thread count")
@@ -402,16 +424,20 @@ TEST_CASE("an option that has no effect is told of, and changes nothing")
         CHECK(run.status == 0);
         CHECK(run.out == arena(command + husky).out);
     }
-    CHECK_THAT(arena("raster map --dims 3 --step 2 --no-height-check --layers 0" + husky).err, Contains("notice: --layers has no effect: "));
-    CHECK_THAT(arena("raster map --dims 3 --step 2 --no-height-check --max-slope 9" + husky).err, Contains("notice: --max-slope has no effect: "));
+    CHECK_THAT(arena("raster map --dims 3 --step 2 --no-height-check --layers 0" + husky).err,
+               Contains("notice: --layers has no effect: "));
+    CHECK_THAT(arena("raster map --dims 3 --step 2 --no-height-check --max-slope 9" + husky).err,
+               Contains("notice: --max-slope has no effect: "));
 }
 
 TEST_CASE("--max-slope asks every command how valid poses stand, and without it nobody is asked")
 {
     const TempFolder folder;
-    folder.write("scene.yaml", "format: spawnfield-scene/1\nname: steps\nparts:\n  - {name: floor, label: terrain, box: [10, 10, 1], xyz: [0, 0, -0.5]}\n"
-                               "  - {name: beam, label: terrain, box: [6, 0.3, 0.2], xyz: [0, 0, 3]}\n"
-                               "  - {name: ramp, label: terrain, box: [3, 8, 0.1], xyz: [3, 0, 0.5], rpy_deg: [0, -20, 0]}\n");
+    folder.write("scene.yaml",
+                 "format: spawnfield-scene/1\nname: steps\nparts:\n  - {name: floor, label: terrain, box: [10, 10, 1], "
+                 "xyz: [0, 0, -0.5]}\n"
+                 "  - {name: beam, label: terrain, box: [6, 0.3, 0.2], xyz: [0, 0, 3]}\n"
+                 "  - {name: ramp, label: terrain, box: [3, 8, 0.1], xyz: [3, 0, 0.5], rpy_deg: [0, -20, 0]}\n");
     folder.write("poses.csv", "x,y,z\n-3,3,0.1\n3,3,1.1\n-1,0,3.2\n");
     CHECK(run_program(folder, "bake scene.yaml -o map").status == 0);
     const ProgramRun asked = run_program(folder, "check map --poses poses.csv --max-slope 15 --summary s.json" + husky);
@@ -421,15 +447,20 @@ TEST_CASE("--max-slope asks every command how valid poses stand, and without it 
     CHECK_THAT(asked.err, Contains(" 3 poses: 1 valid, 1 unstable, 1 steep; "));
     CHECK(summary(folder / "s.json", "check")["counts"]["steep"] == 1);
     CHECK_THAT(run_program(folder, "check map --poses poses.csv" + husky).err, Contains(" 3 poses: 3 valid; "));
-    CHECK_THAT(run_program(folder, "check map --poses poses.csv --max-slope 21" + husky).err, Contains(" 3 poses: 2 valid, 1 unstable; "));
+    CHECK_THAT(run_program(folder, "check map --poses poses.csv --max-slope 21" + husky).err,
+               Contains(" 3 poses: 2 valid, 1 unstable; "));
 
-    for (const std::string command : {"raster map --dims 2 --step 0.2 --offset 0.6", "raster map --dims 3 --step 0.4 --step-z 0.1", "heatmap map --step 0.2 --offset 0.6 -o map.png",
-                                      "sample map -n 200 --offset 0.6", "search map -n 50 --max-failures 3000"}) {
+    for (const std::string command :
+         {"raster map --dims 2 --step 0.2 --offset 0.6", "raster map --dims 3 --step 0.4 --step-z 0.1",
+          "heatmap map --step 0.2 --offset 0.6 -o map.png", "sample map -n 200 --offset 0.6",
+          "search map -n 50 --max-failures 3000"}) {
         INFO(command);
-        CHECK_THAT(run_program(folder, command + " --max-slope 15" + husky).err, Contains(" steep") && Contains(" unstable"));
+        CHECK_THAT(run_program(folder, command + " --max-slope 15" + husky).err,
+                   Contains(" steep") && Contains(" unstable"));
         CHECK_THAT(run_program(folder, command + husky).err, !Contains(" steep") && !Contains(" unstable"));
     }
-    const auto json = nlohmann::json::parse(run_program(folder, "sample map -n 1 --format json --max-slope 15" + husky).out);
+    const auto json = nlohmann::json::parse(
+        run_program(folder, "sample map -n 1 --format json --max-slope 15" + husky).out);
     CHECK(json["settings"]["max_slope"].get<double>() == Approx(15 * M_PI / 180));
     CHECK(json["counts"].contains("unstable"));
 }
@@ -438,17 +469,20 @@ TEST_CASE("what lies off the map, and a layer that it has not, is told of")
 {
     const Arena arena;
     const std::string off = " 50, 50 to 60, 60 m lies off the map, which is -10.1, -10.1 to 10.1, 10.1 m\n";
-    const std::string query[] = {"sample map -n 1 --region 50,50,60,60", "raster map --dims 2 --step 2 --bounds 50,50,60,60",
-                                 "raster map --dims 3 --step 2 --bounds 50,50,0,60,60,1", "heatmap map --step 2 -o a.png --bounds 50,50,60,60",
-                                 "search map -n 1 --max-failures 9 --bounds 50,50,0,60,60,1"};
+    const std::string query[] = {
+        "sample map -n 1 --region 50,50,60,60", "raster map --dims 2 --step 2 --bounds 50,50,60,60",
+        "raster map --dims 3 --step 2 --bounds 50,50,0,60,60,1", "heatmap map --step 2 -o a.png --bounds 50,50,60,60",
+        "search map -n 1 --max-failures 9 --bounds 50,50,0,60,60,1"};
     for (const std::string& command : query) {
         INFO(command);
         const std::string option = command.starts_with("sample") ? "--region" : "--bounds";
         CHECK(arena(command + husky).err.starts_with("notice: " + option + off));
     }
     CHECK_THAT(arena("raster map --dims 2 --step 2 --bounds 9,9,60,60" + husky).err, !Contains("notice"));
-    const std::string layers = "notice: --layers 2: no cell of the map has so many, the most is 2 layers (0 is the highest)\n";
-    for (const std::string command : {"sample map -n 1", "raster map --dims 2 --step 2", "raster map --dims 3 --step 2", "heatmap map --step 2 -o a.png"}) {
+    const std::string layers =
+        "notice: --layers 2: no cell of the map has so many, the most is 2 layers (0 is the highest)\n";
+    for (const std::string command : {"sample map -n 1", "raster map --dims 2 --step 2", "raster map --dims 3 --step 2",
+                                      "heatmap map --step 2 -o a.png"}) {
         INFO(command);
         CHECK(arena(command + " --layer 2" + husky).err.starts_with(layers));
         CHECK_THAT(arena(command + " --layer 1" + husky).err, !Contains("notice: --layers"));
@@ -464,7 +498,8 @@ TEST_CASE("the output of check can be checked again")
     CHECK(again.out == bytes_of(arena / "once.csv"));
     CHECK_THAT(again.err, Contains("notice: once.csv: column verdict is replaced by a new one\n"));
     arena.write("mixed.csv", "hit,x,verdict,y,z\nlamp,0,\"1,2\",0,0.1\n");
-    CHECK(arena("check map --poses mixed.csv" + husky).out == "x,y,z,verdict,ground,height_above,hit\n0,0,0.1,valid,-0.05,0.15000000000000002,\n");
+    CHECK(arena("check map --poses mixed.csv" + husky).out ==
+          "x,y,z,verdict,ground,height_above,hit\n0,0,0.1,valid,-0.05,0.15000000000000002,\n");
 }
 
 TEST_CASE("columns that are known but for their case are noticed")
@@ -491,11 +526,11 @@ TEST_CASE("--quiet silences all but errors")
 {
     const Arena arena;
     arena.write("poses.csv", "x,y,z\n0,0,0.1\n");
-    for (const std::string& arguments : {"bake " + scene + " -o new -q", std::string("info map -q"), "check map -q --poses poses.csv" + husky,
-                                         "raster map -q --dims 2 --step 2" + husky, "sample map -q -n 2" + husky,
-                                         "search map -q -n 2 --min-distance 0 --max-failures 9999" + husky,
-                                         "heatmap map -q --step 2 -o a.png" + husky,
-                                         "experiment map -q --dims 2 --steps 2 -o steps" + husky}) {
+    for (const std::string& arguments :
+         {"bake " + scene + " -o new -q", std::string("info map -q"), "check map -q --poses poses.csv" + husky,
+          "raster map -q --dims 2 --step 2" + husky, "sample map -q -n 2" + husky,
+          "search map -q -n 2 --min-distance 0 --max-failures 9999" + husky, "heatmap map -q --step 2 -o a.png" + husky,
+          "experiment map -q --dims 2 --steps 2 -o steps" + husky}) {
         INFO(arguments);
         const ProgramRun run = arena(arguments);
         CHECK(run.status == 0);
@@ -533,14 +568,16 @@ TEST_CASE("Ctrl-C ends long work with 130 and leaves old files as they were")
     const Arena arena;
     arena.write("out.csv", "old");
     const std::string before = bytes_of(arena / "map/map.yaml");
-    const std::string cases[] = {"raster map --dims 3 --step 0.02 --no-height-check -o out.csv" + husky,
-                                 "search map -n 5 --min-distance 0 --max-failures 2000000000 --bounds 0,0,50,1,1,60 -o out.csv" + husky,
-                                 "experiment map --dims 3 --steps 0.02 --no-height-check -o steps" + husky,
-                                 "bake " + scene + " -o map --resolution 0.0025"};
+    const std::string cases[] = {
+        "raster map --dims 3 --step 0.02 --no-height-check -o out.csv" + husky,
+        "search map -n 5 --min-distance 0 --max-failures 2000000000 --bounds 0,0,50,1,1,60 -o out.csv" + husky,
+        "experiment map --dims 3 --steps 0.02 --no-height-check -o steps" + husky,
+        "bake " + scene + " -o map --resolution 0.0025"};
     for (const std::string& arguments : cases) {
         INFO(arguments);
         const bool is_bake = arguments.starts_with("bake");
-        const ProgramRun run = interrupt_program(arena, arguments, 1.0, is_bake ? "HUP" : "INT");  // a lost terminal is the same
+        const ProgramRun run = interrupt_program(arena, arguments, 1.0,
+                                                 is_bake ? "HUP" : "INT");  // a lost terminal is the same
         CHECK(run.status == 130);
         CHECK(run.err == "spawnfield: interrupted; nothing was written\n");
         CHECK(bytes_of(arena / "out.csv") == "old");

@@ -38,7 +38,8 @@ Robot hull_robot()  // a square pyramid, point down
 
 TEST_CASE("a touching pair collides, and 1e-5 m of room is free, for all robots on sheets and boxes of all sizes")
 {
-    const std::vector<Robot> robots = {load_robot("box:0.99,0.67,0.39"), round_robot(ShapeKind::Sphere, {0.3, 0, 0}, {0, 0, 0.3}),
+    const std::vector<Robot> robots = {load_robot("box:0.99,0.67,0.39"),
+                                       round_robot(ShapeKind::Sphere, {0.3, 0, 0}, {0, 0, 0.3}),
                                        round_robot(ShapeKind::Cylinder, {0.3, 0.4, 0}, {0, 0, 0.2}),
                                        round_robot(ShapeKind::Capsule, {0.2, 0.4, 0}, {0, 0, 0.4}), hull_robot()};
     for (const double size : {0.5, 20.0, 500.0})
@@ -46,8 +47,12 @@ TEST_CASE("a touching pair collides, and 1e-5 m of room is free, for all robots 
             for (const double far : {0.0, 5000.0}) {
                 Scene scene;
                 const Pose at{{far, -far, 0.25}, Mat3::Identity()};
-                if (sheet) hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(size, size), at));
-                else hand::add_mesh(scene, Label::Terrain, hand::moved(hand::box({size, size, 1}), {at.position - Vec3(0, 0, 0.5), at.rotation}));
+                if (sheet)
+                    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(size, size), at));
+                else
+                    hand::add_mesh(
+                        scene, Label::Terrain,
+                        hand::moved(hand::box({size, size, 1}), {at.position - Vec3(0, 0, 0.5), at.rotation}));
                 const Geometry geometry(scene);
                 for (std::size_t r = 0; r < robots.size(); ++r) {
                     const CollisionChecker checker(geometry, robots[r]);
@@ -66,9 +71,11 @@ TEST_CASE("a touching pair collides, and 1e-5 m of room is free, for all robots 
 
 TEST_CASE("a triangle without width is the line that it is, wherever rounding has its normal point")
 {
-    const Vec3 a(-0.62318147753626363, 0.06041809955604549, 0.16091240120913852), b(0.15029675587186375, 0.17413353081724381, -0.21990618847556576);
-    const std::vector<Robot> robots = {round_robot(ShapeKind::Sphere, {0.065, 0, 0}, {0, 0, 0}), round_robot(ShapeKind::Sphere, {1, 0, 0}, {0, 0, 0}),
-                                       round_robot(ShapeKind::Capsule, {0.065, 0.01, 0}, {0, 0, 0}), load_robot("box:0.1,0.1,0.1@0,0,0")};
+    const Vec3 a(-0.62318147753626363, 0.06041809955604549, 0.16091240120913852),
+        b(0.15029675587186375, 0.17413353081724381, -0.21990618847556576);
+    const std::vector<Robot> robots = {
+        round_robot(ShapeKind::Sphere, {0.065, 0, 0}, {0, 0, 0}), round_robot(ShapeKind::Sphere, {1, 0, 0}, {0, 0, 0}),
+        round_robot(ShapeKind::Capsule, {0.065, 0.01, 0}, {0, 0, 0}), load_robot("box:0.1,0.1,0.1@0,0,0")};
     for (const double width : {0.0, 1e-17, 1e-15, 1e-12})
         for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.3, -0.2, 1)}) {
             Scene scene;
@@ -171,11 +178,14 @@ TEST_CASE("what is found in a box of space is what the rectangle below it holds 
         const Vec3 low(random.between(-1, 9), random.between(-1, 9), random.between(-2, 60));
         const Bounds space{low, low + Vec3(random.between(0, 2), random.between(0, 2), random.between(0, 3))};
         std::vector<std::uint32_t> expected, visited;
-        geometry.impl().visit_in(space.min.x(), space.min.y(), space.max.x(), space.max.y(), [&](const Tile& tile, std::uint32_t element) {
-            const ElementBox& box = tile.boxes[element];
-            if (box.min[2] <= space.max.z() && box.max[2] >= space.min.z()) expected.push_back(tile.ids[element]);
-        });
-        geometry.impl().visit_in(space, [&](const Tile& tile, std::uint32_t element) { visited.push_back(tile.ids[element]); });
+        geometry.impl().visit_in(space.min.x(), space.min.y(), space.max.x(), space.max.y(),
+                                 [&](const Tile& tile, std::uint32_t element) {
+                                     const ElementBox& box = tile.boxes[element];
+                                     if (box.min[2] <= space.max.z() && box.max[2] >= space.min.z())
+                                         expected.push_back(tile.ids[element]);
+                                 });
+        geometry.impl().visit_in(
+            space, [&](const Tile& tile, std::uint32_t element) { visited.push_back(tile.ids[element]); });
         CHECK(visited == expected);
         found += visited.size();
     }

@@ -20,7 +20,10 @@ Shape box_at(const Vec3& size, const Vec3& centre)
 
 Column column(const Scene& scene, double x, double y) { return column_at(Geometry(scene), x, y); }
 
-std::optional<Ground> ground(const Scene& scene, const Vec3& p) { return ground_below(column(scene, p.x(), p.y()), p.z()); }
+std::optional<Ground> ground(const Scene& scene, const Vec3& p)
+{
+    return ground_below(column(scene, p.x(), p.y()), p.z());
+}
 
 }  // namespace
 
@@ -68,15 +71,15 @@ TEST_CASE("intervals of stacked and sunken terrain are joined")
 {
     Scene scene;
     hand::add_shape(scene, Label::Terrain, box_at({4, 4, 1}, {0, 0, 0.5}));
-    hand::add_shape(scene, Label::Terrain, box_at({2, 2, 1}, {0, 0, 1.5}));           // stands on it
-    hand::add_shape(scene, Label::Terrain, box_at({1, 1, 0.5}, {1.5, 1.5, 0.5}));      // is sunk in it
-    hand::add_shape(scene, Label::Obstacle, box_at({1, 1, 1}, {-1.5, -1.5, 1.5}));     // stands on it too
+    hand::add_shape(scene, Label::Terrain, box_at({2, 2, 1}, {0, 0, 1.5}));         // stands on it
+    hand::add_shape(scene, Label::Terrain, box_at({1, 1, 0.5}, {1.5, 1.5, 0.5}));   // is sunk in it
+    hand::add_shape(scene, Label::Obstacle, box_at({1, 1, 1}, {-1.5, -1.5, 1.5}));  // stands on it too
     CHECK(column(scene, 0, 0).layers == Heights{2});
     CHECK(column(scene, 1.5, 1.5).layers == Heights{1});
     CHECK(column(scene, -1.6, -1.6).layers == Heights{1});  // under the obstacle
-    CHECK(ground(scene, {0, 0, 1.2})->height == 1);          // single pieces count for the ground
+    CHECK(ground(scene, {0, 0, 1.2})->height == 1);         // single pieces count for the ground
     CHECK_FALSE(ground(scene, {-1.6, -1.6, 2.5})->terrain);
-    CHECK_FALSE(ground(scene, {1.5, 1.5, 0.2}));             // inside the hill: none
+    CHECK_FALSE(ground(scene, {1.5, 1.5, 0.2}));  // inside the hill: none
 }
 
 TEST_CASE("terrain wins over an obstacle at the same height")
@@ -107,7 +110,8 @@ TEST_CASE("a line through a common edge or corner of a sheet gives one layer")
 {
     Scene scene;
     hand::add_mesh(scene, Label::Terrain, hand::relief(8, 8, [](double x, double y) { return 0.25 * x + 0.5 * y; }));
-    for (const auto& [x, y] : {std::pair{0.0, 0.0}, std::pair{0.5, 0.0}, std::pair{0.5, -0.5}, std::pair{-4.0, 4.0}, std::pair{0.5, 0.5}}) {
+    for (const auto& [x, y] :
+         {std::pair{0.0, 0.0}, std::pair{0.5, 0.0}, std::pair{0.5, -0.5}, std::pair{-4.0, 4.0}, std::pair{0.5, 0.5}}) {
         CAPTURE(x, y);
         REQUIRE(column(scene, x, y).layers.size() == 1);
         CHECK(column(scene, x, y).layers[0] == Approx(0.25 * x + 0.5 * y).margin(1e-12));
@@ -131,7 +135,8 @@ TEST_CASE("columns through round bodies end where their equations say")
     standing.kind = ShapeKind::Capsule;
     standing.pose = {{20, 0, 0}, Mat3::Identity()};
     hand::add_shape(scene, Label::Terrain, standing);
-    for (const double d : {0.0, 0.7, 2.9}) CHECK(column(scene, 1 + d, 2).layers[0] == Approx(-1 + std::sqrt(9 - d * d)));
+    for (const double d : {0.0, 0.7, 2.9})
+        CHECK(column(scene, 1 + d, 2).layers[0] == Approx(-1 + std::sqrt(9 - d * d)));
     CHECK(column(scene, 4.01, 2).layers.empty());
     for (const double d : {0.0, 0.3, 0.49}) {
         CHECK(column(scene, 10 + d, 1.9).layers[0] == Approx(std::sqrt(0.25 - d * d)));

@@ -43,9 +43,11 @@ std::string described(const Bounds& bounds)
 std::string described(const RasterOptions& options)
 {
     std::ostringstream out = exact_numbers();
-    out << "raster --dims " << options.dims << (options.height_check ? "" : " --no-height-check") << (options.snap ? " --snap" : "") << " --step " << options.step
-        << " --step-z " << options.step_z << " --offset " << options.offset.value_or(std::nan("")) << " --max-height " << options.max_height << " max-slope " << options.max_slope << " yaw "
-        << options.yaw << " layers " << int(options.layers.kind) << " bounds " << described(options.bounds);
+    out << "raster --dims " << options.dims << (options.height_check ? "" : " --no-height-check")
+        << (options.snap ? " --snap" : "") << " --step " << options.step << " --step-z " << options.step_z
+        << " --offset " << options.offset.value_or(std::nan("")) << " --max-height " << options.max_height
+        << " max-slope " << options.max_slope << " yaw " << options.yaw << " layers " << int(options.layers.kind)
+        << " bounds " << described(options.bounds);
     return out.str();
 }
 
@@ -60,7 +62,9 @@ std::string described(const Judgement& judged)
 {
     std::ostringstream out = exact_numbers();
     out << to_string(judged.verdict);
-    if (judged.ground) out << ", ground " << judged.ground->height << " of part " << judged.ground->part << (judged.ground->terrain ? ", terrain" : "");
+    if (judged.ground)
+        out << ", ground " << judged.ground->height << " of part " << judged.ground->part
+            << (judged.ground->terrain ? ", terrain" : "");
     if (judged.hit) out << ", hit part " << judged.hit->part;
     return out.str();
 }
@@ -79,14 +83,18 @@ std::string two(const std::string& query, const std::string& fast, const std::st
 
 bool same(const RasterPose& a, const RasterPose& b)
 {
-    return a.x == b.x && a.y == b.y && a.z == b.z && a.layer == b.layer && a.verdict == b.verdict && a.snapped == b.snapped;
+    return a.x == b.x && a.y == b.y && a.z == b.z && a.layer == b.layer && a.verdict == b.verdict &&
+           a.snapped == b.snapped;
 }
 
 bool same(const Judgement& a, const Judgement& b)
 {
-    if (a.verdict != b.verdict || a.ground.has_value() != b.ground.has_value() || a.hit.has_value() != b.hit.has_value()) return false;
+    if (a.verdict != b.verdict || a.ground.has_value() != b.ground.has_value() ||
+        a.hit.has_value() != b.hit.has_value())
+        return false;
     if (a.hit && a.hit->part != b.hit->part) return false;
-    return !a.ground || (a.ground->height == b.ground->height && a.ground->terrain == b.ground->terrain && a.ground->part == b.ground->part);
+    return !a.ground || (a.ground->height == b.ground->height && a.ground->terrain == b.ground->terrain &&
+                         a.ground->part == b.ground->part);
 }
 
 void compare_spawns(const std::string& query, const SpawnList& fast, const SpawnList& slow, Tally& tally)
@@ -96,7 +104,8 @@ void compare_spawns(const std::string& query, const SpawnList& fast, const Spawn
     for (std::size_t i = 0; i < std::min(fast.spawns.size(), slow.spawns.size()); ++i) {
         count(tally, Verdict::Valid);
         const Spawn &a = fast.spawns[i], &b = slow.spawns[i];
-        if (a.position != b.position || a.yaw != b.yaw) note(tally, two(query + " spawn " + std::to_string(i), described(a), described(b)));
+        if (a.position != b.position || a.yaw != b.yaw)
+            note(tally, two(query + " spawn " + std::to_string(i), described(a), described(b)));
     }
     if (fast.spawns.size() != slow.spawns.size())
         note(tally, two(query + " spawns", std::to_string(fast.spawns.size()), std::to_string(slow.spawns.size())));
@@ -124,18 +133,22 @@ Tally of_raster(const TestMap& map, const CollisionChecker& checker, const Raste
     tally.exact = fast.exact_checks;
     for (std::size_t i = 0; i < std::min(fast.poses.size(), slow.poses.size()); ++i) {
         count(tally, slow.poses[i].verdict);
-        if (!same(fast.poses[i], slow.poses[i])) note(tally, two(described(options), described(fast.poses[i]), described(slow.poses[i])));
+        if (!same(fast.poses[i], slow.poses[i]))
+            note(tally, two(described(options), described(fast.poses[i]), described(slow.poses[i])));
     }
     if (fast.poses.size() != slow.poses.size())
-        note(tally, two(described(options) + " poses", std::to_string(fast.poses.size()), std::to_string(slow.poses.size())));
+        note(tally,
+             two(described(options) + " poses", std::to_string(fast.poses.size()), std::to_string(slow.poses.size())));
     else if (fast.counts != slow.counts)
         note(tally, described(options) + ": counts differ");
     return tally;
 }
 
-Tally of_check(const TestMap& map, const CollisionChecker& checker, const std::vector<Pose>& poses, const QueryOptions& options)
+Tally of_check(const TestMap& map, const CollisionChecker& checker, const std::vector<Pose>& poses,
+               const QueryOptions& options)
 {
-    const std::vector<Judgement> fast = check_poses(map, checker, poses, options), slow = check_poses(map, checker, poses, exhaustive(options));
+    const std::vector<Judgement> fast = check_poses(map, checker, poses, options),
+                                 slow = check_poses(map, checker, poses, exhaustive(options));
     Tally tally;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         count(tally, slow[i].verdict);
@@ -144,7 +157,8 @@ Tally of_check(const TestMap& map, const CollisionChecker& checker, const std::v
         tally.proven_valid += fast[i].verdict == Verdict::Valid && !fast[i].exact_check;
         tally.proven_collision += fast[i].verdict == Verdict::Collision && !fast[i].exact_check;
         if (same(fast[i], slow[i])) continue;
-        const std::string query = "check --max-height " + std::to_string(options.max_height) + " max-slope " + std::to_string(options.max_slope) + " " + described(poses[i]);
+        const std::string query = "check --max-height " + std::to_string(options.max_height) + " max-slope " +
+                                  std::to_string(options.max_slope) + " " + described(poses[i]);
         note(tally, two(query, described(fast[i]), described(slow[i])));
     }
     return tally;
@@ -154,8 +168,10 @@ Tally of_sample(const TestMap& map, const CollisionChecker& checker, const Sampl
 {
     Tally tally;
     std::ostringstream query = exact_numbers();
-    query << "sample -n " << options.count << " --min-distance " << options.min_distance << " --offset " << options.offset.value_or(std::nan("")) << " max-slope "
-          << options.max_slope << " --seed " << options.seed << " yaw " << (options.random_yaw ? "random" : std::to_string(options.yaw)) << " bounds " << described(options.bounds);
+    query << "sample -n " << options.count << " --min-distance " << options.min_distance << " --offset "
+          << options.offset.value_or(std::nan("")) << " max-slope " << options.max_slope << " --seed " << options.seed
+          << " yaw " << (options.random_yaw ? "random" : std::to_string(options.yaw)) << " bounds "
+          << described(options.bounds);
     compare_spawns(query.str(), sample(map, checker, options), sample(map, checker, exhaustive(options)), tally);
     return tally;
 }
@@ -165,10 +181,12 @@ Tally of_search(const TestMap& map, const CollisionChecker& checker, const Searc
     const SpawnList fast = search(map, checker, options), slow = search(map, checker, exhaustive(options));
     Tally tally;
     std::ostringstream query = exact_numbers();
-    query << "search -n " << options.count << " --min-distance " << options.min_distance << " --max-failures " << options.max_failures
-          << " --max-height " << options.max_height << " max-slope " << options.max_slope << " --seed " << options.seed << " bounds " << described(options.bounds);
+    query << "search -n " << options.count << " --min-distance " << options.min_distance << " --max-failures "
+          << options.max_failures << " --max-height " << options.max_height << " max-slope " << options.max_slope
+          << " --seed " << options.seed << " bounds " << described(options.bounds);
     compare_spawns(query.str(), fast, slow, tally);
-    if (fast.counts != slow.counts || fast.draws != slow.draws || fast.too_close != slow.too_close) note(tally, query.str() + ": counts differ");
+    if (fast.counts != slow.counts || fast.draws != slow.draws || fast.too_close != slow.too_close)
+        note(tally, query.str() + ": counts differ");
     return tally;
 }
 
@@ -198,10 +216,11 @@ Bounds crop_near(const TestMap& map, Random& random, double step, int cols)
     const int count = int(scene.triangles.size() + scene.primitives.size());
     const auto pick = std::size_t(random.below(count));
     const bool face = pick < scene.triangles.size();
-    const Vec3 near = face ? scene.vertices[scene.triangles[pick][0]] : scene.primitives[pick - scene.triangles.size()].shape.pose.position;
+    const Vec3 near = face ? scene.vertices[scene.triangles[pick][0]]
+                           : scene.primitives[pick - scene.triangles.size()].shape.pose.position;
     Bounds crop;
     const bool beyond = random.chance(0.15);  // the map's bounds: else only where it is wider than they are
-    for (int axis = 0; axis < 2; ++axis) {  // on the raster's own lattice, so that a step of a cell stays on it
+    for (int axis = 0; axis < 2; ++axis) {    // on the raster's own lattice, so that a step of a cell stays on it
         const double low = map.bounds.min[axis], room = map.bounds.max[axis] - low - step * (cols - 1);
         double shift = near[axis] - low - step * cols * random.between(0.2, 0.8);
         if (!beyond) shift = std::clamp(shift, 0.0, std::max(0.0, room));
@@ -217,8 +236,8 @@ std::string described(const Pose& pose)
 {
     std::ostringstream out = exact_numbers();
     const Mat3& r = pose.rotation;
-    out << "at " << pose.position.transpose() << " rpy " << std::atan2(r(2, 1), r(2, 2)) << " " << std::asin(std::clamp(-r(2, 0), -1.0, 1.0)) << " "
-        << std::atan2(r(1, 0), r(0, 0));
+    out << "at " << pose.position.transpose() << " rpy " << std::atan2(r(2, 1), r(2, 2)) << " "
+        << std::asin(std::clamp(-r(2, 0), -1.0, 1.0)) << " " << std::atan2(r(1, 0), r(0, 0));
     return out.str();
 }
 
@@ -228,8 +247,10 @@ std::string described(const Robot& robot)
     std::ostringstream out = exact_numbers();
     for (const RobotPart& part : robot.parts) {
         out << "  " << kinds[std::size_t(part.shape.kind)];
-        if (part.shape.kind == ShapeKind::Hull) out << " of " << part.hull_vertices.size() << " corners";
-        else out << " " << part.shape.size.transpose() << " " << described(part.shape.pose);
+        if (part.shape.kind == ShapeKind::Hull)
+            out << " of " << part.hull_vertices.size() << " corners";
+        else
+            out << " " << part.shape.size.transpose() << " " << described(part.shape.pose);
         out << "\n";
     }
     return out.str();

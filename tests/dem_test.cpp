@@ -61,9 +61,13 @@ std::filesystem::path write(const TempFolder& folder, const GeoFile& geo, const 
     const Tiff tiff = open_tiff(file, "w");
     REQUIRE(tiff);
     const auto rows = std::uint32_t(geo.heights.size()) / geo.cols;
-    for (const auto& [tag, value] : {std::pair<std::uint32_t, std::uint32_t>{TIFFTAG_IMAGEWIDTH, geo.cols}, {TIFFTAG_IMAGELENGTH, rows},
-                                     {TIFFTAG_BITSPERSAMPLE, geo.bits}, {TIFFTAG_SAMPLEFORMAT, geo.format}, {TIFFTAG_SAMPLESPERPIXEL, 1},
-                                     {TIFFTAG_PHOTOMETRIC, geo.photometric}, {TIFFTAG_ROWSPERSTRIP, 1}})
+    for (const auto& [tag, value] : {std::pair<std::uint32_t, std::uint32_t>{TIFFTAG_IMAGEWIDTH, geo.cols},
+                                     {TIFFTAG_IMAGELENGTH, rows},
+                                     {TIFFTAG_BITSPERSAMPLE, geo.bits},
+                                     {TIFFTAG_SAMPLEFORMAT, geo.format},
+                                     {TIFFTAG_SAMPLESPERPIXEL, 1},
+                                     {TIFFTAG_PHOTOMETRIC, geo.photometric},
+                                     {TIFFTAG_ROWSPERSTRIP, 1}})
         TIFFSetField(tiff.get(), tag, value);
     set(tiff.get(), 33550, geo.scale);
     set(tiff.get(), 33922, geo.tie);
@@ -78,10 +82,14 @@ std::filesystem::path write(const TempFolder& folder, const GeoFile& geo, const 
         const auto add = [&](auto typed) { bytes.append(reinterpret_cast<const char*>(&typed), sizeof typed); };
         for (std::uint32_t col = 0; col < geo.cols; ++col) {
             const double z = geo.heights[row * geo.cols + col];
-            if (geo.format == SAMPLEFORMAT_IEEEFP && geo.bits == 64) add(z);
-            else if (geo.format == SAMPLEFORMAT_IEEEFP) add(float(z));
-            else if (geo.bits == 16) add(std::uint16_t(std::int64_t(z)));
-            else add(std::uint32_t(std::int64_t(z)));
+            if (geo.format == SAMPLEFORMAT_IEEEFP && geo.bits == 64)
+                add(z);
+            else if (geo.format == SAMPLEFORMAT_IEEEFP)
+                add(float(z));
+            else if (geo.bits == 16)
+                add(std::uint16_t(std::int64_t(z)));
+            else
+                add(std::uint32_t(std::int64_t(z)));
         }
         REQUIRE(TIFFWriteScanline(tiff.get(), bytes.data(), row) == 1);
     }
@@ -108,7 +116,8 @@ void check_origin(const Scene& scene, double x, double y, const std::string& crs
 
 bool tells(const Scene& scene, const std::string& text)
 {
-    return std::any_of(scene.notices.begin(), scene.notices.end(), [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
+    return std::any_of(scene.notices.begin(), scene.notices.end(),
+                       [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
 }
 
 const std::string item = "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">";
@@ -149,13 +158,14 @@ TEST_CASE("pixels are areas with their heights in the middle, or points with the
 TEST_CASE("heights of all kinds of pixels are metres")
 {
     const TempFolder folder;
-    const auto [bits, format] = GENERATE(std::pair{16, SAMPLEFORMAT_INT}, std::pair{32, SAMPLEFORMAT_INT}, std::pair{32, SAMPLEFORMAT_IEEEFP},
-                                         std::pair{64, SAMPLEFORMAT_IEEEFP});
+    const auto [bits, format] = GENERATE(std::pair{16, SAMPLEFORMAT_INT}, std::pair{32, SAMPLEFORMAT_INT},
+                                         std::pair{32, SAMPLEFORMAT_IEEEFP}, std::pair{64, SAMPLEFORMAT_IEEEFP});
     CAPTURE(bits, format);
     const Scene below = load_scene(write(folder, {.heights = {-7, -6, -5, 400, 5, 6}, .bits = bits, .format = format}));
     CHECK(height(below, -2, 2.5) == -7);
     CHECK(height(below, -2, -2.5) == 400);
-    const Scene whole = load_scene(write(folder, {.heights = {7, 6, 5, 40000, 5, 6}, .bits = 16, .format = SAMPLEFORMAT_UINT}));
+    const Scene whole = load_scene(
+        write(folder, {.heights = {7, 6, 5, 40000, 5, 6}, .bits = 16, .format = SAMPLEFORMAT_UINT}));
     CHECK(height(whole, -2, -2.5) == 40000);
     CHECK(tells(whole, "heights are whole numbers, taken as metres"));
     SceneOptions options;
@@ -166,7 +176,8 @@ TEST_CASE("heights of all kinds of pixels are metres")
 TEST_CASE("feet become metres, and it is told")
 {
     const TempFolder folder;
-    const Scene feet = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 2225}, {3076, 9003}, {4099, 9002}})}));
+    const Scene feet = load_scene(
+        write(folder, {.keys = keys_of({{1024, 1}, {3072, 2225}, {3076, 9003}, {4099, 9002}})}));
     constexpr double foot = 1200.0 / 3937;
     CHECK(feet.bounds().max.x() == Approx(2 * foot));
     CHECK(feet.bounds().max.z() == Approx(6 * 0.3048));
@@ -183,7 +194,8 @@ TEST_CASE("feet become metres, and it is told")
     const Scene unknown = load_scene(write(folder, {.keys = keys_of({{1024, 1}})}));
     CHECK(unknown.bounds().max.x() == 2);
     CHECK(tells(unknown, "does not tell the unit of x and y, which are taken as metres"));
-    CHECK(load_scene(write(folder, {.metadata = item + "ft</Item></GDALMetadata>"})).bounds().max.z() == Approx(6 * 0.3048));
+    CHECK(load_scene(write(folder, {.metadata = item + "ft</Item></GDALMetadata>"})).bounds().max.z() ==
+          Approx(6 * 0.3048));
     CHECK(load_scene(write(folder, {.metadata = item + "metre</Item></GDALMetadata>"})).bounds().max.z() == 6);
 }
 
@@ -191,8 +203,9 @@ TEST_CASE("the unit of x and y is that of the EPSG code where no key tells it, a
 {
     const TempFolder folder;
     // As GDAL 3.6 writes EPSG:2263+6360 and, with GEOTIFF_VERSION=1.1, EPSG:2263: units as gdalinfo tells them.
-    const auto [code, unit] = GENERATE(std::pair{2263, 1200.0 / 3937}, std::pair{2222, 0.3048}, std::pair{25832, 1.0}, std::pair{3035, 1.0},
-                                       std::pair{2193, 1.0}, std::pair{3167, 20.116756}, std::pair{7405, 1.0});
+    const auto [code, unit] = GENERATE(std::pair{2263, 1200.0 / 3937}, std::pair{2222, 0.3048}, std::pair{25832, 1.0},
+                                       std::pair{3035, 1.0}, std::pair{2193, 1.0}, std::pair{3167, 20.116756},
+                                       std::pair{7405, 1.0});
     CAPTURE(code);
     const Scene scene = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}})}));
     CHECK(scene.bounds().max.x() == Approx(2 * unit).epsilon(1e-12));
@@ -207,7 +220,8 @@ TEST_CASE("the unit of x and y is that of the EPSG code where no key tells it, a
 TEST_CASE("heights have the unit of their vertical system's EPSG code")
 {
     const TempFolder folder;
-    const auto [code, unit] = GENERATE(std::pair{8228, 0.3048}, std::pair{6360, 1200.0 / 3937}, std::pair{5703, 1.0}, std::pair{5730, 1.0}, std::pair{4979, 1.0});
+    const auto [code, unit] = GENERATE(std::pair{8228, 0.3048}, std::pair{6360, 1200.0 / 3937}, std::pair{5703, 1.0},
+                                       std::pair{5730, 1.0}, std::pair{4979, 1.0});
     CAPTURE(code);
     const Scene scene = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, code}})}));
     CHECK(scene.bounds().max.x() == 2);
@@ -222,25 +236,35 @@ TEST_CASE("where the units of heights disagree the first that GDAL takes counts,
     const TempFolder folder;
     const bool by_band = GENERATE(false, true);
     const std::string metadata = by_band ? item + "m</Item></GDALMetadata>" : "";
-    const Scene scene = load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}, {4099, 9001}}), .metadata = metadata}));
+    const Scene scene = load_scene(
+        write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}, {4099, 9001}}), .metadata = metadata}));
     CHECK(scene.bounds().max.z() == Approx(by_band ? 6 : 6 * 1200.0 / 3937));
-    CHECK(tells(scene, by_band ? "says that heights are in units of 1 m by \"m\", and of 0.30480060960121924 m by EPSG:6360 (VerticalGeoKey); they are taken by the first"
-                               : "m by EPSG:6360 (VerticalGeoKey), and of 1 m by 9001 (VerticalUnitsGeoKey); they are taken by the first"));
-    CHECK_FALSE(tells(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}}), .metadata = item + "ft</Item></GDALMetadata>"})), "says that"));
+    CHECK(tells(scene, by_band ? "says that heights are in units of 1 m by \"m\", and of 0.30480060960121924 m by "
+                                 "EPSG:6360 (VerticalGeoKey); they are taken by the first"
+                               : "m by EPSG:6360 (VerticalGeoKey), and of 1 m by 9001 (VerticalUnitsGeoKey); they are "
+                                 "taken by the first"));
+    CHECK_FALSE(tells(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}}),
+                                                .metadata = item + "ft</Item></GDALMetadata>"})),
+                      "says that"));
     // A system that nobody knows does no harm where the unit is told.
-    CHECK(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 5199}, {4099, 9002}})})).bounds().max.z() == Approx(6 * 0.3048));
+    CHECK(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 5199}, {4099, 9002}})}))
+              .bounds()
+              .max.z() == Approx(6 * 0.3048));
 }
 
 TEST_CASE("depths are heights turned round, and it is told")
 {
     const TempFolder folder;
-    const GeoFile geo{.heights = {1, 2, -9999, 4, 5, 6}, .keys = keys_of({{1024, 1}, {3072, 32633}, {4096, 5336}}), .no_data = "-9999"};
+    const GeoFile geo{.heights = {1, 2, -9999, 4, 5, 6},
+                      .keys = keys_of({{1024, 1}, {3072, 32633}, {4096, 5336}}),
+                      .no_data = "-9999"};
     const Scene scene = load_scene(write(folder, geo));
     CHECK(scene.bounds().min.z() == -6);
     CHECK(scene.bounds().max.z() == -1);
     CHECK(height(scene, -2, 2.5) == -1);
     CHECK(scene.triangles.size() == 3);
-    CHECK(tells(scene, "has depths by EPSG:5336 (VerticalGeoKey), which counts downwards; the heights are their negatives"));
+    CHECK(tells(scene,
+                "has depths by EPSG:5336 (VerticalGeoKey), which counts downwards; the heights are their negatives"));
 }
 
 TEST_CASE("tiles are in the same unit whichever way they tell it")
@@ -249,7 +273,8 @@ TEST_CASE("tiles are in the same unit whichever way they tell it")
     write(folder, {.keys = keys_of({{1024, 1}, {3072, 2263}, {3076, 9003}})}, "w.tif");
     write(folder, {.tie = {0, 0, 0, 500004, 4000010, 0}, .keys = keys_of({{1024, 1}, {3072, 2263}})}, "e.tif");
     const std::string origin = ", origin: [500005, 4000005]}}\n";
-    const Scene scene = load_parts(folder, "  - {name: w, label: terrain, heightmap: {file: w.tif" + origin + "  - {name: e, label: terrain, heightmap: {file: e.tif" + origin);
+    const Scene scene = load_parts(folder, "  - {name: w, label: terrain, heightmap: {file: w.tif" + origin +
+                                               "  - {name: e, label: terrain, heightmap: {file: e.tif" + origin);
     CHECK_FALSE(tells(scene, "an earlier part"));
 }
 
@@ -257,14 +282,21 @@ TEST_CASE("EPSG codes that tell no unit are refused with what to do")
 {
     const TempFolder folder;
     const auto check_refused = [&](int code, const std::string& reason) {
-        CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}})})), (folder / "a.tif").string() + ": " + reason);
+        CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}})})),
+                          (folder / "a.tif").string() + ": " + reason);
     };
-    check_refused(4326, "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres such "
-                        "as the UTM zone's");
-    CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 4978}})})), Contains("(geocentric, EPSG:4978)"));
+    check_refused(4326,
+                  "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where "
+                  "CODE is a projection in metres such "
+                  "as the UTM zone's");
+    CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 4978}})})),
+                      Contains("(geocentric, EPSG:4978)"));
     for (const int code : {30000, 5703})  // none, heights alone
-        check_refused(code, "is in EPSG:" + std::to_string(code) + ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives "
-                            "it another, or tell its spacing in metres with the key cell");
+        check_refused(
+            code,
+            "is in EPSG:" + std::to_string(code) +
+                ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives "
+                "it another, or tell its spacing in metres with the key cell");
     SceneOptions options;
     options.heightmap = "cell: 3";
     CHECK(load_scene(folder / "a.tif", options).bounds().max.x() == 3);
@@ -291,15 +323,19 @@ TEST_CASE("heights that are no data are no terrain")
     };
     const Doubles heights{1, 2, -9999, 4, 5, 6};
     check_hole(load_scene(write(folder, {.heights = heights, .no_data = "-9999"})));
-    check_hole(load_scene(write(folder, {.heights = heights, .bits = 16, .format = SAMPLEFORMAT_INT, .no_data = " -9999.0 "})));
+    check_hole(load_scene(
+        write(folder, {.heights = heights, .bits = 16, .format = SAMPLEFORMAT_INT, .no_data = " -9999.0 "})));
     check_hole(load_scene(write(folder, {.heights = {1, 2, hole, 4, 5, 6}, .no_data = "nan"})));
     // Text and pixel differ by rounding: GDAL writes the float's decimals, others fewer.
-    check_hole(load_scene(write(folder, {.heights = {1, 2, -3.4028234663852886e38, 4, 5, 6}, .no_data = "-3.4028235e+38"})));
+    check_hole(
+        load_scene(write(folder, {.heights = {1, 2, -3.4028234663852886e38, 4, 5, 6}, .no_data = "-3.4028235e+38"})));
     // A value that no float holds was stored as infinite; a double holds it.
     constexpr double infinite = std::numeric_limits<double>::infinity();
     const GeoFile beyond{.heights = {1, 2, -infinite, 4, 5, 6}, .no_data = "-1e+100"};
     check_hole(load_scene(write(folder, beyond)));
-    const auto check_infinite = [&](GeoFile geo) { CHECK_THROWS_WITH(load_scene(write(folder, geo)), Contains("row 0, column 2 is infinite")); };
+    const auto check_infinite = [&](GeoFile geo) {
+        CHECK_THROWS_WITH(load_scene(write(folder, geo)), Contains("row 0, column 2 is infinite"));
+    };
     GeoFile wrong = beyond;
     wrong.heights[2] = infinite;
     check_infinite(wrong);
@@ -314,8 +350,10 @@ TEST_CASE("heights that are no data are no terrain")
     CHECK(deep.bounds().min.z() == -9999);
     CHECK(tells(deep, "the lowest height is -9999 m, which often means no data; if so: --heightmap 'nodata: -9999'"));
     for (const int system : {8228, 5336})  // feet, depths
-        CHECK(tells(load_scene(write(folder, {.heights = heights, .keys = keys_of({{1024, 1}, {3072, 26910}, {4096, system}})}, "b.tif")),
-                    "the lowest value is -9999, which often means no data; if so: --heightmap 'nodata: -9999'"));
+        CHECK(tells(
+            load_scene(write(folder, {.heights = heights, .keys = keys_of({{1024, 1}, {3072, 26910}, {4096, system}})},
+                             "b.tif")),
+            "the lowest value is -9999, which often means no data; if so: --heightmap 'nodata: -9999'"));
     SceneOptions options;
     options.heightmap = "nodata: -9999";
     check_hole(load_scene(plain, options));
@@ -327,7 +365,11 @@ TEST_CASE("values are values where 0 is white, but of a plain picture white is h
 {
     const TempFolder folder;
     const Doubles heights{1, 2, 65535, 4, 5, 6};
-    const GeoFile survey{.heights = heights, .bits = 16, .format = SAMPLEFORMAT_UINT, .no_data = "65535", .photometric = PHOTOMETRIC_MINISWHITE};
+    const GeoFile survey{.heights = heights,
+                         .bits = 16,
+                         .format = SAMPLEFORMAT_UINT,
+                         .no_data = "65535",
+                         .photometric = PHOTOMETRIC_MINISWHITE};
     const Scene scene = load_scene(write(folder, survey));
     CHECK(scene.bounds().min.z() == 1);
     CHECK(scene.bounds().max.z() == 6);
@@ -350,36 +392,54 @@ TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
 {
     const TempFolder folder;
     const std::string start = (folder / "a.tif").string() + ": ";
-    const std::string known_units = ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they are";
-    const auto check_refused = [&](const GeoFile& geo, const std::string& reason) { CHECK_THROWS_WITH(load_scene(write(folder, geo)), start + reason); };
+    const std::string known_units =
+        ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they "
+        "are";
+    const auto check_refused = [&](const GeoFile& geo, const std::string& reason) {
+        CHECK_THROWS_WITH(load_scene(write(folder, geo)), start + reason);
+    };
     check_refused({.keys = keys_of({{1024, 2}, {2048, 4326}})},
-                  "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres "
+                  "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where "
+                  "CODE is a projection in metres "
                   "such as the UTM zone's");
     CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 3}})})), Contains("geocentric"));
     check_refused({.scale = {0.001, 0.001, 0}, .tie = {0, 0, 0, -113.5, 48.25, 0}, .keys = {}},
-                  "has cells of 0.001 at x -113.4995, y 48.2495, which look like degrees, needs metres; reproject it (gdalwarp -t_srs EPSG:32612 "
+                  "has cells of 0.001 at x -113.4995, y 48.2495, which look like degrees, needs metres; reproject it "
+                  "(gdalwarp -t_srs EPSG:32612 "
                   "IN OUT.tif), or tell its spacing in metres with the key cell");
-    check_refused({.scale = {}, .tie = {}, .transformation = {2, 0.1, 0, 5, 0, -5, 0, 4, 0, 0, 0, 0, 0, 0, 0, 1}},
-                  "is rotated against its coordinates (ModelTransformation), needs rows from west to east; gdalwarp makes it so");
-    check_refused({.scale = {}, .tie = {}, .transformation = {2, 0, 0, 5, 0, 5, 0, 4, 0, 0, 0, 0, 0, 0, 0, 1}},
-                  "has a pixel scale of 2, -5, needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
-    check_refused({.scale = {}}, "has 1 tie points and no pixel scale (ModelPixelScale), needs one of each, or a ModelTransformation; gdalwarp makes it so");
-    check_refused({.scale = {0, 5, 0}}, "has a pixel scale of 0, 5, needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
+    check_refused(
+        {.scale = {}, .tie = {}, .transformation = {2, 0.1, 0, 5, 0, -5, 0, 4, 0, 0, 0, 0, 0, 0, 0, 1}},
+        "is rotated against its coordinates (ModelTransformation), needs rows from west to east; gdalwarp makes it so");
+    check_refused(
+        {.scale = {}, .tie = {}, .transformation = {2, 0, 0, 5, 0, 5, 0, 4, 0, 0, 0, 0, 0, 0, 0, 1}},
+        "has a pixel scale of 2, -5, needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
+    check_refused({.scale = {}},
+                  "has 1 tie points and no pixel scale (ModelPixelScale), needs one of each, or a ModelTransformation; "
+                  "gdalwarp makes it so");
+    check_refused(
+        {.scale = {0, 5, 0}},
+        "has a pixel scale of 0, 5, needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
     check_refused({.tie = {0, 0, 0, hole, 5, 0}}, "has a place or pixel scale that is not finite");
     check_refused({.keys = keys_of({{1024, 1}, {3076, 9005}})},
-                  "has x and y in unit 9005 (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, 9003); reproject it with gdalwarp -t_srs");
+                  "has x and y in unit 9005 (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet "
+                  "(9002, 9003); reproject it with gdalwarp -t_srs");
     check_refused({.keys = keys_of({{1024, 1}, {3076, 9001}, {4099, 9010}})},
                   "has heights in unit 9010 (VerticalUnitsGeoKey)" + known_units);
-    check_refused({.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 5199}})}, "has heights in unit EPSG:5199 (VerticalGeoKey)" + known_units);
-    check_refused({.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 3855}}), .metadata = item + "cm</Item></GDALMetadata>"}, "has heights in unit \"cm\"" + known_units);
-    check_refused({.keys = keys_of({{1024, 1}, {1025, 5}})}, "has GTRasterTypeGeoKey 5, needs 1 (pixels are areas) or 2 (points)");
+    check_refused({.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 5199}})},
+                  "has heights in unit EPSG:5199 (VerticalGeoKey)" + known_units);
+    check_refused(
+        {.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 3855}}), .metadata = item + "cm</Item></GDALMetadata>"},
+        "has heights in unit \"cm\"" + known_units);
+    check_refused({.keys = keys_of({{1024, 1}, {1025, 5}})},
+                  "has GTRasterTypeGeoKey 5, needs 1 (pixels are areas) or 2 (points)");
     check_refused({.keys = {1, 1, 0, 2, 1024, 0, 1, 1}}, "has a GeoKeyDirectory that is cut short");
     check_refused({.no_data = "none"}, "has a GDAL_NODATA of \"none\", needs a number");
     check_refused({.metadata = "<Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.1</Item>"},
                   "has heights with a scale of 0.1, needs plain ones; gdal_translate -unscale -ot Float32 makes them");
     check_refused({.cols = 6}, "has 6 x 1 pixels, needs at least 2 x 2");
     check_refused({.scale = {}, .tie = {}, .keys = {}},
-                  "does not tell its size; --heightmap 'size: [X, Y]' is missing (m from first to last pixel centre; or cell, m between two)");
+                  "does not tell its size; --heightmap 'size: [X, Y]' is missing (m from first to last pixel centre; "
+                  "or cell, m between two)");
 }
 
 TEST_CASE("a spacing that is told is used, and nobody asks where the file lies")
@@ -399,8 +459,10 @@ TEST_CASE("elevation models with one origin lie to each other as in their files"
 {
     const TempFolder folder;
     write(folder, {}, "west.tif");
-    write(folder, {.heights = {3, 30, 31, 6, 60, 61}, .tie = {0, 0, 0, 500004, 4000010, 0}}, "east.tif");  // shares a column of pixels
-    const std::string west = "  - {name: w, label: terrain, heightmap: {file: west.tif", east = "  - {name: e, label: terrain, heightmap: {file: east.tif";
+    write(folder, {.heights = {3, 30, 31, 6, 60, 61}, .tie = {0, 0, 0, 500004, 4000010, 0}},
+          "east.tif");  // shares a column of pixels
+    const std::string west = "  - {name: w, label: terrain, heightmap: {file: west.tif",
+                      east = "  - {name: e, label: terrain, heightmap: {file: east.tif";
     const std::string origin = ", origin: [500005, 4000005]}";
     const Scene joined = load_parts(folder, west + origin + "}\n" + east + origin + "}\n");
     CHECK(joined.bounds().min == Vec3(-4, -2.5, 1));
@@ -413,19 +475,25 @@ TEST_CASE("elevation models with one origin lie to each other as in their files"
     check_origin(moved, 499993, 3999985, "EPSG:32611");
     CHECK_FALSE(load_parts(folder, west + "}, rpy_deg: [0, 0, 90]}\n").origin);
     const Scene apart = load_parts(folder, west + "}}\n" + east + "}}\n");
-    CHECK(tells(apart, "part \"e\": x 500007, y 4000005 (EPSG:32611) is at 0, 0 of the scene, but an earlier part has x 500003, y 4000005 (EPSG:32611) there"));
+    CHECK(tells(apart,
+                "part \"e\": x 500007, y 4000005 (EPSG:32611) is at 0, 0 of the scene, but an earlier part has x "
+                "500003, y 4000005 (EPSG:32611) there"));
     CHECK_THROWS_WITH(load_parts(folder, west + ", size: [1, 1]" + origin + "}\n"),
                       Contains("heightmap.origin is for a file that tells where it lies, without size and cell"));
-    CHECK_THROWS_WITH(load_parts(folder, west + ", size: [1, 1], cell: 1}}\n"), Contains("heightmap.cell stands beside size, needs one of them"));
+    CHECK_THROWS_WITH(load_parts(folder, west + ", size: [1, 1], cell: 1}}\n"),
+                      Contains("heightmap.cell stands beside size, needs one of them"));
 }
 
 TEST_CASE("an ESRI ASCII grid is read whatever its header's case and order")
 {
     const TempFolder folder;
-    const std::string text = GENERATE("ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 5\n1 2 3\n4 5 6\n",
-                                      "NROWS 2\r\nNCOLS 3\r\nCELLSIZE 5.0\r\nYLLCENTER 4000002.5\r\nXLLCENTER 500002.5\r\nNODATA_value -1\r\n1 2 3\r\n4 5 6\r\n",
-                                      "NoData_Value 77\nncols 3 nrows 2\n\ndx 5 dy 5 xllCorner 5e5\tyllCenter 4000002.5\n 1 2\n3 4 5 +6", "xllcorner 500000 ncols 3\n"
-                                      "yllcorner 4000000\nnrows 2\ncellsize 5\nNODATA_value nan\n1\n2\n3\n4\n5\n6\n");
+    const std::string text = GENERATE(
+        "ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 5\n1 2 3\n4 5 6\n",
+        "NROWS 2\r\nNCOLS 3\r\nCELLSIZE 5.0\r\nYLLCENTER 4000002.5\r\nXLLCENTER 500002.5\r\nNODATA_value -1\r\n1 2 "
+        "3\r\n4 5 6\r\n",
+        "NoData_Value 77\nncols 3 nrows 2\n\ndx 5 dy 5 xllCorner 5e5\tyllCenter 4000002.5\n 1 2\n3 4 5 +6",
+        "xllcorner 500000 ncols 3\n"
+        "yllcorner 4000000\nnrows 2\ncellsize 5\nNODATA_value nan\n1\n2\n3\n4\n5\n6\n");
     CAPTURE(text);
     const Scene scene = load_scene(folder.write("a.asc", text));
     CHECK(scene.bounds().min == Vec3(-5, -2.5, 1));
@@ -437,18 +505,25 @@ TEST_CASE("an ESRI ASCII grid is read whatever its header's case and order")
 namespace {
 
 /// As GDAL 3.6 writes them beside an ESRI ASCII grid, but for the parameters that no unit hangs on.
-const std::string gcs_of_prj = "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],PRIMEM[\"Greenwich\",0.0],"
-                               "UNIT[\"Degree\",0.0174532925199433]]";
+const std::string gcs_of_prj =
+    "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],PRIMEM[\"Greenwich\","
+    "0.0],"
+    "UNIT[\"Degree\",0.0174532925199433]]";
 
 std::string prj(const std::string& unit)
 {
-    return "PROJCS[\"Plan\"," + gcs_of_prj + ",PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"False_Easting\",500000.0],PARAMETER[\"False_Northing\",0.0],"
-           "PARAMETER[\"Central_Meridian\",9.0],PARAMETER[\"Scale_Factor\",0.9996],PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[" + unit + "]]";
+    return "PROJCS[\"Plan\"," + gcs_of_prj +
+           ",PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"False_Easting\",500000.0],PARAMETER[\"False_Northing\",0."
+           "0],"
+           "PARAMETER[\"Central_Meridian\",9.0],PARAMETER[\"Scale_Factor\",0.9996],PARAMETER[\"Latitude_Of_Origin\",0."
+           "0],UNIT[" +
+           unit + "]]";
 }
 
 std::string vertical_prj(const std::string& direction, const std::string& unit)
 {
-    return ",VERTCS[\"Ups\",VDATUM[\"Here\"],PARAMETER[\"Vertical_Shift\",0.0],PARAMETER[\"Direction\"," + direction + "],UNIT[" + unit + "]]";
+    return ",VERTCS[\"Ups\",VDATUM[\"Here\"],PARAMETER[\"Vertical_Shift\",0.0],PARAMETER[\"Direction\"," + direction +
+           "],UNIT[" + unit + "]]";
 }
 
 const std::string survey_foot = "\"US survey foot\",0.304800609601219";
@@ -486,8 +561,11 @@ TEST_CASE("a .prj of degrees is refused, and one that nobody reads is told")
     const TempFolder folder;
     const std::filesystem::path file = folder.write("a.asc", grid_head + "1 2 3\n4 5 6\n");
     folder.write("a.prj", gcs_of_prj);
-    CHECK_THROWS_WITH(load_scene(file), file.string() + ": is in degrees (geographic, WGS 84), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE "
-                                                        "is a projection in metres such as the UTM zone's");
+    CHECK_THROWS_WITH(
+        load_scene(file),
+        file.string() +
+            ": is in degrees (geographic, WGS 84), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE "
+            "is a projection in metres such as the UTM zone's");
     SceneOptions options;
     options.heightmap = "cell: 3";
     CHECK(load_scene(file, options).bounds().max.x() == 3);
@@ -495,20 +573,24 @@ TEST_CASE("a .prj of degrees is refused, and one that nobody reads is told")
         folder.write("a.prj", text);
         const Scene scene = load_scene(file);
         CHECK(scene.bounds().max.x() == 5);
-        CHECK(tells(scene, "a.prj: is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres"));
+        CHECK(
+            tells(scene, "a.prj: is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres"));
     }
 }
 
 TEST_CASE("cells of a grid may be longer one way, and holes are -9999 or what it says")
 {
     const TempFolder folder;
-    const Scene scene = load_scene(folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 2\ndy 4\n1 2 -9999\n4 5 6\n"));
+    const Scene scene = load_scene(
+        folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 2\ndy 4\n1 2 -9999\n4 5 6\n"));
     CHECK(scene.bounds().max.x() == 2);
     CHECK(scene.bounds().max.y() == 2);
     CHECK(scene.triangles.size() == 3);
-    CHECK(load_scene(folder.write("a.asc", grid_head + "NODATA_value 0\n0 2 3\n4 5 6\n")).triangles.size() == 2);  // the split runs through this corner
+    CHECK(load_scene(folder.write("a.asc", grid_head + "NODATA_value 0\n0 2 3\n4 5 6\n")).triangles.size() ==
+          2);  // the split runs through this corner
     CHECK(load_scene(folder.write("a.asc", grid_head + "NODATA_value 0\n1 2 nan\n4 5 6\n")).triangles.size() == 3);
-    CHECK(load_scene(folder.write("a.asc", grid_head + "NODATA_value 0\n1 2 -9999\n4 5 6\n")).bounds().min.z() == -9999);
+    CHECK(load_scene(folder.write("a.asc", grid_head + "NODATA_value 0\n1 2 -9999\n4 5 6\n")).bounds().min.z() ==
+          -9999);
 }
 
 TEST_CASE("grids that make no sense are refused with the line")
@@ -518,30 +600,39 @@ TEST_CASE("grids that make no sense are refused with the line")
     const auto check_refused = [&](const std::string& text, const std::string& reason) {
         CHECK_THROWS_WITH(load_scene(folder.write("a.asc", text)), start + reason);
     };
-    const std::string known = " is neither a number nor a word of an ESRI ASCII grid's header; known: ncols, nrows, xllcorner or xllcenter, yllcorner or "
-                              "yllcenter, cellsize or dx and dy, NODATA_value";
+    const std::string known =
+        " is neither a number nor a word of an ESRI ASCII grid's header; known: ncols, nrows, xllcorner or xllcenter, "
+        "yllcorner or "
+        "yllcenter, cellsize or dx and dy, NODATA_value";
     check_refused("north: 5\n", "line 1: \"north:\"" + known);
     check_refused("ncols 3\nrows 2\n", "line 2: \"rows\"" + known);
     check_refused(grid_head + "1 2 3\n4 5,5 6\n", "line 7: \"5,5\" is no number");
-    check_refused(grid_head + "1 2 3\n4 5 6 7\n", "line 7 has 4 values, needs 3 (ncols): it has more than 6 values, needs 6 (3 x 2)");
+    check_refused(grid_head + "1 2 3\n4 5 6 7\n",
+                  "line 7 has 4 values, needs 3 (ncols): it has more than 6 values, needs 6 (3 x 2)");
     check_refused(grid_head + "1 2\n4 5 6\n", "line 6 has 2 values, needs 3 (ncols): it has 5 values, needs 6 (3 x 2)");
     check_refused(grid_head + "1 2 3\n", "it has 3 values, needs 6 (3 x 2)");
     check_refused(grid_head, "it has 0 values, needs 6 (3 x 2)");
-    check_refused(grid_head + "1 2 3\n4 inf 6\n", "row 1, column 1 is infinite, needs a finite height or NaN (no ground)");
+    check_refused(grid_head + "1 2 3\n4 inf 6\n",
+                  "row 1, column 1 is infinite, needs a finite height or NaN (no ground)");
     check_refused("ncols 3\nncols 3\n", "line 2: ncols is given twice");
     check_refused("ncols 3\nnrows x\n", "line 2: nrows is \"x\", needs a finite number");
     check_refused("ncols 3\nnrows", "line 2: nrows is the file's end, needs a finite number");
     check_refused("ncols 2.5\nnrows 2\n1", "ncols is 2.5, needs a whole number of 1 or more");
     check_refused("ncols 3\n1 2 3\n", "has no nrows in its header");
     check_refused("ncols 1000000\nnrows 1000000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1",
-                  "has 1000000 x 1000000 cells, needs at most 67108864; gdalwarp -tr makes it coarser, gdal_translate -projwin cuts a part out");
-    check_refused("ncols 3\nnrows 2\nxllcorner 0\nxllcenter 0\nyllcorner 0\ncellsize 1\n1", "has xllcorner and xllcenter, needs one of them");
-    check_refused("ncols 3\nnrows 2\nxllcorner 0\ncellsize 1\n1", "has neither yllcorner nor yllcenter in its header, needs one of them");
+                  "has 1000000 x 1000000 cells, needs at most 67108864; gdalwarp -tr makes it coarser, gdal_translate "
+                  "-projwin cuts a part out");
+    check_refused("ncols 3\nnrows 2\nxllcorner 0\nxllcenter 0\nyllcorner 0\ncellsize 1\n1",
+                  "has xllcorner and xllcenter, needs one of them");
+    check_refused("ncols 3\nnrows 2\nxllcorner 0\ncellsize 1\n1",
+                  "has neither yllcorner nor yllcenter in its header, needs one of them");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\n1", "has no cellsize in its header");
-    check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 1\n1", "has one of dx, dy in its header, needs both or cellsize");
+    check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 1\n1",
+                  "has one of dx, dy in its header, needs both or cellsize");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0\n1", "cellsize is 0, needs > 0");
-    CHECK_THROWS_WITH(load_scene(folder.write("a.asc", "ncols 2\nnrows 2\nxllcorner 8\nyllcorner -46\ncellsize 0.000277\n1 2 3 4\n")),
-                      Contains("which look like degrees") && Contains("EPSG:32732"));
+    CHECK_THROWS_WITH(
+        load_scene(folder.write("a.asc", "ncols 2\nnrows 2\nxllcorner 8\nyllcorner -46\ncellsize 0.000277\n1 2 3 4\n")),
+        Contains("which look like degrees") && Contains("EPSG:32732"));
 }
 
 TEST_CASE("images and raw numbers need to be told what they are")
@@ -563,14 +654,21 @@ TEST_CASE("images and raw numbers need to be told what they are")
     CHECK(height(floats, -2, -1) == -4.5);
     using U16 = std::uint16_t;
     raw("a.r16", U16(0), U16(65535), U16(1), U16(258));
-    CHECK(height(load("a.r16", "raw: {type: uint16, rows: 2, cols: 2}, cell: 3, z: [0, 6553.5]"), 1.5, -1.5) == Approx(25.8));
+    CHECK(height(load("a.r16", "raw: {type: uint16, rows: 2, cols: 2}, cell: 3, z: [0, 6553.5]"), 1.5, -1.5) ==
+          Approx(25.8));
     CHECK(height(load("a.r16", "raw: {type: int16, rows: 2, cols: 2}, cell: 3"), 1.5, 1.5) == -1);
     const std::string raw_file = (folder / "a.raw").string() + ": ", wrong = "load_scene: --heightmap: ";
-    CHECK_THROWS_WITH(load_scene(folder / "a.raw"), raw_file + "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
-    CHECK_THROWS_WITH(load("a.raw", "raw: {type: float32, rows: 2, cols: 4}, cell: 1"), raw_file + "has 24 bytes, needs 32 (4 x 2 pixels of 4 bytes)");
-    CHECK_THROWS_WITH(load("a.raw", "raw: {type: float32, rows: 99999, cols: 99999}, cell: 1"), raw_file + "has 99999 x 99999 pixels, needs at most 67108864");
-    CHECK_THROWS_WITH(load("a.raw", "raw: {type: float16, rows: 2, cols: 3}"), wrong + "raw.type is \"float16\", needs one of uint8, uint16, int16, float32, float64 (line 1)");
-    CHECK_THROWS_WITH(load("a.raw", "raw: {type: uint8, rows: 2.5, cols: 3}"), Contains("raw.rows is 2.5, needs a whole number up to 67108864"));
+    CHECK_THROWS_WITH(
+        load_scene(folder / "a.raw"),
+        raw_file + "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
+    CHECK_THROWS_WITH(load("a.raw", "raw: {type: float32, rows: 2, cols: 4}, cell: 1"),
+                      raw_file + "has 24 bytes, needs 32 (4 x 2 pixels of 4 bytes)");
+    CHECK_THROWS_WITH(load("a.raw", "raw: {type: float32, rows: 99999, cols: 99999}, cell: 1"),
+                      raw_file + "has 99999 x 99999 pixels, needs at most 67108864");
+    CHECK_THROWS_WITH(load("a.raw", "raw: {type: float16, rows: 2, cols: 3}"),
+                      wrong + "raw.type is \"float16\", needs one of uint8, uint16, int16, float32, float64 (line 1)");
+    CHECK_THROWS_WITH(load("a.raw", "raw: {type: uint8, rows: 2.5, cols: 3}"),
+                      Contains("raw.rows is 2.5, needs a whole number up to 67108864"));
     CHECK_THROWS_WITH(load("a.raw", "size: 3"), Contains("size is 3, needs a list"));
     CHECK_THROWS_WITH(load("a.raw", "sise: [1, 1]"), Contains("sise is no known key"));
     CHECK_THROWS_WITH(load("a.raw", "size: [1, 1"), Contains("needs keys such as size: [513, 513], z: [0, 75]"));
@@ -579,7 +677,8 @@ TEST_CASE("images and raw numbers need to be told what they are")
     if (!shared) return;
     CHECK_THROWS_WITH(load_scene(*shared / "dem/river/relief.png"),
                       (*shared / "dem/river/relief.png").string() +
-                          ": tells neither its size nor its heights: --heightmap 'size: [X, Y], z: [LOW, HIGH]' is missing (m from first to last pixel centre, and "
+                          ": tells neither its size nor its heights: --heightmap 'size: [X, Y], z: [LOW, HIGH]' is "
+                          "missing (m from first to last pixel centre, and "
                           "of values 0 and 65535)");
     std::filesystem::copy_file(*shared / "dem/river/relief.png", folder / "relief.png");
     CHECK(load("relief.png", "size: [49, 36], z: [537.36, 543.81]").bounds().max == Vec3(24.5, 18, 543.81));
@@ -590,7 +689,8 @@ TEST_CASE("nobody asks whether an elevation model is in millimetres or lies on i
     const TempFolder folder;
     const Scene steep = load_scene(folder.write("a.asc", grid_head + "0 0 0\n900 900 900\n"));
     CHECK(steep.notices.size() == 1);  // where it lies
-    const Scene wide = load_scene(folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 30000\n1 2 3\n4 5 6\n"));
+    const Scene wide = load_scene(
+        folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 30000\n1 2 3\n4 5 6\n"));
     CHECK(wide.notices.size() == 1);
     CHECK(load_parts(folder, "  - {name: a, label: terrain, heightmap: {file: a.asc, cell: 0.001}}\n").notices.empty());
 }
@@ -608,16 +708,19 @@ TEST_CASE("an elevation model by itself takes labels, but nothing that is for me
     CHECK(tells(idle, "label \"road\" matches no node, material or part; there are Ground"));
     options = {};
     options.scale = 2;
-    CHECK_THROWS_WITH(load_scene(file, options), "load_scene: up and scale are for a mesh; " + file.string() + " is an elevation model, in metres and z up");
+    CHECK_THROWS_WITH(load_scene(file, options), "load_scene: up and scale are for a mesh; " + file.string() +
+                                                     " is an elevation model, in metres and z up");
     options = {};
     options.heightmap = "cell: 1";
-    CHECK_THROWS_WITH(load_parts(folder, "  - {name: b, sphere: 1}\n", options), Contains("--heightmap is for an elevation model by itself"));
+    CHECK_THROWS_WITH(load_parts(folder, "  - {name: b, sphere: 1}\n", options),
+                      Contains("--heightmap is for an elevation model by itself"));
 }
 
 TEST_CASE("elevation models that are cut short are read or refused, whatever the byte")
 {
     const TempFolder folder;
-    const std::string tiff = bytes_of(write(folder, {.ascii = "plan|", .no_data = "-9999", .metadata = "<Item role=\"scale\">1</Item>"}));
+    const std::string tiff = bytes_of(
+        write(folder, {.ascii = "plan|", .no_data = "-9999", .metadata = "<Item role=\"scale\">1</Item>"}));
     const std::string grid = grid_head + "NODATA_value -9999\n1 2 3\n4 5 6\n";
     const auto [name, bytes] = GENERATE_COPY(std::pair{"a.tif", tiff}, std::pair{"a.asc", grid});
     std::size_t read = 0;
@@ -643,7 +746,8 @@ TEST_CASE("the river's grid is the terrain of its scene")
 {
     const auto shared = shared_scenes();
     if (!shared) return;
-    const Scene scene = load_scene(*shared / "dem/river/scene.yaml"), grid = load_scene(*shared / "dem/river/DEM-kootenai_37x50_1x1.asc");
+    const Scene scene = load_scene(*shared / "dem/river/scene.yaml"),
+                grid = load_scene(*shared / "dem/river/DEM-kootenai_37x50_1x1.asc");
     check_origin(grid, 556465, 5394950.5, "");
     const Geometry a(scene), b(grid);
     double largest = 0;
@@ -696,7 +800,8 @@ TEST_CASE("the Moon's corners are as high as its pixels, in its polar plane")
     const Geometry geometry(moon);
     const auto check_height = [&](int row, int col, double wanted) {  // a hair inside, as the outermost lie on the edge
         const double x = (col - 16) * cell, y = (16 - row) * cell;
-        const Column column = column_at(geometry, std::clamp(x, -half + 1e-9, half - 1e-9), std::clamp(y, -half + 1e-9, half - 1e-9));
+        const Column column = column_at(geometry, std::clamp(x, -half + 1e-9, half - 1e-9),
+                                        std::clamp(y, -half + 1e-9, half - 1e-9));
         REQUIRE(column.layers.size() == 1);
         CHECK(column.layers[0] == Approx(wanted).margin(1e-6));
     };
@@ -711,10 +816,13 @@ TEST_CASE("the Moon's corners are as high as its pixels, in its polar plane")
 TEST_CASE("a map keeps where its elevation model lies, and info tells it")
 {
     const TempFolder folder;
-    folder.write("a.asc", "ncols 3\nnrows 2\nxllcorner 556440.25\nyllcorner 5394932.125\ncellsize 5\nNODATA_value 0\n1 2 3\n4 5 6\n");
+    folder.write(
+        "a.asc",
+        "ncols 3\nnrows 2\nxllcorner 556440.25\nyllcorner 5394932.125\ncellsize 5\nNODATA_value 0\n1 2 3\n4 5 6\n");
     const ProgramRun run = run_program(folder, "bake a.asc -o map --resolution 0.5");
     CHECK(run.status == 0);
-    CHECK_THAT(run.err, Contains("notice: a.asc: x 556447.75, y 5394937.125 is at 0, 0 of the scene; z is not shifted\n"));
+    CHECK_THAT(run.err,
+               Contains("notice: a.asc: x 556447.75, y 5394937.125 is at 0, 0 of the scene; z is not shifted\n"));
     const Map map = read_map(folder / "map");
     REQUIRE(map.origin);
     CHECK(map.origin->x == 556447.75);

@@ -46,7 +46,8 @@ void check_verdicts(const compare::Tally& tally, const std::vector<Verdict>& exp
 void print(const char* what, const compare::Tally& tally)
 {
     std::cout << what << ": " << tally.poses << " poses,";
-    for (std::size_t i = 0; i < verdict_count; ++i) std::cout << " " << tally.verdicts[i] << " " << to_string(Verdict(i)) << ",";
+    for (std::size_t i = 0; i < verdict_count; ++i)
+        std::cout << " " << tally.verdicts[i] << " " << to_string(Verdict(i)) << ",";
     std::cout << " " << tally.exact << " of " << tally.asked << " checked exactly\n";
 }
 
@@ -94,13 +95,15 @@ RasterOptions dyadic_raster(const TestMap& map, const HardCase& hard)
 
 bool same_verdicts(const std::vector<RasterPose>& a, const std::vector<RasterPose>& b)
 {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const RasterPose& l, const RasterPose& r) { return l.layer == r.layer && l.verdict == r.verdict; });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const RasterPose& l, const RasterPose& r) {
+        return l.layer == r.layer && l.verdict == r.verdict;
+    });
 }
 
 std::size_t valid_count(const std::vector<RasterPose>& poses)
 {
-    return std::size_t(std::count_if(poses.begin(), poses.end(), [](const RasterPose& pose) { return pose.verdict == Verdict::Valid; }));
+    return std::size_t(std::count_if(poses.begin(), poses.end(),
+                                     [](const RasterPose& pose) { return pose.verdict == Verdict::Valid; }));
 }
 
 /// A scene of the shared folder with Husky, and a mask of about a million columns.
@@ -118,7 +121,8 @@ HardCase real_case(const std::filesystem::path& file)
 std::vector<std::filesystem::path> scene_files(const std::filesystem::path& folder)
 {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, std::filesystem::directory_options::follow_directory_symlink))
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(
+             folder, std::filesystem::directory_options::follow_directory_symlink))
         if (entry.path().string().ends_with("scene.yaml")) files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     return files;
@@ -162,7 +166,8 @@ TEST_CASE("every query gives the exhaustive verdicts, pose by pose, in random ha
         const HardCase hard = hard_case(seed);
         const compare::CaseTally tally = compare::of_case(hard);
         all.add(tally);
-        INFO("scene " << seed << ", resolution " << hard.resolution << ": " << tally.sum().first << "\nrepeat: spawnfield_fuzz --scenes 1 --seed " << seed);
+        INFO("scene " << seed << ", resolution " << hard.resolution << ": " << tally.sum().first
+                      << "\nrepeat: spawnfield_fuzz --scenes 1 --seed " << seed);
         CHECK(tally.sum().differences == 0);
     }
     using enum Verdict;
@@ -212,7 +217,8 @@ TEST_CASE("hard scenes hold all that scenes are made of, and robots all kinds of
     }
     const std::vector<std::string> expected = hard_features();
     CHECK(features == std::set<std::string>(expected.begin(), expected.end()));
-    for (const char* kind : {"box", "sphere", "cylinder", "capsule", "heightmap", "mesh", "plane", "octomap"}) CHECK(kinds.contains(kind));
+    for (const char* kind : {"box", "sphere", "cylinder", "capsule", "heightmap", "mesh", "plane", "octomap"})
+        CHECK(kinds.contains(kind));
     CHECK(shapes.size() == 5);
     for (const std::size_t count : {far, cropped}) CHECK(count > 20);
     for (const std::size_t count : {sides_up, solid, sheet, filled_open}) CHECK(count > 40);
@@ -353,14 +359,17 @@ TEST_CASE("the mask never says free where a yaw of the set collides, nor blocked
             const Proof proof = space.at(poses[i]);
             if (proof == Proof::Candidate && *every_yaw == Proof::Candidate) continue;
             const Proof truth = checker.is_free(poses[i]) ? Proof::Free : Proof::Blocked;
-            lies += (proof != Proof::Candidate && proof != truth) || (*every_yaw != Proof::Candidate && *every_yaw != truth);
+            lies += (proof != Proof::Candidate && proof != truth) ||
+                    (*every_yaw != Proof::Candidate && *every_yaw != truth);
             proven[std::size_t(truth)] += 1;
             proven_for_all_yaws += *every_yaw != Proof::Candidate;
         }
     }
     CHECK(lies == 0);
     check_verdicts(all, {Verdict::Valid, Verdict::Collision}, 5000);
-    if (all_scenes) CHECK((proven[std::size_t(Proof::Free)] > 2000 && proven[std::size_t(Proof::Blocked)] > 2000 && proven_for_all_yaws > 2000));
+    if (all_scenes)
+        CHECK((proven[std::size_t(Proof::Free)] > 2000 && proven[std::size_t(Proof::Blocked)] > 2000 &&
+               proven_for_all_yaws > 2000));
 }
 
 TEST_CASE("with a mask that is made on first use, rasters are the same bytes at any thread count")
@@ -400,9 +409,12 @@ TEST_CASE("every query gives the exhaustive verdicts in real scenes")
     CHECK(files.size() >= 12);
     const TempFolder city, warehouse, moon;
     files.push_back(scene_of_world(city, *folder / "city/worlds/simple_city.world", *folder / "city/models"));
-    files.push_back(scene_of_world(warehouse, *folder / "warehouse/worlds/small_warehouse.world", *folder / "warehouse/models"));
-    files.push_back(moon.write("scene.yaml", "format: spawnfield-scene/1\nname: moon\nparts:\n  - {name: ground, label: terrain, heightmap: {file: " +
-                                                 (*folder / "dem/moon_tif/dem_moon.tif").string() + ", size: [77.65, 77.65]}}\n"));
+    files.push_back(
+        scene_of_world(warehouse, *folder / "warehouse/worlds/small_warehouse.world", *folder / "warehouse/models"));
+    files.push_back(moon.write(
+        "scene.yaml",
+        "format: spawnfield-scene/1\nname: moon\nparts:\n  - {name: ground, label: terrain, heightmap: {file: " +
+            (*folder / "dem/moon_tif/dem_moon.tif").string() + ", size: [77.65, 77.65]}}\n"));
     for (const std::filesystem::path& file : files) {
         const HardCase real = real_case(file);
         const TestMap map = compare::map_of_case(real);

@@ -58,7 +58,8 @@ std::vector<std::vector<std::string>> table_of(const fs::path& file)
         out.emplace_back();
         for (const std::string& cell : split(line.substr(2, line.size() - 3), '|')) {
             const std::size_t first = cell.find_first_not_of(' ');
-            out.back().push_back(first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(' ') + 1 - first));
+            out.back().push_back(
+                first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(' ') + 1 - first));
         }
     }
     return out;
@@ -79,8 +80,11 @@ void check_counts(const Row& row, const nlohmann::json& summary)
 TEST_CASE("an experiment of rasters has the counts of raster at each step, run after run")
 {
     const Arena arena;
-    const std::string options[] = {"--dims 2 --offset 0.3 --yaw 0.4", "--dims 3 --bounds -5,-5,-1,5,5,3 --max-height 0.5",
-                                   "--dims 3 --snap --layers top --offset 0.2", "--dims 3 --no-height-check --bounds 0,0,0,3,3,2", "--dims 2 --exhaustive",
+    const std::string options[] = {"--dims 2 --offset 0.3 --yaw 0.4",
+                                   "--dims 3 --bounds -5,-5,-1,5,5,3 --max-height 0.5",
+                                   "--dims 3 --snap --layers top --offset 0.2",
+                                   "--dims 3 --no-height-check --bounds 0,0,0,3,3,2",
+                                   "--dims 2 --exhaustive",
                                    "--dims 2 --region -5,-5,3,4 --keep-out -1,-1,1,1"};
     for (const std::string& option : options) {
         INFO(option);
@@ -96,7 +100,8 @@ TEST_CASE("an experiment of rasters has the counts of raster at each step, run a
             CHECK(rows[i].at("step") == (i < 2 ? "0.7" : i < 4 ? "1" : "1.3"));
             CHECK(rows[i].at("step_z") == (is_3d ? rows[i].at("step") : ""));
             CHECK(rows[i].at("seed").empty());
-            check_counts(rows[i], summary(arena, "raster map -o /dev/null " + option + " --step " + rows[i].at("step") + husky));
+            check_counts(rows[i],
+                         summary(arena, "raster map -o /dev/null " + option + " --step " + rows[i].at("step") + husky));
         }
     }
 }
@@ -109,30 +114,36 @@ TEST_CASE("steps up are one for all, or as many as those across")
         std::vector<std::string> out;
         for (const Row& row : rows_of(arena / "out/experiment.csv")) {
             out.push_back(row.at("step") + " x " + row.at("step_z"));
-            check_counts(row, summary(arena, "raster map --dims 3 -o /dev/null --step " + row.at("step") + " --step-z " + row.at("step_z") + husky));
+            check_counts(row, summary(arena, "raster map --dims 3 -o /dev/null --step " + row.at("step") +
+                                                 " --step-z " + row.at("step_z") + husky));
         }
         return out;
     };
     CHECK(pairs("--steps 2:3:0.5 --steps-z 0.25") == std::vector<std::string>{"2 x 0.25", "2.5 x 0.25", "3 x 0.25"});
-    CHECK(pairs("--steps 2:3:0.5 --steps-z 0.1:0.3:0.1") == std::vector<std::string>{"2 x 0.1", "2.5 x 0.2", "3 x 0.3"});
+    CHECK(pairs("--steps 2:3:0.5 --steps-z 0.1:0.3:0.1") ==
+          std::vector<std::string>{"2 x 0.1", "2.5 x 0.2", "3 x 0.3"});
     CHECK(pairs("--steps 2:2.9:0.5") == std::vector<std::string>{"2 x 2", "2.5 x 2.5"});
     CHECK(pairs("--steps 4") == std::vector<std::string>{"4 x 4"});
-    CHECK(arena("experiment map --dims 2 --steps 2 --steps-z 1 -o out" + husky).err.starts_with("notice: --steps-z has no effect: "));
+    CHECK(arena("experiment map --dims 2 --steps 2 --steps-z 1 -o out" + husky)
+              .err.starts_with("notice: --steps-z has no effect: "));
 }
 
-TEST_CASE("an experiment's table has a row per step with mean and sample variance of the times, and says what was run where")
+TEST_CASE(
+    "an experiment's table has a row per step with mean and sample variance of the times, and says what was run where")
 {
     const Arena arena;
     CHECK(arena("experiment map --dims 2 --steps 1:2:1 --runs 4 -o out --threads 2" + husky).status == 0);
     const std::vector<Row> rows = rows_of(arena / "out/experiment.csv");
     const auto table = table_of(arena / "out/experiment.md");
     REQUIRE(table.size() == 3);
-    CHECK(table[0] == std::vector<std::string>{"step (m)", "checks", "valid", "unstable", "steep", "collision", "submerged", "off_terrain", "aerial",
-                                               "outside", "exact checks", "mean time (s)", "variance (s2)"});
+    CHECK(table[0] == std::vector<std::string>{"step (m)", "checks", "valid", "unstable", "steep", "collision",
+                                               "submerged", "off_terrain", "aerial", "outside", "exact checks",
+                                               "mean time (s)", "variance (s2)"});
     for (std::size_t step = 0; step < 2; ++step) {
         double sum = 0, squares = 0;
         for (std::size_t i = 4 * step; i < 4 * step + 4; ++i) sum += std::stod(rows[i].at("seconds"));
-        for (std::size_t i = 4 * step; i < 4 * step + 4; ++i) squares += std::pow(std::stod(rows[i].at("seconds")) - sum / 4, 2);
+        for (std::size_t i = 4 * step; i < 4 * step + 4; ++i)
+            squares += std::pow(std::stod(rows[i].at("seconds")) - sum / 4, 2);
         const std::vector<std::string>& cells = table[step + 1];
         CHECK(cells[0] == rows[4 * step].at("step"));
         CHECK(cells[1] == rows[4 * step].at("poses"));
@@ -142,7 +153,8 @@ TEST_CASE("an experiment's table has a row per step with mean and sample varianc
         CHECK(std::stod(cells[12]) == Approx(squares / 3).epsilon(1e-4));
     }
     const std::string text = bytes_of(arena / "out/experiment.md");
-    CHECK_THAT(text, Contains("\nspawnfield experiment map --dims 2 --steps 1:2:1 --runs 4 -o out --threads 2 --robot "));
+    CHECK_THAT(text,
+               Contains("\nspawnfield experiment map --dims 2 --steps 1:2:1 --runs 4 -o out --threads 2 --robot "));
     CHECK_THAT(text, Contains(" core"));
     CHECK_THAT(text, Contains("; 2 threads\n"));
     CHECK_THAT(text, Contains("- spawnfield " + spawnfield::version() + " on "));
@@ -154,7 +166,9 @@ TEST_CASE("an experiment's table has a row per step with mean and sample varianc
 TEST_CASE("an experiment of searches has the counts of search at each seed")
 {
     const Arena arena;
-    const std::string draws = "map -n 15 --min-distance 0.5 --max-failures 5000 --bounds -9,-9,-0.1,9,9,1 --yaw 0.3 --keep-out -3,-3,3,3" + husky;
+    const std::string draws =
+        "map -n 15 --min-distance 0.5 --max-failures 5000 --bounds -9,-9,-0.1,9,9,1 --yaw 0.3 --keep-out -3,-3,3,3" +
+        husky;
     const nlohmann::json told = summary(arena, "experiment --search --seed 7 --runs 3 -o out " + draws);
     CHECK(told["command"] == "experiment");
     CHECK(told["seed"] == 7);
@@ -171,7 +185,8 @@ TEST_CASE("an experiment of searches has the counts of search at each seed")
     CHECK(different.size() > 1);
     CHECK(table_of(arena / "out/experiment.md").size() == 2);
     CHECK_THAT(bytes_of(arena / "out/experiment.md"), Contains("- seed 7, one more for each further run\n"));
-    const ProgramRun few = arena("experiment map --search -n 5 --min-distance 100 --max-failures 50 --runs 2 -o out" + husky);
+    const ProgramRun few = arena("experiment map --search -n 5 --min-distance 100 --max-failures 50 --runs 2 -o out" +
+                                 husky);
     CHECK(few.status == 3);
     CHECK_THAT(few.err, Contains("notice: 2 runs of 2 found fewer than 5 spawns; "));
     CHECK(rows_of(arena / "out/experiment.csv").size() == 2);
@@ -189,6 +204,8 @@ TEST_CASE("an experiment replaces a former one, and no other folder")
     arena.write("out/experiment.md", "old");
     const ProgramRun run = arena(command);
     CHECK(run.status == 1);
-    CHECK(run.err == "spawnfield: out: holds notes.txt, which is no part of a former experiment; choose another name or remove it\n");
+    CHECK(run.err ==
+          "spawnfield: out: holds notes.txt, which is no part of a former experiment; choose another name or remove "
+          "it\n");
     CHECK(bytes_of(arena / "out/experiment.md") == "old");
 }

@@ -23,17 +23,20 @@ using namespace spawnfield;
 
 namespace {
 
-/// A box of terrain with a deck of terrain above half of it, a block on the deck, a crate on the floor, a pool, and no terrain beyond x = 3.
+/// A box of terrain with a deck of terrain above half of it, a block on the deck, a crate on the floor, a pool, and no
+/// terrain beyond x = 3.
 TestMap deck_map()
 {
     const TempFolder folder;
-    const fs::path file = folder.write("scene.yaml", "format: spawnfield-scene/1\nname: deck\nparts:\n"
-                                                     "- {name: floor, label: terrain, box: [8, 6, 1], xyz: [-1, 0, -0.5]}\n"
-                                                     "- {name: deck, label: terrain, box: [3, 6, 0.2], xyz: [-3, 0, 2]}\n"
-                                                     "- {name: block, label: obstacle, box: [1, 1, 1], xyz: [-3.5, 1, 2.6]}\n"
-                                                     "- {name: crate, box: [0.5, 0.5, 0.5], xyz: [1, 2, 0.2]}\n"
-                                                     "- {name: pool, label: water, plane: [1, 2], xyz: [2, -2, 0.3]}\n"
-                                                     "- {name: post, label: obstacle, cylinder: {radius: 0.2, length: 2}, xyz: [4.5, 0, 1]}\n");
+    const fs::path file = folder.write(
+        "scene.yaml",
+        "format: spawnfield-scene/1\nname: deck\nparts:\n"
+        "- {name: floor, label: terrain, box: [8, 6, 1], xyz: [-1, 0, -0.5]}\n"
+        "- {name: deck, label: terrain, box: [3, 6, 0.2], xyz: [-3, 0, 2]}\n"
+        "- {name: block, label: obstacle, box: [1, 1, 1], xyz: [-3.5, 1, 2.6]}\n"
+        "- {name: crate, box: [0.5, 0.5, 0.5], xyz: [1, 2, 0.2]}\n"
+        "- {name: pool, label: water, plane: [1, 2], xyz: [2, -2, 0.3]}\n"
+        "- {name: post, label: obstacle, cylinder: {radius: 0.2, length: 2}, xyz: [4.5, 0, 1]}\n");
     return map_of(load_scene(file));
 }
 
@@ -62,8 +65,16 @@ Nav2Map read_nav2(const fs::path& yaml)
         REQUIRE(std::regex_search(text, found, std::regex("(^|\n)" + key + ": (.*)")));
         return found[2].str();
     };
-    Nav2Map map{value("image"), value("mode"), std::stod(value("resolution")), 0, 0, 0, std::stod(value("occupied_thresh")), std::stod(value("free_thresh")),
-                std::stoi(value("negate")), {}};
+    Nav2Map map{value("image"),
+                value("mode"),
+                std::stod(value("resolution")),
+                0,
+                0,
+                0,
+                std::stod(value("occupied_thresh")),
+                std::stod(value("free_thresh")),
+                std::stoi(value("negate")),
+                {}};
     REQUIRE(std::sscanf(value("origin").c_str(), "[%lf, %lf, %lf]", &map.x0, &map.y0, &map.yaw) == 3);
     map.pixels = cv::imread((yaml.parent_path() / map.image).string(), cv::IMREAD_UNCHANGED);
     REQUIRE_FALSE(map.pixels.empty());
@@ -81,14 +92,16 @@ struct GeoTiff {
     const HeightImage& band(const std::string& name) const
     {
         std::smatch found;
-        REQUIRE(std::regex_search(metadata, found, std::regex("sample=\"([0-9]+)\" role=\"description\">" + name + "<")));
+        REQUIRE(
+            std::regex_search(metadata, found, std::regex("sample=\"([0-9]+)\" role=\"description\">" + name + "<")));
         return bands.at(std::stoul(found[1]));
     }
     bool has(const std::string& name) const { return metadata.find(">" + name + "<") != std::string::npos; }
     /// Of a point of the ground, by scale and tiepoint.
     float at(const std::string& name, double x, double y) const
     {
-        const int col = int(std::floor((x - tiepoint[3]) / scale[0])), row = int(std::floor((tiepoint[4] - y) / scale[1]));
+        const int col = int(std::floor((x - tiepoint[3]) / scale[0])),
+                  row = int(std::floor((tiepoint[4] - y) / scale[1]));
         return band(name)(row, col);
     }
 };
@@ -122,8 +135,12 @@ GeoTiff read_geotiff(const fs::path& file)
     TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits);
     TIFFGetField(tiff.get(), TIFFTAG_SAMPLEFORMAT, &format);
     REQUIRE((bits == 32 && format == SAMPLEFORMAT_IEEEFP));
-    GeoTiff out{{}, tag_values<double>(tiff.get(), 33550), tag_values<double>(tiff.get(), 33922), tag_values<std::uint16_t>(tiff.get(), 34735),
-                tag_text(tiff.get(), 42112), tag_text(tiff.get(), 42113)};
+    GeoTiff out{{},
+                tag_values<double>(tiff.get(), 33550),
+                tag_values<double>(tiff.get(), 33922),
+                tag_values<std::uint16_t>(tiff.get(), 34735),
+                tag_text(tiff.get(), 42112),
+                tag_text(tiff.get(), 42113)};
     HeightImage tile(side, side);
     for (std::uint16_t band = 0; band < bands; ++band) {
         HeightImage& image = out.bands.emplace_back(rows, cols);
@@ -140,7 +157,8 @@ GeoTiff read_geotiff(const fs::path& file)
 bool same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 bool same(const HeightImage& a, const HeightImage& b)
 {
-    return a.rows() == b.rows() && a.cols() == b.cols() && std::equal(a.data(), a.data() + a.size(), b.data(), [](float x, float y) { return same(x, y); });
+    return a.rows() == b.rows() && a.cols() == b.cols() &&
+           std::equal(a.data(), a.data() + a.size(), b.data(), [](float x, float y) { return same(x, y); });
 }
 
 /// A Python that reads our files back with this package; nothing if that is not installed (ctest reports the test
@@ -154,7 +172,8 @@ std::optional<std::string> python_with(const std::string& package)
 }
 
 /// Runs a script with the file as its argument; it fails by an exception.
-bool python_accepts(const std::string& python, const TempFolder& folder, const std::string& script, const fs::path& file)
+bool python_accepts(const std::string& python, const TempFolder& folder, const std::string& script,
+                    const fs::path& file)
 {
     const fs::path program = folder.write("script.py", script);
     return std::system((python + " '" + program.string() + "' '" + file.string() + "'").c_str()) == 0;
@@ -163,7 +182,8 @@ bool python_accepts(const std::string& python, const TempFolder& folder, const s
 std::string glb_bytes(const Map& map, const GlbMarkers& markers = {}, int threads = 0)
 {
     std::string bytes;
-    write_glb(map, markers, [&](std::string_view piece) { bytes += piece; }, threads);
+    write_glb(
+        map, markers, [&](std::string_view piece) { bytes += piece; }, threads);
     return bytes;
 }
 
@@ -177,7 +197,8 @@ nlohmann::json glb_json(const std::string& bytes)
     };
     REQUIRE(bytes.starts_with("glTF"));
     CHECK((word(4) == 2 && word(8) == bytes.size() && word(12) % 4 == 0 && word(16) == 0x4E4F534A));
-    if (20 + word(12) < bytes.size()) CHECK((20 + word(12) + 8 + word(20 + word(12)) == bytes.size() && word(24 + word(12)) == 0x004E4942));
+    if (20 + word(12) < bytes.size())
+        CHECK((20 + word(12) + 8 + word(20 + word(12)) == bytes.size() && word(24 + word(12)) == 0x004E4942));
     return nlohmann::json::parse(bytes.substr(20, word(12)));
 }
 
@@ -185,7 +206,8 @@ nlohmann::json glb_json(const std::string& bytes)
 Scene load_glb(const TempFolder& folder, const std::string& bytes)
 {
     SceneOptions options;
-    options.labels = {{"terrain", Label::Terrain}, {"water", Label::Water}, {"obstacle", Label::Obstacle}, {"spawn*", Label::Ignore}};
+    options.labels = {
+        {"terrain", Label::Terrain}, {"water", Label::Water}, {"obstacle", Label::Obstacle}, {"spawn*", Label::Ignore}};
     return load_scene(folder.write("a.glb", bytes), options);
 }
 
@@ -195,7 +217,8 @@ std::multiset<std::array<double, 10>> triangles_of(const Scene& scene)
     std::multiset<std::array<double, 10>> out;
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
         std::array<std::array<double, 3>, 3> corners;
-        for (std::size_t c = 0; c < 3; ++c) Vec3::Map(corners[c].data()) = scene.vertices[scene.triangles[t][c]] + Vec3::Zero();
+        for (std::size_t c = 0; c < 3; ++c)
+            Vec3::Map(corners[c].data()) = scene.vertices[scene.triangles[t][c]] + Vec3::Zero();
         std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[0] == corners[2]) continue;
         std::array<double, 10> flat{};
@@ -216,7 +239,8 @@ RasterOptions on_layer(LayerChoice layers, double offset = 0.1, double yaw = 0)
 }
 
 /// The verdict at a point by the tests' own way through the column; nothing where there is no such layer.
-std::optional<Verdict> verdict_at(const Map& map, const CollisionChecker& checker, const RasterOptions& options, double x, double y)
+std::optional<Verdict> verdict_at(const Map& map, const CollisionChecker& checker, const RasterOptions& options,
+                                  double x, double y)
 {
     const Column column = column_at(map.geometry, x, y);
     const int count = int(column.layers.size());
@@ -234,7 +258,9 @@ TEST_CASE("an image of verdicts holds the verdict at each cell's centre, on the 
 {
     const TestMap map = deck_map();
     const CollisionChecker checker = checker_of(map, small_box);
-    const LayerChoice layers = GENERATE(LayerChoice{LayerChoice::Kind::Top, 0}, LayerChoice{LayerChoice::Kind::Bottom, 0}, LayerChoice{LayerChoice::Kind::Index, 1});
+    const LayerChoice layers = GENERATE(LayerChoice{LayerChoice::Kind::Top, 0},
+                                        LayerChoice{LayerChoice::Kind::Bottom, 0},
+                                        LayerChoice{LayerChoice::Kind::Index, 1});
     const double cell = GENERATE(0.1, 0.23, 20.0);
     const RasterOptions options = on_layer(layers, 0.15, 0.7);
     const GridFrame frame = frame_around(map.bounds, cell);
@@ -249,16 +275,19 @@ TEST_CASE("an image of verdicts holds the verdict at each cell's centre, on the 
         }
     CHECK(image.counts == counts);
     if (cell < 1 && layers.kind != LayerChoice::Kind::Index) {
-        for (const Verdict verdict : {Verdict::Valid, Verdict::Collision, Verdict::Submerged}) CHECK(counts[std::size_t(verdict)] > 0);
+        for (const Verdict verdict : {Verdict::Valid, Verdict::Collision, Verdict::Submerged})
+            CHECK(counts[std::size_t(verdict)] > 0);
     }
 }
 
 TEST_CASE("an image of verdicts is the same in strips far from the origin, and at any number of threads")
 {
     const TempFolder folder;  // more rows than a strip has, at coordinates where steps are rounded
-    const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
-                                                                     "- {name: floor, label: terrain, box: [1, 7, 1], xyz: [500000.3, 4500000.1, 0]}\n"
-                                                                     "- {name: ball, sphere: 0.3, xyz: [500000.2, 4499999.7, 0.6]}\n")));
+    const TestMap map = map_of(
+        load_scene(folder.write("scene.yaml",
+                                "format: spawnfield-scene/1\nparts:\n"
+                                "- {name: floor, label: terrain, box: [1, 7, 1], xyz: [500000.3, 4500000.1, 0]}\n"
+                                "- {name: ball, sphere: 0.3, xyz: [500000.2, 4499999.7, 0.6]}\n")));
     const CollisionChecker checker = checker_of(map, small_box);
     RasterOptions options = on_layer({LayerChoice::Kind::Top, 0});
     const GridFrame frame = frame_around(map.bounds, 0.01);
@@ -267,7 +296,8 @@ TEST_CASE("an image of verdicts is the same in strips far from the origin, and a
     const VerdictImage one = verdict_image(map, checker, frame, options);
     options.threads = 7;
     CHECK(verdict_image(map, checker, frame, options).verdicts == one.verdicts);
-    CHECK(std::count(one.verdicts.begin(), one.verdicts.end(), VerdictImage::no_pose) == 0);  // rounding costs no row or column
+    CHECK(std::count(one.verdicts.begin(), one.verdicts.end(), VerdictImage::no_pose) ==
+          0);  // rounding costs no row or column
 }
 
 TEST_CASE("a nav2 map says of each point what the verdict at its cell's centre says")
@@ -291,11 +321,11 @@ TEST_CASE("a nav2 map says of each point what the verdict at its cell's centre s
             const int expected = !verdict || *verdict == Verdict::Outside ? -1 : *verdict == Verdict::Valid ? 0 : 100;
             CHECK(read.occupancy_at(x, y) == expected);
         }
-    CHECK(read.occupancy_at(-3.5, 1) == 100);   // the block
-    CHECK(read.occupancy_at(-3.5, -1) == 0);    // the deck
-    CHECK(read.occupancy_at(2, -2) == 100);     // the pool
-    CHECK(read.occupancy_at(2, 2) == 0);        // the floor: x and y are not turned or mirrored
-    CHECK(read.occupancy_at(4.5, 0) == -1);     // the post, where there is no terrain
+    CHECK(read.occupancy_at(-3.5, 1) == 100);  // the block
+    CHECK(read.occupancy_at(-3.5, -1) == 0);   // the deck
+    CHECK(read.occupancy_at(2, -2) == 100);    // the pool
+    CHECK(read.occupancy_at(2, 2) == 0);       // the floor: x and y are not turned or mirrored
+    CHECK(read.occupancy_at(4.5, 0) == -1);    // the post, where there is no terrain
 }
 
 TEST_CASE("names of nav2 images that YAML would misread are quoted, and other endings are refused")
@@ -336,8 +366,12 @@ TEST_CASE("files that are committed together appear all or none")
 TEST_CASE("export --format nav2 writes the pair, the same bytes at any number of threads")
 {
     const Arena arena;
-    REQUIRE(arena("export map --format nav2 --offset 0.2 --layers bottom -o one.yaml --threads 1 --summary s.json" + husky_option).status == 0);
-    REQUIRE(arena("export map --format nav2 --offset 0.2 --layers bottom -o two.yaml --threads 3" + husky_option).status == 0);
+    REQUIRE(arena("export map --format nav2 --offset 0.2 --layers bottom -o one.yaml --threads 1 --summary s.json" +
+                  husky_option)
+                .status == 0);
+    REQUIRE(
+        arena("export map --format nav2 --offset 0.2 --layers bottom -o two.yaml --threads 3" + husky_option).status ==
+        0);
     CHECK(bytes_of(arena / "one.pgm") == bytes_of(arena / "two.pgm"));
     const Nav2Map map = read_nav2(arena / "one.yaml");
     CHECK(map.image == "one.pgm");
@@ -389,9 +423,9 @@ TEST_CASE("a GeoTIFF's bands hold what stands in the column at each cell's centr
     CHECK(read.at("elevation", -3, -1) == float(2.1));  // x and y are not turned or mirrored
     CHECK(std::isnan(read.at("elevation", 4.5, 0)));
     CHECK(read.at("layers", 4.5, 0) == 0);
-    CHECK(read.at("clearance", -3, -1) == Approx(1.9));     // under the deck
-    CHECK(std::isnan(read.at("clearance", 1, -1)));         // the open sky
-    CHECK(read.at("clearance", 1, 2) == 0);                 // the crate
+    CHECK(read.at("clearance", -3, -1) == Approx(1.9));  // under the deck
+    CHECK(std::isnan(read.at("clearance", 1, -1)));      // the open sky
+    CHECK(read.at("clearance", 1, 2) == 0);              // the crate
     CHECK(read.at("slope", -3, -1) == 0);
     CHECK(read.at("verdict", 2, -2) == float(Verdict::Submerged));
     choice.layers = {LayerChoice::Kind::Top, 0};
@@ -405,8 +439,10 @@ TEST_CASE("a GeoTIFF's bands hold what stands in the column at each cell's centr
 TEST_CASE("a GeoTIFF tells a ramp's slope, also at the rim")
 {
     const TempFolder folder;
-    const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
-                                                                     "- {name: ramp, label: terrain, plane: [3, 3], rpy: [0.2, -0.3, 0]}\n")));
+    const TestMap map = map_of(
+        load_scene(folder.write("scene.yaml",
+                                "format: spawnfield-scene/1\nparts:\n"
+                                "- {name: ramp, label: terrain, plane: [3, 3], rpy: [0.2, -0.3, 0]}\n")));
     write_geotiff(map, frame_around({Vec3(-1, -1, 0), Vec3(1, 1, 0)}, 0.1), nullptr, {}, folder / "ramp.tif");
     const GeoTiff read = read_geotiff(folder / "ramp.tif");
     const double expected = std::acos(rotation_from_rpy(0.2, -0.3, 0)(2, 2)) * 180 / std::numbers::pi;
@@ -419,7 +455,8 @@ TEST_CASE("a GeoTIFF's slopes see the neighbours beyond the edge of a tile")
     const TempFolder folder;
     const GridFrame frame = frame_around(map.bounds, 3.5 / 256);  // the deck ends where the second tile begins
     write_geotiff(map, frame, nullptr, {}, folder / "deck.tif");
-    const HeightImage slopes = read_geotiff(folder / "deck.tif").band("slope"), heights = page_image(rasterize_terrain(map.geometry, frame), "height.0");
+    const HeightImage slopes = read_geotiff(folder / "deck.tif").band("slope"),
+                      heights = page_image(rasterize_terrain(map.geometry, frame), "height.0");
     std::size_t wrong = 0;
     for (int row = 0; row < frame.rows; ++row)
         for (int col = 0; col < frame.cols; ++col) {
@@ -443,8 +480,10 @@ TEST_CASE("a GeoTIFF lies where the survey says, if that names its coordinates b
     CHECK(survey.at("elevation", 500000.25 - 3, 4100000.5 - 1) == float(2.1));
     CHECK(survey.at("elevation", 500000.25 + 2, 4100000.5 + 2) == 0);
     if (const auto python = python_with("rasterio"))
-        CHECK(python_accepts(*python, folder, "import rasterio, sys\nd = rasterio.open(sys.argv[1])\nassert d.crs.to_epsg() == 32611\n"
-                                              "assert abs(next(d.sample([(499997.25, 4099999.5)]))[0] - 2.1) < 1e-6\n", folder / "a.tif"));
+        CHECK(python_accepts(*python, folder,
+                             "import rasterio, sys\nd = rasterio.open(sys.argv[1])\nassert d.crs.to_epsg() == 32611\n"
+                             "assert abs(next(d.sample([(499997.25, 4099999.5)]))[0] - 2.1) < 1e-6\n",
+                             folder / "a.tif"));
     map.origin->unit = 0.3048;  // feet
     write_geotiff(map, frame, nullptr, {}, folder / "feet.tif");
     const GeoTiff feet = read_geotiff(folder / "feet.tif");
@@ -454,7 +493,8 @@ TEST_CASE("a GeoTIFF lies where the survey says, if that names its coordinates b
     write_geotiff(map, frame, nullptr, local, folder / "local.tif");
     map.origin->crs = "EPSG:4326000";
     write_geotiff(map, frame, nullptr, {}, folder / "words.tif");
-    for (const char* const name : {"local.tif", "words.tif"}) CHECK(read_geotiff(folder / name).at("elevation", -3, -1) == float(2.1));
+    for (const char* const name : {"local.tif", "words.tif"})
+        CHECK(read_geotiff(folder / name).at("elevation", -3, -1) == float(2.1));
 }
 
 TEST_CASE("export --format geotiff writes the same bytes at any number of threads")
@@ -492,15 +532,18 @@ with rasterio.open(sys.argv[1]) as d:
     assert d.read(8)[row, col] == 4
     row, col = d.index(0, 3)
     assert d.read(8)[row, col] == 7 and abs(d.read(1)[row, col] + 0.05) < 1e-6
-)", arena / "a.tif"));
+)",
+                         arena / "a.tif"));
 }
 
 TEST_CASE("a PLY has the raster's poses as points, to the bit, coloured as in heat maps")
 {
     const TempFolder folder;  // far off: float would be half a metre wrong
-    const TestMap map = map_of(load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n"
-                                                                     "- {name: floor, label: terrain, box: [5, 3, 1], xyz: [500000.3, 4500000.1, 0.001]}\n"
-                                                                     "- {name: ball, sphere: 0.6, xyz: [500000.2, 4499999.7, 0.6]}\n")));
+    const TestMap map = map_of(
+        load_scene(folder.write("scene.yaml",
+                                "format: spawnfield-scene/1\nparts:\n"
+                                "- {name: floor, label: terrain, box: [5, 3, 1], xyz: [500000.3, 4500000.1, 0.001]}\n"
+                                "- {name: ball, sphere: 0.6, xyz: [500000.2, 4499999.7, 0.6]}\n")));
     const CollisionChecker checker = checker_of(map, small_box);
     RasterOptions options = on_layer({});
     options.step = 0.1;
@@ -508,10 +551,14 @@ TEST_CASE("a PLY has the raster's poses as points, to the bit, coloured as in he
     std::string bytes;
     write_ply(result, {"two\nlines"}, [&](std::string_view piece) { bytes += piece; });
     const std::size_t body = bytes.find("end_header\n") + 11;
-    CHECK(bytes.substr(0, body) == "ply\nformat binary_little_endian 1.0\ncomment two lines\n"
-                                   "comment verdict: 0 outside, 1 aerial, 2 off_terrain, 3 submerged, 4 collision, 5 steep, 6 unstable, 7 valid\n"
-                                   "element vertex " + std::to_string(result.poses.size()) + "\nproperty double x\nproperty double y\nproperty double z\n"
-                                   "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar verdict\nend_header\n");
+    CHECK(
+        bytes.substr(0, body) ==
+        "ply\nformat binary_little_endian 1.0\ncomment two lines\n"
+        "comment verdict: 0 outside, 1 aerial, 2 off_terrain, 3 submerged, 4 collision, 5 steep, 6 unstable, 7 valid\n"
+        "element vertex " +
+            std::to_string(result.poses.size()) +
+            "\nproperty double x\nproperty double y\nproperty double z\n"
+            "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar verdict\nend_header\n");
     constexpr std::size_t point = 3 * sizeof(double) + 4;
     REQUIRE(bytes.size() == body + point * result.poses.size());
     REQUIRE((result.counts[std::size_t(Verdict::Valid)] > 100 && result.counts[std::size_t(Verdict::Collision)] > 100));
@@ -525,7 +572,8 @@ TEST_CASE("a PLY has the raster's poses as points, to the bit, coloured as in he
         const char* const at = bytes.data() + body + p * point;
         std::array<double, 3> place;
         std::memcpy(place.data(), at, sizeof place);
-        wrong += place != std::array{pose.x, pose.y, pose.z} || std::string(at + sizeof place, 3) != colours.at(pose.verdict) || Verdict(at[27]) != pose.verdict;
+        wrong += place != std::array{pose.x, pose.y, pose.z} ||
+                 std::string(at + sizeof place, 3) != colours.at(pose.verdict) || Verdict(at[27]) != pose.verdict;
     }
     CHECK(wrong == 0);
 }
@@ -539,7 +587,8 @@ TEST_CASE("export --format ply writes to a file or to standard output, the same 
     REQUIRE(arena(command + "--threads 3 -o a.ply").status == 0);
     CHECK(bytes_of(arena / "a.ply") == printed.out);
     const ProgramRun csv = arena("raster map --dims 2 --step 0.5 --offset 0.5 -q" + husky_option);
-    CHECK_THAT(printed.out, Contains("element vertex " + std::to_string(std::count(csv.out.begin(), csv.out.end(), '\n') - 1) + "\n"));
+    CHECK_THAT(printed.out, Contains("element vertex " +
+                                     std::to_string(std::count(csv.out.begin(), csv.out.end(), '\n') - 1) + "\n"));
     const auto python = python_with("plyfile");
     if (!python) return;
     CHECK(python_accepts(*python, arena, R"(
@@ -549,7 +598,8 @@ v = PlyData.read(sys.argv[1])['vertex']
 valid = [p for p in v if p['verdict'] == 7]
 assert len(valid) > 500 and all((p['red'], p['green'], p['blue']) == (0xbd, 0xd5, 0xa7) for p in valid)
 assert any(abs(p['z'] - 0.45) < 1e-12 for p in valid)
-)", arena / "a.ply"));
+)",
+                         arena / "a.ply"));
 }
 
 TEST_CASE("a GLB that is loaded again has the same triangles with the same labels, also far from the origin")
@@ -567,11 +617,15 @@ TEST_CASE("a GLB that is loaded again has the same triangles with the same label
 TEST_CASE("solids in a GLB are closed, hold their place and most of their volume")
 {
     const TempFolder folder;
-    const auto [shape, volume] = GENERATE(std::pair{"box: [1, 2, 3]", 6.0}, std::pair{"sphere: 2", 4.0 / 3 * std::numbers::pi * 8},
-                                          std::pair{"cylinder: {radius: 1, length: 3}", std::numbers::pi * 3},
-                                          std::pair{"capsule: {radius: 1, length: 3}", std::numbers::pi * (3 + 4.0 / 3)});
-    const TestMap map = map_of(load_scene(folder.write("scene.yaml", std::string("format: spawnfield-scene/1\nparts:\n- {name: it, label: obstacle, rpy: [0.3, -0.4, 2],"
-                                                                                 " xyz: [7.3, -2, 1], ") + shape + "}\n")));
+    const auto [shape, volume] = GENERATE(
+        std::pair{"box: [1, 2, 3]", 6.0}, std::pair{"sphere: 2", 4.0 / 3 * std::numbers::pi * 8},
+        std::pair{"cylinder: {radius: 1, length: 3}", std::numbers::pi * 3},
+        std::pair{"capsule: {radius: 1, length: 3}", std::numbers::pi * (3 + 4.0 / 3)});
+    const TestMap map = map_of(load_scene(folder.write(
+        "scene.yaml",
+        std::string("format: spawnfield-scene/1\nparts:\n- {name: it, label: obstacle, rpy: [0.3, -0.4, 2],"
+                    " xyz: [7.3, -2, 1], ") +
+            shape + "}\n")));
     const Scene read = load_glb(folder, glb_bytes(map));
     CAPTURE(shape);
     REQUIRE(read.pieces.size() == 1);
@@ -579,13 +633,19 @@ TEST_CASE("solids in a GLB are closed, hold their place and most of their volume
     double six_volumes = 0;
     double off = 0;
     const Pose& pose = map.scene.primitives[0].shape.pose;
-    for (const Triangle& t : read.triangles) six_volumes += read.vertices[t[0]].dot(read.vertices[t[1]].cross(read.vertices[t[2]]));
+    for (const Triangle& t : read.triangles)
+        six_volumes += read.vertices[t[0]].dot(read.vertices[t[1]].cross(read.vertices[t[2]]));
     for (const Vec3& vertex : read.vertices) {  // each lies on the surface
         Vec3 p = (pose.rotation.transpose() * (vertex - pose.position)).cwiseAbs();
         const std::string kind = shape;
-        if (kind.starts_with("box")) p -= Vec3(0.5, 1, 1.5);
-        else if (kind.starts_with("cylinder")) p = Vec3(0, 0, p.z() - 1.5);
-        else p = Vec3(Vec3(p.x(), p.y(), std::max(0.0, p.z() - (kind.starts_with("capsule") ? 1.5 : 0))).norm() - (kind.starts_with("sphere") ? 2 : 1), 0, 0);
+        if (kind.starts_with("box"))
+            p -= Vec3(0.5, 1, 1.5);
+        else if (kind.starts_with("cylinder"))
+            p = Vec3(0, 0, p.z() - 1.5);
+        else
+            p = Vec3(Vec3(p.x(), p.y(), std::max(0.0, p.z() - (kind.starts_with("capsule") ? 1.5 : 0))).norm() -
+                         (kind.starts_with("sphere") ? 2 : 1),
+                     0, 0);
         off = std::max(off, p.cwiseAbs().maxCoeff());
     }
     CHECK(off < 1e-6);
@@ -598,10 +658,12 @@ TEST_CASE("solids in a GLB are closed, hold their place and most of their volume
 
 TEST_CASE("a GLB's markers stand at their poses and look where they look, coloured by verdict")
 {
-    const TestMap map = map_of(shifted(load_scene(training_scene.substr(1, training_scene.size() - 2)), Vec3(500000, 0, 20)));
+    const TestMap map = map_of(
+        shifted(load_scene(training_scene.substr(1, training_scene.size() - 2)), Vec3(500000, 0, 20)));
     const Robot robot = husky();
     GlbMarkers markers;
-    markers.poses = {{Vec3(500001.125, -2.5, 20.1), rotation_from_rpy(0, 0, 2)}, {Vec3(499999, 3, 21), rotation_from_rpy(0.3, -0.2, -3)}};
+    markers.poses = {{Vec3(500001.125, -2.5, 20.1), rotation_from_rpy(0, 0, 2)},
+                     {Vec3(499999, 3, 21), rotation_from_rpy(0.3, -0.2, -3)}};
     markers.verdicts = {Verdict::Valid, Verdict::Collision};
     markers.names = {"first", "the \"second\" \xff"};  // quotes, and what is no UTF-8
     const GlbMarkers bare{markers.poses, {}, {}, nullptr};
@@ -621,7 +683,8 @@ TEST_CASE("a GLB's markers stand at their poses and look where they look, colour
             const auto node = json["nodes"][named("spawns")["children"][m].get<std::size_t>()];
             if (m == 0) CHECK(node["name"] == "first");
             const auto& t = node["translation"];
-            const Vec3 place(t[0].get<double>() + 500000, -t[2].get<double>(), t[1].get<double>() + 20);  // back to z up
+            const Vec3 place(t[0].get<double>() + 500000, -t[2].get<double>(),
+                             t[1].get<double>() + 20);  // back to z up
             CHECK((place - markers.poses[m].position).norm() < 1e-9);
             const auto& r = node["rotation"];
             const Eigen::Quaterniond q(r[3].get<double>(), r[0].get<double>(), r[1].get<double>(), r[2].get<double>());
@@ -630,7 +693,9 @@ TEST_CASE("a GLB's markers stand at their poses and look where they look, colour
                 CHECK((Vec3(turned.x(), -turned.z(), turned.y()) - markers.poses[m].rotation * axis).norm() < 1e-9);
             }
             CHECK(node["extras"]["verdict"] == to_string(markers.verdicts[m]));
-            const auto material = json["materials"][json["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0]["material"].get<std::size_t>()];
+            const auto material =
+                json["materials"]
+                    [json["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0]["material"].get<std::size_t>()];
             CHECK(material["name"] == std::string("spawn ") + to_string(markers.verdicts[m]));
         }
         CHECK(glb_json(glb_bytes(map, bare))["nodes"].size() == json["nodes"].size());
@@ -648,7 +713,8 @@ TEST_CASE("a map that is baked from a GLB gives nearly all the same verdicts")
     const TestMap again = map_of(load_glb(folder, glb_bytes(map)));
     const RasterOptions options = on_layer({LayerChoice::Kind::Top, 0}, 0.15);
     const GridFrame frame = frame_around(map.bounds, 0.2);
-    const VerdictImage before = verdict_image(map, checker_of(map, husky()), frame, options), after = verdict_image(again, checker_of(again, husky()), frame, options);
+    const VerdictImage before = verdict_image(map, checker_of(map, husky()), frame, options),
+                       after = verdict_image(again, checker_of(again, husky()), frame, options);
     std::size_t other = 0;
     for (std::size_t c = 0; c < before.verdicts.size(); ++c) other += before.verdicts[c] != after.verdicts[c];
     CHECK(other < before.verdicts.size() / 200);  // round solids are polygons, and numbers are float32
@@ -692,9 +758,11 @@ TEST_CASE("export --format glb draws poses of a CSV file and says what is wrong 
     arena.write("bad.csv", "x,y,z,verdict\n0,0,0,valid\n0,0,0,good\n");
     const ProgramRun bad = arena("export map --format glb --poses bad.csv -o bad.glb");
     CHECK(bad.status == 4);
-    CHECK(bad.err == "spawnfield: bad.csv: pose 2: column verdict is \"good\", needs a verdict's name, as valid or collision\n");
+    CHECK(bad.err ==
+          "spawnfield: bad.csv: pose 2: column verdict is \"good\", needs a verdict's name, as valid or collision\n");
     CHECK_FALSE(fs::exists(arena / "bad.glb"));
-    CHECK_THAT(arena("export map --format glb -o b.glb" + husky_option).err, Contains("--robot has no effect: without --poses there is nowhere to draw it"));
+    CHECK_THAT(arena("export map --format glb -o b.glb" + husky_option).err,
+               Contains("--robot has no effect: without --poses there is nowhere to draw it"));
     const auto python = python_with("trimesh");
     if (!python) return;
     CHECK(python_accepts(*python, arena, R"(
@@ -707,7 +775,8 @@ low, high = s.bounds
 assert abs(low[0] + 10.1) < 1e-5 and abs(low[1] + 3.05) < 1e-5 and abs(high[2] - 10.1) < 1e-5, s.bounds
 place, geometry = s.graph['a']
 assert abs(place[:3, 3] - (0, 0.1, -3)).max() < 1e-6 and s.geometry[geometry].is_watertight
-)", arena / "a.glb"));
+)",
+                         arena / "a.glb"));
 }
 
 TEST_CASE("export says which option a format needs, takes or refuses, and writes nothing then")
@@ -724,8 +793,10 @@ TEST_CASE("export says which option a format needs, takes or refuses, and writes
     };
     refused("--format nav2 -o a.yaml", "--format nav2 needs --robot");
     refused("--format nav2" + husky_option, "--format nav2 needs --out");
-    refused("--format nav2 -o -" + husky_option, "--out is \"-\": --format nav2 cannot go to standard output, name a file");
-    refused("--format nav2 -o a.png" + husky_option, "the file's name is \"a.png\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
+    refused("--format nav2 -o -" + husky_option,
+            "--out is \"-\": --format nav2 cannot go to standard output, name a file");
+    refused("--format nav2 -o a.png" + husky_option,
+            "the file's name is \"a.png\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
     refused("--format nav2 --layers all -o a.yaml" + husky_option,
             "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of nav2 has one value");
     refused("--format nav2 --resolution 0 -o a.yaml" + husky_option, "--resolution is 0, needs > 0");

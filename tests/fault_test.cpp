@@ -39,7 +39,8 @@ std::string complaint(const TempFolder& folder, const Call& call)
         what = std::string(error.what()) + "?";
     }
     const std::string path = folder.path().string();
-    for (std::size_t at = what.find(path); at != std::string::npos; at = what.find(path)) what.replace(at, path.size(), "@");
+    for (std::size_t at = what.find(path); at != std::string::npos; at = what.find(path))
+        what.replace(at, path.size(), "@");
     return what;
 }
 
@@ -52,8 +53,10 @@ std::string part_complaint(const TempFolder& folder, const std::string& part)
 void bake_small(const TempFolder& folder)
 {
     folder.write("house.obj", mesh_text::obj(hand::without(hand::box({1, 1, 1}), 0, 2)));
-    const Scene scene = load_parts(folder, "  - {name: floor, label: terrain, box: [6, 4, 0.1]}\n  - {name: ball, sphere: 1, xyz: [2, 0, 0]}\n"
-                                           "  - {name: house, mesh: house.obj, xyz: [-2, 0, 0.5]}\n");
+    const Scene scene = load_parts(
+        folder,
+        "  - {name: floor, label: terrain, box: [6, 4, 0.1]}\n  - {name: ball, sphere: 1, xyz: [2, 0, 0]}\n"
+        "  - {name: house, mesh: house.obj, xyz: [-2, 0, 0.5]}\n");
     BakeOptions options;
     options.resolution = 0.5;
     bake(scene, folder / "scene.yaml", folder / "map", options);
@@ -62,8 +65,8 @@ void bake_small(const TempFolder& folder)
 /// A good file cut at every step-th byte, or with that byte altered, gives a result or a FileError.
 enum class Harm { Cut, CutAndAltered };
 template <class Read>
-void check_harmed(const TempFolder& folder, const std::string& name, const std::string& good, std::size_t step, const Read& read,
-                  Harm harm = Harm::CutAndAltered)
+void check_harmed(const TempFolder& folder, const std::string& name, const std::string& good, std::size_t step,
+                  const Read& read, Harm harm = Harm::CutAndAltered)
 {
     std::size_t results = 0, refused = 0;
     const auto look = [&](const std::string& bytes) {
@@ -93,16 +96,22 @@ TEST_CASE("a scene that lies beyond where distances are exact is refused with it
 {
     const TempFolder folder;
     const auto refused = [&](const std::string& part) {
-        return folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n  - {name: floor, label: terrain, box: [1, 1, 1]}\n  - {name: far, " + part + "}\n");
+        return folder.write(
+            "scene.yaml",
+            "format: spawnfield-scene/1\nparts:\n  - {name: floor, label: terrain, box: [1, 1, 1]}\n  - {name: far, " +
+                part + "}\n");
     };
     const std::string far = (folder / "scene.yaml").string() + ": part \"far\" reaches from ";
-    for (const char* const part : {"box: [1, 1, 1], xyz: [0, 0, 1e16]", "box: [1e300, 1, 1]", "capsule: {radius: 1e200, length: 1}", "sphere: 1, xyz: [-1.1e7, 0, 0]"})
-        CHECK_THROWS_WITH(load_scene(refused(part)), Catch::StartsWith(far) && Catch::Contains("needs to lie within 1e+07 m of 0, 0, 0"));
+    for (const char* const part : {"box: [1, 1, 1], xyz: [0, 0, 1e16]", "box: [1e300, 1, 1]",
+                                   "capsule: {radius: 1e200, length: 1}", "sphere: 1, xyz: [-1.1e7, 0, 0]"})
+        CHECK_THROWS_WITH(load_scene(refused(part)),
+                          Catch::StartsWith(far) && Catch::Contains("needs to lie within 1e+07 m of 0, 0, 0"));
     CHECK(load_scene(refused("sphere: 1, xyz: [5e6, 0, 0]")).primitives.size() == 2);
     CHECK_THROWS_AS(load_scene(refused("sphere: 1"), {.bounds = {Vec3(-1e8, 0, 0), Vec3(1, 1, 1)}}), ArgumentError);
     fs::create_symlink(folder / "a.yaml", folder / "b.yaml");
     fs::create_symlink(folder / "b.yaml", folder / "a.yaml");
-    CHECK_THROWS_WITH(load_scene(folder / "a.yaml"), (folder / "a.yaml").string() + ": cannot be reached: Too many levels of symbolic links");
+    CHECK_THROWS_WITH(load_scene(folder / "a.yaml"),
+                      (folder / "a.yaml").string() + ": cannot be reached: Too many levels of symbolic links");
 }
 
 TEST_CASE("every mistake in a scene file is told by file, part, key, value and limit")
@@ -160,9 +169,11 @@ TEST_CASE("every mistake in a scene file is told by file, part, key, value and l
         {"{name: tank, octomap: none.bt}",
          "octomap cannot be used: @/none.bt: does not exist; is the path right? (line 4)"},
     };
-    for (const auto& [part, wanted] : parts) CHECK(part_complaint(folder, part) == "@/scene.yaml: part \"tank\": " + wanted);
+    for (const auto& [part, wanted] : parts)
+        CHECK(part_complaint(folder, part) == "@/scene.yaml: part \"tank\": " + wanted);
     CHECK(part_complaint(folder, "{sphere: 1}") == "@/scene.yaml: part 1: name is missing");
-    CHECK(part_complaint(folder, "{name: a, sphere: 1, sphere: 2}") == "@/scene.yaml: part 1: sphere is given twice (line 4)");
+    CHECK(part_complaint(folder, "{name: a, sphere: 1, sphere: 2}") ==
+          "@/scene.yaml: part 1: sphere is given twice (line 4)");
     CHECK(part_complaint(folder, "tank") == "@/scene.yaml: part 1: is tank, needs a mapping (key: value) (line 4)");
     CHECK(part_complaint(folder, "{name: a, sphere: 1}\n  - {name: a, sphere: 1}") ==
           "@/scene.yaml: part \"a\": name is given to an earlier part too, needs to be unique (line 5)");
@@ -175,26 +186,32 @@ TEST_CASE("a scene file that is none is told so")
         {"", "is empty, needs a mapping (key: value)"},
         {"- 1\n", "is a list, needs a mapping (key: value) (line 1)"},
         {"name: a\n", "format is missing"},
-        {"format: spawnfield-scene/2\nparts: []\n", "format is \"spawnfield-scene/2\", needs spawnfield-scene/1 (line 1)"},
-        {"format: spawnfield-robot/1\nparts: []\n", "format is \"spawnfield-robot/1\", needs spawnfield-scene/1 (line 1)"},
+        {"format: spawnfield-scene/2\nparts: []\n",
+         "format is \"spawnfield-scene/2\", needs spawnfield-scene/1 (line 1)"},
+        {"format: spawnfield-robot/1\nparts: []\n",
+         "format is \"spawnfield-robot/1\", needs spawnfield-scene/1 (line 1)"},
         {"format: spawnfield-scene/1\n", "parts is missing"},
         {"format: spawnfield-scene/1\nparts: []\n", "parts is empty, needs at least one part (line 2)"},
         {"format: spawnfield-scene/1\nparts: {a: 1}\n", "parts is a mapping, needs a list (line 2)"},
         {"format: spawnfield-scene/1\npart: []\n", "part is no known key; known: format, name, parts (line 2)"},
-        {"format: spawnfield-scene/1\nparts: [{name: a, label: ignore, sphere: 1}]\n", "has no geometry: all of it is ignored"},
+        {"format: spawnfield-scene/1\nparts: [{name: a, label: ignore, sphere: 1}]\n",
+         "has no geometry: all of it is ignored"},
         {"format: spawnfield-scene/1\nparts: [\n", "line 3: end of sequence flow not found"},
     };
     for (const auto& [text, wanted] : files) {
         const fs::path file = folder.write("scene.yaml", text);
         CHECK(complaint(folder, [&] { load_scene(file); }) == "@/scene.yaml: " + wanted);
     }
-    CHECK(complaint(folder, [&] { load_scene(folder / "none.yaml"); }) == "@/none.yaml: does not exist; is the path right?");
-    CHECK(complaint(folder, [&] { load_scene(folder.path()); }) == "@: is a folder without model.config and .sdf file, needs to be a model's");
+    CHECK(complaint(folder, [&] { load_scene(folder / "none.yaml"); }) ==
+          "@/none.yaml: does not exist; is the path right?");
+    CHECK(complaint(folder, [&] { load_scene(folder.path()); }) ==
+          "@: is a folder without model.config and .sdf file, needs to be a model's");
     const fs::path good = folder.write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: a, sphere: 1}]\n");
     CHECK(complaint(folder, [&] { load_scene(good, {.up = 'y'}); }) ==
           "load_scene: up and scale are for a bare mesh; give them in @/scene.yaml (keys up, scale)");
     CHECK(complaint(folder, [&] { load_scene(good, {.scale = 0}); }) == "load_scene: scale is 0, needs > 0 m per unit");
-    CHECK(complaint(folder, [&] { load_scene(good, {.scale = nan_value}); }) == "load_scene: scale is nan, needs > 0 m per unit");
+    CHECK(complaint(folder, [&] { load_scene(good, {.scale = nan_value}); }) ==
+          "load_scene: scale is nan, needs > 0 m per unit");
 }
 
 TEST_CASE("meshes that are empty, not finite, or none at all are refused by name")
@@ -210,7 +227,8 @@ TEST_CASE("meshes that are empty, not finite, or none at all are refused by name
     CHECK(mesh_complaint("a.stl", "solid a\nendsolid a\n").starts_with("@/a.stl: "));
     CHECK(mesh_complaint("a.xyz", "hello").starts_with("@/a.xyz: cannot be read as a mesh: "));
     CHECK(mesh_complaint("a.dae", "<COLLADA").starts_with("@/a.dae: cannot be read as a mesh: "));
-    CHECK(mesh_complaint("a.obj", "v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\n") == "@/a.obj: has no triangles, needs at least one");
+    CHECK(mesh_complaint("a.obj", "v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\n") ==
+          "@/a.obj: has no triangles, needs at least one");
     CHECK(mesh_complaint("a.obj", "o hill\nv 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n") ==
           "@/a.obj: node \"hill\": a vertex is (nan, 0, 0), needs finite coordinates");
     CHECK(mesh_complaint("a.obj", "o hill\nv 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n") ==
@@ -235,9 +253,15 @@ TEST_CASE("options out of their limits are refused by function, argument, value 
     CHECK(raster_complaint([](auto& o) { o.offset = nan_value; }) == "raster: offset is nan, needs a finite number, m");
     CHECK(raster_complaint([](auto& o) { o.max_height = -1; }) == "raster: max_height is -1, needs >= 0 m");
     CHECK(raster_complaint([](auto& o) { o.max_water_depth = -1; }) == "raster: max_water_depth is -1, needs >= 0 m");
-    CHECK(raster_complaint([](auto& o) { o.bounds = {{0, 5, 0}, {1, 4, 0}}; }) == "raster: bounds.max.y is 4, needs at least bounds.min.y");
-    CHECK(raster_complaint([](auto& o) { o.bounds = {{0, nan_value, 0}, {1, 4, 0}}; }) == "raster: bounds.min.y is nan, needs a finite number, m");
-    CHECK(raster_complaint([](auto& o) { o.bounds = {{0, 0, 1}, {1, 1, 0}}; }).empty());  // two dimensions leave z aside
+    CHECK(raster_complaint([](auto& o) {
+              o.bounds = {{0, 5, 0}, {1, 4, 0}};
+          }) == "raster: bounds.max.y is 4, needs at least bounds.min.y");
+    CHECK(raster_complaint([](auto& o) {
+              o.bounds = {{0, nan_value, 0}, {1, 4, 0}};
+          }) == "raster: bounds.min.y is nan, needs a finite number, m");
+    CHECK(raster_complaint([](auto& o) {
+              o.bounds = {{0, 0, 1}, {1, 1, 0}};
+          }).empty());  // two dimensions leave z aside
     CHECK(raster_complaint([](auto& o) {
               o.dims = 3;
               o.bounds = {{0, 0, 1}, {1, 1, 0}};
@@ -251,10 +275,13 @@ TEST_CASE("options out of their limits are refused by function, argument, value 
     CHECK(spawn_complaint([](auto& o) { o.count = 0; }) == "sample: count is 0, needs >= 1");
     CHECK(spawn_complaint([](auto& o) { o.min_distance = -1; }) == "sample: min_distance is -1, needs >= 0 m");
     CHECK(spawn_complaint([](auto& o) { o.yaw = nan_value; }) == "sample: yaw is nan, needs a finite number, rad");
-    CHECK(spawn_complaint([](auto& o) { o.bounds = {{3, 0, 0}, {1, 4, 0}}; }) == "sample: bounds.max.x is 1, needs at least bounds.min.x");
+    CHECK(spawn_complaint([](auto& o) {
+              o.bounds = {{3, 0, 0}, {1, 4, 0}};
+          }) == "sample: bounds.max.x is 1, needs at least bounds.min.x");
     SearchOptions search_options;
     search_options.bounds = {{0, 0, 5}, {1, 1, 1}};
-    CHECK(complaint(folder, [&] { search(map, checker, search_options); }) == "search: bounds.max.z is 1, needs at least bounds.min.z");
+    CHECK(complaint(folder, [&] { search(map, checker, search_options); }) ==
+          "search: bounds.max.z is 1, needs at least bounds.min.z");
     search_options.bounds = {};
     search_options.max_failures = 0;
     CHECK(complaint(folder, [&] { search(map, checker, search_options); }) == "search: max_failures is 0, needs >= 1");
@@ -274,21 +301,32 @@ TEST_CASE("a bake refuses bad options and a scene without terrain, and makes no 
     const auto bake_complaint = [&](const Scene& scene, auto change) {
         BakeOptions options;
         change(options);
-        const std::string what = complaint(folder, [&] { bake(scene, folder / "scene.yaml", folder / "map", options); });
+        const std::string what = complaint(folder,
+                                           [&] { bake(scene, folder / "scene.yaml", folder / "map", options); });
         CHECK_FALSE(fs::exists(folder / "map"));
         CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);  // the scene file alone
         return what;
     };
-    CHECK(bake_complaint(floor, [](auto& o) { o.resolution = -0.1; }) == "bake: resolution is -0.1, needs > 0 m (0: chosen)");
-    CHECK(bake_complaint(floor, [](auto& o) { o.resolution = nan_value; }) == "bake: resolution is nan, needs > 0 m (0: chosen)");
-    CHECK(bake_complaint(floor, [](auto& o) { o.occupancy_resolution = -1; }) == "bake: occupancy_resolution is -1, needs > 0 m (0: chosen)");
-    CHECK(bake_complaint(floor, [](auto& o) { o.bounds = {{0, 0, 0}, {-1, 1, 1}}; }) == "bake: bounds.max.x is -1, needs at least bounds.min.x");
+    CHECK(bake_complaint(floor, [](auto& o) { o.resolution = -0.1; }) ==
+          "bake: resolution is -0.1, needs > 0 m (0: chosen)");
+    CHECK(bake_complaint(floor, [](auto& o) { o.resolution = nan_value; }) ==
+          "bake: resolution is nan, needs > 0 m (0: chosen)");
+    CHECK(bake_complaint(floor, [](auto& o) { o.occupancy_resolution = -1; }) ==
+          "bake: occupancy_resolution is -1, needs > 0 m (0: chosen)");
+    CHECK(bake_complaint(floor, [](auto& o) {
+              o.bounds = {{0, 0, 0}, {-1, 1, 1}};
+          }) == "bake: bounds.max.x is -1, needs at least bounds.min.x");
     CHECK(bake_complaint(floor, [](auto& o) { o.resolution = 1e-6; }) ==
           "frame_around: columns at a cell of 1e-06 m is 1e+12, needs at most 1e+08; take a coarser resolution");
-    CHECK(bake_complaint(floor, [](auto& o) { o.bounds = {{0, 0, 0.75}, {1, 1, 2}}; }) ==
-          "@/scene.yaml: bounds are 0, 0, 0.75 to 1, 1, 2 m, need to meet the scene: -0.5, -0.5, -0.5 to 0.5, 0.5, 0.5 m");
+    CHECK(bake_complaint(floor,
+                         [](auto& o) {
+                             o.bounds = {{0, 0, 0.75}, {1, 1, 2}};
+                         }) ==
+          "@/scene.yaml: bounds are 0, 0, 0.75 to 1, 1, 2 m, need to meet the scene: -0.5, -0.5, -0.5 to 0.5, 0.5, 0.5 "
+          "m");
     CHECK(bake_complaint(load_parts(folder, "  - {name: a, box: [1, 1, 1]}\n"), [](auto&) {}) ==
-          "@/scene.yaml: has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') or pass "
+          "@/scene.yaml: has no terrain, so no robot can stand anywhere; label a part `terrain` (--label "
+          "'GLOB=terrain') or pass "
           "--allow-no-terrain");
 }
 
@@ -311,7 +349,8 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
         std::string bad = good;
         bad[bad.size() / 2] = char(bad[bad.size() / 2] ^ 1);
         folder.write(file, bad);
-        const std::string altered = "@/" + file + ": differs from its checksum in map.yaml: it was altered; bake the map again";
+        const std::string altered = "@/" + file +
+                                    ": differs from its checksum in map.yaml: it was altered; bake the map again";
         CHECK(complaint(folder, [&] { verify_map(map); }) == altered);
         if (std::string(name) == "geometry.bin") {
             const Map harmed = read_map(map);  // what is not touched is not read
@@ -335,7 +374,9 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
     bad = good;
     bad.replace(0, bad.find('\n'), "format: spawnfield-map/4");
     folder.write("map/map.yaml", bad);
-    CHECK(read() == "@/map/map.yaml: has format version 4, this program reads 2 and 3; bake the map again or use a newer spawnfield");
+    CHECK(read() ==
+          "@/map/map.yaml: has format version 4, this program reads 2 and 3; bake the map again or use a newer "
+          "spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
     CHECK(read() == "@/map/map.yaml: is no map.yaml of spawnfield (its first line is not `format: spawnfield-map/3`)");
     fs::remove(map / "map.yaml");
@@ -349,7 +390,8 @@ TEST_CASE("a folder of another program that has a map.yaml too is not replaced")
 {
     const TempFolder folder;
     folder.write("map/map.yaml", "image: map.pgm\nresolution: 0.05\n");  // nav2's
-    CHECK(complaint(folder, [&] { bake_small(folder); }) == "@/map: exists and is no map; choose another name or remove it");
+    CHECK(complaint(folder, [&] { bake_small(folder); }) ==
+          "@/map: exists and is no map; choose another name or remove it");
     CHECK(bytes_of(folder / "map/map.yaml") == "image: map.pgm\nresolution: 0.05\n");
 }
 
@@ -374,30 +416,43 @@ TEST_CASE("input files give a result or a FileError wherever they are cut or alt
     cv::imwrite((folder / "grey.png").string(), cv::Mat(9, 9, CV_8U, cv::Scalar(7)));
     cv::imwrite((folder / "float.tiff").string(), cv::Mat(9, 9, CV_32F, cv::Scalar(7)));
     const auto load = [](const fs::path& file) { load_scene(file); };
-    check_harmed(folder, "scene.yaml", "format: spawnfield-scene/1\nname: a\nparts:\n  - {name: a, label: terrain, box: [1, 2, 3], rpy: [0, 0, 1]}\n"
-                                         "  - name: b\n    mesh: box.obj\n    scale: [1, 2, 3]\n    labels:\n      - {node: \"n*\", label: water}\n"
-                                         "  - {name: c, heightmap: {file: grey.png, size: [1, 1], z: [0, 1]}}\n", 1, load);
-    check_harmed(folder, "robot.yaml", "format: spawnfield-robot/1\nparts:\n  - {box: [1, 2, 3]}\n  - {mesh: box.obj}\ncontacts: [[1, 2, 3]]\n", 1,
-                   [](const fs::path& file) { load_robot(file.string()); });
-    check_harmed(folder, "poses.csv", "x,y,z,yaw,name\n1,2,3,0.5,\"a, b\"\n4,5,6,-1,c\n", 1, [](const fs::path& file) { read_poses(file); });
+    check_harmed(
+        folder, "scene.yaml",
+        "format: spawnfield-scene/1\nname: a\nparts:\n  - {name: a, label: terrain, box: [1, 2, 3], rpy: [0, 0, 1]}\n"
+        "  - name: b\n    mesh: box.obj\n    scale: [1, 2, 3]\n    labels:\n      - {node: \"n*\", label: water}\n"
+        "  - {name: c, heightmap: {file: grey.png, size: [1, 1], z: [0, 1]}}\n",
+        1, load);
+    check_harmed(
+        folder, "robot.yaml",
+        "format: spawnfield-robot/1\nparts:\n  - {box: [1, 2, 3]}\n  - {mesh: box.obj}\ncontacts: [[1, 2, 3]]\n", 1,
+        [](const fs::path& file) { load_robot(file.string()); });
+    check_harmed(folder, "poses.csv", "x,y,z,yaw,name\n1,2,3,0.5,\"a, b\"\n4,5,6,-1,c\n", 1,
+                 [](const fs::path& file) { read_poses(file); });
     check_harmed(folder, "mesh.obj", mesh_text::obj(hand::box({1, 1, 1})), 3, load);
     check_harmed(folder, "mesh.stl", mesh_text::stl(hand::box({1, 1, 1})), 17, load);
     check_harmed(folder, "mesh.dae", mesh_text::dae({{.mesh = hand::box({1, 1, 1})}}), 11, load);
     check_harmed(folder, "mesh.gltf", mesh_text::gltf({{.mesh = hand::box({1, 1, 1})}}), 11, load);
     check_harmed(folder, "grey.png", bytes_of(folder / "grey.png"), 1, [&](const fs::path&) {
-        const Scene scene = load_parts(folder, "  - {name: a, heightmap: {file: grey.png, size: [1, 1], z: [0, 255]}}\n");
+        const Scene scene = load_parts(folder,
+                                       "  - {name: a, heightmap: {file: grey.png, size: [1, 1], z: [0, 255]}}\n");
         CHECK(scene.bounds().min.z() == 7);  // the whole picture or none
         CHECK(scene.triangles.size() == 128);
     });
-    check_harmed(folder, "float.tiff", bytes_of(folder / "float.tiff"), 1, [&](const fs::path&) {
-        const Scene scene = load_parts(folder, "  - {name: a, heightmap: {file: float.tiff, size: [1, 1]}}\n");
-        CHECK(scene.bounds().min.z() == 7);
-        CHECK(scene.triangles.size() == 128);
-    }, Harm::Cut);
+    check_harmed(
+        folder, "float.tiff", bytes_of(folder / "float.tiff"), 1,
+        [&](const fs::path&) {
+            const Scene scene = load_parts(folder, "  - {name: a, heightmap: {file: float.tiff, size: [1, 1]}}\n");
+            CHECK(scene.bounds().min.z() == 7);
+            CHECK(scene.triangles.size() == 128);
+        },
+        Harm::Cut);
     bake_small(folder);
     check_harmed(folder, "tree.bt", bytes_of(folder / "map/occupancy.bt"), 3, load);
-    const std::string link = "<link name=\"a\"><collision><origin xyz=\"0 0 1\"/><geometry><box size=\"1 2 3\"/></geometry></collision></link>";
-    check_harmed(folder, "robot.urdf", "<robot name=\"r\">" + link + "</robot>", 1, [](const fs::path& file) { load_robot(file.string()); });
+    const std::string link =
+        "<link name=\"a\"><collision><origin xyz=\"0 0 1\"/><geometry><box size=\"1 2 "
+        "3\"/></geometry></collision></link>";
+    check_harmed(folder, "robot.urdf", "<robot name=\"r\">" + link + "</robot>", 1,
+                 [](const fs::path& file) { load_robot(file.string()); });
 }
 
 TEST_CASE("a geometry file whose indices lead nowhere is refused, checksums or not")
@@ -433,7 +488,8 @@ TEST_CASE("a geometry file whose indices lead nowhere is refused, checksums or n
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.triangles[0].piece) = 1; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.pieces[0].part) = 2; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.primitives[0].part) = 9; }) == wanted);
-    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.primitives[0].kind) = char(ShapeKind::Hull); }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.primitives[0].kind) = char(ShapeKind::Hull); }) ==
+          wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.refs[0]) = 99; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.starts.back()) += 1; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.head->triangles) += 1; }) == wanted);

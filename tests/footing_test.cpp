@@ -63,7 +63,8 @@ Verdict verdict_of(const Scene& scene, const Robot& robot, const Pose& pose, dou
     options.max_slope = max_slope == off ? off : rad(max_slope);
     options.threads = 1;
     const Verdict verdict = check_poses(map, checker, {pose}, options)[0].verdict;
-    CHECK(judge(map, checker, column_at(map.geometry, pose.position.x(), pose.position.y()), pose, options).verdict == verdict);
+    CHECK(judge(map, checker, column_at(map.geometry, pose.position.x(), pose.position.y()), pose, options).verdict ==
+          verdict);
     set_exhaustive(options);
     CHECK(check_poses(map, checker, {pose}, options)[0].verdict == verdict);
     return verdict;
@@ -101,7 +102,8 @@ HardCase case_with_limit(std::uint64_t seed, const HardOptions& hard_options = {
     hard.max_slope = rad(random.between(3, 40));
     const int contacts = random.chance(0.5) ? 3 + random.below(3) : 0;
     for (int i = 0; i < contacts; ++i)
-        hard.robot.contacts.emplace_back(random.between(-0.4, 0.4), random.between(-0.4, 0.4), random.between(-0.1, 0.1));
+        hard.robot.contacts.emplace_back(random.between(-0.4, 0.4), random.between(-0.4, 0.4),
+                                         random.between(-0.1, 0.1));
     return hard;
 }
 
@@ -129,7 +131,9 @@ TEST_CASE("a robot stands on the corners of what is low of it, unless its file t
     // Corners that lie on a line but for rounding are none, on either side.
     Robot cart;
     for (const double x : {-0.256, 0.256})
-        for (const double y : {-0.285, 0.285}) cart.parts.push_back(robot_of({ShapeKind::Cylinder, {0.165, 0.1143, 0}, pose_at(x, y, 0.165, 0, M_PI / 2)}).parts[0]);
+        for (const double y : {-0.285, 0.285})
+            cart.parts.push_back(
+                robot_of({ShapeKind::Cylinder, {0.165, 0.1143, 0}, pose_at(x, y, 0.165, 0, M_PI / 2)}).parts[0]);
     const std::vector<Vec3> wheels = contacts_of(cart);
     CHECK(wheels.size() == 4);
     for (const Vec3& wheel : wheels) CHECK((wheel.cwiseAbs() - wheels[0].cwiseAbs()).norm() < 1e-9);
@@ -140,10 +144,12 @@ TEST_CASE("a robot stands on the corners of what is low of it, unless its file t
     const Polygon2 disc = lowest_footprint(robot_of({ShapeKind::Cylinder, {0.2, 0.1, 0}, pose_at(0, 0, 0.05)}));
     CHECK(extent(disc, {0.6, 0.8}) == Approx(0.2).epsilon(0.01));
     CHECK(extent(disc, Vec2(1, 1).normalized()) < 0.21);  // round robots have no corners to hang over with
-    const Polygon2 wheel = lowest_footprint(robot_of({ShapeKind::Cylinder, {0.165, 0.1, 0}, pose_at(0, 0.3, 0.165, 0, M_PI / 2)}));
+    const Polygon2 wheel = lowest_footprint(
+        robot_of({ShapeKind::Cylinder, {0.165, 0.1, 0}, pose_at(0, 0.3, 0.165, 0, M_PI / 2)}));
     CHECK(extent(wheel, {1, 0}) == Approx(std::sqrt(0.165 * 0.165 - 0.145 * 0.145)).epsilon(0.03));
     CHECK(extent(wheel, {0, 1}) == Approx(0.35));
-    const Polygon2 pill = lowest_footprint(robot_of({ShapeKind::Capsule, {0.1, 1, 0}, pose_at(0, 0, 0.1, 0, 0, M_PI / 2)}));
+    const Polygon2 pill = lowest_footprint(
+        robot_of({ShapeKind::Capsule, {0.1, 1, 0}, pose_at(0, 0, 0.1, 0, 0, M_PI / 2)}));
     CHECK(extent(pill, {1, 0}) == Approx(0.5 + std::sqrt(0.01 - 0.0064)));
     CHECK(extent(pill, {0, 1}) == Approx(std::sqrt(0.01 - 0.0064)));
 
@@ -153,7 +159,8 @@ TEST_CASE("a robot stands on the corners of what is low of it, unless its file t
 
     CHECK(contacts_of(robot_on(0.2, 0.3)) == robot_on(0.2, 0.3).contacts);
     Robot bicycle = load_robot("box:1,0.6,0.4");
-    for (const std::vector<Vec3>& line : {std::vector<Vec3>{{0.3, 0, 0}}, {{0.3, 0, 0}, {-0.3, 0, 0}}, {{0.3, 0.1, 0}, {0, 0, 0.2}, {-0.3, -0.1, 0}}}) {
+    for (const std::vector<Vec3>& line :
+         {std::vector<Vec3>{{0.3, 0, 0}}, {{0.3, 0, 0}, {-0.3, 0, 0}}, {{0.3, 0.1, 0}, {0, 0, 0.2}, {-0.3, -0.1, 0}}}) {
         bicycle.contacts = line;
         CHECK(contacts_of(bicycle) == box);
     }
@@ -170,7 +177,9 @@ TEST_CASE("footprints of low parts are those of dense samples")
         for (double x = bounds.min.x(); x <= bounds.max.x(); x += 0.004)
             for (double y = bounds.min.y(); y <= bounds.max.y(); y += 0.004)
                 for (const RobotPart& part : robot.parts)
-                    if (const auto z = vertical_interval(part.shape, x, y); z && z->bottom <= bounds.min.z() + contact_depth) low.emplace_back(x, y);
+                    if (const auto z = vertical_interval(part.shape, x, y);
+                        z && z->bottom <= bounds.min.z() + contact_depth)
+                        low.emplace_back(x, y);
         const Polygon2 polygon = lowest_footprint(robot);
         for (int k = 0; k < 16; ++k) {
             const Vec2 direction(std::cos(M_PI / 8 * k), std::sin(M_PI / 8 * k));
@@ -182,13 +191,15 @@ TEST_CASE("footprints of low parts are those of dense samples")
 
 TEST_CASE("on level ground a robot stands at any limit, and leaning a little too")
 {
-    for (const Robot& robot : {husky(), load_robot("box:0.99,0.67,0.39"), robot_of({ShapeKind::Sphere, {0.3, 0, 0}, pose_at(0, 0, 0.3)})})
+    for (const Robot& robot :
+         {husky(), load_robot("box:0.99,0.67,0.39"), robot_of({ShapeKind::Sphere, {0.3, 0, 0}, pose_at(0, 0, 0.3)})})
         for (const double limit : {0.1, 20.0, 89.9}) {
             CHECK(verdict_of(floor_scene(), robot, pose_at(1, 2, 0.1, 0.3), limit) == Valid);
             CHECK(verdict_of(floor_scene(), robot, pose_at(1, 2, 0.3, 0.3, 0.1, -0.2), limit) == Valid);
         }
     CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.1, 0.3), off) == Valid);
-    CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.7, 0.3, M_PI / 2), 20) == Unstable);  // on its side: two contacts above two
+    CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.7, 0.3, M_PI / 2), 20) ==
+          Unstable);  // on its side: two contacts above two
     CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.7, 0.3, M_PI / 2), off) == Valid);
 }
 
@@ -217,9 +228,9 @@ TEST_CASE("a robot that stands as its slope lies is asked about the slope all th
 TEST_CASE("on a beam between its wheels, on a pillar and over an edge a robot is unstable")
 {
     Scene scene = floor_scene();
-    add_box(scene, {-8, -0.15, 0}, {-2, 0.15, 5});   // beam
-    add_box(scene, {1, -0.15, 0}, {1.3, 0.15, 5});   // pillar
-    add_box(scene, {3, -6, 4.8}, {9, 6, 5});         // deck
+    add_box(scene, {-8, -0.15, 0}, {-2, 0.15, 5});  // beam
+    add_box(scene, {1, -0.15, 0}, {1.3, 0.15, 5});  // pillar
+    add_box(scene, {3, -6, 4.8}, {9, 6, 5});        // deck
     const double limit = 30;
     CHECK(verdict_of(scene, husky(), pose_at(-5, 0, 5.1), off) == Valid);
     CHECK(verdict_of(scene, husky(), pose_at(-5, 0, 5.1), limit) == Unstable);
@@ -232,13 +243,13 @@ TEST_CASE("on a beam between its wheels, on a pillar and over an edge a robot is
     CHECK(verdict_of(scene, load_robot("box:0.31,0.31,1"), pose_at(1.15, 0, 5.1), limit) == Unstable);
 
     CHECK(verdict_of(scene, husky(), pose_at(8.7, 0, 5.1), limit) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 5.1), limit) == Unstable);                // both front wheels over
-    CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), limit) == Unstable);     // one of them
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 5.1), limit) == Unstable);             // both front wheels over
+    CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), limit) == Unstable);  // one of them
     CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), 80) == Unstable);
-    CHECK(verdict_of(scene, husky(), pose_at(6, 0, 0.1), limit) == Valid);                     // below the deck
+    CHECK(verdict_of(scene, husky(), pose_at(6, 0, 0.1), limit) == Valid);  // below the deck
     CHECK(verdict_of(scene, husky(), pose_at(9.6, 9.6, 0.1, 1), limit) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(9.7, 9.6, 0.1, 1), limit) == Unstable);           // the end of the world
-    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 7), limit) == Aerial);                    // the first that applies
+    CHECK(verdict_of(scene, husky(), pose_at(9.7, 9.6, 0.1, 1), limit) == Unstable);  // the end of the world
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 7), limit) == Aerial);           // the first that applies
 }
 
 TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is not")
@@ -248,7 +259,8 @@ TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is no
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 20) == Valid);
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 9) == Unstable);  // 9.9 degrees: no slope, an edge
     Scene bench = floor_scene();
-    hand::add_mesh(bench, Label::Obstacle, hand::moved(hand::rectangle(4, 2), {Vec3(0, -1.2, 0.4), Mat3::Identity()}), {.kind = "plane"});
+    hand::add_mesh(bench, Label::Obstacle, hand::moved(hand::rectangle(4, 2), {Vec3(0, -1.2, 0.4), Mat3::Identity()}),
+                   {.kind = "plane"});
     CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), off) == Valid);
     CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), 20) == Unstable);  // it would come down on it
     CHECK(verdict_of(bench, load_robot("box:0.6,0.5,0.2"), pose_at(0, -1, 0.1), 20) == Valid);  // below it
@@ -257,14 +269,15 @@ TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is no
 TEST_CASE("a sunk solid and a stack are one, and a thin crack under the origin does not matter")
 {
     Scene scene = floor_scene();
-    add_box(scene, {-3, -3, -0.5}, {3, 3, 0.05});                      // a plate sunk into the floor
-    add_box(scene, {-3, -3, 0.05}, {3, 3, 0.1}, Label::Obstacle);      // and one upon it
-    add_box(scene, {-0.1, -0.1, 0.1}, {0.1, 0.1, 0.13});               // terrain to stand above
+    add_box(scene, {-3, -3, -0.5}, {3, 3, 0.05});                  // a plate sunk into the floor
+    add_box(scene, {-3, -3, 0.05}, {3, 3, 0.1}, Label::Obstacle);  // and one upon it
+    add_box(scene, {-0.1, -0.1, 0.1}, {0.1, 0.1, 0.13});           // terrain to stand above
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 10) == Valid);
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 1) == Unstable);  // 3 cm lower than the ground
 }
 
-TEST_CASE("frames, rails and pillars of a bridge that is terrain throughout are found out, its deck and the ground are not")
+TEST_CASE(
+    "frames, rails and pillars of a bridge that is terrain throughout are found out, its deck and the ground are not")
 {
     Scene scene = floor_scene();
     const auto boxes = [](std::initializer_list<std::pair<Vec3, Vec3>> all) {
@@ -273,16 +286,17 @@ TEST_CASE("frames, rails and pillars of a bridge that is terrain throughout are 
             const hand::Mesh box = hand::moved(hand::box(high - low), {(low + high) / 2, Mat3::Identity()});
             const auto first = std::uint32_t(mesh.vertices.size());
             mesh.vertices.insert(mesh.vertices.end(), box.vertices.begin(), box.vertices.end());
-            for (const Triangle& t : box.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+            for (const Triangle& t : box.triangles)
+                mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
         }
         return mesh;
     };
-    hand::add_mesh(scene, Label::Terrain, boxes({{{-6, -2, 2}, {6, 2, 2.2}}}));                                       // deck
+    hand::add_mesh(scene, Label::Terrain, boxes({{{-6, -2, 2}, {6, 2, 2.2}}}));  // deck
     for (const double y : {-1.95, 1.95}) {
-        hand::add_piece(scene, boxes({{{-6, y - 0.05, 2.2}, {6, y + 0.05, 3.2}}}));                                   // rails
+        hand::add_piece(scene, boxes({{{-6, y - 0.05, 2.2}, {6, y + 0.05, 3.2}}}));  // rails
         for (const double x : {-4.0, 4.0}) {
-            hand::add_piece(scene, boxes({{{x - 0.15, y * 1.2 - 0.15, 0}, {x + 0.15, y * 1.2 + 0.15, 6}}}));          // pillars
-            hand::add_piece(scene, boxes({{{x - 0.15, -2.5, 6}, {x + 0.15, 2.5, 6.3}}}));                             // frames
+            hand::add_piece(scene, boxes({{{x - 0.15, y * 1.2 - 0.15, 0}, {x + 0.15, y * 1.2 + 0.15, 6}}}));  // pillars
+            hand::add_piece(scene, boxes({{{x - 0.15, -2.5, 6}, {x + 0.15, 2.5, 6.3}}}));                     // frames
         }
     }
     const TestMap map = map_of(scene);
@@ -314,8 +328,8 @@ TEST_CASE("a limit out of its range is wrong usage, named with its function, val
 {
     const TestMap map = map_of(floor_scene());
     const CollisionChecker checker = checker_of(map, husky());
-    const std::pair<double, std::string> bad[] = {
-        {0, "0"}, {-0.1, "-0.1"}, {M_PI / 2, "1.5707963267948966"}, {2, "2"}, {std::nan(""), "nan"}, {-off, "-inf"}};
+    const std::pair<double, std::string> bad[] = {{0, "0"}, {-0.1, "-0.1"},        {M_PI / 2, "1.5707963267948966"},
+                                                  {2, "2"}, {std::nan(""), "nan"}, {-off, "-inf"}};
     for (const auto& [limit, text] : bad) {
         const std::string message = ": max_slope is " + text + ", needs > 0 and < pi/2 rad, or infinite";
         QueryOptions options;
@@ -367,7 +381,8 @@ TEST_CASE("a mirrored scene mirrors footings")
     for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
         const HardCase hard = case_with_limit(seed, {.razor = false});
         const TestMap map = map_at(hard.scene, hard.resolution), mirror = map_at(mirrored(hard.scene), hard.resolution);
-        const CollisionChecker checker = checker_of(map, hard.robot), mirror_checker = checker_of(mirror, mirrored(hard.robot));
+        const CollisionChecker checker = checker_of(map, hard.robot),
+                               mirror_checker = checker_of(mirror, mirrored(hard.robot));
         std::vector<Pose> poses = compare::standing_poses(map, checker, hard, map.bounds, 200), mirrored_poses = poses;
         for (Pose& pose : mirrored_poses) {
             const Eigen::DiagonalMatrix<double, 3> flip(1, -1, 1);
@@ -377,7 +392,8 @@ TEST_CASE("a mirrored scene mirrors footings")
         options.max_slope = hard.max_slope;
         options.max_height = std::max(hard.max_height, hard.offset);
         options.threads = 1;
-        const auto here = check_poses(map, checker, poses, options), there = check_poses(mirror, mirror_checker, mirrored_poses, options);
+        const auto here = check_poses(map, checker, poses, options),
+                   there = check_poses(mirror, mirror_checker, mirrored_poses, options);
         for (std::size_t i = 0; i < poses.size(); ++i) {
             if (!is_footing(here[i].verdict) && here[i].verdict != Valid) continue;
             differences += here[i].verdict != there[i].verdict;
@@ -405,16 +421,20 @@ TEST_CASE("footings agree with their definition in random scenes")
         for (std::size_t i = 0; i < poses.size(); ++i) {
             const Verdict verdict = judged[i].verdict;
             if (verdict != Valid && !is_footing(verdict)) continue;
-            const auto slow = slow::footing(map.scene, robot, contacts_of(robot), poses[i], judged[i].ground->height, options.max_slope);
-            if (!slow) ++undecided;
-            else ++seen[std::size_t(*slow)];
+            const auto slow = slow::footing(map.scene, robot, contacts_of(robot), poses[i], judged[i].ground->height,
+                                            options.max_slope);
+            if (!slow)
+                ++undecided;
+            else
+                ++seen[std::size_t(*slow)];
             INFO("scene " << seed << " " << compare::described(poses[i]) << ": " << to_string(verdict));
             CHECK(slow.value_or(verdict) == verdict);
         }
     }
     std::cout << "footings: " << seen[std::size_t(Valid)] << " valid, " << seen[std::size_t(Steep)] << " steep, "
               << seen[std::size_t(Unstable)] << " unstable, " << undecided << " too close to call\n";
-    if (all_scenes) CHECK((seen[std::size_t(Valid)] > 1000 && seen[std::size_t(Steep)] > 100 && seen[std::size_t(Unstable)] > 100));
+    if (all_scenes)
+        CHECK((seen[std::size_t(Valid)] > 1000 && seen[std::size_t(Steep)] > 100 && seen[std::size_t(Unstable)] > 100));
 }
 
 TEST_CASE("with footings every query gives the exhaustive verdicts in random hard scenes")
@@ -460,7 +480,8 @@ TEST_CASE("samples stand, and footings are the same bytes at any number of threa
             QueryOptions asked = samples;
             asked.max_height = off;
             for (const Spawn& spawn : list.spawns)
-                CHECK(check_poses(map, checker, {{spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}}, asked)[0].verdict == Valid);
+                CHECK(check_poses(map, checker, {{spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}}, asked)[0]
+                          .verdict == Valid);
         }
         CAPTURE(seed);
         CHECK(texts[0] == texts[1]);

@@ -13,16 +13,25 @@ using namespace spawnfield;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-const std::vector<Frame> all_frames = {Frame::Ros, Frame::Carla, Frame::Unreal, Frame::Unity, Frame::UnityGltf, Frame::Gltf};
+const std::vector<Frame> all_frames = {Frame::Ros,   Frame::Carla,     Frame::Unreal,
+                                       Frame::Unity, Frame::UnityGltf, Frame::Gltf};
 
-Vec3 random_point(Random& random) { return {random.between(-50, 50), random.between(-50, 50), random.between(-50, 50)}; }
-Rpy random_rpy(Random& random) { return {random.between(-pi, pi), random.between(-pi / 2, pi / 2), random.between(-pi, pi)}; }
+Vec3 random_point(Random& random)
+{
+    return {random.between(-50, 50), random.between(-50, 50), random.between(-50, 50)};
+}
+Rpy random_rpy(Random& random)
+{
+    return {random.between(-pi, pi), random.between(-pi / 2, pi / 2), random.between(-pi, pi)};
+}
 
-/// What Unreal's rotator does to its axes forward, right, up: FRotationMatrix, written down again from its documentation.
+/// What Unreal's rotator does to its axes forward, right, up: FRotationMatrix, written down again from its
+/// documentation.
 Mat3 unreal_matrix(const Rotator& rotator)
 {
-    const double d = pi / 180, sp = std::sin(rotator.pitch * d), cp = std::cos(rotator.pitch * d), sy = std::sin(rotator.yaw * d), cy = std::cos(rotator.yaw * d),
-                 sr = std::sin(rotator.roll * d), cr = std::cos(rotator.roll * d);
+    const double d = pi / 180, sp = std::sin(rotator.pitch * d), cp = std::cos(rotator.pitch * d),
+                 sy = std::sin(rotator.yaw * d), cy = std::cos(rotator.yaw * d), sr = std::sin(rotator.roll * d),
+                 cr = std::cos(rotator.roll * d);
     Mat3 out;
     out.col(0) = Vec3(cp * cy, cp * sy, sp);
     out.col(1) = Vec3(sr * sp * cy - cr * sy, sr * sp * sy + cr * cy, -sr * cp);
@@ -48,7 +57,8 @@ TEST_CASE("a turned arrow is the same arrow in every frame")
             const Vec3 v = random_point(random), p = random_point(random);
             CHECK(turned.determinant() == Approx(1).epsilon(1e-12));
             CHECK((turned * (rule.body_axes * v)).isApprox(rule.world_axes * (r * v), 1e-12));
-            CHECK(point_in(frame, p + r * v).isApprox(point_in(frame, p) + rule.unit * (turned * (rule.body_axes * v)), 1e-12));
+            CHECK(point_in(frame, p + r * v)
+                      .isApprox(point_in(frame, p) + rule.unit * (turned * (rule.body_axes * v)), 1e-12));
             CHECK(quaternion_in(frame, rpy).toRotationMatrix().isApprox(turned, 1e-12));
             CHECK(quaternion_in(frame, rpy).w() >= 0);
             CHECK(point_from(frame, point_in(frame, p)).isApprox(p, 1e-12));
@@ -66,7 +76,7 @@ TEST_CASE("each frame's axes point where its makers say")
     CHECK(point_in(Frame::Unity, ahead) == Vec3(0, 0, 10));  // Unity: z forward, x right, y up
     CHECK(point_in(Frame::Unity, to_the_left) == Vec3(-10, 0, 0));
     CHECK(point_in(Frame::Unity, above) == Vec3(0, 10, 0));
-    CHECK(point_in(Frame::Gltf, {1, 2, 3}) == Vec3(1, 3, -2));  // what readers turn back by (x, -z, y)
+    CHECK(point_in(Frame::Gltf, {1, 2, 3}) == Vec3(1, 3, -2));        // what readers turn back by (x, -z, y)
     CHECK(std::signbit(point_in(Frame::Unity, ahead).x()) == false);  // no -0
 
     const Vec3 unity(1, 2, 3), gltf(-unity.x(), unity.y(), unity.z()), baked(gltf.x(), -gltf.z(), gltf.y());
@@ -76,14 +86,17 @@ TEST_CASE("each frame's axes point where its makers say")
 TEST_CASE("robots look where they looked: a quarter turn to the left")
 {
     const Rpy left{0, 0, pi / 2};
-    const Eigen::Quaterniond unity = quaternion_in(Frame::Unity, left);  // about y, which turns z towards x there: so the other way round
+    const Eigen::Quaterniond unity = quaternion_in(
+        Frame::Unity, left);  // about y, which turns z towards x there: so the other way round
     CHECK(unity.vec().isApprox(Vec3(0, -std::sin(pi / 4), 0), 1e-15));
     CHECK((unity * Vec3::UnitZ()).isApprox(-Vec3::UnitX(), 1e-15));
     CHECK(rotator_from(left).yaw == -90);
     // ROS-TCP-Connector: (x, y, z, w) of FLU becomes (y, -z, -x, w).
-    const Eigen::Quaterniond ros = quaternion_from({0.3, -0.4, 0.5}), there = quaternion_in(Frame::Unity, {0.3, -0.4, 0.5});
+    const Eigen::Quaterniond ros = quaternion_from({0.3, -0.4, 0.5}),
+                             there = quaternion_in(Frame::Unity, {0.3, -0.4, 0.5});
     CHECK(there.coeffs().isApprox(Eigen::Vector4d(ros.y(), -ros.z(), -ros.x(), ros.w()), 1e-15));
-    // In a world of Unity's own glTF its forward, z, is baked as -y: a robot that looks along -y there looks along z here.
+    // In a world of Unity's own glTF its forward, z, is baked as -y: a robot that looks along -y there looks along z
+    // here.
     CHECK((quaternion_in(Frame::UnityGltf, {0, 0, -pi / 2}) * Vec3::UnitZ()).isApprox(Vec3::UnitZ(), 1e-15));
 }
 
@@ -96,10 +109,10 @@ TEST_CASE("Unreal's angles turn its axes as the rotation does")
         CHECK(rotation_from(rpy_from(rotator_from(rpy))).isApprox(rotation_from(rpy), 1e-14));
     }
     const Rotator nose_up = rotator_from({0, -0.5, 0}), right_down = rotator_from({0.5, 0, 0});
-    CHECK((rotation_from({0, -0.5, 0}) * Vec3::UnitX()).z() > 0);   // the nose is up,
-    CHECK(nose_up.pitch > 0);                                         // and up is plus there
+    CHECK((rotation_from({0, -0.5, 0}) * Vec3::UnitX()).z() > 0);  // the nose is up,
+    CHECK(nose_up.pitch > 0);                                      // and up is plus there
     CHECK((rotation_from({0.5, 0, 0}) * -Vec3::UnitY()).z() < 0);  // the right side is down,
-    CHECK(right_down.roll > 0);                                       // and down is plus there
+    CHECK(right_down.roll > 0);                                    // and down is plus there
     CHECK_FALSE(std::signbit(rotator_from({}).yaw));
     CHECK_FALSE(std::signbit(rotator_from({}).pitch));
 }

@@ -21,7 +21,9 @@ struct CellAt {
 
 CellAt cell_at(const SolidBounds& bounds, std::size_t level, double x, double y)
 {
-    const auto number = [&](double offset) { return std::uint32_t(std::floor(offset / bounds.impl().levels[level].cell)); };
+    const auto number = [&](double offset) {
+        return std::uint32_t(std::floor(offset / bounds.impl().levels[level].cell));
+    };
     const std::uint32_t col = number(x - bounds.impl().x0), row = number(y - bounds.impl().y0);
     return {bounds.impl().open(level, col / BoundsTile::side, row / BoundsTile::side),
             row % BoundsTile::side * BoundsTile::side + col % BoundsTile::side};
@@ -61,7 +63,8 @@ TEST_CASE("bounds of every level hold all that is solid anywhere in their cells"
         Random random(seed + 100);
         const TestMap map = map_of(random_scene(seed), random.between(0.05, 0.6));
         for (int i = 0; i < 400; ++i) {
-            const double x = random.between(map.bounds.min.x(), map.bounds.max.x()), y = random.between(map.bounds.min.y(), map.bounds.max.y());
+            const double x = random.between(map.bounds.min.x(), map.bounds.max.x()),
+                         y = random.between(map.bounds.min.y(), map.bounds.max.y());
             for (const slow::Span& span : slow::column(map.scene, x, y).spans)
                 for (std::size_t level = 0; level < map.solid_bounds.impl().levels.size(); ++level) {
                     CAPTURE(seed, level, x, y, span.bottom, span.top);
@@ -85,7 +88,8 @@ TEST_CASE("a cell's top is as high as a ball over it, to the tile's step and not
     const TestMap map = map_of(scene, 0.1);
     for (double x = -2.95; x < 3; x += 0.1)
         for (double y = -2.95; y < 3; y += 0.1) {
-            const double nx = std::max(0.0, std::abs(x) - 0.05), ny = std::max(0.0, std::abs(y) - 0.05), rest = 9 - nx * nx - ny * ny;
+            const double nx = std::max(0.0, std::abs(x) - 0.05), ny = std::max(0.0, std::abs(y) - 0.05),
+                         rest = 9 - nx * nx - ny * ny;
             if (rest < 1e-3) continue;
             const CellAt at = cell_at(map.solid_bounds, 0, x, y);
             const double top = at.tile.height(at.tile.tops[at.cell]);
@@ -173,7 +177,8 @@ TEST_CASE("footprints hold the part from outside and from inside")
             const double reach = std::max(box.max.norm(), box.min.norm());
             for (int i = 0; i < 200; ++i) {
                 // A grain of 0.1 mm: in the part or not, by the tests' own decision.
-                const Vec3 at(random.between(-reach, reach), random.between(-reach, reach), random.between(box.min.z() - 0.1, box.max.z() + 0.1));
+                const Vec3 at(random.between(-reach, reach), random.between(-reach, reach),
+                              random.between(box.min.z() - 0.1, box.max.z() + 0.1));
                 Scene grain;
                 hand::add_shape(grain, Label::Obstacle, box_at({1e-4, 1e-4, 1e-4}, at));
                 const bool solid = slow::collides(grain, part, {Vec3::Zero(), turn}, 0);

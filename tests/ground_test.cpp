@@ -101,7 +101,8 @@ TEST_CASE("a map's z limits make poses beyond them outside and change no other v
         const CollisionChecker checker = checker_of(map, hard.robot);
         Random random{seed + 3};
         std::vector<Pose> poses = random_poses(hard.scene, seed, 100);
-        const std::vector<Pose> standing = compare::standing_poses(map, checker, hard, compare::crop_near(map, random, 0.3, 14), 100);
+        const std::vector<Pose> standing = compare::standing_poses(map, checker, hard,
+                                                                   compare::crop_near(map, random, 0.3, 14), 100);
         poses.insert(poses.end(), standing.begin(), standing.end());
         QueryOptions options;
         options.max_height = hard.max_height;
@@ -143,7 +144,8 @@ TEST_CASE("a 3D raster and a search of a map with z limits judge as check does")
         VerdictCounts counts{};
         for_each_pose(result, true, [&](const RasterPose& pose) {
             const Column column = column_at(map.geometry, pose.x, pose.y);
-            const Verdict wanted = judge(map, checker, column, {{pose.x, pose.y, pose.z}, Mat3::Identity()}, options).verdict;
+            const Verdict wanted =
+                judge(map, checker, column, {{pose.x, pose.y, pose.z}, Mat3::Identity()}, options).verdict;
             CAPTURE(seed, pose.x, pose.y, pose.z);
             CHECK(pose.verdict == wanted);
             ++counts[std::size_t(pose.verdict)];
@@ -155,7 +157,8 @@ TEST_CASE("a 3D raster and a search of a map with z limits judge as check does")
         drawn.count = 10;
         drawn.max_failures = 2000;
         drawn.bounds = map.bounds;
-        for (const Spawn& spawn : search(map, checker, drawn).spawns) CHECK(map.z_limits.contains(spawn.position.z(), 1e-9));
+        for (const Spawn& spawn : search(map, checker, drawn).spawns)
+            CHECK(map.z_limits.contains(spawn.position.z(), 1e-9));
         const SpawnList quick = search(map, checker, drawn);
         drawn.exhaustive = true;
         CHECK(search(map, checker, drawn).counts == quick.counts);
@@ -172,7 +175,8 @@ TEST_CASE("spawns stand on layers within the heights of the map, the query and t
     options.random_yaw = true;
     const auto heights = [&] {
         std::map<double, int> out;
-        for (const Spawn& spawn : sample(map, checker, options).spawns) ++out[std::round(10 * (spawn.position.z() - 0.1)) / 10];
+        for (const Spawn& spawn : sample(map, checker, options).spawns)
+            ++out[std::round(10 * (spawn.position.z() - 0.1)) / 10];
         return out;
     };
     CHECK(heights().contains(0));
@@ -220,7 +224,8 @@ TEST_CASE("a sample within heights is proven full, and dense probing finds no ro
             for (const double layer : column.layers) {
                 if (!options.z.contains(layer, 1e-9)) continue;
                 const Vec3 p(x, y, layer + 0.1);
-                const bool far = std::none_of(list.spawns.begin(), list.spawns.end(), [&](const Spawn& s) { return (s.position - p).norm() < 1.5; });
+                const bool far = std::none_of(list.spawns.begin(), list.spawns.end(),
+                                              [&](const Spawn& s) { return (s.position - p).norm() < 1.5; });
                 if (far) CHECK(judge(map, checker, column, {p, Mat3::Identity()}, options).verdict != Verdict::Valid);
             }
         }
@@ -240,8 +245,9 @@ TEST_CASE("a sample within heights is proven full, and dense probing finds no ro
 TEST_CASE("solid space beyond z limits still collides")
 {
     const TempFolder folder;
-    TestMap map = map_of(load_parts(folder, "  - {name: floor, label: terrain, box: [10, 10, 0.2], xyz: [0, 0, -0.1]}\n"
-                                            "  - {name: beam, label: obstacle, box: [10, 1, 0.2], xyz: [0, 0, 1]}\n"));
+    TestMap map = map_of(load_parts(folder,
+                                    "  - {name: floor, label: terrain, box: [10, 10, 0.2], xyz: [0, 0, -0.1]}\n"
+                                    "  - {name: beam, label: obstacle, box: [10, 1, 0.2], xyz: [0, 0, 1]}\n"));
     map.z_limits = {-0.5, 0.5};
     const CollisionChecker checker = checker_of(map, load_robot("box:0.5,0.5,1"));
     const auto verdicts = check_poses(map, checker, {{{0, 0, 0.1}, Mat3::Identity()}, {{0, 3, 0.1}, Mat3::Identity()}});
@@ -277,7 +283,9 @@ TEST_CASE("hills are one floor, terraces are several, and a map without ground h
         terrain.frame = {0, 0, 0.5, 200, 200};
         std::vector<float> tile(256 * 256, std::nanf(""));
         for (int row = 0; row < 200; ++row)
-            for (int col = 0; col < 200; ++col) tile[std::size_t(row * 256 + col)] = float(step * (col / 50) + slope * (row + 0.1 * col) + std::sin(0.1 * col));
+            for (int col = 0; col < 200; ++col)
+                tile[std::size_t(row * 256 + col)] = float(step * (col / 50) + slope * (row + 0.1 * col) +
+                                                           std::sin(0.1 * col));
         terrain.pages.push_back({"height.0", {deflate_floats(tile, 256)}});
         return terrain;
     };
@@ -312,16 +320,19 @@ TEST_CASE("the automatic offset puts the lowest point 0.1 m above the layer")
     RasterOptions grid;
     CHECK(raster(map, sunk, grid).offset == auto_offset(sunk.robot()));
     options.offset = 1.1;
-    CHECK_THROWS_WITH(sample(map, sunk, options), "sample: offset is 1.1, needs at most max_height, 1 m: such poses are aerial");
+    CHECK_THROWS_WITH(sample(map, sunk, options),
+                      "sample: offset is 1.1, needs at most max_height, 1 m: such poses are aerial");
 }
 
 TEST_CASE("whatever the options, check with the same options calls every pose that sample wrote valid")
 {
     const Arena arena;
-    arena.write("rover.yaml", "format: spawnfield-robot/1\nname: rover\nparts:\n  - {box: [0.6, 0.4, 0.3], xyz: [0, 0, 0.05]}\n");
+    arena.write("rover.yaml",
+                "format: spawnfield-robot/1\nname: rover\nparts:\n  - {box: [0.6, 0.4, 0.3], xyz: [0, 0, 0.05]}\n");
     for (const char* const options :
-         {"--offset auto", "--offset 0.3", "--max-height 0.4", "--max-height 2 --offset 1.5", "--max-water-depth 0.2", "--max-slope 5", "--max-slope 20 --offset 0.2",
-          "--collision octree", "--exhaustive", "--collision octree --max-water-depth 0.1 --max-height 0.3"}) {
+         {"--offset auto", "--offset 0.3", "--max-height 0.4", "--max-height 2 --offset 1.5", "--max-water-depth 0.2",
+          "--max-slope 5", "--max-slope 20 --offset 0.2", "--collision octree", "--exhaustive",
+          "--collision octree --max-water-depth 0.1 --max-height 0.3"}) {
         const std::string common = std::string("map --robot rover.yaml ") + options;
         CAPTURE(options);
         const ProgramRun drawn = arena("sample " + common + " -n 60 --yaw random --min-distance 0.3 -o spawns.csv");
@@ -402,11 +413,13 @@ TEST_CASE("a map baked with z limits keeps to them in every command")
     CHECK(info["floors"].size() == 1);
     const std::string robot = " map" + husky_option;
     REQUIRE(run("sample" + robot + "-n 100 -o spawns.csv").status == 0);
-    for (const Pose& pose : read_poses(folder / "spawns.csv").poses) CHECK((pose.position.z() > 2.5 && pose.position.z() < 5));
+    for (const Pose& pose : read_poses(folder / "spawns.csv").poses)
+        CHECK((pose.position.z() > 2.5 && pose.position.z() < 5));
     REQUIRE(run("sample same" + husky_option + "-n 100 -o other.csv").status == 0);
     CHECK(bytes_of(folder / "spawns.csv") == bytes_of(folder / "other.csv"));
     folder.write("poses.csv", "x,y,z\n-3,-5,3.1\n-3,-5,0.1\n-3,3,6.1\n");
-    CHECK_THAT(run("check" + robot + "--poses poses.csv").out, Contains("3.1,valid") && Contains("0.1,outside") && Contains("6.1,outside"));
+    CHECK_THAT(run("check" + robot + "--poses poses.csv").out,
+               Contains("3.1,valid") && Contains("0.1,outside") && Contains("6.1,outside"));
     REQUIRE(run("export" + robot + "--format nav2 --resolution 0.5 -o limited.yaml").status == 0);
     REQUIRE(run(scene + "-o whole").status == 0);
     REQUIRE(run("export whole" + husky_option + "--format nav2 --z 2.5:5 --resolution 0.5 -o whole.yaml").status == 0);
@@ -431,7 +444,9 @@ TEST_CASE("a map baked with z limits keeps to them in every command")
 TEST_CASE("a map of format version 2 is read: without z limits, its floors found anew")
 {
     const TempFolder folder;
-    REQUIRE(run_program(folder, "bake '" + source_folder() + "/maps/storeys/scene.yaml' -o map --resolution 0.2").status == 0);
+    REQUIRE(
+        run_program(folder, "bake '" + source_folder() + "/maps/storeys/scene.yaml' -o map --resolution 0.2").status ==
+        0);
     std::string yaml = bytes_of(folder / "map/map.yaml");
     const std::size_t floors = yaml.find("# from the lowest up"), after = yaml.find("terrain:  #");
     REQUIRE(floors < after);
@@ -454,22 +469,28 @@ TEST_CASE("the offset is found by itself, and one that cannot work ends at once 
     CHECK(found.status == 0);
     CHECK_THAT(found.err, Contains("offset 0.5 m (auto)"));
     CHECK(Json::parse(bytes_of(arena / "s.json"))["offset"] == 0.5);
-    const std::string why = "at --offset 0.1 m the robot collides with all flat ground: its lowest point is 0.4 m below its origin; give --offset auto, which is 0.5 m";
-    for (const char* const command : {"sample map -n 5 -o none.csv", "raster map --dims 2 --step 1 -o none_raster.csv", "heatmap map -o none.png",
-                                      "export map --format nav2 -o none.yaml", "export map --format ply --step 1 -o none.ply"}) {
+    const std::string why =
+        "at --offset 0.1 m the robot collides with all flat ground: its lowest point is 0.4 m below its origin; give "
+        "--offset auto, which is 0.5 m";
+    for (const char* const command :
+         {"sample map -n 5 -o none.csv", "raster map --dims 2 --step 1 -o none_raster.csv", "heatmap map -o none.png",
+          "export map --format nav2 -o none.yaml", "export map --format ply --step 1 -o none.ply"}) {
         const ProgramRun run = arena(std::string(command) + " --robot tall.yaml --offset 0.1");
         CAPTURE(command);
         CHECK(run.status == 3);
         CHECK_THAT(run.err, Contains(why));
     }
     CHECK(bytes_of(arena / "none.csv") == "x,y,z,roll,pitch,yaw\n");
-    for (const char* const file : {"none_raster.csv", "none.png", "none.yaml", "none.ply"}) CHECK_FALSE(std::filesystem::exists(arena / file));
+    for (const char* const file : {"none_raster.csv", "none.png", "none.yaml", "none.ply"})
+        CHECK_FALSE(std::filesystem::exists(arena / file));
 
-    for (const char* const command : {"sample map -n 5", "raster map --dims 2 --step 1", "heatmap map -o none.png", "export map --format nav2 -o none.yaml"}) {
+    for (const char* const command : {"sample map -n 5", "raster map --dims 2 --step 1", "heatmap map -o none.png",
+                                      "export map --format nav2 -o none.yaml"}) {
         const ProgramRun run = arena(std::string(command) + " --robot tall.yaml --offset 1.2");
         CAPTURE(command);
         CHECK(run.status == 2);
-        CHECK_THAT(run.err, Contains("--offset is 1.2 m, needs at most --max-height, 1 m: `check` calls higher poses aerial; give --max-height 1.2 or more"));
+        CHECK_THAT(run.err, Contains("--offset is 1.2 m, needs at most --max-height, 1 m: `check` calls higher poses "
+                                     "aerial; give --max-height 1.2 or more"));
     }
     CHECK(arena("sample map -n 5 --robot box:0.3,0.3,0.3@0,0,-1.5").status == 2);  // auto is 1.75 m
     CHECK(arena("sample map -n 5 --robot box:0.3,0.3,0.3@0,0,-1.5 --max-height 1.75 -o high.csv").status == 0);
@@ -478,12 +499,16 @@ TEST_CASE("the offset is found by itself, and one that cannot work ends at once 
 TEST_CASE("the preview of a roofed world has a picture for each floor")
 {
     const TempFolder folder;
-    const auto preview_of = [&](const std::string& map) { return cv::imread((folder / (map + "/preview.png")).string()); };
+    const auto preview_of = [&](const std::string& map) {
+        return cv::imread((folder / (map + "/preview.png")).string());
+    };
     const auto bake_parts = [&](const std::string& name, const std::string& parts) {
         folder.write(name + ".yaml", "format: spawnfield-scene/1\nname: test\nparts:\n" + parts);
         REQUIRE(run_program(folder, "bake " + name + ".yaml -o " + name + " --resolution 0.2").status == 0);
     };
-    const std::string floor = "  - {name: floor, label: terrain, box: [20, 10, 0.2], xyz: [0, 0, -0.1]}\n  - {name: crate, label: obstacle, box: [2, 2, 1], xyz: [3, 0, 0.5]}\n";
+    const std::string floor =
+        "  - {name: floor, label: terrain, box: [20, 10, 0.2], xyz: [0, 0, -0.1]}\n  - {name: crate, label: obstacle, "
+        "box: [2, 2, 1], xyz: [3, 0, 0.5]}\n";
     bake_parts("open", floor);
     bake_parts("roofed", floor + "  - {name: roof, label: obstacle, box: [20, 10, 0.2], xyz: [0, 0, 5]}\n");
     bake_parts("two", floor + "  - {name: upper, label: terrain, box: [20, 10, 0.2], xyz: [0, 0, 3.9]}\n");

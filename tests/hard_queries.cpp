@@ -63,7 +63,8 @@ void limit_heights(RasterOptions& options, const HardCase& hard, Random& random,
     options.bounds.max.z() = options.bounds.min.z() + tall;
 }
 
-Tally rasters_3d(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random, bool height_check)
+Tally rasters_3d(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random,
+                 bool height_check)
 {
     RasterOptions options = raster_options(hard, random);
     options.step = random.chance(0.5) ? hard.resolution : wide_step(map, 31);
@@ -153,14 +154,12 @@ Tally searches(const TestMap& map, const CollisionChecker& checker, const HardCa
 }
 
 /// Whether some hundred draws are likely to give a spawn: a sampler that finds none tries long.
-bool has_room(const Tally& rasters)
-{
-    return 20 * rasters.verdicts[std::size_t(Verdict::Valid)] > rasters.poses;
-}
+bool has_room(const Tally& rasters) { return 20 * rasters.verdicts[std::size_t(Verdict::Valid)] > rasters.poses; }
 
 }  // namespace
 
-std::vector<Pose> standing_poses(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, const Bounds& crop, std::size_t count)
+std::vector<Pose> standing_poses(const TestMap& map, const CollisionChecker& checker, const HardCase& hard,
+                                 const Bounds& crop, std::size_t count)
 {
     Random random{hard.seed + 77};
     RasterOptions options = raster_options(hard, random);
@@ -172,9 +171,11 @@ std::vector<Pose> standing_poses(const TestMap& map, const CollisionChecker& che
     std::vector<Pose> poses;
     for (std::size_t i = 0; i < count && !stand.empty(); ++i) {
         const RasterPose& at = stand[std::size_t(random.below(int(stand.size())))];
-        const double x = at.x + (random.chance(0.5) ? random.between(-0.1, 0.1) : 0), y = at.y + (random.chance(0.3) ? random.between(-1e-5, 1e-5) : 0);
+        const double x = at.x + (random.chance(0.5) ? random.between(-0.1, 0.1) : 0),
+                     y = at.y + (random.chance(0.3) ? random.between(-1e-5, 1e-5) : 0);
         const double z = at.z + (random.chance(0.3) ? random.between(-1e-4, 1e-4) : 0);
-        const double lean = random.chance(0.3) ? random.between(0, 0.3) : 0, roll = random.between(-lean, lean), pitch = random.between(-lean, lean);
+        const double lean = random.chance(0.3) ? random.between(0, 0.3) : 0, roll = random.between(-lean, lean),
+                     pitch = random.between(-lean, lean);
         const double yaw = random.chance(0.3) ? hard.yaws[0] : random.between(-M_PI, M_PI);
         poses.push_back({{x, y, z}, rotation_from_rpy(roll, pitch, yaw)});
     }
@@ -236,7 +237,8 @@ Tally independently(const HardCase& hard)
         ++tally.poses;
         ++tally.verdicts[std::size_t(*slow.verdict)];
         if (*slow.verdict == judged[i].verdict || tally.differences++ > 0) continue;
-        tally.first = "check " + described(poses[i]) + "\n  by FCL " + to_string(judged[i].verdict) + "\n  slowly " + to_string(*slow.verdict);
+        tally.first = "check " + described(poses[i]) + "\n  by FCL " + to_string(judged[i].verdict) + "\n  slowly " +
+                      to_string(*slow.verdict);
     }
     return tally;
 }

@@ -111,8 +111,10 @@ void add_block(Site& site, Label label, const Vec3& low, const Vec3& high)
 {
     const Vec3 size = high - low;
     const Pose place = {(low + high) / 2, Mat3::Identity()};
-    if (site.random.chance(0.6)) hand::add_shape(site.scene, label, {ShapeKind::Box, size, place});
-    else hand::add_mesh(site.scene, label, hand::moved(hand::box(size), place));
+    if (site.random.chance(0.6))
+        hand::add_shape(site.scene, label, {ShapeKind::Box, size, place});
+    else
+        hand::add_mesh(site.scene, label, hand::moved(hand::box(size), place));
 }
 
 /// Level or upright rectangle without thickness.
@@ -130,10 +132,12 @@ void add_floor(Site& site)
 {
     const double side = 2 * site.half;
     if (site.random.chance(0.4)) {
-        hand::add_mesh(site.scene, Label::Terrain, hand::rectangle(side, side), {.kind = "plane", .sides_up = site.random.chance(0.5)});
+        hand::add_mesh(site.scene, Label::Terrain, hand::rectangle(side, side),
+                       {.kind = "plane", .sides_up = site.random.chance(0.5)});
     } else {
         const double depth = site.random.between(0.05, 1);
-        hand::add_shape(site.scene, Label::Terrain, {ShapeKind::Box, {side, side, depth}, {{0, 0, -depth / 2}, Mat3::Identity()}});
+        hand::add_shape(site.scene, Label::Terrain,
+                        {ShapeKind::Box, {side, side, depth}, {{0, 0, -depth / 2}, Mat3::Identity()}});
     }
 }
 
@@ -155,10 +159,13 @@ void add_heightmap(Site& site)
 void add_patchwork(Site& site)
 {
     const double rise = site.random.between(0, 0.4);
-    hand::Mesh mesh = hand::relief(9, 2 * site.half, [&](double x, double y) { return rise * std::sin(0.8 * x) * std::sin(0.7 * y + 1); });
+    hand::Mesh mesh = hand::relief(
+        9, 2 * site.half, [&](double x, double y) { return rise * std::sin(0.8 * x) * std::sin(0.7 * y + 1); });
     hand::MeshOptions options = {.sides_up = site.random.chance(0.5)};
     for (Triangle& t : mesh.triangles) {
-        options.labels.push_back(site.random.chance(0.85) ? Label::Terrain : site.random.chance(0.7) ? Label::Obstacle : Label::Water);
+        options.labels.push_back(site.random.chance(0.85)  ? Label::Terrain
+                                 : site.random.chance(0.7) ? Label::Obstacle
+                                                           : Label::Water);
         if (site.random.chance(0.1)) std::swap(t[1], t[2]);
     }
     hand::add_mesh(site.scene, Label::Terrain, mesh, options);
@@ -173,7 +180,8 @@ void add_terraces(Site& site)
         if (site.random.chance(0.1)) continue;  // a pit
         const double top = site.random.chance(0.4) ? 0 : height(site, 0, 0.4);
         const Vec3 low = {-site.half + side * (i % tiles), -site.half + side * (i / tiles), -0.5};
-        add_block(site, site.random.chance(0.9) ? Label::Terrain : Label::Obstacle, low, {low.x() + side, low.y() + side, top});
+        add_block(site, site.random.chance(0.9) ? Label::Terrain : Label::Obstacle, low,
+                  {low.x() + side, low.y() + side, top});
     }
 }
 
@@ -181,7 +189,8 @@ void add_leaf(Site& site, const Vec3& low, double side)
 {
     const auto part = std::uint32_t(site.scene.parts.size() - 1);
     const Pose place = {low + Vec3::Constant(side / 2), Mat3::Identity()};
-    site.scene.primitives.push_back({{ShapeKind::Box, Vec3::Constant(side), place}, part, site.scene.parts.back().label});
+    site.scene.primitives.push_back(
+        {{ShapeKind::Box, Vec3::Constant(side), place}, part, site.scene.parts.back().label});
     ++site.scene.parts.back().solid_pieces;
 }
 
@@ -213,7 +222,10 @@ void add_solid(Site& site)
     const Mat3 rotation = upright_or_tilted(site);
     const Label label = matter(site);
     switch (site.random.below(4)) {
-    case 0: hand::add_shape(site.scene, label, {ShapeKind::Box, {2 * radius, length(site, 0.1, 1.5), tall}, {place, rotation}}); break;
+    case 0:
+        hand::add_shape(site.scene, label,
+                        {ShapeKind::Box, {2 * radius, length(site, 0.1, 1.5), tall}, {place, rotation}});
+        break;
     case 1: hand::add_shape(site.scene, label, {ShapeKind::Sphere, {radius, 0, 0}, {place, Mat3::Identity()}}); break;
     case 2: hand::add_shape(site.scene, label, {ShapeKind::Cylinder, {radius, tall, 0}, {place, rotation}}); break;
     default: hand::add_shape(site.scene, label, {ShapeKind::Capsule, {radius, tall, 0}, {place, rotation}});
@@ -251,7 +263,8 @@ void add_kerb(Site& site)
 {
     const Vec3 low = spot(site);
     const bool over_x = site.random.chance(0.5);
-    const double wide = length(site, 0.05, 0.3), along = length(site, 1, 5), tall = std::max(0.002, std::abs(height(site, 0.02, 0.15)));
+    const double wide = length(site, 0.05, 0.3), along = length(site, 1, 5),
+                 tall = std::max(0.002, std::abs(height(site, 0.02, 0.15)));
     const Label label = matter(site);
     add_block(site, label, low, low + Vec3(over_x ? along : wide, over_x ? wide : along, tall));
 }
@@ -275,7 +288,8 @@ void add_ramp(Site& site)
         hand::add_shape(site.scene, Label::Terrain, {ShapeKind::Box, {along, wide, 0.1}, {place, rotation}});
     } else {
         const hand::Mesh wedge = hand::extruded({{0, 0}, {along, 0}, {along, along * slope}}, -wide / 2, wide / 2);
-        hand::add_mesh(site.scene, Label::Terrain, hand::moved(wedge, {place, rotation_from_rpy(M_PI / 2, 0, any_yaw(site))}));
+        hand::add_mesh(site.scene, Label::Terrain,
+                       hand::moved(wedge, {place, rotation_from_rpy(M_PI / 2, 0, any_yaw(site))}));
     }
 }
 
@@ -289,7 +303,8 @@ void add_storey(Site& site)
         add_sheet(site, label, size_x, size_y, {place, rotation});
     } else {  // its lower side at the height
         const double thickness = site.random.between(0.02, 0.3);
-        add_block(site, label, place - Vec3(size_x / 2, size_y / 2, 0), place + Vec3(size_x / 2, size_y / 2, thickness));
+        add_block(site, label, place - Vec3(size_x / 2, size_y / 2, 0),
+                  place + Vec3(size_x / 2, size_y / 2, thickness));
     }
 }
 
@@ -297,7 +312,8 @@ void add_storey(Site& site)
 void add_bridge(Site& site)
 {
     const Vec3 low = spot(site);
-    const double along = length(site, 1.5, 5), wide = length(site, 0.5, 1.5), deck = std::max(0.1, height(site, 0.4, 1.6)), thick = 0.1;
+    const double along = length(site, 1.5, 5), wide = length(site, 0.5, 1.5),
+                 deck = std::max(0.1, height(site, 0.4, 1.6)), thick = 0.1;
     const double pier = length(site, 0.1, 0.3);
     add_block(site, Label::Terrain, low + Vec3(0, 0, deck), low + Vec3(along, wide, deck + thick));
     const Label label = matter(site);
@@ -331,7 +347,8 @@ void add_tunnel(Site& site)
 void add_overhang(Site& site)
 {
     const double wide = length(site, 0.6, 2), thick = length(site, 0.1, 0.4), depth = length(site, 0.3, 1.5);
-    const hand::Mesh shape = hand::extruded({{thick, thick}, {thick, wide}, {0, wide}, {0, 0}, {wide, 0}, {wide, thick}}, 0, depth);
+    const hand::Mesh shape = hand::extruded(
+        {{thick, thick}, {thick, wide}, {0, wide}, {0, 0}, {wide, 0}, {wide, thick}}, 0, depth);
     const Mat3 head_down = rotation_from_rpy(-M_PI / 2, 0, any_yaw(site));
     const Pose place = {above(spot(site), wide), site.random.chance(0.7) ? head_down : tilted(site, M_PI)};
     hand::add_mesh(site.scene, matter(site), hand::moved(shape, place));
@@ -339,7 +356,8 @@ void add_overhang(Site& site)
 
 void add_table(Site& site)
 {
-    const double size_x = length(site, 0.4, 1.5), size_y = length(site, 0.4, 1.5), tall = std::max(0.1, height(site, 0.3, 0.8)), leg = 0.04;
+    const double size_x = length(site, 0.4, 1.5), size_y = length(site, 0.4, 1.5),
+                 tall = std::max(0.1, height(site, 0.3, 0.8)), leg = 0.04;
     const Vec3 low = spot(site);
     const Label label = matter(site);
     add_block(site, label, low + Vec3(0, 0, tall), low + Vec3(size_x, size_y, tall + 0.03));
@@ -356,7 +374,9 @@ void add_water(Site& site)
     const Vec3 place = lifted_spot(site, gap(site), -0.3, 0.5);
     switch (site.random.below(4)) {
     case 0: add_sheet(site, Label::Water, size_x, size_y, {place, tilted(site, 0.1)}); break;
-    case 1: hand::add_shape(site.scene, Label::Water, {ShapeKind::Sphere, {size_x / 2, 0, 0}, {place, Mat3::Identity()}}); break;
+    case 1:
+        hand::add_shape(site.scene, Label::Water, {ShapeKind::Sphere, {size_x / 2, 0, 0}, {place, Mat3::Identity()}});
+        break;
     case 2: add_sheet(site, Label::Water, size_x, size_y, {place, Mat3::Identity()}); break;
     default: add_block(site, Label::Water, place - Vec3(0, 0, 0.2), place + Vec3(size_x, size_y, 0));
     }
@@ -421,7 +441,8 @@ void fill_last_piece(Scene& scene)
 void add_house(Site& site)
 {
     const double size_x = length(site, 0.8, 3), size_y = length(site, 0.8, 3), size_z = length(site, 0.6, 2);
-    const hand::Mesh mesh = hand::without(hand::box({size_x, size_y, size_z}), 2 * std::size_t(site.random.below(6)), 2);
+    const hand::Mesh mesh = hand::without(hand::box({size_x, size_y, size_z}), 2 * std::size_t(site.random.below(6)),
+                                          2);
     const Vec3 centre = lifted_spot(site, size_z / 2, size_z / 2 - 0.1, size_z / 2 + 0.3);
     const Pose place = {centre, site.random.chance(0.7) ? turned(site) : tilted(site, 0.4)};
     hand::add_mesh(site.scene, matter(site), hand::moved(mesh, place));
@@ -431,10 +452,13 @@ void add_house(Site& site)
 /// Long thin triangles across everything.
 void add_sliver(Site& site)
 {
-    const double lift = height(site, 0.1, 1.5), roll = site.random.between(-0.5, 0.5), pitch = site.random.between(-0.1, 0.1);
+    const double lift = height(site, 0.1, 1.5), roll = site.random.between(-0.5, 0.5),
+                 pitch = site.random.between(-0.1, 0.1);
     const double width = site.random.chance(0.5) ? 0.01 : site.cell / 3;
     const Pose place = {above(spot(site), lift), rotation_from_rpy(roll, pitch, any_yaw(site))};
-    hand::Mesh mesh = {{{-site.half / 2, 0, 0}, {site.half / 2, 0, 0}, {site.half / 2, width, 0}, {-site.half / 2, -width, 0}}, {{0, 1, 2}, {0, 3, 1}}};
+    hand::Mesh mesh = {
+        {{-site.half / 2, 0, 0}, {site.half / 2, 0, 0}, {site.half / 2, width, 0}, {-site.half / 2, -width, 0}},
+        {{0, 1, 2}, {0, 3, 1}}};
     hand::add_mesh(site.scene, matter(site), hand::moved(mesh, place));
 }
 
@@ -445,14 +469,16 @@ void add_spike(Site& site)
     const bool hangs = site.random.chance(0.4);
     const hand::Mesh mesh = {{{-side, -side, 0}, {side, -side, 0}, {0, side, 0}, {0, 0, hangs ? -tall : tall}},
                              {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
-    const double shift = site.random.between(0.1, 0.9) * site.cell, lift = hangs ? tall + std::abs(height(site, 0.1, 1)) : 0;
+    const double shift = site.random.between(0.1, 0.9) * site.cell,
+                 lift = hangs ? tall + std::abs(height(site, 0.1, 1)) : 0;
     const Pose place = {spot(site) + Vec3(shift, shift / 2, lift), Mat3::Identity()};
     hand::add_mesh(site.scene, matter(site), hand::moved(mesh, place));
 }
 
 void add_cable(Site& site)
 {
-    const double lift = height(site, 0.05, 1.5), radius = 0.005, sag = site.random.chance(0.5) ? 0 : site.random.between(-0.2, 0.2);
+    const double lift = height(site, 0.05, 1.5), radius = 0.005,
+                 sag = site.random.chance(0.5) ? 0 : site.random.between(-0.2, 0.2);
     const Mat3 rotation = rotation_from_rpy(0, M_PI / 2 + sag, any_yaw(site));
     const Pose place = {above(spot(site), lift + radius), rotation};
     hand::add_shape(site.scene, Label::Obstacle, {ShapeKind::Capsule, {radius, site.half, 0}, place});
@@ -461,7 +487,8 @@ void add_cable(Site& site)
 /// A sheet on edge: no ray from above meets it.
 void add_fence(Site& site)
 {
-    const double along = length(site, 0.5, 4), tall = length(site, 0.2, 1.5), foot = site.random.chance(0.6) ? 0.0 : height(site, 0.1, 1);
+    const double along = length(site, 0.5, 4), tall = length(site, 0.2, 1.5),
+                 foot = site.random.chance(0.6) ? 0.0 : height(site, 0.1, 1);
     const Pose upright = {above(spot(site), tall / 2 + foot), rotation_from_rpy(M_PI / 2, 0, any_yaw(site))};
     hand::add_mesh(site.scene, matter(site), hand::moved(hand::rectangle(along, tall), upright));
 }
@@ -470,11 +497,14 @@ void add_fence(Site& site)
 void add_twins(Site& site)
 {
     const Vec3 low = spot(site);
-    const double size_x = length(site, 0.5, 2), size_y = length(site, 0.5, 2), tall = std::max(0.02, height(site, 0.1, 0.5));
+    const double size_x = length(site, 0.5, 2), size_y = length(site, 0.5, 2),
+                 tall = std::max(0.02, height(site, 0.1, 0.5));
     add_block(site, Label::Terrain, above(low, -0.1), low + Vec3(size_x, size_y, tall));
     const Vec3 shift = {size_x / 2, 0, gap(site)};
-    if (site.random.chance(0.5)) add_block(site, Label::Obstacle, low + shift, low + shift + Vec3(size_x, size_y, tall));
-    else add_sheet(site, matter(site), size_x, size_y, {above(low + shift, tall), Mat3::Identity()});
+    if (site.random.chance(0.5))
+        add_block(site, Label::Obstacle, low + shift, low + shift + Vec3(size_x, size_y, tall));
+    else
+        add_sheet(site, matter(site), size_x, size_y, {above(low + shift, tall), Mat3::Identity()});
 }
 
 /// Just above or just below what the robot fills, from the ground up.
@@ -484,8 +514,10 @@ void add_ceiling(Site& site)
     const double size_x = length(site, 0.5, 3), size_y = length(site, 0.5, 3);
     const Vec3 place = above(spot(site), top);
     const Label label = matter(site);
-    if (site.random.chance(0.5)) add_sheet(site, label, size_x, size_y, {place, Mat3::Identity()});
-    else add_block(site, label, place - Vec3(size_x / 2, size_y / 2, 0), place + Vec3(size_x / 2, size_y / 2, 0.05));
+    if (site.random.chance(0.5))
+        add_sheet(site, label, size_x, size_y, {place, Mat3::Identity()});
+    else
+        add_block(site, label, place - Vec3(size_x / 2, size_y / 2, 0), place + Vec3(size_x / 2, size_y / 2, 0.05));
 }
 
 void add_pebbles(Site& site)
@@ -502,18 +534,20 @@ struct Feature {
     void (*add)(Site&);
 };
 
-constexpr std::array grounds = {Feature{"floor", add_floor},        Feature{"floor", add_floor},
+constexpr std::array grounds = {Feature{"floor", add_floor},         Feature{"floor", add_floor},
                                 Feature{"heightmap", add_heightmap}, Feature{"patchwork", add_patchwork},
                                 Feature{"terraces", add_terraces},   Feature{"leaf-ground", add_leaf_ground}};
 
 constexpr std::array things = {
-    Feature{"solid", add_solid},       Feature{"solid", add_solid},   Feature{"wall", add_wall},         Feature{"pole", add_pole},
-    Feature{"kerb", add_kerb},         Feature{"stairs", add_stairs}, Feature{"ramp", add_ramp},         Feature{"storey", add_storey},
-    Feature{"bridge", add_bridge},     Feature{"tunnel", add_tunnel}, Feature{"overhang", add_overhang}, Feature{"table", add_table},
-    Feature{"water", add_water},       Feature{"water", add_water},   Feature{"voxels", add_voxels},
-    Feature{"rock", add_rock},         Feature{"nested", add_nested},
-    Feature{"house", add_house},       Feature{"sliver", add_sliver}, Feature{"spike", add_spike},       Feature{"cable", add_cable},
-    Feature{"fence", add_fence},       Feature{"twins", add_twins},   Feature{"ceiling", add_ceiling},   Feature{"pebbles", add_pebbles}};
+    Feature{"solid", add_solid},    Feature{"solid", add_solid},       Feature{"wall", add_wall},
+    Feature{"pole", add_pole},      Feature{"kerb", add_kerb},         Feature{"stairs", add_stairs},
+    Feature{"ramp", add_ramp},      Feature{"storey", add_storey},     Feature{"bridge", add_bridge},
+    Feature{"tunnel", add_tunnel},  Feature{"overhang", add_overhang}, Feature{"table", add_table},
+    Feature{"water", add_water},    Feature{"water", add_water},       Feature{"voxels", add_voxels},
+    Feature{"rock", add_rock},      Feature{"nested", add_nested},     Feature{"house", add_house},
+    Feature{"sliver", add_sliver},  Feature{"spike", add_spike},       Feature{"cable", add_cable},
+    Feature{"fence", add_fence},    Feature{"twins", add_twins},       Feature{"ceiling", add_ceiling},
+    Feature{"pebbles", add_pebbles}};
 
 template <std::size_t N>
 void add_one(Site& site, const std::array<Feature, N>& features)
@@ -521,7 +555,8 @@ void add_one(Site& site, const std::array<Feature, N>& features)
     const Feature& feature = features[std::size_t(site.random.below(int(N)))];
     const std::size_t first = site.scene.parts.size();
     feature.add(site);
-    for (std::size_t i = first; i < site.scene.parts.size(); ++i) site.scene.parts[i].name = feature.name + ("-" + std::to_string(i));
+    for (std::size_t i = first; i < site.scene.parts.size(); ++i)
+        site.scene.parts[i].name = feature.name + ("-" + std::to_string(i));
 }
 
 Scene scene_of(Site site, std::uint64_t seed)
@@ -558,7 +593,8 @@ void add_mast(Robot& robot, Random& random)
     robot.parts.push_back(part_of(ShapeKind::Box, size, {0, 0, size.z() / 2}));
     const Vec3 foot = {random.between(-size.x(), size.x()) / 2, 0, tall / 2};
     robot.parts.push_back(part_of(ShapeKind::Cylinder, {radius, tall, 0}, foot));
-    if (random.chance(0.3)) robot.parts.push_back(part_of(ShapeKind::Sphere, {2 * radius + 0.02, 0, 0}, foot + Vec3(0, 0, tall / 2)));
+    if (random.chance(0.3))
+        robot.parts.push_back(part_of(ShapeKind::Sphere, {2 * radius + 0.02, 0, 0}, foot + Vec3(0, 0, tall / 2)));
 }
 
 /// Two legs under a beam: much fits between them.
@@ -574,7 +610,8 @@ void add_rod(Robot& robot, Random& random)
 {
     const Vec3 size = {random.between(0.01, 0.05), random.between(0.5, 1.5), 0};
     const double roll = random.between(0.2, M_PI / 2), yaw = random.between(-M_PI, M_PI);
-    robot.parts.push_back(part_of(ShapeKind::Capsule, size, {random.between(-0.5, 0.5), 0, 0.3}, rotation_from_rpy(roll, 0, yaw)));
+    robot.parts.push_back(
+        part_of(ShapeKind::Capsule, size, {random.between(-0.5, 0.5), 0, 0.3}, rotation_from_rpy(roll, 0, yaw)));
 }
 
 /// Sides that are whole cells: footprints end on borders.
@@ -664,7 +701,8 @@ HardCase hard_case(std::uint64_t seed, const HardOptions& options)
     out.robot.name = "hard-" + std::to_string(seed);
     out.offset = offset_of(random, out.robot, out.resolution, options.razor);
     out.max_height = max_height_of(random, out.offset);
-    for (int i = random.below(6); i >= 0; --i) out.yaws.push_back(random.chance(0.3) ? M_PI / 4 * random.below(8) : random.between(-M_PI, M_PI));
+    for (int i = random.below(6); i >= 0; --i)
+        out.yaws.push_back(random.chance(0.3) ? M_PI / 4 * random.below(8) : random.between(-M_PI, M_PI));
     const Bounds body = out.robot.bounds();
     const double bottom = std::max(0.0, out.offset + body.min.z()), top = std::max(0.02, out.offset + body.max.z());
     Site site = {Random{random.next()}, out.resolution, half, options.razor, {bottom, top, std::max(0.0, out.offset)}};
@@ -733,7 +771,8 @@ Scene on_binary_lattice(Scene scene)
 {
     const auto rounded = [](const Vec3& place) -> Vec3 { return (place * 0x1p20).array().round().matrix() * 0x1p-20; };
     for (Vec3& vertex : scene.vertices) vertex = rounded(vertex);
-    for (Primitive& primitive : scene.primitives) primitive.shape.pose.position = rounded(primitive.shape.pose.position);
+    for (Primitive& primitive : scene.primitives)
+        primitive.shape.pose.position = rounded(primitive.shape.pose.position);
     for (Piece& piece : scene.pieces) piece.bottom = std::round(piece.bottom * 0x1p20) * 0x1p-20;
     return scene;
 }

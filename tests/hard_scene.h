@@ -9,14 +9,14 @@
 /// cell: walls of 2 cm, poles of 5 cm, cables, spikes, fences, slivers. Robots of one to four parts.
 struct HardCase {
     std::uint64_t seed = 0;
-    double resolution = 0.1;       ///< m, 0.02 .. 0.5
+    double resolution = 0.1;  ///< m, 0.02 .. 0.5
     spawnfield::Robot robot;
-    double offset = 0.1;           ///< m, mostly 0 .. 1; often so that the robot just touches a level floor
-    double max_height = 1;         ///< m
+    double offset = 0.1;    ///< m, mostly 0 .. 1; often so that the robot just touches a level floor
+    double max_height = 1;  ///< m
     double max_slope = std::numeric_limits<double>::infinity();  ///< rad; to be set by who wants footings
-    std::vector<double> yaws;      ///< rad; one to six
-    spawnfield::Scene scene;       ///< its parts are named after what they make: "bridge", "wall", …
-    spawnfield::Bounds map_bounds; ///< empty: the scene's
+    std::vector<double> yaws;                                    ///< rad; one to six
+    spawnfield::Scene scene;        ///< its parts are named after what they make: "bridge", "wall", …
+    spawnfield::Bounds map_bounds;  ///< empty: the scene's
 };
 
 struct HardOptions {

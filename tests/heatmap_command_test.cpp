@@ -83,11 +83,8 @@ TEST_CASE("the ground is shown for the way in which the spawns face")
     CHECK(has(texts_in(arena, "same.svg"), "yaw 85.94 deg"));
 
     const ProgramRun mixed = heatmap(arena, "-o mixed.svg --spawns mixed.csv");
-    CHECK_THAT(
-        mixed.err,
-        Contains(
-            "notice: the spawns have different yaws: the ground shows at how many of 16 "
-            "headings the robot fits (--yaw RAD shows one)\n"));
+    CHECK_THAT(mixed.err, Contains("notice: the spawns have different yaws: the ground shows at how many of 16 "
+                                   "headings the robot fits (--yaw RAD shows one)\n"));
     CHECK(has(texts_in(arena, "mixed.svg"), "16 headings"));
     CHECK(has(texts_in(arena, "mixed.svg"), "valid at some headings"));
     CHECK(has(texts_in(arena, "mixed.svg"), "2 of 3 spawns in view"));

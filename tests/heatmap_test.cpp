@@ -122,8 +122,10 @@ cv::Range longest_run(const Image& image, int row)
 {
     cv::Range longest(0, 0);
     for (int col = 0, first = 0; col < image.cols; ++col) {
-        if (image(row, col) != frame_colour) first = col + 1;
-        else if (col + 1 - first > longest.size()) longest = {first, col + 1};
+        if (image(row, col) != frame_colour)
+            first = col + 1;
+        else if (col + 1 - first > longest.size())
+            longest = {first, col + 1};
     }
     return longest;
 }
@@ -217,11 +219,8 @@ Colour colour_of(char letter)
 
 TEST_CASE("each column has its verdict's colour, up to its edges, where it stands")
 {
-    const Drawing drawing = GENERATE(Drawing{"VCSOA",
-                                             "X.VVC",
-                                             "SSVOO"},
-                                     Drawing{"VTUCS"},
-                                     Drawing{"CVVVVVVVVVVS"}, Drawing{"C", "V", "V", "S", "."}, Drawing{"O"});
+    const Drawing drawing = GENERATE(Drawing{"VCSOA", "X.VVC", "SSVOO"}, Drawing{"VTUCS"}, Drawing{"CVVVVVVVVVVS"},
+                                     Drawing{"C", "V", "V", "S", "."}, Drawing{"O"});
     const int pixels = GENERATE(300, 1000, 1501);
     const RasterResult raster = raster_of(drawing);
     const Picture picture = draw(raster, {.pixels = pixels});
@@ -249,8 +248,10 @@ TEST_CASE("the longer side of a picture is as asked, and nothing in it is cut of
     const Image& image = picture.image;
     CHECK(std::max(image.cols, image.rows) == pixels);
     int coloured = 0;
-    for (int row = 0; row < image.rows; ++row) coloured += image(row, 0) != white || image(row, image.cols - 1) != white;
-    for (int col = 0; col < image.cols; ++col) coloured += image(0, col) != white || image(image.rows - 1, col) != white;
+    for (int row = 0; row < image.rows; ++row)
+        coloured += image(row, 0) != white || image(row, image.cols - 1) != white;
+    for (int col = 0; col < image.cols; ++col)
+        coloured += image(0, col) != white || image(image.rows - 1, col) != white;
     CHECK(coloured == 0);
     CHECK(double(picture.plot.width) / picture.plot.height ==
           Approx(picture.view.width / picture.view.height).epsilon(0.1));  // whole pixels
@@ -259,7 +260,8 @@ TEST_CASE("the longer side of a picture is as asked, and nothing in it is cut of
 TEST_CASE("the legend shows every verdict that a two-dimensional raster may have")
 {
     const Picture picture = draw(raster_of({"V"}));
-    for (const Colour& colour : {valid, collision, submerged, off_terrain}) CHECK(count_outside_plot(picture, colour) > 300);
+    for (const Colour& colour : {valid, collision, submerged, off_terrain})
+        CHECK(count_outside_plot(picture, colour) > 300);
     for (const Colour& colour : {aerial, outside, steep, unstable, no_pose})
         CHECK(count_outside_plot(picture, colour) < 100);  // edges of texts are grey
 }
@@ -267,7 +269,8 @@ TEST_CASE("the legend shows every verdict that a two-dimensional raster may have
 TEST_CASE("the legend shows rare verdicts and columns without terrain where there are any")
 {
     const Picture picture = draw(raster_of({"VXATU."}));
-    for (const Colour& colour : {aerial, outside, steep, unstable, no_pose}) CHECK(count_outside_plot(picture, colour) > 300);
+    for (const Colour& colour : {aerial, outside, steep, unstable, no_pose})
+        CHECK(count_outside_plot(picture, colour) > 300);
 }
 
 TEST_CASE("a column is valid if any of its poses is, else as the topmost says")
@@ -295,8 +298,11 @@ TEST_CASE("a column of a three-dimensional raster without a listed pose is aeria
 
 TEST_CASE("ground that faces north-west is lighter than ground that faces south-east, in the same hue")
 {
-    const auto roof = [](double x, double y) { return float(-0.5 * std::abs((x - 5) - (y - 5))); };  // ridge from SW to NE
-    const Picture picture = draw(raster_of({"VVVVV", "VVVVV", "VVVVV", "VVVVV", "VVVVV"}), {}, terrain_of(10, 10, roof));
+    const auto roof = [](double x, double y) {
+        return float(-0.5 * std::abs((x - 5) - (y - 5)));
+    };  // ridge from SW to NE
+    const Picture picture = draw(raster_of({"VVVVV", "VVVVV", "VVVVV", "VVVVV", "VVVVV"}), {},
+                                 terrain_of(10, 10, roof));
     const Colour lit = picture.at(2, 8), dark = picture.at(8, 2);
     CHECK(brightness(lit) > brightness(valid));
     CHECK(brightness(dark) < brightness(valid));
@@ -328,10 +334,13 @@ TEST_CASE("an arrow stands where a spawn is and points along its yaw")
 
 TEST_CASE("clearance grows from the border and from columns that are not valid")
 {
-    const Picture picture = draw(raster_of({"VVVVVVV", "VVVVVVV", "VVVVVVV", "VVVCVVV", "VVVVVVV", "VVVVVVV", "VVVVVVV"}),
-                                 {.quantity = HeatmapQuantity::Clearance});
+    const Picture picture = draw(
+        raster_of({"VVVVVVV", "VVVVVVV", "VVVVVVV", "VVVCVVV", "VVVVVVV", "VVVVVVV", "VVVVVVV"}),
+        {.quantity = HeatmapQuantity::Clearance});
     const Ramp ramp = viridis();
-    const auto colour = [&](double clearance) { return ramp[std::size_t(std::lround(clearance / 4 * 255))]; };  // scale: 0 .. 4 m
+    const auto colour = [&](double clearance) {
+        return ramp[std::size_t(std::lround(clearance / 4 * 255))];
+    };  // scale: 0 .. 4 m
     CHECK(picture.at(1, 1) == colour(2));
     CHECK(picture.at(3, 3) == colour(4));
     CHECK(picture.at(5, 7) == colour(2));
@@ -357,8 +366,8 @@ TEST_CASE("height shows the pose that the column is known by")
 TEST_CASE("slope is that of the layer below the pose, and the scale ends at the largest")
 {
     const auto ground = [](double, double y) { return y < 6 ? 0.0f : float(y - 6); };
-    const Picture picture =
-        draw(raster_of({"V", "V", "V", "V", "V", "V"}), {.quantity = HeatmapQuantity::Slope}, terrain_of(2, 12, ground));
+    const Picture picture = draw(raster_of({"V", "V", "V", "V", "V", "V"}), {.quantity = HeatmapQuantity::Slope},
+                                 terrain_of(2, 12, ground));
     CHECK(picture.at(1, 1) == viridis().front());
     const Colour steepest = viridis().back(), seen = picture.at(1, 11);  // shaded, so only like it
     for (int c = 0; c < 3; ++c) CHECK(std::abs(seen[c] - steepest[c]) < 60);
@@ -398,7 +407,9 @@ TEST_CASE("options and rasters out of range are named with their limits")
     const TempFolder folder;
     const TerrainMap terrain = level_terrain(2, 2);
     RasterResult raster = raster_of({"V"});
-    const auto write = [&](const HeatmapOptions& options) { write_heatmap({}, terrain, raster, options, folder / "a.png"); };
+    const auto write = [&](const HeatmapOptions& options) {
+        write_heatmap({}, terrain, raster, options, folder / "a.png");
+    };
     CHECK_THROWS_WITH(write({.pixels = 199}), "write_heatmap: pixels is 199, needs 200 .. 16000");
     CHECK_THROWS_AS(write({.pixels = 16001}), ArgumentError);
     raster.poses[0].x = 40;
@@ -425,14 +436,17 @@ TEST_CASE("pictures are the same bytes each time")
 TEST_CASE("a picture that cannot be written is an OutputError")
 {
     const TempFolder folder;
-    CHECK_THROWS_AS(write_heatmap({}, level_terrain(2, 2), raster_of({"V"}), {}, folder / "missing/a.png"), OutputError);
+    CHECK_THROWS_AS(write_heatmap({}, level_terrain(2, 2), raster_of({"V"}), {}, folder / "missing/a.png"),
+                    OutputError);
 }
 
 TEST_CASE("a preview shows terrain by height, obstacles grey, water blue and nothing white")
 {
     // From left to right: low ground, high ground, a block on the ground, a lake, nothing, a block in the air, a pier.
     const auto ground = [](double x, double) { return x < 4 ? 0.0f : x < 12 ? 2.0f : x < 16 ? -1.0f : nothing; };
-    const auto obstacle = [](double x, double) { return x > 8 && x < 12 ? 5.0f : x > 20 && x < 24 ? 4.0f : x > 24 ? 3.0f : nothing; };
+    const auto obstacle = [](double x, double) {
+        return x > 8 && x < 12 ? 5.0f : x > 20 && x < 24 ? 4.0f : x > 24 ? 3.0f : nothing;
+    };
     TerrainMap terrain = terrain_of(28, 8, ground);
     add_page(terrain, "obstacle", obstacle);
     add_page(terrain, "water", [](double x, double) { return (x > 12 && x < 16) || x > 24 ? 1.0f : nothing; });
@@ -473,8 +487,8 @@ TEST_CASE("the legend counts columns as they are shown, not poses")
 
 TEST_CASE("a caption stands below the title")
 {
-    const std::vector<std::string> texts =
-        texts_of(raster_of({"V"}), {.title = "arena, husky", .caption = "offset 0.1 m, yaw 0 deg"});
+    const std::vector<std::string> texts = texts_of(raster_of({"V"}),
+                                                    {.title = "arena, husky", .caption = "offset 0.1 m, yaw 0 deg"});
     CHECK(texts[0] == "arena, husky");
     CHECK(texts[1] == "offset 0.1 m, yaw 0 deg");
 }
@@ -622,8 +636,8 @@ const std::string white_fill = "#ffffff";
 
 TEST_CASE("spawns are footprints to scale where those are 6 pixels long or more, else arrows")
 {
-    const RasterResult raster =
-        raster_of({"VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV"});  // 20 x 10 m
+    const RasterResult raster = raster_of(
+        {"VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV"});  // 20 x 10 m
     const Robot robot = load_robot("box:2,1,0.5@0.5,0,0.25");
     HeatmapOptions options{.spawns = {{{10, 5, 0.1}, pi / 2}}, .robot = &robot};
     const Picture picture = draw(raster, options);

@@ -24,7 +24,8 @@ void write_image(const TempFolder& folder, const std::string& name, const Pixels
 {
     cv::Mat image(int(rows.size()), int(rows[0].size()), CV_64F);
     for (int row = 0; row < image.rows; ++row)
-        for (int col = 0; col < image.cols; ++col) image.at<double>(row, col) = rows[std::size_t(row)][std::size_t(col)];
+        for (int col = 0; col < image.cols; ++col)
+            image.at<double>(row, col) = rows[std::size_t(row)][std::size_t(col)];
     cv::Mat converted;
     image.convertTo(converted, depth);
     REQUIRE(cv::imwrite((folder / name).string(), converted));
@@ -43,10 +44,7 @@ double height(const Scene& scene, double x, double y)
     return column.layers[0];
 }
 
-bool has_ground(const Scene& scene, double x, double y)
-{
-    return !column_at(Geometry(scene), x, y).layers.empty();
-}
+bool has_ground(const Scene& scene, double x, double y) { return !column_at(Geometry(scene), x, y).layers.empty(); }
 
 }  // namespace
 
@@ -137,7 +135,8 @@ TEST_CASE("a heightmap goes with its pose and its sides")
 {
     const TempFolder folder;
     write_image(folder, "a.tiff", {{1, 2}, {3, 4}}, CV_32F);
-    const Scene scene = load(folder, "file: a.tiff, size: [2, 2]", ", xyz: [10, 20, 30], rpy_deg: [0, 0, 90], sides: up");
+    const Scene scene = load(folder, "file: a.tiff, size: [2, 2]",
+                             ", xyz: [10, 20, 30], rpy_deg: [0, 0, 90], sides: up");
     CHECK(scene.pieces[0].sides_up);
     CHECK(scene.pieces[0].bottom == Approx(31));
     CHECK(height(scene, 9, 19) == Approx(31));   // column 0, row 0: (-1, 1) turns to (-1, -1)
@@ -160,22 +159,40 @@ TEST_CASE("heightmaps that make no sense are refused by name")
     folder.write("text.png", "no picture");
     cv::imwrite((folder / "photo.jpg").string(), cv::Mat(4, 4, CV_8U, cv::Scalar(7)));
     const std::string start = (folder / "scene.yaml").string() + ": part \"ground\": heightmap.";
-    const auto used = [&](const char* file) { return start + "file cannot be used: " + (folder / file).string() + ": "; };
-    CHECK_THROWS_WITH(load(folder, "file: none.png, size: [1, 1], z: [0, 1]"), used("none.png") + "does not exist; is the path right? (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: text.png, size: [1, 1], z: [0, 1]"), used("text.png") + "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout told with the key raw (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: photo.jpg, size: [1, 1], z: [0, 1]"), used("photo.jpg") + "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout told with the key raw (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: colour.png, size: [1, 1], z: [0, 1]"), used("colour.png") + "has a pixel that is coloured (column 0, row 0), needs to be a grey image (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: thin.png, size: [1, 1], z: [0, 1]"), used("thin.png") + "has 2 x 1 pixels, needs at least 2 x 2 (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1]"),
-                      used("grey.png") + "is an integer image; heightmap.z is missing (heights of 0 and of the largest value) (line 4)");
+    const auto used = [&](const char* file) {
+        return start + "file cannot be used: " + (folder / file).string() + ": ";
+    };
+    CHECK_THROWS_WITH(load(folder, "file: none.png, size: [1, 1], z: [0, 1]"),
+                      used("none.png") + "does not exist; is the path right? (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: text.png, size: [1, 1], z: [0, 1]"),
+                      used("text.png") +
+                          "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its "
+                          "layout told with the key raw (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: photo.jpg, size: [1, 1], z: [0, 1]"),
+                      used("photo.jpg") +
+                          "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its "
+                          "layout told with the key raw (line 4)");
+    CHECK_THROWS_WITH(
+        load(folder, "file: colour.png, size: [1, 1], z: [0, 1]"),
+        used("colour.png") + "has a pixel that is coloured (column 0, row 0), needs to be a grey image (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: thin.png, size: [1, 1], z: [0, 1]"),
+                      used("thin.png") + "has 2 x 1 pixels, needs at least 2 x 2 (line 4)");
+    CHECK_THROWS_WITH(
+        load(folder, "file: grey.png, size: [1, 1]"),
+        used("grey.png") +
+            "is an integer image; heightmap.z is missing (heights of 0 and of the largest value) (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: float.tiff, size: [1, 1], z: [0, 1]"),
                       used("float.tiff") + "has heights in metres already; heightmap.z must go (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: inf.tiff, size: [1, 1]"),
-                      used("inf.tiff") + "row 1, column 0 is infinite, needs a finite height or NaN (no ground) (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: hole.tiff, size: [1, 1]"), used("hole.tiff") + "has no heights: every pixel is NaN or no-data (line 4)");
-    CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [0, 1], z: [0, 1]"), start + "size has 0, needs > 0 (line 4)");
+    CHECK_THROWS_WITH(
+        load(folder, "file: inf.tiff, size: [1, 1]"),
+        used("inf.tiff") + "row 1, column 0 is infinite, needs a finite height or NaN (no ground) (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: hole.tiff, size: [1, 1]"),
+                      used("hole.tiff") + "has no heights: every pixel is NaN or no-data (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [0, 1], z: [0, 1]"),
+                      start + "size has 0, needs > 0 (line 4)");
     CHECK_THROWS_WITH(load(folder, "size: [1, 1], z: [0, 1]"), start + "file is missing");
-    CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1], zed: [0, 1]"), start + "zed is no known key; known: file, size, cell, z, origin, nodata, raw (line 4)");
+    CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1], zed: [0, 1]"),
+                      start + "zed is no known key; known: file, size, cell, z, origin, nodata, raw (line 4)");
 }
 
 TEST_CASE("real heightmaps have the heights that their sources tell")

@@ -61,8 +61,8 @@ TEST_CASE("robots are placed one after another, each away from those before")
 {
     const Arena arena;
     REQUIRE(arena("sample map -n 6 --min-distance 2 --yaw random -o a.csv" + husky_option).status == 0);
-    const ProgramRun second =
-        arena("sample map -n 10 --avoid a.csv --avoid-distance 3 --seed 1 -o b.csv --summary b.json" + box);
+    const ProgramRun second = arena(
+        "sample map -n 10 --avoid a.csv --avoid-distance 3 --seed 1 -o b.csv --summary b.json" + box);
     CHECK(second.status == 0);
     CHECK_THAT(second.err, Contains(" near avoided poses"));
     const auto summary = nlohmann::json::parse(bytes_of(arena / "b.json"));
@@ -238,8 +238,9 @@ TEST_CASE("a CSV file without header, commas or poses is refused with the fix")
     CHECK(complaint("1,2,3,4\n") ==
           "a: line 1: has numbers, needs a header before them: add the line x,y,z,yaw (or yaw_deg)");
     CHECK_THAT(complaint("1,2,3,0,0,0,1\n"), Contains("add the line x,y,z,qx,qy,qz,qw"));
-    const std::string semicolons = "a: line 1: has fields separated by semicolons, needs commas, and points in "
-                                   "decimals: tr ',;' '.,' < IN.csv > OUT.csv";
+    const std::string semicolons =
+        "a: line 1: has fields separated by semicolons, needs commas, and points in "
+        "decimals: tr ',;' '.,' < IN.csv > OUT.csv";
     CHECK(complaint("x;y;z\n1;2;3\n") == semicolons);
     CHECK(complaint("1,5;2,5;-0,1\n") == semicolons);
     CHECK(complaint("x\ty\tz\n1\t2\t3\n") ==
@@ -512,8 +513,9 @@ TEST_CASE("what is given as a map but is none is named")
     arena.write("scene.yaml", "format: spawnfield-scene/1\nparts: []\n");
     arena.write("robot.yaml", "format: spawnfield-robot/1\nparts: []\n");
     arena.write("a.usd", "");
-    CHECK(said("scene.yaml") == "spawnfield: scene.yaml: is a file, and a map is a folder; bake a scene first: "
-                                "spawnfield bake scene.yaml -o MAP\n");
+    CHECK(said("scene.yaml") ==
+          "spawnfield: scene.yaml: is a file, and a map is a folder; bake a scene first: "
+          "spawnfield bake scene.yaml -o MAP\n");
     CHECK(said("robot.yaml") ==
           "spawnfield: robot.yaml: is a robot, not a map; give it as --robot robot.yaml, and a map folder before it\n");
     CHECK(said("map/map.yaml") == "spawnfield: map/map.yaml: is a file of a map; give its folder, map\n");
@@ -528,8 +530,11 @@ TEST_CASE("a robot that is likely in millimetres, or larger than the map, is not
     arena.write("mm.yaml", "format: spawnfield-robot/1\nparts: [{box: [990, 670, 390]}]\n");
     const ProgramRun run = arena("check map --poses p.csv --robot mm.yaml");
     CHECK(run.status == 0);
-    CHECK_THAT(run.err, Contains("notice: mm.yaml: is 990 x 670 x 390 m; if it is in millimetres, divide lengths and positions by 1000, ") &&
-                            Contains("notice: the robot is 990 x 670 m, larger than the map (20.2 x 20.2 m); "));
+    CHECK_THAT(
+        run.err,
+        Contains(
+            "notice: mm.yaml: is 990 x 670 x 390 m; if it is in millimetres, divide lengths and positions by 1000, ") &&
+            Contains("notice: the robot is 990 x 670 m, larger than the map (20.2 x 20.2 m); "));
     CHECK_THAT(arena("info mm.yaml").err, Contains("if it is in millimetres"));
     CHECK_THAT(arena("check map --poses p.csv --robot box:60,1,1").err,
                Contains("if it is in millimetres, divide its lengths by 1000"));

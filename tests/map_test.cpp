@@ -51,7 +51,8 @@ TEST_CASE("a map that is read back has the geometry and the answers of the one t
         const TestMap fresh = map_of(scene);
         CHECK(map.geometry.impl().bytes.view == fresh.geometry.impl().bytes.view);
         CHECK(map.geometry.parts().size() == scene.parts.size());
-        for (std::size_t part = 0; part < map.geometry.parts().size(); ++part) CHECK(map.geometry.parts()[part].name == scene.parts[part].name);
+        for (std::size_t part = 0; part < map.geometry.parts().size(); ++part)
+            CHECK(map.geometry.parts()[part].name == scene.parts[part].name);
         const Robot robot = random_robot(seed);
         const CollisionChecker checker = checker_of(map, robot), fresh_checker = checker_of(fresh, robot);
         const auto poses = random_poses(scene, seed, 500);
@@ -68,7 +69,8 @@ TEST_CASE("a map folder holds the files that it should, as other programs open t
 {
     const TempFolder temp;
     const BakeReport report = bake_training(temp / "map");
-    CHECK(names_in(temp / "map") == std::vector<std::string>{"bounds.bin", "geometry.bin", "heightmap.png", "map.yaml", "occupancy.bt", "preview.png", "terrain.tiff"});
+    CHECK(names_in(temp / "map") == std::vector<std::string>{"bounds.bin", "geometry.bin", "heightmap.png", "map.yaml",
+                                                             "occupancy.bt", "preview.png", "terrain.tiff"});
     CHECK(report.layers == 2);
     const Map map = read_map(temp / "map");
     const TerrainMap terrain = read_terrain(map);
@@ -92,7 +94,8 @@ TEST_CASE("heightmap.png stands for the top layer with the range that map.yaml t
 {
     const TempFolder temp;
     Scene scene;
-    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(4, 4), {{0, 0, 3}, rotation_from_rpy(0, 0.4, 0)}));
+    hand::add_mesh(scene, Label::Terrain,
+                   hand::moved(hand::rectangle(4, 4), {{0, 0, 3}, rotation_from_rpy(0, 0.4, 0)}));
     const fs::path file = temp.write("scene.txt", "");
     BakeOptions options;
     options.resolution = 0.1;
@@ -172,7 +175,9 @@ TEST_CASE("every altered byte is noticed: by queries in what they read, by verif
             if (name == "map.yaml") CHECK_THROWS_WITH(read_map(temp / "map"), Contains(name));
             if (name == "geometry.bin") {
                 const auto read_all = [&] {
-                    read_map(temp / "map").geometry.impl().visit_in(-1e9, -1e9, 1e9, 1e9, [](const Tile&, std::uint32_t) {});
+                    read_map(temp / "map")
+                        .geometry.impl()
+                        .visit_in(-1e9, -1e9, 1e9, 1e9, [](const Tile&, std::uint32_t) {});
                 };
                 CHECK_THROWS_WITH(read_all(), Contains(name));
             }

@@ -88,29 +88,41 @@ std::string zip(const std::vector<std::pair<std::string, std::string>>& files)
     std::string out, directory;
     for (const auto& [name, text] : files) {
         const std::string packed = deflated(text);
-        const std::string common = little_endian(20, 2) + little_endian(0, 2) + little_endian(8, 2) + little_endian(0, 4) +
-                                   little_endian(crc32(0, reinterpret_cast<const Bytef*>(text.data()), uInt(text.size())), 4) +
-                                   little_endian(packed.size(), 4) + little_endian(text.size(), 4) + little_endian(name.size(), 2) + little_endian(0, 2);
-        directory += "PK\1\2" + little_endian(20, 2) + common + little_endian(0, 2) + little_endian(0, 2) + little_endian(0, 2) + little_endian(0, 4) +
-                     little_endian(out.size(), 4) + name;
+        const std::string common = little_endian(20, 2) + little_endian(0, 2) + little_endian(8, 2) +
+                                   little_endian(0, 4) +
+                                   little_endian(
+                                       crc32(0, reinterpret_cast<const Bytef*>(text.data()), uInt(text.size())), 4) +
+                                   little_endian(packed.size(), 4) + little_endian(text.size(), 4) +
+                                   little_endian(name.size(), 2) + little_endian(0, 2);
+        directory += "PK\1\2" + little_endian(20, 2) + common + little_endian(0, 2) + little_endian(0, 2) +
+                     little_endian(0, 2) + little_endian(0, 4) + little_endian(out.size(), 4) + name;
         out += "PK\3\4" + common + name + packed;
     }
     const std::string count = little_endian(files.size(), 2);
     const std::size_t start = out.size();
-    return out + directory + "PK\5\6" + little_endian(0, 4) + count + count + little_endian(directory.size(), 4) + little_endian(start, 4) + little_endian(0, 2);
+    return out + directory + "PK\5\6" + little_endian(0, 4) + count + count + little_endian(directory.size(), 4) +
+           little_endian(start, 4) + little_endian(0, 2);
 }
 
 /// A 3MF package of the wedge, with these attributes of its <model>.
 std::string package_3mf(const std::string& attributes)
 {
-    return zip({{"[Content_Types].xml", "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>"},
-                {"_rels/.rels", "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship Id=\"a\" "
-                                "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\" Target=\"/3D/3dmodel.model\"/></Relationships>"},
-                {"3D/3dmodel.model", "<?xml version=\"1.0\"?><model " + attributes + " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
-                                     "<object id=\"1\" type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"4\" y=\"0\" z=\"0\"/>"
-                                     "<vertex x=\"0\" y=\"2\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/>"
-                                     "<triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles>"
-                                     "</mesh></object></resources><build><item objectid=\"1\"/></build></model>"}});
+    return zip(
+        {{"[Content_Types].xml", "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>"},
+         {"_rels/.rels",
+          "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+          "Id=\"a\" "
+          "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\" "
+          "Target=\"/3D/3dmodel.model\"/></Relationships>"},
+         {"3D/3dmodel.model", "<?xml version=\"1.0\"?><model " + attributes +
+                                  " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
+                                  "<object id=\"1\" type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" "
+                                  "z=\"0\"/><vertex x=\"4\" y=\"0\" z=\"0\"/>"
+                                  "<vertex x=\"0\" y=\"2\" z=\"0\"/><vertex x=\"0\" y=\"0\" "
+                                  "z=\"1\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/>"
+                                  "<triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" "
+                                  "v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles>"
+                                  "</mesh></object></resources><build><item objectid=\"1\"/></build></model>"}});
 }
 
 }  // namespace
@@ -145,10 +157,12 @@ TEST_CASE("FBX is read with the unit and the up axis that it tells")
     REQUIRE(Assimp::Exporter().Export(scene, "fbxa", (folder / "y.fbx").string()) == AI_SUCCESS);
     const std::string text = bytes_of(folder / "y.fbx");
     check_wedge(folder / "y.fbx", Vec3(0.04, 0.01, 0.02));  // centimetres, y up
-    const std::string up = "\"UpAxis\", \"int\", \"Integer\", \"\", ", unit = "P: \"UnitScaleFactor\", \"double\", \"Number\", \"\", ";
+    const std::string up = "\"UpAxis\", \"int\", \"Integer\", \"\", ",
+                      unit = "P: \"UnitScaleFactor\", \"double\", \"Number\", \"\", ";
     check_wedge(folder.write("z.fbx", replaced(text, up + "1", up + "2")), Vec3(0.04, 0.02, 0.01));
     check_wedge(folder.write("metres.fbx", replaced(text, unit + "1", unit + "100")), Vec3(4, 1, 2));
-    check_wedge(folder.write("inches.fbx", replaced(replaced(text, unit + "1", unit + "2.54"), up + "1", up + "2")), 0.0254 * Vec3(4, 2, 1));
+    check_wedge(folder.write("inches.fbx", replaced(replaced(text, unit + "1", unit + "2.54"), up + "1", up + "2")),
+                0.0254 * Vec3(4, 2, 1));
 }
 
 TEST_CASE("a mesh in millimetres or on its side gets a notice, a plausible one gets none")
@@ -157,43 +171,60 @@ TEST_CASE("a mesh in millimetres or on its side gets a notice, a plausible one g
     const auto notices = [&](const std::string& name, const Vec3& size, const SceneOptions& options) {
         std::string text = "o ground\n";
         for (const auto& [x, y] : {std::pair{0, 0}, std::pair{1, 0}, std::pair{1, 1}, std::pair{0, 1}})
-            text += "v " + std::to_string(x * size.x()) + " " + std::to_string(y * size.y()) + " " + std::to_string(y * size.z()) + "\n";
+            text += "v " + std::to_string(x * size.x()) + " " + std::to_string(y * size.y()) + " " +
+                    std::to_string(y * size.z()) + "\n";
         std::string all;
-        for (const std::string& notice : load_scene(folder.write(name, text + "f 1 2 3 4\n"), options).notices) all += notice + "\n";
+        for (const std::string& notice : load_scene(folder.write(name, text + "f 1 2 3 4\n"), options).notices)
+            all += notice + "\n";
         return all;
     };
     const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
     CHECK(!has(notices("good.obj", {100, 80, 1}, {}), "large"));
     CHECK(!has(notices("good.obj", {100, 80, 1}, {}), "side"));
-    CHECK(has(notices("mm.obj", {100000, 80000, 1}, {}), "is 100000 x 80000 x 1 m, which is large: is it in millimetres? --scale 0.001 makes it metres"));
+    CHECK(has(notices("mm.obj", {100000, 80000, 1}, {}),
+              "is 100000 x 80000 x 1 m, which is large: is it in millimetres? --scale 0.001 makes it metres"));
     CHECK(!has(notices("mm.obj", {100000, 80000, 1}, {.scale = 0.001}), "large"));
     CHECK(has(notices("tiny.obj", {0.1, 0.2, 0.01}, {}), "which is small"));
-    CHECK(has(notices("lying.obj", {100, 1, 80}, {}), "most of its faces look along y, few up: does it lie on its side? --up y or z"));
+    CHECK(has(notices("lying.obj", {100, 1, 80}, {}),
+              "most of its faces look along y, few up: does it lie on its side? --up y or z"));
     CHECK(!has(notices("lying.obj", {100, 1, 80}, {.up = 'y'}), "side"));
 }
 
 TEST_CASE("glTF that needs an extension about geometry is refused, about looks it is not")
 {
     const TempFolder folder;
-    const auto needs = [&](const std::string& extension) { return folder.write("a.gltf", gltf_with("\"extensionsRequired\": [\"" + extension + "\"],")); };
-    CHECK_THROWS_WITH(load_scene(needs("KHR_mesh_quantization")), Contains("a.gltf: needs the glTF extension KHR_mesh_quantization") && Contains("gltfpack -noq"));
-    CHECK_THROWS_WITH(load_scene(needs("EXT_mesh_gpu_instancing")), Contains("needs the glTF extension EXT_mesh_gpu_instancing"));
-    CHECK_THROWS_WITH(load_scene(needs("KHR_draco_mesh_compression")), Contains("needs the glTF extension KHR_draco_mesh_compression") && Contains("gltf-transform copy"));
-    CHECK_THROWS_WITH(load_scene(needs("FOO_bar")), Contains("needs the glTF extension FOO_bar (extensionsRequired), which is not known here"));
+    const auto needs = [&](const std::string& extension) {
+        return folder.write("a.gltf", gltf_with("\"extensionsRequired\": [\"" + extension + "\"],"));
+    };
+    CHECK_THROWS_WITH(load_scene(needs("KHR_mesh_quantization")),
+                      Contains("a.gltf: needs the glTF extension KHR_mesh_quantization") && Contains("gltfpack -noq"));
+    CHECK_THROWS_WITH(load_scene(needs("EXT_mesh_gpu_instancing")),
+                      Contains("needs the glTF extension EXT_mesh_gpu_instancing"));
+    CHECK_THROWS_WITH(
+        load_scene(needs("KHR_draco_mesh_compression")),
+        Contains("needs the glTF extension KHR_draco_mesh_compression") && Contains("gltf-transform copy"));
+    CHECK_THROWS_WITH(load_scene(needs("FOO_bar")),
+                      Contains("needs the glTF extension FOO_bar (extensionsRequired), which is not known here"));
     CHECK_THROWS_AS(load_scene(needs("FOO_bar")), FileError);
-    for (const char* extension : {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual", "EXT_texture_webp"})
+    for (const char* extension :
+         {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual", "EXT_texture_webp"})
         CHECK(load_scene(needs(extension)).triangles.size() == 12);
-    CHECK(load_scene(folder.write("used.gltf", gltf_with("\"extensionsUsed\": [\"FOO_bar\"],"))).triangles.size() == 12);
+    CHECK(load_scene(folder.write("used.gltf", gltf_with("\"extensionsUsed\": [\"FOO_bar\"],"))).triangles.size() ==
+          12);
 }
 
 TEST_CASE("glTF with instances or positions that are no floats is refused, required or not")
 {
     const TempFolder folder;
     const std::string plain = gltf_with("");
-    const std::string instances = replaced(plain, "\"name\":\"crate\"", "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{}}},\"name\":\"crate\"");
-    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", instances)), Contains("node \"crate\": has instances by EXT_mesh_gpu_instancing"));
-    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", replaced(plain, "\"componentType\":5126", "\"componentType\":5123"))),
-                      Contains("has positions that are no floats, by KHR_mesh_quantization"));
+    const std::string instances = replaced(
+        plain, "\"name\":\"crate\"",
+        "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{}}},\"name\":\"crate\"");
+    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", instances)),
+                      Contains("node \"crate\": has instances by EXT_mesh_gpu_instancing"));
+    CHECK_THROWS_WITH(
+        load_scene(folder.write("a.gltf", replaced(plain, "\"componentType\":5126", "\"componentType\":5123"))),
+        Contains("has positions that are no floats, by KHR_mesh_quantization"));
     folder.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: a.gltf}]\n");
     CHECK_THROWS_WITH(load_robot((folder / "robot.yaml").string()), Contains("KHR_mesh_quantization"));
 }
@@ -212,16 +243,20 @@ TEST_CASE("3DS has its own axes again: up turns those")
     }
     CHECK((bounds('y').min - Vec3(0, -1, 0)).norm() < 1e-6);  // (x, y, z) to (x, -z, y)
     CHECK((bounds('y').max - Vec3(4, 0, 2)).norm() < 1e-6);
-    folder.write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: a, mesh: a.3ds, up: y, scale: [1, 10, 100]}]\n");
-    CHECK((load_scene(folder / "scene.yaml").bounds().min - Vec3(0, -100, 0)).norm() < 1e-4);  // scale comes first, on the file's axes
+    folder.write("scene.yaml",
+                 "format: spawnfield-scene/1\nparts: [{name: a, mesh: a.3ds, up: y, scale: [1, 10, 100]}]\n");
+    CHECK((load_scene(folder / "scene.yaml").bounds().min - Vec3(0, -100, 0)).norm() <
+          1e-4);  // scale comes first, on the file's axes
 }
 
 TEST_CASE("DXF, which assimp turns too, is read on its own axes")
 {
     const TempFolder folder;
     std::string text = "0\nSECTION\n2\nENTITIES\n0\n3DFACE\n8\n0\n";
-    for (const auto& [codes, corner] : {std::pair{0, "000"}, std::pair{1, "400"}, std::pair{2, "021"}, std::pair{3, "021"}})
-        for (int axis = 0; axis < 3; ++axis) text += std::to_string(10 * (axis + 1) + codes) + "\n" + corner[axis] + "\n";
+    for (const auto& [codes, corner] :
+         {std::pair{0, "000"}, std::pair{1, "400"}, std::pair{2, "021"}, std::pair{3, "021"}})
+        for (int axis = 0; axis < 3; ++axis)
+            text += std::to_string(10 * (axis + 1) + codes) + "\n" + corner[axis] + "\n";
     const Bounds bounds = load_scene(folder.write("a.dxf", text + "0\nENDSEC\n0\nEOF\n")).bounds();
     CHECK((bounds.min - Vec3(0, 0, 0)).norm() < 1e-6);
     CHECK((bounds.max - Vec3(4, 2, 1)).norm() < 1e-6);
@@ -230,17 +265,22 @@ TEST_CASE("DXF, which assimp turns too, is read on its own axes")
 TEST_CASE("a name that comes back in an OBJ has its faces, and a name may have blanks")
 {
     const TempFolder folder;
-    const std::string corners = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 5 0 1\nv 9 0 1\nv 9 4 1\nv 5 4 1\nv 0 5 2\nv 4 5 2\nv 4 9 2\nv 0 9 2\n";
+    const std::string corners =
+        "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 5 0 1\nv 9 0 1\nv 9 4 1\nv 5 4 1\nv 0 5 2\nv 4 5 2\nv 4 9 2\nv 0 9 2\n";
     const std::vector<LabelRule> rules{{"road*", Label::Terrain}, {"my road", Label::Terrain}, {"*", Label::Obstacle}};
-    const auto terrain = [&](const std::string& text) { return count(load_scene(folder.write("a.obj", corners + text), {.labels = rules}), Label::Terrain); };
+    const auto terrain = [&](const std::string& text) {
+        return count(load_scene(folder.write("a.obj", corners + text), {.labels = rules}), Label::Terrain);
+    };
     const std::string first = "f 1 2 3 4\n", wall = "f 9 10 11 12\n", last = "f 5 6 7 8\n";
     CHECK(terrain("o road\n" + first + "o wall\n" + wall + "o road\n" + last) == 4);
     CHECK(terrain("g road\n" + first + "g wall\n" + wall + "g road\n" + last) == 4);
-    CHECK(terrain("g road\n" + first + "o wall\n" + wall + "g road\n" + last) == 4);  // o does not end the group, for assimp
+    CHECK(terrain("g road\n" + first + "o wall\n" + wall + "g road\n" + last) ==
+          4);  // o does not end the group, for assimp
     CHECK(terrain("o road\n" + first + "g wall\n" + wall + "o road\n" + last) == 4);
     CHECK(terrain("o wall\n" + first + "o road\n" + wall + "o wall\n" + last) == 2);
     CHECK(terrain("o my road\r\n" + first + "o my wall\n" + wall + "o my road \n" + last) == 4);
-    CHECK(notices_of(load_scene(folder / "a.obj", {.labels = {{"my wall", Label::Water}}})).find("matches no") == std::string::npos);
+    CHECK(notices_of(load_scene(folder / "a.obj", {.labels = {{"my wall", Label::Water}}})).find("matches no") ==
+          std::string::npos);
 }
 
 TEST_CASE("faces under one name that is told again stay one piece")
@@ -254,14 +294,16 @@ TEST_CASE("faces under one name that is told again stay one piece")
 TEST_CASE("OBJ numbers may begin with a point, lines with a blank")
 {
     const TempFolder folder;
-    const Scene scene = load_scene(folder.write("a.obj", "v 0 .25 -.5\nv 4 .25 +.5\nv 4 4. .5\nvt .5 .5\nvn .0 .0 1\nf 1/1/1 2/1/1 3/1/1\n"));
+    const Scene scene = load_scene(
+        folder.write("a.obj", "v 0 .25 -.5\nv 4 .25 +.5\nv 4 4. .5\nvt .5 .5\nvn .0 .0 1\nf 1/1/1 2/1/1 3/1/1\n"));
     CHECK((scene.bounds().min - Vec3(0, 0.25, -0.5)).norm() == 0);
     CHECK((scene.bounds().max - Vec3(4, 4, 0.5)).norm() == 0);
     CHECK(readable_obj("v 1.5 .5 -.5\n# a .5\nf 1 2 3\n").text == "v 1.5 0.5 -0.5\n# a .5\nf 1 2 3\n");
     CHECK(readable_obj("v 1 \\\n .5 .5\nf 1 2 3").text == "v 1 \\\n 0.5 0.5\nf 1 2 3");
     CHECK(readable_obj("").text.empty());
     CHECK(readable_obj(" v 1 1 1\n\tf 1 2 3\n \n").text == "v 1 1 1\nf 1 2 3\n\n");
-    CHECK(load_scene(folder.write("indented.obj", "o a\n  v 0 0 0\n  v 4 0 0\n  v 4 4 0\n\tf 1 2 3\n")).triangles.size() == 1);
+    CHECK(load_scene(folder.write("indented.obj", "o a\n  v 0 0 0\n  v 4 0 0\n  v 4 4 0\n\tf 1 2 3\n"))
+              .triangles.size() == 1);
 }
 
 TEST_CASE("glTF with a vertex index beyond its vertices is refused")
@@ -269,7 +311,8 @@ TEST_CASE("glTF with a vertex index beyond its vertices is refused")
     const TempFolder folder;
     hand::Mesh mesh = hand::box({4, 2, 1});
     mesh.triangles[5][1] = 8;  // of vertices 0 .. 7
-    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", mesh_text::gltf({{.mesh = mesh}}))), Contains("1 of its 12 triangles have a vertex index beyond their vertices"));
+    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", mesh_text::gltf({{.mesh = mesh}}))),
+                      Contains("1 of its 12 triangles have a vertex index beyond their vertices"));
 }
 
 TEST_CASE("morph targets count by the weights of their mesh; skins and a node's own weights are told")
@@ -277,9 +320,11 @@ TEST_CASE("morph targets count by the weights of their mesh; skins and a node's 
     const TempFolder folder;
     const std::string plain = mesh_text::gltf({{.name = "crate", .mesh = hand::box({4, 2, 1})}});
     const std::string attributes = "\"attributes\":{\"POSITION\":0}";
-    const auto with = [&](const std::string& weights) {  // its target moves each corner by itself: all is twice as large at 1
-        return replaced(plain, "{\"primitives\":[{" + attributes, "{" + weights + "\"primitives\":[{" + attributes + ",\"targets\":[{\"POSITION\":0}]");
-    };
+    const auto with =
+        [&](const std::string& weights) {  // its target moves each corner by itself: all is twice as large at 1
+            return replaced(plain, "{\"primitives\":[{" + attributes,
+                            "{" + weights + "\"primitives\":[{" + attributes + ",\"targets\":[{\"POSITION\":0}]");
+        };
     const auto size = [&](const std::string& text) {
         const Bounds bounds = load_scene(folder.write("a.gltf", text), {.up = 'z'}).bounds();
         return Vec3(bounds.max - bounds.min);
@@ -289,24 +334,35 @@ TEST_CASE("morph targets count by the weights of their mesh; skins and a node's 
     CHECK((size(with("\"weights\":[0],")) - Vec3(4, 2, 1)).norm() < 1e-5);
     CHECK((size(with("")) - Vec3(4, 2, 1)).norm() < 1e-5);
     CHECK(load_scene(folder / "a.gltf").notices.size() == 1);  // that all is terrain
-    const std::string posed = replaced(with("\"weights\":[1],"), "\"name\":\"crate\"", "\"weights\":[0],\"name\":\"crate\"");
-    CHECK_THAT(notices_of(load_scene(folder.write("a.gltf", posed))), Contains("a.gltf: node \"crate\": a node's own weights of morph targets do not count"));
+    const std::string posed = replaced(with("\"weights\":[1],"), "\"name\":\"crate\"",
+                                       "\"weights\":[0],\"name\":\"crate\"");
+    CHECK_THAT(notices_of(load_scene(folder.write("a.gltf", posed))),
+               Contains("a.gltf: node \"crate\": a node's own weights of morph targets do not count"));
     const std::string skinned = replaced(plain, "\"name\":\"crate\"", "\"skin\":0,\"name\":\"crate\"");
     const std::string skin = replaced(skinned, "\"materials\"", "\"skins\":[{\"joints\":[0]}],\"materials\"");
-    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", skin)), Contains("skin 0: has no inverseBindMatrices for all of its joints"));
-    const std::string matrices = replaced(skin, "\"joints\":[0]", "\"joints\":[0],\"inverseBindMatrices\":2");  // an accessor over the corners' first 64 bytes
-    const std::string accessor = ",{\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"MAT4\"}],\"bufferViews\"";
+    CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", skin)),
+                      Contains("skin 0: has no inverseBindMatrices for all of its joints"));
+    const std::string matrices = replaced(
+        skin, "\"joints\":[0]",
+        "\"joints\":[0],\"inverseBindMatrices\":2");  // an accessor over the corners' first 64 bytes
+    const std::string accessor =
+        ",{\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"MAT4\"}],\"bufferViews\"";
     folder.write("a.gltf", replaced(matrices, "],\"bufferViews\"", accessor));
-    CHECK_THAT(notices_of(load_scene(folder / "a.gltf")), Contains("node \"crate\": the joints of a skin do not count"));
+    CHECK_THAT(notices_of(load_scene(folder / "a.gltf")),
+               Contains("node \"crate\": the joints of a skin do not count"));
     folder.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: a.gltf}]\n");
-    CHECK_THAT(load_robot((folder / "robot.yaml").string()).notices[0], Contains("a.gltf: node \"crate\": the joints of a skin do not count"));
+    CHECK_THAT(load_robot((folder / "robot.yaml").string()).notices[0],
+               Contains("a.gltf: node \"crate\": the joints of a skin do not count"));
 }
 
 TEST_CASE("a mesh of more than 1 km with walls gets a notice, hills get none")
 {
     const TempFolder folder;
-    const auto notices = [&](const Vec3& size) { return notices_of(load_scene(folder.write("a.obj", mesh_text::obj(hand::box(size))))); };
-    CHECK_THAT(notices({12000, 9000, 3000}), Contains("is 12000 x 9000 x 3000 m and has a wall of 3000 m height: is it in millimetres? --scale 0.001 makes it metres"));
+    const auto notices = [&](const Vec3& size) {
+        return notices_of(load_scene(folder.write("a.obj", mesh_text::obj(hand::box(size)))));
+    };
+    CHECK_THAT(notices({12000, 9000, 3000}), Contains("is 12000 x 9000 x 3000 m and has a wall of 3000 m height: is it "
+                                                      "in millimetres? --scale 0.001 makes it metres"));
     CHECK_THAT(notices({12000, 9000, 830}), !Contains("millimetres"));  // as high as the highest tower
     CHECK_THAT(notices({12, 9, 3}), !Contains("millimetres"));
     const std::string slope = "v 0 0 0\nv 9000 0 0\nv 0 100 3000\nf 1 2 3\n";
@@ -322,16 +378,19 @@ TEST_CASE("3MF and AMF are read in their unit, millimetres where they tell none"
     const auto amf = [&](const std::string& unit) {
         std::string text = "<?xml version=\"1.0\"?>\n<amf" + unit + "><object id=\"0\"><mesh><vertices>";
         for (const std::string corner : {"000", "400", "020", "001"})
-            text += "<vertex><coordinates><x>" + corner.substr(0, 1) + "</x><y>" + corner.substr(1, 1) + "</y><z>" + corner.substr(2) + "</z></coordinates></vertex>";
+            text += "<vertex><coordinates><x>" + corner.substr(0, 1) + "</x><y>" + corner.substr(1, 1) + "</y><z>" +
+                    corner.substr(2) + "</z></coordinates></vertex>";
         text += "</vertices><volume>";
         for (const std::string face : {"021", "013", "032", "123"})
-            text += "<triangle><v1>" + face.substr(0, 1) + "</v1><v2>" + face.substr(1, 1) + "</v2><v3>" + face.substr(2) + "</v3></triangle>";
+            text += "<triangle><v1>" + face.substr(0, 1) + "</v1><v2>" + face.substr(1, 1) + "</v2><v3>" +
+                    face.substr(2) + "</v3></triangle>";
         return folder.write("a.amf", text + "</volume></mesh></object></amf>\n");
     };
     check_wedge(amf(" unit=\"feet\""), 0.3048 * Vec3(4, 2, 1));
     check_wedge(amf(" version=\"1.1\""), 0.001 * Vec3(4, 2, 1));
     check_wedge(folder.write("in.3mf", package_3mf("unit=\"inch\"")), 0.0254 * Vec3(4, 2, 1));
-    CHECK_THROWS_WITH(load_scene(folder.write("bad.3mf", package_3mf("unit=\"mile\""))), Contains("its unit is \"mile\", needs one of micron, millimeter"));
+    CHECK_THROWS_WITH(load_scene(folder.write("bad.3mf", package_3mf("unit=\"mile\""))),
+                      Contains("its unit is \"mile\", needs one of micron, millimeter"));
     const std::string good = package_3mf("unit=\"meter\"");
     for (std::size_t size = 0; size < good.size(); size += 7)  // cut anywhere: a result or a FileError
         try {

@@ -34,7 +34,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(at, from.size(), to);
 }
 
-/// A file cut at every step-th byte, and with that byte altered, is read or refused by name, and never the end of the program.
+/// A file cut at every step-th byte, and with that byte altered, is read or refused by name, and never the end of the
+/// program.
 void check_harmed(const TempFolder& folder, const std::string& name, const std::string& good, std::size_t step = 1)
 {
     for (std::size_t at = 0; at < good.size(); at += step) {
@@ -48,33 +49,45 @@ void check_harmed(const TempFolder& folder, const std::string& name, const std::
     CHECK(complaint(folder, name, good) == "");
 }
 
-const std::string ply_head = "ply\nformat ascii 1.0\ncomment a square\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                             "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+const std::string ply_head =
+    "ply\nformat ascii 1.0\ncomment a square\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
 const std::string ply_square = ply_head + "0 0 0\n4 0 0\n4 3 0\n0 3 0\n3 0 1 2\n3 0 2 3\n";
 
 /// One triangle; `nodes` stand in the scene beside the node that holds it.
 std::string collada(const std::string& nodes = "", const std::string& library = "")
 {
-    return "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n"
+    return "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+           "version=\"1.4.1\">\n"
            "<asset><unit meter=\"1\"/><up_axis>Z_UP</up_axis></asset>\n<library_geometries><geometry id=\"g\"><mesh>\n"
            "<source id=\"s\"><float_array id=\"a\" count=\"9\">0 0 0 5 0 0 5 5 0</float_array>\n"
-           "<technique_common><accessor source=\"#a\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/>"
+           "<technique_common><accessor source=\"#a\" count=\"3\" stride=\"3\"><param name=\"X\" "
+           "type=\"float\"/><param name=\"Y\" type=\"float\"/>"
            "<param name=\"Z\" type=\"float\"/></accessor></technique_common></source>\n"
            "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#s\"/></vertices>\n"
-           "<polylist count=\"1\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><vcount>3</vcount>\n<p>0 1 2</p></polylist>\n"
-           "</mesh></geometry></library_geometries>\n<library_nodes>" + library + "</library_nodes>\n"
-           "<library_visual_scenes><visual_scene id=\"vs\">\n<node id=\"n\"><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix><instance_geometry url=\"#g\"/></node>\n" +
-           nodes + "</visual_scene></library_visual_scenes>\n<scene><instance_visual_scene url=\"#vs\"/></scene></COLLADA>\n";
+           "<polylist count=\"1\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><vcount>3</vcount>\n<p>0 1 "
+           "2</p></polylist>\n"
+           "</mesh></geometry></library_geometries>\n<library_nodes>" +
+           library +
+           "</library_nodes>\n"
+           "<library_visual_scenes><visual_scene id=\"vs\">\n<node id=\"n\"><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 "
+           "1</matrix><instance_geometry url=\"#g\"/></node>\n" +
+           nodes +
+           "</visual_scene></library_visual_scenes>\n<scene><instance_visual_scene url=\"#vs\"/></scene></COLLADA>\n";
 }
 
 /// One triangle in meshes[0]; `nodes` and the scene's nodes as JSON.
 std::string gltf(const std::string& nodes, const std::string& scene = "0", const std::string& more = "")
 {
-    return "{\"asset\": {\"version\": \"2.0\"}, " + more + "\"scene\": 0, \"scenes\": [{\"nodes\": [" + scene + "]}], \"nodes\": [" + nodes +
-           "], \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1}]}],\n\"buffers\": [{\"byteLength\": 44, \"uri\": "
+    return "{\"asset\": {\"version\": \"2.0\"}, " + more + "\"scene\": 0, \"scenes\": [{\"nodes\": [" + scene +
+           "]}], \"nodes\": [" + nodes +
+           "], \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1}]}],\n\"buffers\": "
+           "[{\"byteLength\": 44, \"uri\": "
            "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACgQAAAAAAAAAAAAAAAAAAAAAAAAKDAAAABAAIAAAA=\"}],\n"
-           "\"bufferViews\": [{\"buffer\": 0, \"byteOffset\": 0, \"byteLength\": 36}, {\"buffer\": 0, \"byteOffset\": 36, \"byteLength\": 6}],\n"
-           "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\", \"min\": [0, 0, -5], \"max\": [5, 0, 0]},\n"
+           "\"bufferViews\": [{\"buffer\": 0, \"byteOffset\": 0, \"byteLength\": 36}, {\"buffer\": 0, \"byteOffset\": "
+           "36, \"byteLength\": 6}],\n"
+           "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\", \"min\": "
+           "[0, 0, -5], \"max\": [5, 0, 0]},\n"
            "{\"bufferView\": 1, \"componentType\": 5123, \"count\": 3, \"type\": \"SCALAR\"}]}\n";
 }
 
@@ -86,17 +99,21 @@ std::string bytes_of_value(T value, bool big)
     return big ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
 }
 
-/// The square with a quad for a face, colours among the coordinates, and an element that is no concern of ours before both.
+/// The square with a quad for a face, colours among the coordinates, and an element that is no concern of ours before
+/// both.
 std::string binary_square(bool big, const std::string& line_end = "\n")
 {
-    std::string head = std::string("ply|format binary_") + (big ? "big" : "little") + "_endian 1.0|element camera 1|property list ushort double view|"
+    std::string head = std::string("ply|format binary_") + (big ? "big" : "little") +
+                       "_endian 1.0|element camera 1|property list ushort double view|"
                        "element vertex 4|property double x|property uchar red|property float y|property short z|"
-                       "element face 1|property uchar flags|property list uint ushort vertex_index|property list uchar float texcoord|end_header|";
+                       "element face 1|property uchar flags|property list uint ushort vertex_index|property list uchar "
+                       "float texcoord|end_header|";
     std::string bytes;
     for (const char c : head) bytes += c == '|' ? line_end : std::string(1, c);
     bytes += bytes_of_value(std::uint16_t(1), big) + bytes_of_value(2.5, big);
     for (const auto& [x, y] : {std::pair{0, 0}, std::pair{4, 0}, std::pair{4, 3}, std::pair{0, 3}})
-        bytes += bytes_of_value(double(x), big) + '\x0a' + bytes_of_value(float(y), big) + bytes_of_value(std::int16_t(-7), big);
+        bytes += bytes_of_value(double(x), big) + '\x0a' + bytes_of_value(float(y), big) +
+                 bytes_of_value(std::int16_t(-7), big);
     bytes += '\x0d' + bytes_of_value(std::uint32_t(4), big);
     for (std::uint16_t corner = 0; corner < 4; ++corner) bytes += bytes_of_value(corner, big);
     return bytes + '\x01' + bytes_of_value(0.5f, big);
@@ -108,7 +125,8 @@ TEST_CASE("JSON that does not end as glTF does is not guessed at")
 {
     const TempFolder folder;
     CHECK_THROWS_WITH(load_scene(folder.write("region.geojson", std::string(200000, '['))),
-                      (folder / "region.geojson").string() + ": cannot be read as a mesh: is JSON, and \".geojson\" is no ending of glTF (.gltf, .glb)");
+                      (folder / "region.geojson").string() +
+                          ": cannot be read as a mesh: is JSON, and \".geojson\" is no ending of glTF (.gltf, .glb)");
 }
 
 TEST_CASE("PLY is read in text and in either order of bytes, whatever else it holds")
@@ -121,7 +139,8 @@ TEST_CASE("PLY is read in text and in either order of bytes, whatever else it ho
     };
     CHECK(bounds(ply_square).max == Vec3(4, 3, 0));
     std::string other_lines = ply_square;
-    for (std::size_t at = other_lines.find('\n'); at != std::string::npos; at = other_lines.find('\n', at + 2)) other_lines.replace(at, 1, "\r\n");
+    for (std::size_t at = other_lines.find('\n'); at != std::string::npos; at = other_lines.find('\n', at + 2))
+        other_lines.replace(at, 1, "\r\n");
     CHECK(bounds(other_lines + "\r\n \r\n").max == Vec3(4, 3, 0));
     for (const bool big : {false, true})
         for (const char* line_end : {"\n", "\r\n", "\r"}) {
@@ -134,9 +153,10 @@ TEST_CASE("PLY is read in text and in either order of bytes, whatever else it ho
 TEST_CASE("a strip of a PLY file has a triangle for each corner after its second, all turned the same way")
 {
     const TempFolder folder;
-    const std::string strips = "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
-                               "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-                               "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n9 0 1 2 3 -1 2 3 4 5\n";
+    const std::string strips =
+        "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n9 0 1 2 3 -1 2 3 4 5\n";
     const Scene scene = load_scene(folder.write("strip.ply", strips));
     REQUIRE(scene.triangles.size() == 4);
     for (const Triangle& t : scene.triangles) {
@@ -148,22 +168,31 @@ TEST_CASE("a strip of a PLY file has a triangle for each corner after its second
 TEST_CASE("a damaged PLY file is refused by line, value and limit")
 {
     const TempFolder folder;
-    const auto said = [&](const std::string& from, const std::string& to) { return complaint(folder, "a.ply", replaced(ply_square, from, to)); };
+    const auto said = [&](const std::string& from, const std::string& to) {
+        return complaint(folder, "a.ply", replaced(ply_square, from, to));
+    };
     CHECK(said("3 0 2 3\n", "3 0 2 40\n") == "line 16: a face has the corner 40, needs one of the 4 vertices, 0 .. 3");
     CHECK(said("3 0 2 3\n", "3 0 2 -1\n") == "line 16: a face has the corner -1, needs one of the 4 vertices, 0 .. 3");
-    CHECK(said("3 0 2 3\n", "3 0 2 2000000000\n") == "line 16: a face has the corner 2e+09, needs one of the 4 vertices, 0 .. 3");
-    CHECK(said("3 0 2 3\n", "3 0 2 1.5\n") == "line 16: a face has the corner 1.5, needs one of the 4 vertices, 0 .. 3");
+    CHECK(said("3 0 2 3\n", "3 0 2 2000000000\n") ==
+          "line 16: a face has the corner 2e+09, needs one of the 4 vertices, 0 .. 3");
+    CHECK(said("3 0 2 3\n", "3 0 2 1.5\n") ==
+          "line 16: a face has the corner 1.5, needs one of the 4 vertices, 0 .. 3");
     CHECK(said("3 0 2 3\n", "3 0 2 abc\n") == "line 16: \"abc\" is no number; element face, row 2 of 2");
     CHECK(said("3 0 2 3\n", "0\n") == "line 16: a face has 0 corners, needs 3 or more");
-    CHECK(said("3 0 2 3\n", "-3 0 2 3\n") == "line 16: the list vertex_indices has the count -3, needs a whole number of 0 .. 2147483647");
+    CHECK(said("3 0 2 3\n", "-3 0 2 3\n") ==
+          "line 16: the list vertex_indices has the count -3, needs a whole number of 0 .. 2147483647");
     CHECK(said("3 0 2 3\n", "3 0 2\n") == "line 16: ends before its last number; element face, row 2 of 2");
-    CHECK(said("3 0 2 3\n", "2 0 2 3\n") == "line 16: \"3\" stands after the row's last number; element face, row 2 of 2");
+    CHECK(said("3 0 2 3\n", "2 0 2 3\n") ==
+          "line 16: \"3\" stands after the row's last number; element face, row 2 of 2");
     CHECK(said("3 0 2 3\n", "") == "ends before element face, row 2 of 2; is it cut short?");
-    CHECK(said("3 0 2 3\n", "3 0 2 3\n3 0 1 3\n") == "line 17: stands after the last row that the header tells of; are the counts of its elements right?");
+    CHECK(said("3 0 2 3\n", "3 0 2 3\n3 0 1 3\n") ==
+          "line 17: stands after the last row that the header tells of; are the counts of its elements right?");
     CHECK(said("4 3 0\n", "4 3\n") == "line 13: ends before its last number; element vertex, row 3 of 4");
-    CHECK(said("vertex 4", "vertex 4294967295") == "line 4: element \"vertex\" has the count \"4294967295\", needs a whole number of 0 .. 2147483647");
+    CHECK(said("vertex 4", "vertex 4294967295") ==
+          "line 4: element \"vertex\" has the count \"4294967295\", needs a whole number of 0 .. 2147483647");
     CHECK(said("vertex 4", "vertex 2000000000") ==
-          "line 4: element vertex has 2000000000 rows, for which the file is too short (40 bytes left, needs 11999999999 or more); is it cut short?");
+          "line 4: element vertex has 2000000000 rows, for which the file is too short (40 bytes left, needs "
+          "11999999999 or more); is it cut short?");
     CHECK(said("property float z\n", "") == "line 4: element vertex has no property z");
     CHECK(said("float z", "flaot z").starts_with("line 7: the type \"flaot\" is unknown; known: char"));
     CHECK(said("list uchar", "list float") == "line 9: a list is counted in \"float\", needs whole numbers");
@@ -172,11 +201,15 @@ TEST_CASE("a damaged PLY file is refused by line, value and limit")
     CHECK(said("end_header\n", "end_haeder\n").starts_with("line 10: \"end_haeder\" is no word of a PLY header"));
     CHECK(said("ply\n", "pyl\n") == "is no PLY file: its first line is not \"ply\"");
     CHECK(complaint(folder, "a.ply", "") == "is no PLY file: its first line is not \"ply\"");
-    CHECK(complaint(folder, "a.ply", "ply\nformat ascii 1.0\n") == "ends within its header, before end_header; is it cut short?");
+    CHECK(complaint(folder, "a.ply", "ply\nformat ascii 1.0\n") ==
+          "ends within its header, before end_header; is it cut short?");
     const std::string binary = binary_square(false);
-    CHECK(complaint(folder, "a.ply", binary.substr(0, binary.size() - 6)) == "element face, row 1 of 1: the file ends within it; is it cut short?");
-    CHECK(complaint(folder, "a.ply", binary + "abc") == "has 3 bytes after the last row that the header tells of; are the counts of its elements right?");
-    CHECK(complaint(folder, "noname", replaced(ply_square, "2 3\n", "2 9\n")) == "line 16: a face has the corner 9, needs one of the 4 vertices, 0 .. 3");
+    CHECK(complaint(folder, "a.ply", binary.substr(0, binary.size() - 6)) ==
+          "element face, row 1 of 1: the file ends within it; is it cut short?");
+    CHECK(complaint(folder, "a.ply", binary + "abc") ==
+          "has 3 bytes after the last row that the header tells of; are the counts of its elements right?");
+    CHECK(complaint(folder, "noname", replaced(ply_square, "2 3\n", "2 9\n")) ==
+          "line 16: a face has the corner 9, needs one of the 4 vertices, 0 .. 3");
 }
 
 TEST_CASE("PLY files are read or refused wherever they are cut or altered")
@@ -190,13 +223,20 @@ TEST_CASE("PLY files are read or refused wherever they are cut or altered")
 TEST_CASE("COLLADA nodes that hold themselves, stand too deep or come to too many are refused")
 {
     const TempFolder folder;
-    const auto said = [&](const std::string& nodes, const std::string& library = "") { return complaint(folder, "a.dae", collada(nodes, library)); };
-    const auto node = [](int id, const std::string& inside) { return "<node id=\"n" + std::to_string(id) + "\">" + inside + "</node>\n"; };
+    const auto said = [&](const std::string& nodes, const std::string& library = "") {
+        return complaint(folder, "a.dae", collada(nodes, library));
+    };
+    const auto node = [](int id, const std::string& inside) {
+        return "<node id=\"n" + std::to_string(id) + "\">" + inside + "</node>\n";
+    };
     const auto instance = [](int id) { return "<instance_node url=\"#n" + std::to_string(id) + "\"/>"; };
     CHECK(said(node(1, instance(1))) == "line 14: <node> \"n1\" holds itself: a circle of <instance_node>");
-    CHECK(said(instance(1), node(1, instance(2)) + node(2, node(3, instance(1)))) == "line 11: <node> \"n1\" holds itself: a circle of <instance_node>");
-    CHECK(said("<node id=\"a\" name=\"n1\">" + instance(1) + "</node>", node(1, "")) == "");  // the library's node, not the one of that name
-    CHECK(said("<node id=\"a\" name=\"n1\">" + instance(1) + "</node>") == "line 14: <node> \"n1\" holds itself: a circle of <instance_node>");
+    CHECK(said(instance(1), node(1, instance(2)) + node(2, node(3, instance(1)))) ==
+          "line 11: <node> \"n1\" holds itself: a circle of <instance_node>");
+    CHECK(said("<node id=\"a\" name=\"n1\">" + instance(1) + "</node>", node(1, "")) ==
+          "");  // the library's node, not the one of that name
+    CHECK(said("<node id=\"a\" name=\"n1\">" + instance(1) + "</node>") ==
+          "line 14: <node> \"n1\" holds itself: a circle of <instance_node>");
     const auto chain = [&](int length, int times) {
         std::string library;
         for (int i = 1; i < length; ++i) {
@@ -207,10 +247,12 @@ TEST_CASE("COLLADA nodes that hold themselves, stand too deep or come to too man
         return library + node(length, "<instance_geometry url=\"#g\"/>");
     };
     CHECK(said(node(0, instance(1)), chain(450, 1)) == "");
-    CHECK(said(node(0, instance(1)), chain(20000, 1)) == "line 509: <node> \"n499\" is nested more than 500 deep, by <instance_node> too; merge nodes");
+    CHECK(said(node(0, instance(1)), chain(20000, 1)) ==
+          "line 509: <node> \"n499\" is nested more than 500 deep, by <instance_node> too; merge nodes");
     CHECK(said(node(0, instance(1)), chain(5, 4)) == "");
     CHECK(said(node(0, instance(1)), chain(28, 2)) ==
-          "line 19: <node> \"n9\" comes to more than 1000000 nodes by its <instance_node>s; merge nodes, or instance fewer");
+          "line 19: <node> \"n9\" comes to more than 1000000 nodes by its <instance_node>s; merge nodes, or instance "
+          "fewer");
     std::string open, close;
     for (int i = 0; i < 20000; ++i) open += "<node>", close += "</node>";
     CHECK(said(open + close) == "line 14: elements are nested more than 100 deep; merge nodes");
@@ -221,7 +263,9 @@ TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by 
 {
     const TempFolder folder;
     CHECK(complaint(folder, "a.dae", collada()) == "");
-    const auto said = [&](const std::string& from, const std::string& to) { return complaint(folder, "a.dae", replaced(collada(), from, to)); };
+    const auto said = [&](const std::string& from, const std::string& to) {
+        return complaint(folder, "a.dae", replaced(collada(), from, to));
+    };
     const std::string whole = ", needs whole numbers of 0 .. 2147483647 with spaces between";
     CHECK(said("<p>0 1 2", "<p>0 1,5 2") == "line 9: <p> has \"1,5\"" + whole);
     CHECK(said("<p>0 1 2", "<p>0 -1 2") == "line 9: <p> has \"-1\"" + whole);
@@ -230,22 +274,34 @@ TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by 
     CHECK(said("<p>0 1 2", "<p>0 99999999999999999999 2") == "line 9: <p> has \"99999999999999999999\"" + whole);
     CHECK(said("<p>0 1 2", "<p>0 1") == "line 8: <polylist> has 2 numbers in <p>, needs 3 for its 1 faces");
     CHECK(said("<vcount>3", "<vcount>2") == "line 8: <polylist> has 3 numbers in <p>, needs 2 for its 1 faces");
-    CHECK(said("<vcount>3", "<vcount>0") == "line 8: <vcount> has \"0\", needs whole numbers of 1 .. 2147483647 with spaces between");
-    CHECK(said("<vcount>3", "<vcount>3 3") == "line 8: <polylist> has count 1, but 2 numbers in <vcount>; is the file damaged?");
-    CHECK(said("polylist count=\"1\"", "polylist count=\"-1\"") == "line 8: <polylist> has count \"-1\", needs a whole number of 0 .. 2147483647");
-    CHECK(said("offset=\"0\"", "offset=\"4294967295\"") == "line 8: <input> has offset \"4294967295\", needs a whole number of 0 .. 255");
+    CHECK(said("<vcount>3", "<vcount>0") ==
+          "line 8: <vcount> has \"0\", needs whole numbers of 1 .. 2147483647 with spaces between");
+    CHECK(said("<vcount>3", "<vcount>3 3") ==
+          "line 8: <polylist> has count 1, but 2 numbers in <vcount>; is the file damaged?");
+    CHECK(said("polylist count=\"1\"", "polylist count=\"-1\"") ==
+          "line 8: <polylist> has count \"-1\", needs a whole number of 0 .. 2147483647");
+    CHECK(said("offset=\"0\"", "offset=\"4294967295\"") ==
+          "line 8: <input> has offset \"4294967295\", needs a whole number of 0 .. 255");
     CHECK(said("0 0 0 5", "0 0 a 5") == "line 5: <float_array> has \"a\", needs numbers with spaces between");
     CHECK(said("0 0 0 5", "0,5 0 0 5") == "line 5: <float_array> has \"0,5\", needs numbers with spaces between");
     CHECK(said("0 0 0 5", "0 0 5") == "line 5: <float_array> has count 9, but holds 8; is the file damaged?");
     CHECK(said("count=\"9\"", "count=\"8\"") == "line 5: <float_array> has count 8, but holds 9; is the file damaged?");
-    CHECK(said("stride=\"3\"", "stride=\"4\"") == "line 6: <accessor> takes 11 values (offset + (count - 1) stride + params) of \"#a\", which has 9");
+    CHECK(said("stride=\"3\"", "stride=\"4\"") ==
+          "line 6: <accessor> takes 11 values (offset + (count - 1) stride + params) of \"#a\", which has 9");
     CHECK(said("0 0 0 1</matrix>", "0 0 1</matrix>") == "line 13: <matrix> has 15 numbers, needs 16");
-    CHECK(said("0 0 0 1</matrix>", "0 0 0 1e</matrix>") == "line 13: <matrix> has \"1e\", needs numbers with spaces between");
-    CHECK(said("</mesh>", "</mush>").starts_with("cannot be read as a mesh: line 4: no valid XML (xml error mismatched element); is it cut short?"));
+    CHECK(said("0 0 0 1</matrix>", "0 0 0 1e</matrix>") ==
+          "line 13: <matrix> has \"1e\", needs numbers with spaces between");
+    CHECK(said("</mesh>", "</mush>")
+              .starts_with(
+                  "cannot be read as a mesh: line 4: no valid XML (xml error mismatched element); is it cut short?"));
     const auto effect = [&](const char* color) {
-        return complaint(folder, "a.dae", replaced(collada(), "<library_nodes>", "<library_effects><effect id=\"e\"><profile_COMMON><technique sid=\"t\"><phong>"
-                                                  "<diffuse><color>" + std::string(color) + "</color></diffuse></phong></technique></profile_COMMON></effect>"
-                                                  "</library_effects><library_nodes>"));
+        return complaint(folder, "a.dae",
+                         replaced(collada(), "<library_nodes>",
+                                  "<library_effects><effect id=\"e\"><profile_COMMON><technique sid=\"t\"><phong>"
+                                  "<diffuse><color>" +
+                                      std::string(color) +
+                                      "</color></diffuse></phong></technique></profile_COMMON></effect>"
+                                      "</library_effects><library_nodes>"));
     };
     for (const char* const color : {"1 0 0 1", " 0.3 0.2 0.1 1", "\n0.3 0.2 0.1 1\n", "1 0 0", "1 0 0x10 1",
                                     "0,3 0,2 0,1 1", "red", "", "nan nan nan 1", "<!-- none -->"}) {
@@ -255,7 +311,8 @@ TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by 
     std::string strip = replaced(replaced(collada(), "<polylist", "<tristrips"), "</polylist", "</tristrips");
     strip = replaced(strip, "<vcount>3</vcount>", "");
     CHECK(complaint(folder, "a.dae", strip) == "");
-    CHECK(complaint(folder, "a.dae", replaced(strip, "<p>0 1 2", "<p>0 1")) == "line 9: <p> has 2 numbers, needs 1 for each corner and 3 corners or more");
+    CHECK(complaint(folder, "a.dae", replaced(strip, "<p>0 1 2", "<p>0 1")) ==
+          "line 9: <p> has 2 numbers, needs 1 for each corner and 3 corners or more");
 }
 
 TEST_CASE("a COLLADA unit that is no length is refused")
@@ -271,20 +328,28 @@ TEST_CASE("a COLLADA unit that is no length is refused")
 TEST_CASE("COLLADA files are read or refused wherever they are cut or altered")
 {
     const TempFolder folder;
-    check_harmed(folder, "a.dae", collada("<node name=\"b\"><instance_node url=\"#l\"/></node>", "<node id=\"l\"><instance_geometry url=\"#g\"/></node>"));
+    check_harmed(folder, "a.dae",
+                 collada("<node name=\"b\"><instance_node url=\"#l\"/></node>",
+                         "<node id=\"l\"><instance_geometry url=\"#g\"/></node>"));
 }
 
 TEST_CASE("glTF nodes that are no trees, and JSON that is nested too deep, are refused")
 {
     const TempFolder folder;
-    const auto said = [&](const std::string& nodes, const std::string& scene = "0") { return complaint(folder, "a.gltf", gltf(nodes, scene)); };
+    const auto said = [&](const std::string& nodes, const std::string& scene = "0") {
+        return complaint(folder, "a.gltf", gltf(nodes, scene));
+    };
     CHECK(said("{\"mesh\": 0}") == "");
     CHECK(said("{\"children\": [1, 2]}, {\"mesh\": 0}, {\"mesh\": 0, \"extras\": {\"children\": [0]}}") == "");
-    CHECK(said("{\"mesh\": 0, \"children\": [0]}") == "scenes[0].nodes has nodes[0], which is a child of nodes[0], needs nodes without a parent");
-    CHECK(said("{\"mesh\": 0}, {\"children\": [2]}, {\"children\": [1]}") == "nodes[1] is below itself: a circle of children");
-    CHECK(said("{\"mesh\": 0, \"children\": [1, 1]}, {\"mesh\": 0}") ==
-          "nodes[1] is a child of nodes[0] and again of nodes[0], needs one parent; give each parent a node of its own");
-    CHECK(said("{\"children\": [2]}, {\"children\": [2]}, {\"mesh\": 0}", "0, 1").starts_with("nodes[2] is a child of nodes[0] and again of nodes[1], "));
+    CHECK(said("{\"mesh\": 0, \"children\": [0]}") ==
+          "scenes[0].nodes has nodes[0], which is a child of nodes[0], needs nodes without a parent");
+    CHECK(said("{\"mesh\": 0}, {\"children\": [2]}, {\"children\": [1]}") ==
+          "nodes[1] is below itself: a circle of children");
+    CHECK(
+        said("{\"mesh\": 0, \"children\": [1, 1]}, {\"mesh\": 0}") ==
+        "nodes[1] is a child of nodes[0] and again of nodes[0], needs one parent; give each parent a node of its own");
+    CHECK(said("{\"children\": [2]}, {\"children\": [2]}, {\"mesh\": 0}", "0, 1")
+              .starts_with("nodes[2] is a child of nodes[0] and again of nodes[1], "));
     CHECK(said("{\"mesh\": 0}", "0, 0") == "scenes[0].nodes has nodes[0] twice, needs it once");
     CHECK(said("{\"mesh\": 0}", "1") == "scenes[0].nodes has \"1\", which is none of the 1 nodes");
     CHECK(said("{\"mesh\": 0, \"children\": [-1]}") == "nodes[0].children has \"-1\", which is none of the 1 nodes");
@@ -297,14 +362,19 @@ TEST_CASE("glTF nodes that are no trees, and JSON that is nested too deep, are r
     CHECK(said(chain(20000)) == "nodes[500] is nested more than 500 deep; merge nodes");
     const std::string twice = replaced(gltf("{\"mesh\": 0}"), "\"meshes\"", "\"nodes\": [], \"meshes\"");
     CHECK(complaint(folder, "a.gltf", twice) == "has \"nodes\" twice, needs it once");
-    const auto nested = [](int depth) { return "\"extras\": " + std::string(depth, '[') + std::string(depth, ']') + ", "; };
+    const auto nested = [](int depth) {
+        return "\"extras\": " + std::string(depth, '[') + std::string(depth, ']') + ", ";
+    };
     CHECK(complaint(folder, "a.gltf", gltf("{\"mesh\": 0}", "0", nested(199))) == "");
-    CHECK(complaint(folder, "a.gltf", gltf("{\"mesh\": 0}", "0", nested(200))) == "its JSON is nested more than 200 deep, in \"extras\"");
+    CHECK(complaint(folder, "a.gltf", gltf("{\"mesh\": 0}", "0", nested(200))) ==
+          "its JSON is nested more than 200 deep, in \"extras\"");
     CHECK(complaint(folder, "a.gltf", std::string(200000, '[')) == "its JSON is nested more than 200 deep");
-    CHECK(complaint(folder, "a.gltf", gltf("{\"mesh\": 0},")).starts_with("cannot be read as a mesh: no valid JSON: parse error at line 1, column "));
+    CHECK(complaint(folder, "a.gltf", gltf("{\"mesh\": 0},"))
+              .starts_with("cannot be read as a mesh: no valid JSON: parse error at line 1, column "));
     std::string binary = "glTF";
     const std::string json = gltf("{\"mesh\": 0, \"children\": [0]}");
-    for (const std::size_t word : {std::size_t(2), json.size() + 20, json.size(), std::size_t(0x4e4f534a)}) binary += bytes_of_value(std::uint32_t(word), false);
+    for (const std::size_t word : {std::size_t(2), json.size() + 20, json.size(), std::size_t(0x4e4f534a)})
+        binary += bytes_of_value(std::uint32_t(word), false);
     CHECK(complaint(folder, "a.glb", binary + json).starts_with("scenes[0].nodes has nodes[0], which is a child"));
     CHECK(complaint(folder, "a.glb", binary + json.substr(1)).starts_with("ends within its JSON ("));
 }
@@ -317,11 +387,14 @@ TEST_CASE("glTF primitives that repeat their accessors to no end are refused")
         std::string all = primitive;
         for (int i = 1; i < times; ++i) all += "," + primitive;
         const std::string text = replaced(gltf("{\"mesh\": 0}"), primitive, all);
-        return complaint(folder, "a.gltf", replaced(text, "\"count\": 3, \"type\": \"VEC3\"", "\"count\": " + count + ", \"type\": \"VEC3\""));
+        return complaint(
+            folder, "a.gltf",
+            replaced(text, "\"count\": 3, \"type\": \"VEC3\"", "\"count\": " + count + ", \"type\": \"VEC3\""));
     };
     CHECK(repeated(1000, "3") == "");
     CHECK(repeated(1000, "1000000") ==
-          "its primitives come to more than 300000000 vertices and corners by their accessors, needs fewer; instance meshes by nodes, or bake parts of it");
+          "its primitives come to more than 300000000 vertices and corners by their accessors, needs fewer; instance "
+          "meshes by nodes, or bake parts of it");
     CHECK(repeated(2, "18446744073709551615").starts_with("its primitives come to more than"));
 }
 
@@ -336,11 +409,15 @@ TEST_CASE("few bytes that come to too many triangles are refused")
     const TempFolder folder;
     std::string text = collada(), numbers, sizes, indices;  // 300 triangles in each of 400000 nodes
     for (int i = 0; i < 300; ++i) sizes += "3 ", indices += "0 1 2 ";
-    text = replaced(replaced(replaced(text, "polylist count=\"1\"", "polylist count=\"300\""), "<vcount>3", "<vcount>" + sizes), "<p>0 1 2", "<p>" + indices);
+    text = replaced(
+        replaced(replaced(text, "polylist count=\"1\"", "polylist count=\"300\""), "<vcount>3", "<vcount>" + sizes),
+        "<p>0 1 2", "<p>" + indices);
     std::string thousand, library;
     for (int i = 0; i < 1000; ++i) thousand += "<instance_geometry url=\"#g\"/>";
     for (int i = 0; i < 400; ++i) library += "<instance_node url=\"#many\"/>";
-    text = replaced(replaced(text, "<library_nodes>", "<library_nodes><node id=\"many\">" + thousand + "</node>"), "<node id=\"n\">", "<node id=\"n\">" + library);
-    CHECK(complaint(folder, "a.dae", text) ==
-          "its nodes repeat 300 triangles to more than 100000000, needs fewer; leave instances out, or bake parts of it");
+    text = replaced(replaced(text, "<library_nodes>", "<library_nodes><node id=\"many\">" + thousand + "</node>"),
+                    "<node id=\"n\">", "<node id=\"n\">" + library);
+    CHECK(
+        complaint(folder, "a.dae", text) ==
+        "its nodes repeat 300 triangles to more than 100000000, needs fewer; leave instances out, or bake parts of it");
 }

@@ -23,7 +23,8 @@ void check_bounds(const Bounds& bounds, const Vec3& min, const Vec3& max, double
     }
 }
 
-Scene load_mesh(const TempFolder& folder, const std::string& name, const std::string& bytes, const std::string& keys = "")
+Scene load_mesh(const TempFolder& folder, const std::string& name, const std::string& bytes,
+                const std::string& keys = "")
 {
     folder.write(name, bytes);
     return load_parts(folder, "  - {name: thing, mesh: " + name + keys + "}\n");
@@ -35,7 +36,8 @@ double signed_volume(const Scene& scene)
     double sum = 0;
     const Vec3 middle = (scene.bounds().min + scene.bounds().max) / 2;
     for (const Triangle& t : scene.triangles) {
-        const Vec3 a = scene.vertices[t[0]] - middle, b = scene.vertices[t[1]] - middle, c = scene.vertices[t[2]] - middle;
+        const Vec3 a = scene.vertices[t[0]] - middle, b = scene.vertices[t[1]] - middle,
+                   c = scene.vertices[t[2]] - middle;
         sum += a.dot(b.cross(c));
     }
     return sum / 6;
@@ -58,7 +60,8 @@ const std::vector<double> mirrored_in_x = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 
 TEST_CASE("OBJ and STL are taken as they are, z up")
 {
     const TempFolder folder;
-    const auto [name, bytes] = GENERATE(std::pair("a.obj", mesh_text::obj(marker())), std::pair("a.stl", mesh_text::stl(marker())),
+    const auto [name, bytes] = GENERATE(std::pair("a.obj", mesh_text::obj(marker())),
+                                        std::pair("a.stl", mesh_text::stl(marker())),
                                         std::pair("A.OBJ", mesh_text::obj(marker())));
     const Scene scene = load_mesh(folder, name, bytes);
     check_bounds(scene.bounds(), {1, 10, 100}, {3, 14, 108});
@@ -73,23 +76,28 @@ TEST_CASE("OBJ and STL are taken as they are, z up")
 TEST_CASE("up: y turns (x, y, z) to (x, -z, y)")
 {
     const TempFolder folder;
-    check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", up: y").bounds(), {1, -108, 10}, {3, -100, 14});
+    check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", up: y").bounds(), {1, -108, 10},
+                 {3, -100, 14});
     check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", up: z").bounds(), {1, 10, 100}, {3, 14, 108});
 }
 
 TEST_CASE("scale is one number or three, on the file's own axes")
 {
     const TempFolder folder;
-    check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", scale: 0.5").bounds(), {0.5, 5, 50}, {1.5, 7, 54});
-    check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", scale: [2, 3, 0.1]").bounds(), {2, 30, 10}, {6, 42, 10.8});
-    check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", scale: [2, 3, 0.1], up: y").bounds(), {2, -10.8, 30}, {6, -10, 42});
+    check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", scale: 0.5").bounds(), {0.5, 5, 50},
+                 {1.5, 7, 54});
+    check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", scale: [2, 3, 0.1]").bounds(), {2, 30, 10},
+                 {6, 42, 10.8});
+    check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", scale: [2, 3, 0.1], up: y").bounds(),
+                 {2, -10.8, 30}, {6, -10, 42});
 }
 
 TEST_CASE("unit, scale, up, rpy and xyz come in this order")
 {
     const TempFolder folder;
     const std::string bytes = mesh_text::dae({{.mesh = marker()}}, {.up = "Y_UP", .unit = 0.01});
-    const Scene scene = load_mesh(folder, "a.dae", bytes, ", scale: [100, 200, 300], rpy_deg: [0, 0, 90], xyz: [1000, 2000, 3000]");
+    const Scene scene = load_mesh(folder, "a.dae", bytes,
+                                  ", scale: [100, 200, 300], rpy_deg: [0, 0, 90], xyz: [1000, 2000, 3000]");
     // Unit and scale: x 1..3, y 20..28, z 300..324. Up: y -324..-300, z 20..28. A quarter turn: (x, y) to (-y, x).
     check_bounds(scene.bounds(), {1300, 2001, 3020}, {1324, 2003, 3028}, 1e-4);
 }
@@ -102,7 +110,7 @@ TEST_CASE("COLLADA's up axis is believed unless the part says otherwise")
     };
     check_bounds(bounds("Z_UP"), {1, 10, 100}, {3, 14, 108});
     check_bounds(bounds("Y_UP"), {1, -108, 10}, {3, -100, 14});
-    check_bounds(bounds(""), {1, -108, 10}, {3, -100, 14});      // COLLADA's default is Y_UP
+    check_bounds(bounds(""), {1, -108, 10}, {3, -100, 14});        // COLLADA's default is Y_UP
     check_bounds(bounds("X_UP"), {-14, -108, 1}, {-10, -100, 3});  // x up, right is -y, towards the viewer z
     check_bounds(bounds("Y_UP", ", up: z"), {1, 10, 100}, {3, 14, 108});
     check_bounds(bounds("Z_UP", ", up: y"), {1, -108, 10}, {3, -100, 14});
@@ -112,7 +120,8 @@ TEST_CASE("COLLADA's unit counts once")
 {
     const TempFolder folder;
     const std::string bytes = mesh_text::dae({{.mesh = marker(), .matrix = shifted_by_5_in_x}}, {.unit = 0.0254});
-    check_bounds(load_mesh(folder, "a.dae", bytes).bounds(), {6 * 0.0254, 10 * 0.0254, 100 * 0.0254}, {8 * 0.0254, 14 * 0.0254, 108 * 0.0254});
+    check_bounds(load_mesh(folder, "a.dae", bytes).bounds(), {6 * 0.0254, 10 * 0.0254, 100 * 0.0254},
+                 {8 * 0.0254, 14 * 0.0254, 108 * 0.0254});
 }
 
 TEST_CASE("glTF is y up and in metres")
@@ -137,7 +146,8 @@ TEST_CASE("a mirrored node keeps its faces turned outwards")
 {
     const TempFolder folder;
     const std::vector<mesh_text::Node> nodes = {{.mesh = marker(), .matrix = mirrored_in_x}};
-    for (const Scene& scene : {load_mesh(folder, "a.gltf", mesh_text::gltf(nodes)), load_mesh(folder, "a.dae", mesh_text::dae(nodes))}) {
+    for (const Scene& scene :
+         {load_mesh(folder, "a.gltf", mesh_text::gltf(nodes)), load_mesh(folder, "a.dae", mesh_text::dae(nodes))}) {
         CHECK(scene.bounds().max.x() == Approx(-1));
         CHECK(signed_volume(scene) == Approx(64));
         CHECK(scene.parts[0].solid_pieces == 1);
@@ -160,13 +170,16 @@ TEST_CASE("a mirrored sheet with sides: up still looks up")
 TEST_CASE("label rules look at the node's or the material's name; the first match wins, case does not count")
 {
     const TempFolder folder;
-    const std::vector<mesh_text::Node> nodes = {{.name = "Terrain.001", .material = "Grass", .mesh = hand::rectangle(1, 1)},
-                                                {.name = "house", .material = "Brick", .mesh = hand::box({1, 1, 1})},
-                                                {.name = "terrain_lake", .material = "deepwater_3", .mesh = hand::rectangle(1, 1)},
-                                                {.name = "paint", .material = "White", .mesh = hand::rectangle(3, 3)}};
-    const std::string rules = ", labels: [{material: \"*WATER*\", label: water}, {node: \"terrain*\", label: terrain}, "
-                              "{material: white, label: ignore}, {node: Grass, label: ignore}, {material: house, label: ignore}]";
-    const auto [name, bytes] = GENERATE_COPY(std::pair("a.dae", mesh_text::dae(nodes)), std::pair("a.gltf", mesh_text::gltf(nodes)),
+    const std::vector<mesh_text::Node> nodes = {
+        {.name = "Terrain.001", .material = "Grass", .mesh = hand::rectangle(1, 1)},
+        {.name = "house", .material = "Brick", .mesh = hand::box({1, 1, 1})},
+        {.name = "terrain_lake", .material = "deepwater_3", .mesh = hand::rectangle(1, 1)},
+        {.name = "paint", .material = "White", .mesh = hand::rectangle(3, 3)}};
+    const std::string rules =
+        ", labels: [{material: \"*WATER*\", label: water}, {node: \"terrain*\", label: terrain}, "
+        "{material: white, label: ignore}, {node: Grass, label: ignore}, {material: house, label: ignore}]";
+    const auto [name, bytes] = GENERATE_COPY(std::pair("a.dae", mesh_text::dae(nodes)),
+                                             std::pair("a.gltf", mesh_text::gltf(nodes)),
                                              std::pair("a.obj", mesh_text::obj(nodes)));
     INFO(name);
     folder.write("a.mtl", "");
@@ -209,7 +222,8 @@ TEST_CASE("a rule sees the node that carries the mesh, not its ancestors")
     const TempFolder folder;
     const mesh_text::Node child{.name = "slab", .mesh = hand::box({1, 1, 1})};
     const std::string bytes = mesh_text::gltf({{.name = "terrain", .matrix = shifted_by_5_in_x, .children = {child}}});
-    CHECK(count(load_mesh(folder, "a.gltf", bytes, ", labels: [{node: terrain, label: terrain}]"), Label::Terrain) == 0);
+    CHECK(count(load_mesh(folder, "a.gltf", bytes, ", labels: [{node: terrain, label: terrain}]"), Label::Terrain) ==
+          0);
     CHECK(count(load_mesh(folder, "a.gltf", bytes, ", labels: [{node: slab, label: terrain}]"), Label::Terrain) == 12);
 }
 
@@ -243,7 +257,8 @@ TEST_CASE("a cube without a face is a sheet, and its open edges are told; its cl
 {
     const TempFolder folder;
     const hand::Mesh house = hand::without(hand::box({1, 1, 1}), 0, 2), shed = box({3, 0, 0}, {4, 1, 1});
-    const Scene scene = load_mesh(folder, "a.obj", mesh_text::obj({{.name = "house", .mesh = house}, {.name = "shed", .mesh = shed}}));
+    const Scene scene = load_mesh(folder, "a.obj",
+                                  mesh_text::obj({{.name = "house", .mesh = house}, {.name = "shed", .mesh = shed}}));
     CHECK(scene.parts[0].solid_pieces == 1);
     CHECK(scene.parts[0].sheet_pieces == 1);
     CHECK(scene.parts[0].open_edges == 4);
@@ -256,7 +271,8 @@ TEST_CASE("a cube without a face is a sheet, and its open edges are told; its cl
 TEST_CASE("solid: false empties what is closed, solid: true fills what is open")
 {
     const TempFolder folder;
-    const std::string closed = mesh_text::obj(hand::box({1, 1, 1})), open = mesh_text::obj(hand::without(hand::box({1, 1, 1}), 0, 2));
+    const std::string closed = mesh_text::obj(hand::box({1, 1, 1})),
+                      open = mesh_text::obj(hand::without(hand::box({1, 1, 1}), 0, 2));
     CHECK(load_mesh(folder, "a.obj", closed, ", solid: auto").parts[0].solid_pieces == 1);
     CHECK(load_mesh(folder, "a.obj", closed, ", solid: true").parts[0].solid_pieces == 1);
     CHECK(load_mesh(folder, "a.obj", closed, ", solid: false").parts[0].sheet_pieces == 1);
@@ -274,7 +290,8 @@ TEST_CASE("a closed piece of which some faces are water or ignored is no solid")
     const std::string name = GENERATE("water", "ignore");
     const hand::Mesh cube = hand::box({1, 1, 1});
     std::string text = "o basin\n";
-    for (const Vec3& v : cube.vertices) text += "v " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + "\n";
+    for (const Vec3& v : cube.vertices)
+        text += "v " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + "\n";
     for (std::size_t t = 0; t < 12; ++t) {
         text += t == 0 ? "usemtl other\n" : t == 2 ? "usemtl wall\n" : "";
         text += "f " + std::to_string(cube.triangles[t][0] + 1) + " " + std::to_string(cube.triangles[t][1] + 1) + " " +
@@ -301,7 +318,8 @@ TEST_CASE("a part whose every face is ignored has no pieces")
 TEST_CASE("triangles of no area by equal corners are dropped, lines and points too")
 {
     const TempFolder folder;
-    const Scene scene = load_mesh(folder, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 1 0\nf 1 2 3\nf 1 2 4\nl 1 5\np 5\nf 2 5 3\n");
+    const Scene scene = load_mesh(
+        folder, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 1 0\nf 1 2 3\nf 1 2 4\nl 1 5\np 5\nf 2 5 3\n");
     CHECK(scene.triangles.size() == 2);
     CHECK(scene.parts[0].open_edges == 4);
 }
@@ -313,7 +331,8 @@ TEST_CASE("polygons are split into triangles")
     CHECK(scene.triangles.size() == 3);
     double area = 0;
     for (const Triangle& t : scene.triangles)
-        area += (scene.vertices[t[1]] - scene.vertices[t[0]]).cross(scene.vertices[t[2]] - scene.vertices[t[0]]).norm() / 2;
+        area +=
+            (scene.vertices[t[1]] - scene.vertices[t[0]]).cross(scene.vertices[t[2]] - scene.vertices[t[0]]).norm() / 2;
     CHECK(area == Approx(3));
 }
 

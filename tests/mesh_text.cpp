@@ -29,14 +29,16 @@ void append_geometry(std::string& text, const Node& node)
     if (node.mesh.triangles.empty()) return;
     const std::string& id = node.name;
     const std::size_t count = node.mesh.vertices.size();
-    text += "<geometry id=\"" + id + "-mesh\" name=\"" + id + "\"><mesh><source id=\"" + id + "-positions\"><float_array id=\"" + id +
-            "-array\" count=\"" + std::to_string(3 * count) + "\">" + coordinates(node.mesh) +
-            "</float_array><technique_common><accessor source=\"#" + id + "-array\" count=\"" + std::to_string(count) +
+    text += "<geometry id=\"" + id + "-mesh\" name=\"" + id + "\"><mesh><source id=\"" + id +
+            "-positions\"><float_array id=\"" + id + "-array\" count=\"" + std::to_string(3 * count) + "\">" +
+            coordinates(node.mesh) + "</float_array><technique_common><accessor source=\"#" + id + "-array\" count=\"" +
+            std::to_string(count) +
             "\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/>"
-            "<param name=\"Z\" type=\"float\"/></accessor></technique_common></source><vertices id=\"" + id +
-            "-vertices\"><input semantic=\"POSITION\" source=\"#" + id + "-positions\"/></vertices><triangles material=\"" +
-            node.material + "-symbol\" count=\"" + std::to_string(node.mesh.triangles.size()) +
-            "\"><input semantic=\"VERTEX\" source=\"#" + id + "-vertices\" offset=\"0\"/><p>";
+            "<param name=\"Z\" type=\"float\"/></accessor></technique_common></source><vertices id=\"" +
+            id + "-vertices\"><input semantic=\"POSITION\" source=\"#" + id +
+            "-positions\"/></vertices><triangles material=\"" + node.material + "-symbol\" count=\"" +
+            std::to_string(node.mesh.triangles.size()) + "\"><input semantic=\"VERTEX\" source=\"#" + id +
+            "-vertices\" offset=\"0\"/><p>";
     for (const auto& triangle : node.mesh.triangles)
         for (const auto corner : triangle) text += std::to_string(corner) + " ";
     text += "</p></triangles></mesh></geometry>\n";
@@ -48,8 +50,10 @@ void append_node(std::string& text, const Node& node)
     text += "<node id=\"" + node.name + "-id\" name=\"" + node.name + "\">";
     if (!node.matrix.empty()) text += "<matrix sid=\"transform\">" + spaced(node.matrix) + "</matrix>";
     if (!node.mesh.triangles.empty())
-        text += "<instance_geometry url=\"#" + node.name + "-mesh\"><bind_material><technique_common><instance_material symbol=\"" +
-                node.material + "-symbol\" target=\"#" + node.material + "-id\"/></technique_common></bind_material></instance_geometry>";
+        text += "<instance_geometry url=\"#" + node.name +
+                "-mesh\"><bind_material><technique_common><instance_material symbol=\"" + node.material +
+                "-symbol\" target=\"#" + node.material +
+                "-id\"/></technique_common></bind_material></instance_geometry>";
     for (const Node& child : node.children) append_node(text, child);
     text += "</node>\n";
 }
@@ -69,7 +73,8 @@ std::string base64(const std::string& bytes)
     std::string out;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         unsigned bits = 0;
-        for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 3; ++k)
+            bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
         for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
     }
     return out;
@@ -83,11 +88,14 @@ struct Gltf {
     static void append(std::string& list, const std::string& entry) { list += (list.empty() ? "" : ",") + entry; }
 
     template <class T>
-    void add_view(const std::vector<T>& values, int component, const char* type, std::size_t count, const std::string& range)
+    void add_view(const std::vector<T>& values, int component, const char* type, std::size_t count,
+                  const std::string& range)
     {
         const std::size_t size = values.size() * sizeof(T);
-        append(views, "{\"buffer\":0,\"byteOffset\":" + std::to_string(buffer.size()) + ",\"byteLength\":" + std::to_string(size) + "}");
-        append(accessors, "{\"bufferView\":" + std::to_string(view_count++) + ",\"componentType\":" + std::to_string(component) +
+        append(views, "{\"buffer\":0,\"byteOffset\":" + std::to_string(buffer.size()) +
+                          ",\"byteLength\":" + std::to_string(size) + "}");
+        append(accessors, "{\"bufferView\":" + std::to_string(view_count++) +
+                              ",\"componentType\":" + std::to_string(component) +
                               ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type + "\"" + range + "}");
         buffer.append(reinterpret_cast<const char*>(values.data()), size);
     }
@@ -102,12 +110,17 @@ struct Gltf {
             low = low.cwiseMin(v);
             high = high.cwiseMax(v);
         }
-        for (const auto& triangle : node.mesh.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
-        const auto list = [](const Eigen::Vector3d& v) { return "[" + number(v.x()) + "," + number(v.y()) + "," + number(v.z()) + "]"; };
-        append(meshes, "{\"primitives\":[{\"attributes\":{\"POSITION\":" + std::to_string(view_count) + "},\"indices\":" +
-                           std::to_string(view_count + 1) + ",\"material\":" + std::to_string(mesh_count) + "}]}");
+        for (const auto& triangle : node.mesh.triangles)
+            indices.insert(indices.end(), triangle.begin(), triangle.end());
+        const auto list = [](const Eigen::Vector3d& v) {
+            return "[" + number(v.x()) + "," + number(v.y()) + "," + number(v.z()) + "]";
+        };
+        append(meshes, "{\"primitives\":[{\"attributes\":{\"POSITION\":" + std::to_string(view_count) +
+                           "},\"indices\":" + std::to_string(view_count + 1) +
+                           ",\"material\":" + std::to_string(mesh_count) + "}]}");
         append(materials, "{\"name\":\"" + node.material + "\"}");
-        add_view(positions, 5126, "VEC3", node.mesh.vertices.size(), ",\"min\":" + list(low) + ",\"max\":" + list(high));
+        add_view(positions, 5126, "VEC3", node.mesh.vertices.size(),
+                 ",\"min\":" + list(low) + ",\"max\":" + list(high));
         add_view(indices, 5125, "SCALAR", indices.size(), "");
         return mesh_count++;
     }
@@ -139,7 +152,8 @@ std::string obj(const std::vector<Node>& nodes)
         text += "o " + node.name + "\nusemtl " + node.material + "\n";
         for (const auto& v : node.mesh.vertices) text += "v " + spaced({v.x(), v.y(), v.z()}) + "\n";
         for (const auto& t : node.mesh.triangles)
-            text += "f " + std::to_string(base + t[0]) + " " + std::to_string(base + t[1]) + " " + std::to_string(base + t[2]) + "\n";
+            text += "f " + std::to_string(base + t[0]) + " " + std::to_string(base + t[1]) + " " +
+                    std::to_string(base + t[2]) + "\n";
         base += node.mesh.vertices.size();
     }
     return text;
@@ -163,19 +177,25 @@ std::string stl(const hand::Mesh& mesh)
 
 std::string dae(const std::vector<Node>& nodes, const DaeOptions& options)
 {
-    std::string text = "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n"
-                       "<asset><unit name=\"unit\" meter=\"" + number(options.unit) + "\"/>";
+    std::string text =
+        "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n"
+        "<asset><unit name=\"unit\" meter=\"" +
+        number(options.unit) + "\"/>";
     if (!options.up.empty()) text += "<up_axis>" + options.up + "</up_axis>";
-    text += "</asset>\n<library_effects><effect id=\"effect\"><profile_COMMON><technique sid=\"common\"><lambert/></technique>"
-            "</profile_COMMON></effect></library_effects>\n<library_materials>";
+    text +=
+        "</asset>\n<library_effects><effect id=\"effect\"><profile_COMMON><technique "
+        "sid=\"common\"><lambert/></technique>"
+        "</profile_COMMON></effect></library_effects>\n<library_materials>";
     for_each(nodes, [&](const Node& node) {
-        text += "<material id=\"" + node.material + "-id\" name=\"" + node.material + "\"><instance_effect url=\"#effect\"/></material>\n";
+        text += "<material id=\"" + node.material + "-id\" name=\"" + node.material +
+                "\"><instance_effect url=\"#effect\"/></material>\n";
     });
     text += "</library_materials>\n<library_geometries>";
     for_each(nodes, [&](const Node& node) { append_geometry(text, node); });
     text += "</library_geometries>\n<library_visual_scenes><visual_scene id=\"scene\">\n";
     for (const Node& node : nodes) append_node(text, node);
-    return text + "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#scene\"/></scene></COLLADA>\n";
+    return text +
+           "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#scene\"/></scene></COLLADA>\n";
 }
 
 std::string gltf(const std::vector<Node>& nodes)
@@ -183,9 +203,10 @@ std::string gltf(const std::vector<Node>& nodes)
     Gltf file;
     std::string roots;
     for (const Node& node : nodes) Gltf::append(roots, std::to_string(file.add_node(node)));
-    return "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[" + roots + "]}],\"nodes\":[" + file.nodes +
-           "],\"meshes\":[" + file.meshes + "],\"materials\":[" + file.materials + "],\"accessors\":[" + file.accessors +
-           "],\"bufferViews\":[" + file.views + "],\"buffers\":[{\"byteLength\":" + std::to_string(file.buffer.size()) +
+    return "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[" + roots + "]}],\"nodes\":[" +
+           file.nodes + "],\"meshes\":[" + file.meshes + "],\"materials\":[" + file.materials + "],\"accessors\":[" +
+           file.accessors + "],\"bufferViews\":[" + file.views +
+           "],\"buffers\":[{\"byteLength\":" + std::to_string(file.buffer.size()) +
            ",\"uri\":\"data:application/octet-stream;base64," + base64(file.buffer) + "\"}]}\n";
 }
 

@@ -43,7 +43,8 @@ std::string read(const TempFolder& folder, const std::string& image, const std::
 /// One row of bytes.
 std::string pgm(const std::vector<int>& values, int cols, int largest = 255)
 {
-    std::string out = "P5\n# by a map saver\n" + std::to_string(cols) + " " + std::to_string(values.size() / std::size_t(cols)) + "\n" + std::to_string(largest) + "\n";
+    std::string out = "P5\n# by a map saver\n" + std::to_string(cols) + " " +
+                      std::to_string(values.size() / std::size_t(cols)) + "\n" + std::to_string(largest) + "\n";
     for (const int value : values) {
         if (largest > 255) out += char(value >> 8);
         out += char(value & 0xff);
@@ -51,7 +52,10 @@ std::string pgm(const std::vector<int>& values, int cols, int largest = 255)
     return out;
 }
 
-void write_png(const TempFolder& folder, const std::string& name, const cv::Mat& image) { REQUIRE(cv::imwrite((folder / name).string(), image)); }
+void write_png(const TempFolder& folder, const std::string& name, const cv::Mat& image)
+{
+    REQUIRE(cv::imwrite((folder / name).string(), image));
+}
 
 }  // namespace
 
@@ -64,10 +68,13 @@ TEST_CASE("pixels are occupied, free or unknown by their thresholds, as map_serv
     CHECK(read(folder, "a.pgm", "mode: scale\n" + usual) == "##??...");
     // Negated v / 255: > 0.65 from 166 on, < 0.196 up to 49.
     folder.write("b.pgm", pgm({0, 49, 50, 165, 166, 255}, 6));
-    CHECK(read(folder, "b.pgm", "resolution: 0.5\norigin: [1, 2, 0]\nnegate: true\noccupied_thresh: 0.65\nfree_thresh: 0.196\n") == "..??##");
+    CHECK(read(folder, "b.pgm",
+               "resolution: 0.5\norigin: [1, 2, 0]\nnegate: true\noccupied_thresh: 0.65\nfree_thresh: 0.196\n") ==
+          "..??##");
     // Neither limit belongs to its side: 51 / 255 is 0.2.
     folder.write("c.pgm", pgm({204, 205, 51, 50}, 4));
-    CHECK(read(folder, "c.pgm", "resolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.8\nfree_thresh: 0.2\n") == "?.?#");
+    CHECK(read(folder, "c.pgm",
+               "resolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.8\nfree_thresh: 0.2\n") == "?.?#");
     // Raw: per cent, over 100 unknown.
     folder.write("d.pgm", pgm({0, 19, 20, 65, 66, 100, 101, 255}, 8));
     CHECK(read(folder, "d.pgm", "mode: raw\n" + usual) == "..??##??");
@@ -96,10 +103,10 @@ TEST_CASE("colours are averaged, and what is transparent is unknown")
     write_png(folder, "a.png", colour);
     CHECK(read(folder, "a.png") == "#?.");
     cv::Mat alpha(1, 5, CV_8UC4);
-    alpha.at<Bgra>(0, 0) = {0, 0, 0, 255};        // with alpha 63.75: 0.75
+    alpha.at<Bgra>(0, 0) = {0, 0, 0, 255};  // with alpha 63.75: 0.75
     alpha.at<Bgra>(0, 1) = {255, 255, 255, 255};
-    alpha.at<Bgra>(0, 2) = {255, 255, 255, 0};    // 191.25: 0.25
-    alpha.at<Bgra>(0, 3) = {0, 0, 0, 0};          // 0: 1
+    alpha.at<Bgra>(0, 2) = {255, 255, 255, 0};  // 191.25: 0.25
+    alpha.at<Bgra>(0, 3) = {0, 0, 0, 0};        // 0: 1
     alpha.at<Bgra>(0, 4) = {255, 255, 255, 254};
     write_png(folder, "b.png", alpha);
     CHECK(read(folder, "b.png") == "#.?#.");
@@ -120,7 +127,8 @@ TEST_CASE("blocks cover each wanted cell once and nothing else")
         const double share = draw.unit();
         std::vector<int> wanted(std::size_t(rows * cols)), seen(wanted.size(), 0);
         for (int& cell : wanted) cell = draw.unit() < share;
-        for (const CellBlock& b : blocks_of(rows, cols, [&](int row, int col) { return wanted[std::size_t(row * cols + col)] == 1; }))
+        for (const CellBlock& b :
+             blocks_of(rows, cols, [&](int row, int col) { return wanted[std::size_t(row * cols + col)] == 1; }))
             for (int row = b.first_row; row < b.last_row; ++row)
                 for (int col = b.first_col; col < b.last_col; ++col) ++seen[std::size_t(row * cols + col)];
         CHECK(seen == wanted);
@@ -137,8 +145,9 @@ TEST_CASE("a 2D map is a floor with walls where its cells say, at any yaw")
     std::vector<int> values;
     for (int i = 0; i < rows * cols; ++i) values.push_back(std::array{0, 205, 254, 254}[std::size_t(draw.unit() * 4)]);
     folder.write("a.pgm", pgm(values, cols));
-    const std::filesystem::path file =
-        write_yaml(folder, "a.pgm", "resolution: 0.25\norigin: [-3.5, 40, " + std::to_string(yaw) + "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+    const std::filesystem::path file = write_yaml(folder, "a.pgm",
+                                                  "resolution: 0.25\norigin: [-3.5, 40, " + std::to_string(yaw) +
+                                                      "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
     SceneOptions options;
     options.wall_height = 1.5;
     const Scene scene = load_scene(file, options);
@@ -149,7 +158,9 @@ TEST_CASE("a 2D map is a floor with walls where its cells say, at any yaw")
     double wall_area = 0, floor_area = 0;
     for (const Primitive& wall : scene.primitives) wall_area += wall.shape.size.x() * wall.shape.size.y();
     for (const Triangle& t : scene.triangles)
-        floor_area += (scene.vertices[t[1]] - scene.vertices[t[0]]).cross(scene.vertices[t[2]] - scene.vertices[t[0]]).z() / 2;  // seen from above, counterclockwise
+        floor_area +=
+            (scene.vertices[t[1]] - scene.vertices[t[0]]).cross(scene.vertices[t[2]] - scene.vertices[t[0]]).z() /
+            2;  // seen from above, counterclockwise
     std::size_t occupied = 0, known = 0;
     for (int row = 0; row < rows; ++row)
         for (int col = 0; col < cols; ++col) {
@@ -158,7 +169,8 @@ TEST_CASE("a 2D map is a floor with walls where its cells say, at any yaw")
             known += value != 205;
             for (const auto& [du, dv] : {std::pair{0.5, 0.5}, {0.02, 0.02}, {0.98, 0.03}}) {
                 const double u = (col + du) * 0.25, v = (rows - 1 - row + dv) * 0.25;
-                const Column column = column_at(geometry, -3.5 + std::cos(yaw) * u - std::sin(yaw) * v, 40 + std::sin(yaw) * u + std::cos(yaw) * v);
+                const Column column = column_at(geometry, -3.5 + std::cos(yaw) * u - std::sin(yaw) * v,
+                                                40 + std::sin(yaw) * u + std::cos(yaw) * v);
                 REQUIRE(column.layers == (value == 205 ? std::vector<double>{} : std::vector<double>{0}));
                 double top = 0;
                 for (const Span& span : column.spans) top = std::max(top, span.top);
@@ -176,16 +188,26 @@ TEST_CASE("what a map leaves open is told")
     const auto notices = [&](const std::string& keys) { return load_scene(write_yaml(folder, "a.pgm", keys)).notices; };
     const std::string file = (folder / "map.yaml").string() + ": ";
     CHECK(notices(usual) == std::vector<std::string>{file + "walls are 2 m high (--wall-height sets it)"});
-    const std::vector<std::string> many = notices("resolution: 1\norigin: [0, 0, 0]\nnegate: 1\nmode: raw\nfree_thresh: 0.25\nlayers: 3\n");
-    CHECK(many == std::vector<std::string>{file + "the key layers is not looked at", file + "occupied_thresh is missing, taken as 0.65",
-                                           file + "negate has no effect in mode raw, as in nav2", file + "walls are 2 m high (--wall-height sets it)"});
-    const std::vector<std::string> grey = notices("resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n");
+    const std::vector<std::string> many = notices(
+        "resolution: 1\norigin: [0, 0, 0]\nnegate: 1\nmode: raw\nfree_thresh: 0.25\nlayers: 3\n");
+    CHECK(many == std::vector<std::string>{file + "the key layers is not looked at",
+                                           file + "occupied_thresh is missing, taken as 0.65",
+                                           file + "negate has no effect in mode raw, as in nav2",
+                                           file + "walls are 2 m high (--wall-height sets it)"});
+    const std::vector<std::string> grey = notices(
+        "resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n");
     const std::string free_grey = file + "1 pixels of 205, which map savers write for unknown, are free";
     CHECK(grey[0] == free_grey + " by free_thresh 0.25 (below 0.196 they are unknown)");
     write_png(folder, "b.png", cv::Mat(1, 1, CV_8UC4, cv::Scalar(205, 205, 205, 255)));  // with alpha 217.5: 0.147
-    const auto of_alpha = [&](const std::string& keys) { return load_scene(write_yaml(folder, "b.png", keys)).notices[0]; };
-    CHECK(of_alpha(usual) == free_grey + ", as mode trinary counts alpha as a fourth colour (as nav2 does; without the alpha channel they are not)");
-    CHECK(of_alpha("resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n") == grey[0]);
+    const auto of_alpha = [&](const std::string& keys) {
+        return load_scene(write_yaml(folder, "b.png", keys)).notices[0];
+    };
+    CHECK(
+        of_alpha(usual) ==
+        free_grey +
+            ", as mode trinary counts alpha as a fourth colour (as nav2 does; without the alpha channel they are not)");
+    CHECK(of_alpha("resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n") ==
+          grey[0]);
 }
 
 TEST_CASE("maps that make no sense are refused by file, key and line")
@@ -202,41 +224,53 @@ TEST_CASE("maps that make no sense are refused by file, key and line")
     const auto check_refused = [&](const std::string& image, const std::string& keys, const std::string& reason) {
         CHECK_THROWS_WITH(load_scene(write_yaml(folder, image, keys)), start + reason);
     };
-    const auto used = [&](const std::string& name) { return "image cannot be used: " + (folder / name).string() + ": "; };
+    const auto used = [&](const std::string& name) {
+        return "image cannot be used: " + (folder / name).string() + ": ";
+    };
     check_refused("none.pgm", usual, used("none.pgm") + "does not exist; is the path right? (line 1)");
-    check_refused("bits.pgm", usual, used("bits.pgm") + "is neither PGM (P2, P5) nor PNG; a map's image needs to be one of them (line 1)");
+    check_refused("bits.pgm", usual,
+                  used("bits.pgm") + "is neither PGM (P2, P5) nor PNG; a map's image needs to be one of them (line 1)");
     check_refused("giant.pgm", usual, used("giant.pgm") + "has 99999 x 99999 pixels, needs at most 67108864 (line 1)");
-    check_refused("over.pgm", usual, used("over.pgm") + "has a pixel of 101, needs at most its largest value 100 (line 1)");
-    check_refused("text.pgm", usual, used("text.pgm") + "is cut short or a damaged PGM image: pixel 1 is no whole number (line 1)");
+    check_refused("over.pgm", usual,
+                  used("over.pgm") + "has a pixel of 101, needs at most its largest value 100 (line 1)");
+    check_refused("text.pgm", usual,
+                  used("text.pgm") + "is cut short or a damaged PGM image: pixel 1 is no whole number (line 1)");
     CHECK_THROWS_WITH(load_scene(write_yaml(folder, "short.pgm")), Contains("is cut short"));
     check_refused("full.pgm", usual, "has no free cell (3 x 1); are negate and the thresholds right?");
     check_refused("a.pgm", "origin: [0, 0, 0]\n", "resolution is missing");
     check_refused("a.pgm", "resolution: 0\norigin: [0, 0, 0]\n", "resolution is 0, needs > 0 (line 2)");
-    check_refused("a.pgm", "resolution: 1e300\norigin: [0, 0, 0]\n", "resolution is 1e+300, needs at most 1000 m (line 2)");
+    check_refused("a.pgm", "resolution: 1e300\norigin: [0, 0, 0]\n",
+                  "resolution is 1e+300, needs at most 1000 m (line 2)");
     check_refused("a.pgm", "resolution: 1\n", "origin is missing");
     check_refused("a.pgm", "resolution: 1\norigin: [0, 0]\n", "origin has 2 numbers, needs 3 (line 3)");
     check_refused("a.pgm", "resolution: 1\norigin: [0, 0, 0]\nnegate: 2\n", "negate is \"2\", needs 0 or 1 (line 4)");
-    check_refused("a.pgm", "resolution: 1\norigin: [0, 0, 0]\nmode: both\n", "mode is \"both\", needs one of trinary, scale, raw (line 4)");
-    check_refused("a.pgm", "resolution: 1\norigin: [0, 0, 0]\nfree_thresh: 7\n", "free_thresh is 7, needs 0 .. 1 (line 4)");
+    check_refused("a.pgm", "resolution: 1\norigin: [0, 0, 0]\nmode: both\n",
+                  "mode is \"both\", needs one of trinary, scale, raw (line 4)");
+    check_refused("a.pgm", "resolution: 1\norigin: [0, 0, 0]\nfree_thresh: 7\n",
+                  "free_thresh is 7, needs 0 .. 1 (line 4)");
     check_refused("a.pgm", "resolution: 1\norigin: [0, 0, 0]\nfree_thresh: 0.7\noccupied_thresh: 0.6\n",
                   "free_thresh is 0.7, needs at most occupied_thresh (0.6) (line 4)");
     SceneOptions options;
     options.wall_height = -1;
     CHECK_THROWS_WITH(load_scene(write_yaml(folder, "a.pgm"), options), "load_scene: wall_height is -1, needs > 0 m");
     options.wall_height = 1;
-    CHECK_THROWS_WITH(load_scene(source_folder() + "/maps/training/scene.yaml", options), Contains("wall_height is for a 2D map"));
+    CHECK_THROWS_WITH(load_scene(source_folder() + "/maps/training/scene.yaml", options),
+                      Contains("wall_height is for a 2D map"));
 }
 
 TEST_CASE("a nav2 map bakes as it is, and robots stand where it is free")
 {
     const TempFolder folder;
     std::vector<int> values(40 * 40, 254);
-    for (int i = 0; i < 40; ++i) values[std::size_t(i)] = values[std::size_t(40 * i)] = values[std::size_t(40 * i + 39)] = values[std::size_t(39 * 40 + i)] = 0;
+    for (int i = 0; i < 40; ++i)
+        values[std::size_t(i)] = values[std::size_t(40 * i)] = values[std::size_t(40 * i + 39)] =
+            values[std::size_t(39 * 40 + i)] = 0;
     for (int i = 0; i < 25; ++i) values[std::size_t(20 * 40 + i)] = 0;
     for (int i = 30; i < 39; ++i)
         for (int j = 30; j < 39; ++j) values[std::size_t(i * 40 + j)] = 205;
     folder.write("room.pgm", pgm(values, 40));
-    write_yaml(folder, "room.pgm", "resolution: 0.1\norigin: [-2, -2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+    write_yaml(folder, "room.pgm",
+               "resolution: 0.1\norigin: [-2, -2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
     const ProgramRun baked = run_program(folder, "bake map.yaml -o map --wall-height 1 --label 'walls=obstacle'");
     CHECK(baked.status == 0);
     CHECK(baked.err.find("notice") == std::string::npos);

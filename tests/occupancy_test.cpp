@@ -12,17 +12,18 @@ using State = OccupancyTree::State;
 TEST_CASE("a voxel is occupied when a surface touches it or its centre is inside, free in the bounds, unknown outside")
 {
     Scene scene;
-    hand::add_mesh(scene, Label::Obstacle, hand::moved(hand::box({2, 2, 2}), {{0.05, 0, 0}, Mat3::Identity()}));  // -0.95 .. 1.05
+    hand::add_mesh(scene, Label::Obstacle,
+                   hand::moved(hand::box({2, 2, 2}), {{0.05, 0, 0}, Mat3::Identity()}));  // -0.95 .. 1.05
     TestMap map = map_of(scene);
     map.bounds = {Vec3(-3, -3, -3), Vec3(3, 3, 3)};
     const OccupancyTree tree = build_occupancy(map.geometry, map.bounds, 0.25);
     CHECK(tree.resolution() == 0.25);
-    CHECK(tree.at({0, 0, 0}) == State::Occupied);         // deep inside
-    CHECK(tree.at({1.1, 0, 0}) == State::Occupied);       // the surface at 1.05 lies in 1.00 .. 1.25
+    CHECK(tree.at({0, 0, 0}) == State::Occupied);    // deep inside
+    CHECK(tree.at({1.1, 0, 0}) == State::Occupied);  // the surface at 1.05 lies in 1.00 .. 1.25
     CHECK(tree.at({1.3, 0, 0}) == State::Free);
-    CHECK(tree.at({0, 1.1, 0}) == State::Occupied);       // touched: the surface is its lower side
+    CHECK(tree.at({0, 1.1, 0}) == State::Occupied);  // touched: the surface is its lower side
     CHECK(tree.at({0, 1.3, 0}) == State::Free);
-    CHECK(tree.at({-1.01, 0, 0}) == State::Free);         // ends 0.05 before the surface
+    CHECK(tree.at({-1.01, 0, 0}) == State::Free);  // ends 0.05 before the surface
     CHECK(tree.at({2.9, 2.9, 2.9}) == State::Free);
     CHECK(tree.at({3.1, 0, 0}) == State::Unknown);
     CHECK(tree.at({0, 0, -3.1}) == State::Unknown);
@@ -85,7 +86,8 @@ TEST_CASE("the file that is written without a tree is the tree's, at any thread 
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         const TestMap map = map_of(random_scene(seed));
         Bounds bounds = map.bounds;
-        if (seed % 3 == 0) bounds = {bounds.min - Vec3(1, 20, 3), bounds.max + Vec3(15, 1, 7)};  // over the edges of blocks
+        if (seed % 3 == 0)
+            bounds = {bounds.min - Vec3(1, 20, 3), bounds.max + Vec3(15, 1, 7)};  // over the edges of blocks
         const double voxel = 0.05 + 0.03 * double(seed % 4);
         const OccupancyTree tree = build_occupancy(map.geometry, bounds, voxel);
         tree.write(temp / "tree.bt");
@@ -103,6 +105,7 @@ TEST_CASE("bounds beyond OctoMap's keys are refused with the resolution that wou
     Scene scene;
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(2, 2), {{5000, 0, 0}, Mat3::Identity()}));
     const TestMap map = map_of(scene);
-    CHECK_THROWS_WITH(build_occupancy(map.geometry, map.bounds, 0.1), Contains("resolution is 0.1, needs at least 0.15"));
+    CHECK_THROWS_WITH(build_occupancy(map.geometry, map.bounds, 0.1),
+                      Contains("resolution is 0.1, needs at least 0.15"));
     CHECK_THROWS_WITH(build_occupancy(map.geometry, map.bounds, 0), "build_occupancy: resolution is 0, needs > 0 m");
 }

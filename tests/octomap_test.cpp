@@ -28,7 +28,9 @@ template <class Tree>
 Tree half_seen()
 {
     Tree tree(0.25);
-    const auto set = [&](double x, double y, double z, bool occupied) { tree.updateNode(octomap::point3d(float(x), float(y), float(z)), occupied); };
+    const auto set = [&](double x, double y, double z, bool occupied) {
+        tree.updateNode(octomap::point3d(float(x), float(y), float(z)), occupied);
+    };
     for (int i = 0; i < 16; ++i)
         for (int j = 0; j < 16; ++j) {
             const double x = -1.875 + 0.25 * i, y = -1.875 + 0.25 * j;
@@ -45,8 +47,10 @@ template <class Tree>
 std::string bytes_of_tree(Tree tree, bool full)
 {
     std::ostringstream out;
-    if (full) tree.write(out);
-    else tree.writeBinary(out);
+    if (full)
+        tree.write(out);
+    else
+        tree.writeBinary(out);
     return out.str();
 }
 
@@ -62,7 +66,8 @@ octomap::OcTree random_tree(unsigned seed)
         const bool occupied = random() % 3 == 0;
         const int side = 1 << random() % 4;
         for (int cell = 0; cell < side * side * side; ++cell) {
-            const octomap::point3d step(0.1f * float(cell % side), 0.1f * float(cell / side % side), 0.1f * float(cell / side / side));
+            const octomap::point3d step(0.1f * float(cell % side), 0.1f * float(cell / side % side),
+                                        0.1f * float(cell / side / side));
             tree.updateNode(centre + step, occupied);
         }
     }
@@ -74,7 +79,9 @@ octomap::OcTree random_tree(unsigned seed)
 Scene load(const TempFolder& folder, const std::string& more)
 {
     folder.write("scan.bt", half_seen_bytes());
-    return load_scene(folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n  - {name: scan, label: terrain, octomap: scan.bt" + more + "}\n"));
+    return load_scene(folder.write(
+        "scene.yaml",
+        "format: spawnfield-scene/1\nparts:\n  - {name: scan, label: terrain, octomap: scan.bt" + more + "}\n"));
 }
 
 double volume_of(const Scene& scene, std::uint32_t part)
@@ -110,10 +117,12 @@ TEST_CASE("unknown boxes fill just what the tree does not know of its extent, on
         for (std::uint32_t j = extent.lo[1]; j < extent.hi[1]; ++j)
             for (std::uint32_t k = extent.lo[2]; k < extent.hi[2]; k += 3) {
                 const auto holds = [&](const VoxelBox& box) {
-                    return box.lo[0] <= i && i < box.hi[0] && box.lo[1] <= j && j < box.hi[1] && box.lo[2] <= k && k < box.hi[2];
+                    return box.lo[0] <= i && i < box.hi[0] && box.lo[1] <= j && j < box.hi[1] && box.lo[2] <= k &&
+                           k < box.hi[2];
                 };
                 const octomap::OcTreeKey key{octomap::key_type(i), octomap::key_type(j), octomap::key_type(k)};
-                if ((std::count_if(boxes.begin(), boxes.end(), holds) == 1) != (tree.search(key) == nullptr)) FAIL("voxel " << i << " " << j << " " << k);
+                if ((std::count_if(boxes.begin(), boxes.end(), holds) == 1) != (tree.search(key) == nullptr))
+                    FAIL("voxel " << i << " " << j << " " << k);
             }
 }
 
@@ -141,21 +150,26 @@ TEST_CASE("unknown space is free unless the scene or the caller says blocked, an
     const auto file = folder.write("bare.bt", half_seen_bytes());
     CHECK(load_scene(file, {.unknown = Unknown::Blocked}).parts.size() == 2);
     CHECK(load_scene(folder / "scene.yaml", {.unknown = Unknown::Free}).parts.size() == 1);
-    CHECK_THROWS_WITH(load(folder, ", unknown: solid"), (folder / "scene.yaml").string() + ": part \"scan\": unknown is \"solid\", needs one of free, blocked (line 3)");
+    CHECK_THROWS_WITH(load(folder, ", unknown: solid"),
+                      (folder / "scene.yaml").string() +
+                          ": part \"scan\": unknown is \"solid\", needs one of free, blocked (line 3)");
 }
 
 TEST_CASE("a part's name that unknown space takes is refused, and unknown without an OctoMap told")
 {
     const TempFolder folder;
     folder.write("scan.bt", half_seen_bytes());
-    const std::string head = "format: spawnfield-scene/1\nparts:\n", box = "  - {name: 'scan:unknown', label: terrain, box: [1, 1, 1]}\n",
+    const std::string head = "format: spawnfield-scene/1\nparts:\n",
+                      box = "  - {name: 'scan:unknown', label: terrain, box: [1, 1, 1]}\n",
                       scan = "  - {name: scan, octomap: scan.bt, unknown: blocked}\n";
     CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + box + scan)), Contains("is given to another part"));
-    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + scan + box)), Contains("is given to an earlier part too"));
+    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + scan + box)),
+                      Contains("is given to an earlier part too"));
     const Scene plain = load_scene(folder.write("a.yaml", head + box), {.unknown = Unknown::Blocked});
     REQUIRE(plain.notices.size() == 1);
     CHECK(plain.notices[0] == (folder / "a.yaml").string() + ": has no OctoMap, so --unknown has no effect");
-    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + "  - {name: a, box: [1, 1, 1], unknown: free}\n")), Contains("unknown is no known key"));
+    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + "  - {name: a, box: [1, 1, 1], unknown: free}\n")),
+                      Contains("unknown is no known key"));
 }
 
 TEST_CASE("a robot that is partly in unknown space collides with it where that is blocked")
@@ -176,7 +190,8 @@ TEST_CASE("a robot that is partly in unknown space collides with it where that i
     };
     for (const Judgement& judged : verdicts("")) CHECK(judged.verdict == Verdict::Valid);
     const auto blocked = verdicts(", unknown: blocked");
-    const std::vector<Verdict> wanted = {Verdict::Valid, Verdict::Collision, Verdict::Valid, Verdict::Collision, Verdict::Valid};
+    const std::vector<Verdict> wanted = {Verdict::Valid, Verdict::Collision, Verdict::Valid, Verdict::Collision,
+                                         Verdict::Valid};
     for (std::size_t k = 0; k < poses.size(); ++k) {
         INFO(k);
         CHECK(blocked[k].verdict == wanted[k]);
@@ -193,8 +208,10 @@ TEST_CASE("with unknown space blocked the mask and the independent decision stil
 {
     const TempFolder folder;
     folder.write("scan.bt", bytes_of_tree(random_tree(GENERATE(11u, 12u)), false));
-    const auto file = folder.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n  - {name: scan, label: terrain, octomap: scan.bt, unknown: blocked, "
-                                                 "xyz: [3, 1, 0], rpy: [0, 0, 0.3]}\n");
+    const auto file = folder.write(
+        "scene.yaml",
+        "format: spawnfield-scene/1\nparts:\n  - {name: scan, label: terrain, octomap: scan.bt, unknown: blocked, "
+        "xyz: [3, 1, 0], rpy: [0, 0, 0.3]}\n");
     const TestMap map = map_of(load_scene(file), 0.05);
     const Robot robot = load_robot("box:0.12,0.08,0.1");
     const CollisionChecker checker = checker_of(map, robot);
@@ -226,7 +243,8 @@ TEST_CASE("OctoMaps with colours or times hold the same as plain ones")
     for (auto leaf = coloured.begin_leafs(); leaf != coloured.end_leafs(); ++leaf) leaf->setColor(1, 2, 3);
     const auto boxes = [&](const std::string& name, const std::string& bytes) {
         std::vector<std::array<double, 6>> out;
-        for (const Primitive& primitive : load_scene(folder.write(name, bytes), {.unknown = Unknown::Blocked}).primitives) {
+        for (const Primitive& primitive :
+             load_scene(folder.write(name, bytes), {.unknown = Unknown::Blocked}).primitives) {
             const Vec3 &at = primitive.shape.pose.position, &size = primitive.shape.size;
             out.push_back({at.x(), at.y(), at.z(), size.x(), size.y(), size.z()});
         }
@@ -255,29 +273,35 @@ TEST_CASE("an OctoMap that is cut short or of another type is refused by name, a
     small.write(out);
     const std::string whole = out.str();
     REQUIRE(load_scene(folder.write("a.ot", whole)).primitives.size() == 1);
-    for (std::size_t length = 0; length < whole.size(); ++length) CHECK_THROWS_AS(load_scene(folder.write("a.ot", whole.substr(0, length))), FileError);
+    for (std::size_t length = 0; length < whole.size(); ++length)
+        CHECK_THROWS_AS(load_scene(folder.write("a.ot", whole.substr(0, length))), FileError);
 
     std::string counting = half_seen_bytes(true);
     counting.replace(counting.find("id OcTree"), 9, "id CountingOcTree");
     const auto file = folder.write("b.ot", counting);
-    CHECK_THROWS_WITH(load_scene(file), file.string() + ": is an OctoMap of type CountingOcTree, needs OcTree, ColorOcTree or OcTreeStamped");
+    CHECK_THROWS_WITH(
+        load_scene(file),
+        file.string() + ": is an OctoMap of type CountingOcTree, needs OcTree, ColorOcTree or OcTreeStamped");
     std::string odd = half_seen_bytes();
     odd.replace(odd.find("id OcTree"), 9, "id FooTree");
     const auto binary = folder.write("b.bt", odd);
-    CHECK_THROWS_WITH(load_scene(binary), binary.string() + ": is an OctoMap of type FooTree, needs OcTree, ColorOcTree or OcTreeStamped");
+    CHECK_THROWS_WITH(load_scene(binary),
+                      binary.string() + ": is an OctoMap of type FooTree, needs OcTree, ColorOcTree or OcTreeStamped");
 }
 
 TEST_CASE("bake --unknown blocked puts unknown space into the map")
 {
     const TempFolder folder;
     folder.write("scan.bt", half_seen_bytes());
-    const ProgramRun open = run_program(folder, "bake scan.bt -o open"), blocked = run_program(folder, "bake scan.bt -o blocked --unknown blocked");
+    const ProgramRun open = run_program(folder, "bake scan.bt -o open"),
+                     blocked = run_program(folder, "bake scan.bt -o blocked --unknown blocked");
     REQUIRE(open.status == 0);
     REQUIRE(blocked.status == 0);
     CHECK_THAT(open.err, Contains("notice: scan.bt: 15.875 m3 of its 36 m3 are unknown (44.1 %) and count as free"));
     CHECK_THAT(blocked.err, Contains("(44.1 %) and count as solid"));
     folder.write("poses.csv", "x,y,z\n-1,0,0.1\n1,1,0.1\n");
-    CHECK_THAT(run_program(folder, "check open --robot box:0.4,0.4,0.4 --poses poses.csv").out, Contains("1,1,0.1,valid"));
+    CHECK_THAT(run_program(folder, "check open --robot box:0.4,0.4,0.4 --poses poses.csv").out,
+               Contains("1,1,0.1,valid"));
     const std::string verdicts = run_program(folder, "check blocked --robot box:0.4,0.4,0.4 --poses poses.csv").out;
     CHECK_THAT(verdicts, Contains("-1,0,0.1,valid") && Contains("scan:unknown"));
     CHECK(run_program(folder, "bake scan.bt -o other --unknown solid").status == 2);

@@ -34,8 +34,8 @@ Lab lab(const Eigen::Vector3d& rgb)
     Eigen::Matrix3d xyz_from_rgb;
     xyz_from_rgb << 0.4124564, 0.3575761, 0.1804375, 0.2126729, 0.7151522, 0.0721750, 0.0193339, 0.1191920, 0.9503041;
     const Eigen::Vector3d xyz = (xyz_from_rgb * rgb).cwiseQuotient(Eigen::Vector3d(0.95047, 1, 1.08883));
-    const Eigen::Vector3d f =
-        xyz.unaryExpr([](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; });
+    const Eigen::Vector3d f = xyz.unaryExpr(
+        [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; });
     return {116 * f.y() - 16, 500 * (f.x() - f.y()), 200 * (f.y() - f.z())};
 }
 

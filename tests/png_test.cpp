@@ -39,9 +39,12 @@ std::string png_bytes(const PngText& png)
 {
     uLongf size = compressBound(uLong(png.lines.size()));
     std::string packed(size, '\0');
-    REQUIRE(compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(png.lines.data()), uLong(png.lines.size())) == Z_OK);
+    REQUIRE(compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(png.lines.data()),
+                     uLong(png.lines.size())) == Z_OK);
     packed.resize(size);
-    return "\x89PNG\r\n\x1a\n" + chunk("IHDR", big_endian(png.cols) + big_endian(png.rows) + png.bits + png.colour + '\0' + '\0' + png.interlace) +
+    return "\x89PNG\r\n\x1a\n" +
+           chunk("IHDR",
+                 big_endian(png.cols) + big_endian(png.rows) + png.bits + png.colour + '\0' + '\0' + png.interlace) +
            png.before + chunk("IDAT", packed) + chunk("IEND", "");
 }
 
@@ -82,23 +85,33 @@ TEST_CASE("gamma and transparency leave PNG pixels as they are")
 TEST_CASE("a PNG image that is grey is read as such, in whatever colours it is stored")
 {
     const TempFolder folder;
-    CHECK(read_png(folder, {.colour = 2, .lines = {0, 1, 1, 1, 2, 2, 2, 0, 3, 3, 3, 4, 4, 4}}).pixels == Pixels{1, 2, 3, 4});
-    CHECK(read_png(folder, {.colour = 4, .lines = {0, 1, '\xff', 2, '\xff', 0, 3, '\xff', 4, '\xff'}}).pixels == Pixels{1, 2, 3, 4});
-    CHECK(read_png(folder, {.colour = 3, .lines = {0, 0, 1, 0, 1, 0}, .before = chunk("PLTE", "aaabbb")}).pixels == Pixels{'a', 'b', 'b', 'a'});
+    CHECK(read_png(folder, {.colour = 2, .lines = {0, 1, 1, 1, 2, 2, 2, 0, 3, 3, 3, 4, 4, 4}}).pixels ==
+          Pixels{1, 2, 3, 4});
+    CHECK(read_png(folder, {.colour = 4, .lines = {0, 1, '\xff', 2, '\xff', 0, 3, '\xff', 4, '\xff'}}).pixels ==
+          Pixels{1, 2, 3, 4});
+    CHECK(read_png(folder, {.colour = 3, .lines = {0, 0, 1, 0, 1, 0}, .before = chunk("PLTE", "aaabbb")}).pixels ==
+          Pixels{'a', 'b', 'b', 'a'});
 }
 
 TEST_CASE("PNG images that are damaged or not grey are refused with their name and the reason")
 {
     const TempFolder folder;
     const std::string file = (folder / "a.png").string() + ": ";
-    const auto check_refused = [&](const PngText& png, const std::string& reason) { CHECK_THROWS_WITH(read_png(folder, png), file + reason); };
-    check_refused({.colour = 2, .lines = {0, 7, 7, 7, 8, 8, 8, 0, 9, 9, 9, 9, 9, 8}}, "has a pixel that is coloured (column 1, row 1), needs to be a grey image");
-    check_refused({.colour = 4, .lines = {0, 7, '\xff', 8, '\xfe', 0, 9, '\xff', 9, '\xff'}}, "has a pixel that is transparent (column 1, row 0), needs to be a grey image");
-    check_refused({.colour = 6, .lines = std::string(18, '\0')}, "has a pixel that is transparent (column 0, row 0), needs to be a grey image");
-    check_refused({.colour = 3, .lines = std::string(6, '\0'), .before = chunk("PLTE", "abcdef")}, "has a pixel that is coloured (column 0, row 0), needs to be a grey image");
+    const auto check_refused = [&](const PngText& png, const std::string& reason) {
+        CHECK_THROWS_WITH(read_png(folder, png), file + reason);
+    };
+    check_refused({.colour = 2, .lines = {0, 7, 7, 7, 8, 8, 8, 0, 9, 9, 9, 9, 9, 8}},
+                  "has a pixel that is coloured (column 1, row 1), needs to be a grey image");
+    check_refused({.colour = 4, .lines = {0, 7, '\xff', 8, '\xfe', 0, 9, '\xff', 9, '\xff'}},
+                  "has a pixel that is transparent (column 1, row 0), needs to be a grey image");
+    check_refused({.colour = 6, .lines = std::string(18, '\0')},
+                  "has a pixel that is transparent (column 0, row 0), needs to be a grey image");
+    check_refused({.colour = 3, .lines = std::string(6, '\0'), .before = chunk("PLTE", "abcdef")},
+                  "has a pixel that is coloured (column 0, row 0), needs to be a grey image");
     check_refused({.lines = {0, 1, 2}}, "is a damaged PNG image: Not enough image data");
     check_refused({.cols = 0, .lines = {0, 0}}, "is a damaged PNG image: Invalid IHDR data");
-    check_refused({.cols = 1000000, .rows = 1000000, .lines = {0}}, "has 1000000 x 1000000 pixels, needs at most 1073741824");
+    check_refused({.cols = 1000000, .rows = 1000000, .lines = {0}},
+                  "has 1000000 x 1000000 pixels, needs at most 1073741824");
 
     const std::string good = png_bytes({.lines = {0, 1, 2, 0, 3, 4}});
     folder.write("a.png", good.substr(0, good.size() - 20));
@@ -127,7 +140,9 @@ TEST_CASE("PNG images are written as OpenCV reads them")
     CHECK(std::equal(greys.begin(), greys.end(), grey.ptr<std::uint16_t>()));
     CHECK(read_grey_png(folder / "grey.png").pixels == Pixels(greys.begin(), greys.end()));
     const std::string far = (folder / "none/a.png").string();
-    CHECK_THROWS_WITH(write_bgr_png(far, rows, cols, colours.data()), far + ": cannot be written: No such file or directory");
+    CHECK_THROWS_WITH(write_bgr_png(far, rows, cols, colours.data()),
+                      far + ": cannot be written: No such file or directory");
     CHECK_THROWS_WITH(write_grey_png(folder / "wide.png", 1, 1000001, greys.data()),
-                      (folder / "wide.png").string() + ": cannot be written as PNG: it has 1000001 x 1 pixels, needs 1 to 1000000 along each side");
+                      (folder / "wide.png").string() +
+                          ": cannot be written as PNG: it has 1000001 x 1 pixels, needs 1 to 1000000 along each side");
 }

@@ -50,8 +50,15 @@ std::string raster_csv(const RasterResult& raster, bool aerial)
 }
 
 /// Numbers whose shortest texts are of all kinds.
-const std::vector<double> odd_numbers = {0.1, 1.0 / 3, 1e-300, -123456789.123456789, 5e22, std::numeric_limits<double>::denorm_min(),
-                                         std::nextafter(1.0, 2.0), 4503599627370497.5, 0};
+const std::vector<double> odd_numbers = {0.1,
+                                         1.0 / 3,
+                                         1e-300,
+                                         -123456789.123456789,
+                                         5e22,
+                                         std::numeric_limits<double>::denorm_min(),
+                                         std::nextafter(1.0, 2.0),
+                                         4503599627370497.5,
+                                         0};
 
 }  // namespace
 
@@ -108,7 +115,8 @@ TEST_CASE("a poses file that makes no sense is told by line and column")
     CHECK(complaint("X,Y,Z\n4,5,6\n") ==
           "line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw; there is X, but names are lower case");
     CHECK(complaint("x,y,z,x\n1,2,3,4\n") == "line 1: column x is given twice");
-    CHECK(complaint("x,y,z,qx,qw\n1,2,3,0,1\n") == "line 1: has some of the columns qx,qy,qz,qw, needs all four or none");
+    CHECK(complaint("x,y,z,qx,qw\n1,2,3,0,1\n") ==
+          "line 1: has some of the columns qx,qy,qz,qw, needs all four or none");
     CHECK(complaint("x,y,z,yaw,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n") ==
           "line 1: has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
     CHECK(complaint("x,y,z\n1,2,3\n1,two,3\n") == "line 3: column y is \"two\", needs a number");
@@ -120,8 +128,10 @@ TEST_CASE("a poses file that makes no sense is told by line and column")
     CHECK(complaint("x,y,z\n\n1,2\n") == "line 3: has 2 fields, the header has 3");
     CHECK(complaint("x,y,z\n1,2,3,4\n") == "line 2: has 4 fields, the header has 3");
     CHECK(complaint("x,y,z,name\n1,2,3,\"a\n") == "line 2: has a quote that is not closed");
-    CHECK(complaint("x,y,z,qx,qy,qz,qw\n0,0,0,1,1,0,0\n") == "line 2: the quaternion's length is 1.4142135623730951, needs 1 (to 0.001)");
-    CHECK(complaint("x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0\n") == "line 2: the quaternion's length is 0, needs 1 (to 0.001)");
+    CHECK(complaint("x,y,z,qx,qy,qz,qw\n0,0,0,1,1,0,0\n") ==
+          "line 2: the quaternion's length is 1.4142135623730951, needs 1 (to 0.001)");
+    CHECK(complaint("x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0\n") ==
+          "line 2: the quaternion's length is 0, needs 1 (to 0.001)");
     CHECK_THROWS_WITH(read_poses("/none/poses.csv"), "/none/poses.csv: does not exist; is the path right?");
 }
 
@@ -143,7 +153,8 @@ TEST_CASE("verdicts take the place of older ones")
     const PoseTable table = read("hit,x,\"verdict\",y,z,note\nlamp,0,\"1,2\",0,0.1,\"a, \"\"b\"\"\"\n");
     CHECK(replaced_columns(table) == std::vector<std::string>{"hit", "verdict"});
     CHECK(replaced_columns(read("x,y,z,Hit\n0,0,0,a\n")).empty());
-    CHECK(verdicts_csv(table, {Judgement{}}, {}) == "x,y,z,note,verdict,ground,height_above,hit\n0,0,0.1,\"a, \"\"b\"\"\",outside,,,\n");
+    CHECK(verdicts_csv(table, {Judgement{}}, {}) ==
+          "x,y,z,note,verdict,ground,height_above,hit\n0,0,0.1,\"a, \"\"b\"\"\",outside,,,\n");
 }
 
 TEST_CASE("spawns that were written read back to the same doubles")
@@ -166,10 +177,7 @@ TEST_CASE("spawns that were written read back to the same doubles")
     }
 }
 
-TEST_CASE("spawns of none are a header")
-{
-    CHECK(spawns_csv({}) == "x,y,z,roll,pitch,yaw\n");
-}
+TEST_CASE("spawns of none are a header") { CHECK(spawns_csv({}) == "x,y,z,roll,pitch,yaw\n"); }
 
 TEST_CASE("verdicts stand behind the columns they were asked about")
 {
@@ -186,20 +194,23 @@ TEST_CASE("verdicts stand behind the columns they were asked about")
     judgements[3].verdict = Verdict::Collision;
     judgements[3].ground = Ground{0, true, 0};
     judgements[3].hit = CollisionHit{};
-    CHECK(verdicts_csv(table, judgements, scene.parts) == "id,x,y,z,verdict,ground,height_above,hit\n"
-                                                    "7,0,0,0.1,valid,-0.05,0.15000000000000002,\n"
-                                                    "8,0,0,5,outside,,,\n"
-                                                    "9,0,0,0.3,collision,0.2,0.09999999999999998,\"wall, \"\"north\"\"\"\n"
-                                                    "10,0,0,1,collision,0,1,occupancy\n");
+    CHECK(verdicts_csv(table, judgements, scene.parts) ==
+          "id,x,y,z,verdict,ground,height_above,hit\n"
+          "7,0,0,0.1,valid,-0.05,0.15000000000000002,\n"
+          "8,0,0,5,outside,,,\n"
+          "9,0,0,0.3,collision,0.2,0.09999999999999998,\"wall, \"\"north\"\"\"\n"
+          "10,0,0,1,collision,0,1,occupancy\n");
 }
 
 TEST_CASE("a raster is written as it is listed; a pose whose ground is no layer has none")
 {
     RasterResult raster;
     raster.yaw = 0.5;
-    raster.poses = {{1, 2, 0.1, 0, Verdict::Valid}, {1, 2, -3, 1, Verdict::Collision}, {1.5, 2, 1.0 / 3, -1, Verdict::OffTerrain}};
-    CHECK(raster_csv(raster, false) == "x,y,z,yaw,layer,verdict\n1,2,0.1,0.5,0,valid\n1,2,-3,0.5,1,collision\n"
-                                       "1.5,2,0.3333333333333333,0.5,,off_terrain\n");
+    raster.poses = {
+        {1, 2, 0.1, 0, Verdict::Valid}, {1, 2, -3, 1, Verdict::Collision}, {1.5, 2, 1.0 / 3, -1, Verdict::OffTerrain}};
+    CHECK(raster_csv(raster, false) ==
+          "x,y,z,yaw,layer,verdict\n1,2,0.1,0.5,0,valid\n1,2,-3,0.5,1,collision\n"
+          "1.5,2,0.3333333333333333,0.5,,off_terrain\n");
 }
 
 TEST_CASE("aerial poses are written in their places only when asked for")
@@ -276,7 +287,8 @@ TEST_CASE("spawns as JSON have quaternions of unit length, names, their settings
     CHECK(settings["offset"] == 0.2);
     CHECK(settings["layers"] == 1);
     CHECK(settings["bounds"] == std::vector<double>{-1, -2, 4, 5});
-    CHECK_FALSE((settings.contains("max_slope") || settings.contains("max_water_depth") || settings.contains("max_height")));
+    CHECK_FALSE(
+        (settings.contains("max_slope") || settings.contains("max_water_depth") || settings.contains("max_height")));
     CHECK(json["counts"]["valid"] == 1);
     CHECK(json["full"] == false);
     CHECK(json["undecided_area"] == 2.5);

@@ -8,10 +8,11 @@ namespace {
 ProgramRun run(const TempFolder& folder, const std::string& before, const std::string& arguments)
 {
     const std::string out = (folder / ".out").string(), err = (folder / ".err").string();
-    const std::string command = "exec </dev/null >'" + out + "' 2>'" + err + "'; cd '" + folder.path().string() + "' && " + before +
-                                " '" + program_file() + "' " + arguments;
+    const std::string command = "exec </dev/null >'" + out + "' 2>'" + err + "'; cd '" + folder.path().string() +
+                                "' && " + before + " '" + program_file() + "' " + arguments;
     const int status = std::system(command.c_str());
-    const ProgramRun result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(out), bytes_of(err)};
+    const ProgramRun result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(out),
+                            bytes_of(err)};
     std::filesystem::remove(out);
     std::filesystem::remove(err);
     return result;
@@ -21,8 +22,13 @@ ProgramRun run(const TempFolder& folder, const std::string& before, const std::s
 
 ProgramRun run_program(const TempFolder& folder, const std::string& arguments) { return run(folder, "", arguments); }
 
-ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds, const std::string& signal)
+ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds,
+                             const std::string& signal)
 {
-    // In the foreground only the program is told: a group's members are told twice, and the second Ctrl-C ends it at once.
-    return run(folder, "timeout --foreground --preserve-status --signal=" + signal + " --kill-after=30 " + std::to_string(seconds), arguments);
+    // In the foreground only the program is told: a group's members are told twice, and the second Ctrl-C ends it at
+    // once.
+    return run(
+        folder,
+        "timeout --foreground --preserve-status --signal=" + signal + " --kill-after=30 " + std::to_string(seconds),
+        arguments);
 }

@@ -12,4 +12,5 @@ struct ProgramRun {
 ProgramRun run_program(const TempFolder& folder, const std::string& arguments);
 
 /// The same; the signal (Ctrl-C) comes after `seconds`, and a hard end half a minute later.
-ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds, const std::string& signal = "INT");
+ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds,
+                             const std::string& signal = "INT");

@@ -22,10 +22,7 @@ struct Yard {
     Scene scene;
 };
 
-Label matter(Random& random)
-{
-    return random.chance(0.45) ? Label::Terrain : Label::Obstacle;
-}
+Label matter(Random& random) { return random.chance(0.45) ? Label::Terrain : Label::Obstacle; }
 
 Mat3 any_rotation(Random& random)
 {
@@ -195,8 +192,10 @@ void add_wall(Yard& yard)
 {
     const Vec3 size = {yard.random.between(1, 5), 0.02, yard.random.between(0.3, 2.5)};
     const Pose place = {spot(yard, size.z() / 2), upright_or_any(yard.random, 0.8)};
-    if (yard.random.chance(0.5)) hand::add_shape(yard.scene, Label::Obstacle, {ShapeKind::Box, size, place});
-    else hand::add_mesh(yard.scene, Label::Obstacle, hand::moved(hand::box(size), place));
+    if (yard.random.chance(0.5))
+        hand::add_shape(yard.scene, Label::Obstacle, {ShapeKind::Box, size, place});
+    else
+        hand::add_mesh(yard.scene, Label::Obstacle, hand::moved(hand::box(size), place));
 }
 
 void add_pole(Yard& yard)
@@ -235,9 +234,11 @@ void add_water(Yard& yard)
     const double yaw = yard.random.between(-M_PI, M_PI);
     const Pose place = {spot(yard, yard.random.between(-0.4, 0.6)), rotation_of_rpy(0, 0, yaw)};
     if (yard.random.chance(0.5)) {
-        hand::add_mesh(yard.scene, Label::Water, hand::moved(hand::rectangle(size_x, size_y), place), {.kind = "plane"});
+        hand::add_mesh(yard.scene, Label::Water, hand::moved(hand::rectangle(size_x, size_y), place),
+                       {.kind = "plane"});
     } else {
-        hand::add_shape(yard.scene, Label::Water, {ShapeKind::Box, {size_x, size_y, yard.random.between(0.1, 1)}, place});
+        hand::add_shape(yard.scene, Label::Water,
+                        {ShapeKind::Box, {size_x, size_y, yard.random.between(0.1, 1)}, place});
     }
 }
 
@@ -322,8 +323,10 @@ Scene random_scene(std::uint64_t seed)
     Yard yard = {Random{seed}, {}, {}};
     yard.scene.name = "random-" + std::to_string(seed);
     yard.ground = random_height(yard.random);
-    if (yard.random.chance(0.6)) add_relief(yard);
-    else add_floor(yard);
+    if (yard.random.chance(0.6))
+        add_relief(yard);
+    else
+        add_floor(yard);
     constexpr std::array things = {add_box,    add_ramp,  add_ball, add_drum, add_rock,   add_corner,
                                    add_nested, add_house, add_wall, add_pole, add_storey, add_water};
     const int count = 8 + yard.random.below(16);

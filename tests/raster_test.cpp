@@ -23,7 +23,8 @@ Verdict judged(const Map& map, const CollisionChecker& checker, const RasterPose
     QueryOptions options;
     options.max_height = max_height;
     return judge(map, checker, column_at(map.geometry, pose.x, pose.y),
-                 {Vec3(pose.x, pose.y, pose.z), rotation_from_rpy(0, 0, yaw)}, options).verdict;
+                 {Vec3(pose.x, pose.y, pose.z), rotation_from_rpy(0, 0, yaw)}, options)
+        .verdict;
 }
 
 }  // namespace
@@ -41,10 +42,10 @@ TEST_CASE("the thesis's 2D raster of the training arena has 41 x 41 columns and 
     CHECK(result.grid.rows == 41);
     std::size_t expected = 0;
     for (int j = 0; j < 41; ++j)
-        for (int i = 0; i < 41; ++i)
-            expected += column_at(map.geometry, -10 + 0.5 * i, -10 + 0.5 * j).layers.size();
+        for (int i = 0; i < 41; ++i) expected += column_at(map.geometry, -10 + 0.5 * i, -10 + 0.5 * j).layers.size();
     CHECK(result.poses.size() == expected);
-    CHECK(result.poses.size() > 1681);  // the floor goes on under platform, ramp and the flying box, and the underground box has its own top
+    CHECK(result.poses.size() >
+          1681);  // the floor goes on under platform, ramp and the flying box, and the underground box has its own top
     for (const RasterPose& pose : result.poses) CHECK(pose.verdict == judged(map, checker, pose, 0, 1e9));
 }
 
@@ -83,7 +84,8 @@ TEST_CASE("a 3D raster has the verdicts of every pose asked by itself")
         for (int j = 0; j < result.grid.rows; ++j)
             for (int i = 0; i < result.grid.cols; ++i)
                 for (int k = result.grid.heights - 1; k >= 0; --k) {
-                    const RasterPose pose{result.grid.x_of(i), result.grid.y_of(j), result.grid.z_of(k), 0, Verdict::Valid};
+                    const RasterPose pose{result.grid.x_of(i), result.grid.y_of(j), result.grid.z_of(k), 0,
+                                          Verdict::Valid};
                     const Verdict verdict = judged(map, checker, pose, 0.4, 0.8);
                     ++counts[std::size_t(verdict)];
                     if (verdict == Verdict::Aerial) continue;
@@ -158,7 +160,8 @@ TEST_CASE("layers narrow a raster to some of each column")
         options.layers = choice;
         return raster(map, checker, options).poses;
     };
-    const auto all = poses({}), top = poses({LayerChoice::Kind::Top, 0}), bottom = poses({LayerChoice::Kind::Bottom, 0});
+    const auto all = poses({}), top = poses({LayerChoice::Kind::Top, 0}),
+               bottom = poses({LayerChoice::Kind::Bottom, 0});
     const auto first = poses({LayerChoice::Kind::Index, 0}), second = poses({LayerChoice::Kind::Index, 1});
     CHECK(top.size() == bottom.size());
     CHECK(first.size() == top.size());
@@ -194,8 +197,10 @@ TEST_CASE("a raster is the same bytes at any thread count")
             options.threads = threads;
             const std::string text = csv(raster(map, checker, options));
             std::string& reference = first;
-            if (threads == 1) reference += text;
-            else CHECK(reference.find(text) != std::string::npos);
+            if (threads == 1)
+                reference += text;
+            else
+                CHECK(reference.find(text) != std::string::npos);
         }
 }
 
@@ -266,7 +271,8 @@ TEST_CASE("with snap a floor between two steps is found, without it is not")
     CHECK(missed.counts == VerdictCounts{0, 9 * 3, 0, 0, 0, 0});
 }
 
-TEST_CASE("snapped poses take the place of steps: one for two layers below it, none beyond the last, none off the bounds")
+TEST_CASE(
+    "snapped poses take the place of steps: one for two layers below it, none beyond the last, none off the bounds")
 {
     Scene scene;
     for (const double height : {0.4, 1.6, 2.2, 5.5, 7.0, -1.0}) add_floor(scene, height);
@@ -275,7 +281,8 @@ TEST_CASE("snapped poses take the place of steps: one for two layers below it, n
     RasterOptions options = snapped(1, 2.5, 0.25);
     options.bounds = {Vec3(0, 0, 0), Vec3(0, 0, 6)};
     const auto heights = [&] { return heights_of(raster(map, checker, options)); };
-    CHECK(heights() == std::vector<double>{5.75, 5.0, 2.45, 1.85, 0.65, 0.0});  // 2.5 is replaced by three, 5.5 is an extra one
+    CHECK(heights() ==
+          std::vector<double>{5.75, 5.0, 2.45, 1.85, 0.65, 0.0});  // 2.5 is replaced by three, 5.5 is an extra one
     options.layers = {LayerChoice::Kind::Index, 2};
     CHECK(raster(map, checker, options).poses.size() == 1);  // 2.45: the steps near it went
     options.layers = {LayerChoice::Kind::Bottom, 0};
@@ -285,8 +292,9 @@ TEST_CASE("snapped poses take the place of steps: one for two layers below it, n
     options.layers = {};
     options.step_z = 0.2;
     options.bounds.max.z() = 0.8;
-    CHECK(heights() == std::vector<double>{0.8, 0.65, 0.2 * 3, 0.2, 0});  // in place of 0.4, above the step that follows
-    options.offset = 0.4;  // where a step is, too: one pose
+    CHECK(heights() ==
+          std::vector<double>{0.8, 0.65, 0.2 * 3, 0.2, 0});  // in place of 0.4, above the step that follows
+    options.offset = 0.4;                                    // where a step is, too: one pose
     CHECK(heights() == std::vector<double>{0.8, 0.2 * 3, 0.2, 0});
 }
 
@@ -316,7 +324,8 @@ TEST_CASE("the poses of the 2D raster are among those of the 3D raster with snap
         options.bounds.min.z() = map.bounds.min.z() + 0.2;
         const RasterResult all = raster(map, checker, options);
         std::vector<RasterPose> on_layers;
-        std::copy_if(all.poses.begin(), all.poses.end(), std::back_inserter(on_layers), [](const RasterPose& pose) { return pose.snapped; });
+        std::copy_if(all.poses.begin(), all.poses.end(), std::back_inserter(on_layers),
+                     [](const RasterPose& pose) { return pose.snapped; });
         options.dims = 2;
         options.snap = false;
         auto next = on_layers.begin();
@@ -324,7 +333,8 @@ TEST_CASE("the poses of the 2D raster are among those of the 3D raster with snap
             const double layer = column_at(map.geometry, pose.x, pose.y).layers[std::size_t(pose.layer)];
             if (layer < options.bounds.min.z() - 1e-9 || layer > options.bounds.max.z() + 1e-9) continue;
             REQUIRE(next != on_layers.end());
-            CHECK((next->x == pose.x && next->y == pose.y && next->z == pose.z && next->layer == pose.layer && next->verdict == pose.verdict));
+            CHECK((next->x == pose.x && next->y == pose.y && next->z == pose.z && next->layer == pose.layer &&
+                   next->verdict == pose.verdict));
             ++(pose.verdict == Verdict::Valid ? valid : other);
             ++next;
         }
@@ -365,12 +375,14 @@ TEST_CASE("snap refuses 2D, no height check, and offsets that would be aerial")
     const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     RasterOptions options = snapped(1, 1, 1.5);
-    CHECK_THROWS_WITH(raster(map, checker, options), "raster: offset is 1.5, needs 0 .. max_height with snap: poses on their layers would be aerial");
+    CHECK_THROWS_WITH(raster(map, checker, options),
+                      "raster: offset is 1.5, needs 0 .. max_height with snap: poses on their layers would be aerial");
     options.offset = -0.1;
     CHECK_THROWS_AS(raster(map, checker, options), ArgumentError);
     options.offset = 0.1;
     options.height_check = false;
-    CHECK_THROWS_WITH(raster(map, checker, options), "raster: snap needs the height check: collisions alone know no layers");
+    CHECK_THROWS_WITH(raster(map, checker, options),
+                      "raster: snap needs the height check: collisions alone know no layers");
     options.height_check = true;
     options.dims = 2;
     CHECK_THROWS_AS(raster(map, checker, options), ArgumentError);

@@ -97,7 +97,8 @@ TEST_CASE("real scenes bake, and real robots' samples in them are valid by check
             const SpawnList list = sample(map, checker, sampling);
             CHECK(list.spawns.size() == 60);
             std::vector<Pose> poses;
-            for (const Spawn& spawn : list.spawns) poses.push_back({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)});
+            for (const Spawn& spawn : list.spawns)
+                poses.push_back({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)});
             for (const Judgement& judged : check_poses(map, checker, poses)) CHECK(judged.verdict == Verdict::Valid);
         }
     }
@@ -118,7 +119,8 @@ TEST_CASE("check in real scenes agrees with the independent decision")
         SampleOptions sampling;
         sampling.count = 15;
         sampling.offset = 0.15;
-        for (const Spawn& spawn : sample(map, checker, sampling).spawns) poses.push_back({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)});
+        for (const Spawn& spawn : sample(map, checker, sampling).spawns)
+            poses.push_back({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)});
         const std::vector<Judgement> fast = check_poses(map, checker, poses);
         for (std::size_t i = 0; i < poses.size(); ++i) {
             const slow::Decision slow = slow::decide(map.scene, map.bounds, robot, poses[i], 1.0, 1e9);
@@ -149,7 +151,8 @@ TEST_CASE("a map of a mesh with doubled faces has layers, but nothing inside")
     sampling.layers = {LayerChoice::Kind::Bottom, 0};
     const SpawnList list = sample(map, checker, sampling);
     CHECK(list.spawns.size() == 100);
-    const auto on_floor = std::count_if(list.spawns.begin(), list.spawns.end(), [](const Spawn& spawn) { return spawn.position.z() < 0.5; });
+    const auto on_floor = std::count_if(list.spawns.begin(), list.spawns.end(),
+                                        [](const Spawn& spawn) { return spawn.position.z() < 0.5; });
     CAPTURE(on_floor);
     CHECK(on_floor > 80);  // under the roof; the rest stand where there is nothing but a ledge
 }
@@ -169,7 +172,8 @@ TEST_CASE("the garage has spawns on every deck and none in the slabs")
         const double ground = spawn.position.z() - 0.1;
         for (std::size_t deck = 0; deck < decks.size(); ++deck) on_deck[deck] += std::abs(ground - decks[deck]) < 0.02;
         for (const double layer : column_at(map.geometry, spawn.position.x(), spawn.position.y()).layers)
-            CHECK((layer <= ground + 0.1 || layer >= ground + 0.49));  // the robot is 0.39 m tall, slabs are 0.21 m thick
+            CHECK(
+                (layer <= ground + 0.1 || layer >= ground + 0.49));  // the robot is 0.39 m tall, slabs are 0.21 m thick
     }
     for (const int n : on_deck) CHECK(n > 30);
 }

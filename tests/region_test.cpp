@@ -48,8 +48,11 @@ std::vector<Region> random_regions(Draw& draw)
         const int polygons = 1 + int(draw.unit() * 3);
         for (int p = 0; p < polygons; ++p) {
             const Vec2 centre(draw.uniform(-4, 4), draw.uniform(-4, 4));
-            if (draw.unit() < 0.3) region.polygons.push_back({tangle(draw, 3 + int(draw.unit() * 8))});
-            else region.polygons.push_back({star(draw, centre, 3, 3 + int(draw.unit() * 30)), star(draw, centre, 0.8, 3 + int(draw.unit() * 6))});
+            if (draw.unit() < 0.3)
+                region.polygons.push_back({tangle(draw, 3 + int(draw.unit() * 8))});
+            else
+                region.polygons.push_back({star(draw, centre, 3, 3 + int(draw.unit() * 30)),
+                                           star(draw, centre, 0.8, 3 + int(draw.unit() * 6))});
         }
         out.push_back(region);
     }
@@ -68,7 +71,9 @@ std::optional<bool> slow_contains(const std::vector<Region>& regions, const Vec2
                     const Vec2 &a = ring[i], &b = ring[(i + 1) % ring.size()];
                     const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
                     if ((a + t * (b - a) - p).norm() < 1e-6) return std::nullopt;
-                    if ((a.x() < p.x()) != (b.x() < p.x()) && a.y() + (p.x() - a.x()) / (b.x() - a.x()) * (b.y() - a.y()) > p.y()) inside = !inside;
+                    if ((a.x() < p.x()) != (b.x() < p.x()) &&
+                        a.y() + (p.x() - a.x()) / (b.x() - a.x()) * (b.y() - a.y()) > p.y())
+                        inside = !inside;
                 }
             in_any = in_any || inside;
         }
@@ -148,7 +153,8 @@ TEST_CASE("rectangles that miss or fill a region are known to")
             covered += covers;
             bool all = true, any = false;
             for (int k = 0; k < 40; ++k) {
-                const bool in = index.contains({draw.uniform(rect.low_x, rect.high_x), draw.uniform(rect.low_y, rect.high_y)});
+                const bool in = index.contains(
+                    {draw.uniform(rect.low_x, rect.high_x), draw.uniform(rect.low_y, rect.high_y)});
                 all = all && in;
                 any = any || in;
             }
@@ -238,7 +244,8 @@ TEST_CASE("samples are uniform by area over the region, and nowhere else")
     }
     chi_square += (rest_observed - rest_expected) * (rest_observed - rest_expected) / rest_expected;
     CAPTURE(chi_square, bins);
-    CHECK(std::abs(chi_square - bins) < 3.3 * std::sqrt(2.0 * bins));  // bins degrees of freedom: 0.1 % of honest runs are outside
+    CHECK(std::abs(chi_square - bins) <
+          3.3 * std::sqrt(2.0 * bins));  // bins degrees of freedom: 0.1 % of honest runs are outside
 }
 
 TEST_CASE("a region that is full is proven so, and the same bytes at any number of threads")
@@ -270,7 +277,8 @@ TEST_CASE("a region that is full is proven so, and the same bytes at any number 
             for (const double layer : column.layers) {
                 const Vec3 p(x, y, layer + *options.offset);
                 ++probes;
-                const bool far = std::none_of(one.spawns.begin(), one.spawns.end(), [&](const Spawn& spawn) { return (spawn.position - p).norm() < 1.0; });
+                const bool far = std::none_of(one.spawns.begin(), one.spawns.end(),
+                                              [&](const Spawn& spawn) { return (spawn.position - p).norm() < 1.0; });
                 if (far) CHECK(judge(map, checker, column, {p, Mat3::Identity()}, options).verdict != Verdict::Valid);
             }
         }
@@ -324,7 +332,8 @@ TEST_CASE("a raster in a region is the whole one's columns that lie in it")
     CHECK(got.size() > 150);
     bool same = true;
     for (std::size_t i = 0; i < got.size(); ++i)
-        same = same && got[i].x == wanted[i].x && got[i].y == wanted[i].y && got[i].z == wanted[i].z && got[i].verdict == wanted[i].verdict;
+        same = same && got[i].x == wanted[i].x && got[i].y == wanted[i].y && got[i].z == wanted[i].z &&
+               got[i].verdict == wanted[i].verdict;
     CHECK(same);
 }
 
@@ -350,7 +359,8 @@ TEST_CASE("a search in a region finds only there, and ends")
 TEST_CASE("GeoJSON of every kind with areas is read")
 {
     const TempFolder folder;
-    const std::string outer = "[[0,0],[4,0],[4,4],[0,4],[0,0]]", hole = "[[1,1,9],[1,2,9],[2,2,9],[2,1,9],[1,1,9]]", far = "[[10,0],[12,0],[11,3],[10,0]]";
+    const std::string outer = "[[0,0],[4,0],[4,4],[0,4],[0,0]]", hole = "[[1,1,9],[1,2,9],[2,2,9],[2,1,9],[1,1,9]]",
+                      far = "[[10,0],[12,0],[11,3],[10,0]]";
     const std::string polygon = R"({"type":"Polygon","coordinates":[)" + outer + "," + hole + "]}";
     const auto read = [&](const std::string& text) { return read_region(folder.write("a.geojson", text)); };
     const auto check_hole = [&](const Region& region) {
@@ -364,12 +374,15 @@ TEST_CASE("GeoJSON of every kind with areas is read")
     check_hole(read(R"({"type":"MultiPolygon","coordinates":[[)" + outer + "," + hole + "],[" + far + "]]}"));
     check_hole(read(R"({"type":"Feature","properties":{},"geometry":)" + polygon + "}"));
     check_hole(read(R"({"type":"GeometryCollection","geometries":[)" + polygon + "]}"));
-    const Region all = read(R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":null,"geometry":)" + polygon +
-                            R"(},{"type":"Feature","geometry":null},{"type":"Feature","geometry":{"type":"Point","coordinates":[1,1]}}]})");
+    const Region all = read(
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":null,"geometry":)" + polygon +
+        R"(},{"type":"Feature","geometry":null},{"type":"Feature","geometry":{"type":"Point","coordinates":[1,1]}}]})");
     check_hole(all);
-    CHECK(all.notices == std::vector<std::string>{(folder / "a.geojson").string() + ": 1 point or line left out: points and lines have no area"});
+    CHECK(all.notices == std::vector<std::string>{(folder / "a.geojson").string() +
+                                                  ": 1 point or line left out: points and lines have no area"});
     CHECK(all.name == "a.geojson");
-    const Region utm = read(R"({"type":"Polygon","crs":{"type":"name","properties":{"name":"EPSG:32611"}},"coordinates":[)" + outer + "]}");
+    const Region utm = read(
+        R"({"type":"Polygon","crs":{"type":"name","properties":{"name":"EPSG:32611"}},"coordinates":[)" + outer + "]}");
     CHECK_THAT(utm.notices.at(0), Contains("crs EPSG:32611 is not looked at"));
 }
 
@@ -387,7 +400,8 @@ TEST_CASE("CSV polygons end at empty lines or where their name changes")
 TEST_CASE("CSV regions of spreadsheets, with a byte order mark and quotes, are read")
 {
     const TempFolder folder;
-    const Region region = read_region(folder.write("a.csv", "\xEF\xBB\xBF\"x\",\"y\",\"note\"\r\n\"0\",\"0\",\"a, b\"\r\n\"2\",\"0\",\r\n\"2\",\"3\",\r\n"));
+    const Region region = read_region(folder.write(
+        "a.csv", "\xEF\xBB\xBF\"x\",\"y\",\"note\"\r\n\"0\",\"0\",\"a, b\"\r\n\"2\",\"0\",\r\n\"2\",\"3\",\r\n"));
     REQUIRE(region.polygons.size() == 1);
     CHECK(region.polygons[0][0].size() == 3);
     CHECK(region.polygons[0][0][2] == Vec2(2, 3));
@@ -399,10 +413,12 @@ TEST_CASE("a nav2 map is the region of its free cells, or a keep-out of its occu
     Draw draw(31, 0);
     constexpr int rows = 19, cols = 27;
     std::string pixels = "P2\n27 19\n255\n";
-    for (int i = 0; i < rows * cols; ++i) pixels += std::to_string(std::array{0, 205, 254, 254}[std::size_t(draw.unit() * 4)]) + " ";
+    for (int i = 0; i < rows * cols; ++i)
+        pixels += std::to_string(std::array{0, 205, 254, 254}[std::size_t(draw.unit() * 4)]) + " ";
     folder.write("a.pgm", pixels);
     const std::string yaw = GENERATE("0", "0.7");
-    const auto file = folder.write("map.yaml", "image: a.pgm\nresolution: 0.3\norigin: [2, -1, " + yaw + "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+    const auto file = folder.write("map.yaml", "image: a.pgm\nresolution: 0.3\norigin: [2, -1, " + yaw +
+                                                   "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
     const Nav2Map map = read_nav2_map(file);
     for (const MapCells cells : {MapCells::Free, MapCells::Occupied}) {
         const Region region = read_region(file, cells);
@@ -410,8 +426,10 @@ TEST_CASE("a nav2 map is the region of its free cells, or a keep-out of its occu
         const PolygonIndex index({region});
         for (int row = 0; row < rows; ++row)
             for (int col = 0; col < cols; ++col) {
-                const Vec2 low = map.corner(row + 1, col).head<2>(), high = map.corner(row, col + 1).head<2>(), left = map.corner(row, col).head<2>();
-                const bool wanted = map.at(row, col) == (cells == MapCells::Free ? Nav2Map::Cell::Free : Nav2Map::Cell::Occupied);
+                const Vec2 low = map.corner(row + 1, col).head<2>(), high = map.corner(row, col + 1).head<2>(),
+                           left = map.corner(row, col).head<2>();
+                const bool wanted = map.at(row, col) ==
+                                    (cells == MapCells::Free ? Nav2Map::Cell::Free : Nav2Map::Cell::Occupied);
                 REQUIRE(index.contains((low + high) / 2) == wanted);
                 REQUIRE(index.contains(0.98 * left + 0.01 * (low + high)) == wanted);
             }
@@ -425,14 +443,20 @@ TEST_CASE("regions that make no sense are refused with the place")
         CHECK_THROWS_WITH(read_region(folder.write(name, text)), (folder / name).string() + ": " + reason);
     };
     const auto polygon = [](const std::string& ring) { return R"({"type":"Polygon","coordinates":[)" + ring + "]}"; };
-    check_refused("a.json", polygon("[[0,0],[1,0],[1,1]]"), "$.coordinates[0] is not closed: its last position differs from its first");
-    check_refused("a.json", polygon("[[0,0],[1,0],[0,0]]"), "$.coordinates[0] has 2 different corners, needs at least 3");
-    check_refused("a.json", polygon("[[0,0],[1,1],[2,2],[0,0]]"), "$.coordinates[0] has no area: its corners lie on one line");
+    check_refused("a.json", polygon("[[0,0],[1,0],[1,1]]"),
+                  "$.coordinates[0] is not closed: its last position differs from its first");
+    check_refused("a.json", polygon("[[0,0],[1,0],[0,0]]"),
+                  "$.coordinates[0] has 2 different corners, needs at least 3");
+    check_refused("a.json", polygon("[[0,0],[1,1],[2,2],[0,0]]"),
+                  "$.coordinates[0] has no area: its corners lie on one line");
     check_refused("a.json", polygon("[[0,0],[1,\"1\"],[2,2],[0,0]]"), "$.coordinates[0][1] is no position [x, y]");
     check_refused("a.json", R"({"type":"Polygon"})", "$.coordinates is missing or no list");
     check_refused("a.json", R"({"type":"Polygon","coordinates":[]})", "$.coordinates is no list of rings");
-    check_refused("a.json", R"({"type":"Topology"})", "$ has type \"Topology\", needs Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection");
-    check_refused("a.json", R"({"type":"FeatureCollection","features":[{"type":"Feature"}]})", "$.features[0].geometry is missing");
+    check_refused(
+        "a.json", R"({"type":"Topology"})",
+        "$ has type \"Topology\", needs Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection");
+    check_refused("a.json", R"({"type":"FeatureCollection","features":[{"type":"Feature"}]})",
+                  "$.features[0].geometry is missing");
     check_refused("a.json", R"({"type":"Point","coordinates":[1,1]})", "has no polygon, only 1 point or line");
     check_refused("a.json", "[]", "$ is no object");
     std::string deep;
@@ -440,10 +464,15 @@ TEST_CASE("regions that make no sense are refused with the place")
     for (int i = 0; i < 5000; ++i) deep += "]}";
     CHECK_THROWS_WITH(read_region(folder.write("a.json", deep)), Contains("is nested too deep"));
     CHECK_THROWS_WITH(read_region(folder.write("a.json", "{\"type\":")), Contains("is no JSON"));
-    CHECK_THROWS_WITH(read_region(folder.write("a.json", polygon("[[0,0],[NaN,0],[1,1],[0,0]]"))), Contains("is no JSON"));
-    CHECK_THROWS_WITH(read_region(folder.write("a.json", polygon("[[0,0],[1e999,0],[1,1],[0,0]]"))), Contains("is no JSON"));
-    check_refused("a.json", R"({"type":"Polygon","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:OGC:1.3:CRS84"}},"coordinates":[]})",
-                  "has crs urn:ogc:def:crs:OGC:1.3:CRS84, which is degrees; needs metres in the map's frame (ogr2ogr -t_srs projects it)");
+    CHECK_THROWS_WITH(read_region(folder.write("a.json", polygon("[[0,0],[NaN,0],[1,1],[0,0]]"))),
+                      Contains("is no JSON"));
+    CHECK_THROWS_WITH(read_region(folder.write("a.json", polygon("[[0,0],[1e999,0],[1,1],[0,0]]"))),
+                      Contains("is no JSON"));
+    check_refused(
+        "a.json",
+        R"({"type":"Polygon","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:OGC:1.3:CRS84"}},"coordinates":[]})",
+        "has crs urn:ogc:def:crs:OGC:1.3:CRS84, which is degrees; needs metres in the map's frame (ogr2ogr -t_srs "
+        "projects it)");
     check_refused("a.csv", "0,0\n1,0\n\n", "line 1: the polygon has 2 different corners, needs at least 3");
     check_refused("a.csv", "0,0\n1,0\n2,0\n", "line 1: the polygon has no area: its corners lie on one line");
     check_refused("a.csv", "0,0\n1,x\n2,0\n", "line 2: \"x\" is no finite number");
@@ -451,8 +480,10 @@ TEST_CASE("regions that make no sense are refused with the place")
     check_refused("a.csv", "0,0,0\n", "line 1: has 3 fields, needs x,y (a header line names further ones)");
     check_refused("a.csv", "lon,lat\n", "line 1: has neither numbers x,y nor the names of such columns");
     check_refused("a.csv", "", "has no polygon: x,y of three corners or more are needed");
-    check_refused("a.yaml", "format: spawnfield-scene/1\n", "is no 2D map of nav2 or ROS (keys image, resolution, origin, …)");
-    CHECK_THROWS_WITH(read_region(folder / "none.json"), (folder / "none.json").string() + ": does not exist; is the path right?");
+    check_refused("a.yaml", "format: spawnfield-scene/1\n",
+                  "is no 2D map of nav2 or ROS (keys image, resolution, origin, …)");
+    CHECK_THROWS_WITH(read_region(folder / "none.json"),
+                      (folder / "none.json").string() + ": does not exist; is the path right?");
     CHECK_THROWS_WITH(read_region(folder.path()), Contains("is a folder, needs a file"));
 }
 
@@ -460,10 +491,14 @@ TEST_CASE("regions that are cut short are read or refused, whatever the byte")
 {
     const TempFolder folder;
     folder.write("a.pgm", "P5\n3 2\n255\n\xfe\xfe\x01\xfe\xcd\x02");
-    const std::string json = R"({"type":"FeatureCollection","features":[{"type":"Feature","geometry":{"type":"MultiPolygon","coordinates":[[[[0,0],[4,0],[4,4],[0,0]]]]}}]})";
-    const std::string yaml = "image: a.pgm\nresolution: 0.3\norigin: [2, -1, 0.5]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-    const auto [name, bytes] = GENERATE_COPY(std::pair<std::string, std::string>{"a.json", json}, std::pair<std::string, std::string>{"a.csv", "x,y\n0,0\n4,0\n4,4\n\n7,7\n8,7\n8,8\n"},
-                                             std::pair<std::string, std::string>{"a.yaml", yaml});
+    const std::string json =
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","geometry":{"type":"MultiPolygon","coordinates":[[[[0,0],[4,0],[4,4],[0,0]]]]}}]})";
+    const std::string yaml =
+        "image: a.pgm\nresolution: 0.3\norigin: [2, -1, 0.5]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    const auto [name, bytes] = GENERATE_COPY(
+        std::pair<std::string, std::string>{"a.json", json},
+        std::pair<std::string, std::string>{"a.csv", "x,y\n0,0\n4,0\n4,4\n\n7,7\n8,7\n8,8\n"},
+        std::pair<std::string, std::string>{"a.yaml", yaml});
     std::size_t good = 0;
     for (std::size_t length = 0; length <= bytes.size(); ++length)
         for (const char wrong : {'\0', '\x15'}) {
@@ -485,7 +520,8 @@ TEST_CASE("the program takes regions and keep-outs, and tells what is odd")
     folder.write("a.geojson", R"({"type":"Polygon","coordinates":[[[-3,-3],[4,-2],[0,4],[-3,-3]]]})");
     folder.write("out.csv", "-1,-1\n1,-1\n1,1\n-1,1\n");
     const std::string robot = " --robot box:0.2,0.2,0.2 ";
-    const ProgramRun run = run_program(folder, "sample map" + robot + "-n 50 --region a.geojson --keep-out out.csv --format json -o s.json");
+    const ProgramRun run = run_program(
+        folder, "sample map" + robot + "-n 50 --region a.geojson --keep-out out.csv --format json -o s.json");
     CHECK(run.status == 0);
     CHECK_THAT(run.err, Contains(" off the region;"));
     const std::string json = bytes_of(folder / "s.json");
@@ -495,15 +531,20 @@ TEST_CASE("the program takes regions and keep-outs, and tells what is odd")
     CHECK(box.status == 0);
     CHECK(box.err.find("off the region") == std::string::npos);
     CHECK(run_program(folder, "sample map" + robot + "-n 5 --region 5,5,6,6 --region -3,-3,-2,-2").status == 0);
-    CHECK(run_program(folder, "raster map" + robot + "--dims 2 --step 1 --region a.geojson -o r.csv --heatmap r.png").status == 0);
+    CHECK(run_program(folder, "raster map" + robot + "--dims 2 --step 1 --region a.geojson -o r.csv --heatmap r.png")
+              .status == 0);
     const std::string csv = bytes_of(folder / "r.csv");
     CHECK(std::count(csv.begin(), csv.end(), '\n') < 40);
     CHECK(run_program(folder, "heatmap map" + robot + "--region a.geojson -o h.png").status == 0);
-    CHECK(run_program(folder, "search map" + robot + "-n 3 --min-distance 0.5 --max-failures 5000 --bounds -10,-10,0,10,10,0.5 --region a.geojson").status == 0);
+    CHECK(run_program(folder,
+                      "search map" + robot +
+                          "-n 3 --min-distance 0.5 --max-failures 5000 --bounds -10,-10,0,10,10,0.5 --region a.geojson")
+              .status == 0);
     CHECK(run_program(folder, "sample map" + robot + "-n 5 --region none.geojson").status == 4);
     CHECK(run_program(folder, "sample map" + robot + "-n 5 --region 1,2,3").status == 2);
     folder.write("degrees.csv", "7.001,46.5\n7.002,46.5\n7.002,46.501\n");
     const ProgramRun degrees = run_program(folder, "sample map" + robot + "-n 5 --region degrees.csv");
     CHECK(degrees.status == 3);
-    CHECK_THAT(degrees.err, Contains("--region degrees.csv 7.001, 46.5 to 7.002, 46.501 m lies off the map") && Contains("degrees need to become metres"));
+    CHECK_THAT(degrees.err, Contains("--region degrees.csv 7.001, 46.5 to 7.002, 46.501 m lies off the map") &&
+                                Contains("degrees need to become metres"));
 }

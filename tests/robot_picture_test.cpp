@@ -19,11 +19,13 @@ namespace {
 std::vector<cv::Size> blue_areas(const cv::Mat& image)
 {
     cv::Mat mask, labels, stats, centroids;
-    cv::inRange(image, cv::Scalar(241, 212, 161), cv::Scalar(243, 214, 163), mask);  // blue, green, red of a lightened 56b4e9
+    cv::inRange(image, cv::Scalar(241, 212, 161), cv::Scalar(243, 214, 163),
+                mask);  // blue, green, red of a lightened 56b4e9
     const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids);
     std::vector<std::pair<int, cv::Size>> areas;
     for (int k = 1; k < count; ++k)
-        areas.emplace_back(-stats.at<int>(k, cv::CC_STAT_AREA), cv::Size(stats.at<int>(k, cv::CC_STAT_WIDTH), stats.at<int>(k, cv::CC_STAT_HEIGHT)));
+        areas.emplace_back(-stats.at<int>(k, cv::CC_STAT_AREA),
+                           cv::Size(stats.at<int>(k, cv::CC_STAT_WIDTH), stats.at<int>(k, cv::CC_STAT_HEIGHT)));
     std::stable_sort(areas.begin(), areas.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<cv::Size> out;
     for (const auto& [area, size] : areas) out.push_back(size);
@@ -32,7 +34,11 @@ std::vector<cv::Size> blue_areas(const cv::Mat& image)
 
 Robot boxes(const TempFolder& folder, const std::string& more = "")
 {
-    return load_robot(folder.write("robot.yaml", "format: spawnfield-robot/1\nparts:\n  - {name: hull, box: [2, 1, 0.5], xyz: [0, 0, 0.4]}\n" + more).string());
+    return load_robot(
+        folder
+            .write("robot.yaml",
+                   "format: spawnfield-robot/1\nparts:\n  - {name: hull, box: [2, 1, 0.5], xyz: [0, 0, 0.4]}\n" + more)
+            .string());
 }
 
 }  // namespace
@@ -56,7 +62,8 @@ TEST_CASE("a robot is drawn from three sides to one scale")
 TEST_CASE("robots of any shape are drawn, in the same bytes each time")
 {
     const TempFolder folder;
-    for (const char* const name : {"box:0.001,0.001,0.001", "box:100,0.1,0.1", "box:0.1,100,0.1", "box:0.1,0.1,100", "box:1,1,1@50,50,50"}) {
+    for (const char* const name :
+         {"box:0.001,0.001,0.001", "box:100,0.1,0.1", "box:0.1,100,0.1", "box:0.1,0.1,100", "box:1,1,1@50,50,50"}) {
         const Robot robot = load_robot(name);
         write_robot_picture(robot, folder / "a.png");
         write_robot_picture(robot, folder / "b.png");
@@ -75,8 +82,10 @@ TEST_CASE("a robot's turning radius reaches its farthest corner as seen from abo
     const TempFolder folder;
     CHECK(turning_radius(boxes(folder)) == Approx(std::hypot(1, 0.5)));
     CHECK(turning_radius(boxes(folder, "  - {sphere: 0.5, xyz: [0, 3, 0]}\n")) == Approx(3.5).epsilon(2e-3));
-    CHECK(turning_radius(boxes(folder, "  - {cylinder: {radius: 0.5, length: 4}, rpy_deg: [90, 0, 0]}\n")) == Approx(std::hypot(2, 0.5)).epsilon(2e-3));
-    CHECK(turning_radius(boxes(folder, "  - {capsule: {radius: 0.5, length: 4}, rpy_deg: [90, 0, 0]}\n")) == Approx(2.5).epsilon(2e-3));
+    CHECK(turning_radius(boxes(folder, "  - {cylinder: {radius: 0.5, length: 4}, rpy_deg: [90, 0, 0]}\n")) ==
+          Approx(std::hypot(2, 0.5)).epsilon(2e-3));
+    CHECK(turning_radius(boxes(folder, "  - {capsule: {radius: 0.5, length: 4}, rpy_deg: [90, 0, 0]}\n")) ==
+          Approx(2.5).epsilon(2e-3));
 }
 
 TEST_CASE("contacts are the file's, or told to be taken")
@@ -95,7 +104,9 @@ TEST_CASE("info tells of a robot's links, meshes, footprint and contacts, and dr
     boxes(folder);
     const ProgramRun run = run_program(folder, "info robot.yaml --picture robot.png");
     CHECK(run.status == 0);
-    CHECK_THAT(run.out, Contains("  hull: box, from -1, -0.5, 0.15 to 1, 0.5, 0.65 m\n") && Contains("turns within 1.118") && Contains("contacts\n  none given") && Contains("lowest point\n  -1, "));
+    CHECK_THAT(run.out, Contains("  hull: box, from -1, -0.5, 0.15 to 1, 0.5, 0.65 m\n") &&
+                            Contains("turns within 1.118") && Contains("contacts\n  none given") &&
+                            Contains("lowest point\n  -1, "));
     CHECK(bytes_of(folder / "robot.png").starts_with("\x89PNG"));
     CHECK(run_program(folder, "info robot.yaml --picture none/robot.png").status == 1);
 }

@@ -18,21 +18,29 @@ using namespace spawnfield;
 
 namespace {
 
-std::string sdf_of(const std::string& inside) { return "<sdf version=\"1.9\">\n<model name=\"test\">\n" + inside + "\n</model>\n</sdf>\n"; }
-
-std::string collision(const std::string& geometry, const std::string& pose = "0 0 0 0 0 0", const std::string& name = "c")
+std::string sdf_of(const std::string& inside)
 {
-    return "<collision name=\"" + name + "\"><pose>" + pose + "</pose><geometry>" + geometry + "</geometry></collision>\n";
+    return "<sdf version=\"1.9\">\n<model name=\"test\">\n" + inside + "\n</model>\n</sdf>\n";
 }
 
-std::string link_of(const std::string& name, const std::string& inside, const std::string& pose = "<pose>0 0 0 0 0 0</pose>")
+std::string collision(const std::string& geometry, const std::string& pose = "0 0 0 0 0 0",
+                      const std::string& name = "c")
+{
+    return "<collision name=\"" + name + "\"><pose>" + pose + "</pose><geometry>" + geometry +
+           "</geometry></collision>\n";
+}
+
+std::string link_of(const std::string& name, const std::string& inside,
+                    const std::string& pose = "<pose>0 0 0 0 0 0</pose>")
 {
     return "<link name=\"" + name + "\">" + pose + inside + "</link>\n";
 }
 
-std::string joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child, const std::string& inside)
+std::string joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
+                  const std::string& inside)
 {
-    return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent>" + parent + "</parent><child>" + child + "</child>" + inside + "</joint>\n";
+    return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent>" + parent + "</parent><child>" + child +
+           "</child>" + inside + "</joint>\n";
 }
 
 Robot load(const TempFolder& folder, const std::string& inside, const RobotOptions& options = {})
@@ -47,11 +55,15 @@ const std::string small_box = "<box><size>0.2 0.4 0.6</size></box>";
 TEST_CASE("an SDF model is the union of its links' collisions in its own frame, whatever its <pose>")
 {
     const TempFolder folder;
-    const Robot robot = load(folder, "<pose>9 9 9 0 0 1</pose>" + link_of("base", collision(small_box, "0 0 1 0 0 0")) +
-                                         link_of("ball", collision("<sphere><radius>0.5</radius></sphere>"), "<pose>0 3 0 0 0 0</pose>") +
-                                         link_of("rod", collision("<cylinder><radius>0.1</radius><length>2</length></cylinder>", "0 0 0 1.5707963267948966 0 0") +
-                                                         collision("<capsule><radius>0.25</radius><length>1</length></capsule>", "5 0 0 0 0 0", "d"),
-                                              "<pose relative_to='ball'>0 0 3 0 0 0</pose>"));
+    const Robot robot = load(
+        folder,
+        "<pose>9 9 9 0 0 1</pose>" + link_of("base", collision(small_box, "0 0 1 0 0 0")) +
+            link_of("ball", collision("<sphere><radius>0.5</radius></sphere>"), "<pose>0 3 0 0 0 0</pose>") +
+            link_of("rod",
+                    collision("<cylinder><radius>0.1</radius><length>2</length></cylinder>",
+                              "0 0 0 1.5707963267948966 0 0") +
+                        collision("<capsule><radius>0.25</radius><length>1</length></capsule>", "5 0 0 0 0 0", "d"),
+                    "<pose relative_to='ball'>0 0 3 0 0 0</pose>"));
     CHECK(robot.name == "test");
     REQUIRE(robot.parts.size() == 4);
     check_bounds(robot.parts[0].bounds(), {-0.1, -0.2, 0.7}, {0.1, 0.2, 1.3});
@@ -60,13 +72,15 @@ TEST_CASE("an SDF model is the union of its links' collisions in its own frame, 
     check_bounds(robot.parts[3].bounds(), {4.75, 2.75, 2.25}, {5.25, 3.25, 3.75});
     CHECK(robot.parts[3].name == "rod");
     REQUIRE(robot.notices.size() == 1);
-    CHECK(robot.notices[0] == (folder / "robot.sdf").string() + ": the <pose> of model \"test\" does not count: poses are those of its own frame");
+    CHECK(robot.notices[0] == (folder / "robot.sdf").string() +
+                                  ": the <pose> of model \"test\" does not count: poses are those of its own frame");
 }
 
 TEST_CASE("frames and nested models add up")
 {
     const TempFolder folder;
-    const Robot robot = load(folder, "<frame name='mount'><pose>1 0 0 0 0 1.5707963267948966</pose></frame>" + link_of("base", "") +
+    const Robot robot = load(folder, "<frame name='mount'><pose>1 0 0 0 0 1.5707963267948966</pose></frame>" +
+                                         link_of("base", "") +
                                          "<model name='arm'><pose relative_to='mount'>1 0 0 0 0 0</pose>" +
                                          link_of("hand", collision(small_box, "1 0 0 0 0 0")) + "</model>");
     REQUIRE(robot.parts.size() == 1);
@@ -79,19 +93,26 @@ TEST_CASE("models are included from --model-path, from beside the file, and thro
     const TempFolder folder;
     const std::string config = "<model><name>x</name><sdf version='1.9'>model.sdf</sdf></model>";
     folder.write("lib/wheel/model.config", config);
-    folder.write("lib/wheel/model.sdf", "<sdf version='1.9'><model name='wheel'>" + link_of("rim", collision("<mesh><uri>model://wheel/rim.obj</uri></mesh>")) + "</model></sdf>");
+    folder.write("lib/wheel/model.sdf", "<sdf version='1.9'><model name='wheel'>" +
+                                            link_of("rim", collision("<mesh><uri>model://wheel/rim.obj</uri></mesh>")) +
+                                            "</model></sdf>");
     folder.write("lib/wheel/rim.obj", mesh_text::obj(hand::box({1, 1, 1})));
     folder.write("lib/axle/model.config", config);
-    folder.write("lib/axle/model.sdf", "<sdf version='1.9'><model name='axle'>" + link_of("rod", "") +
-                                              "<include><uri>model://wheel</uri><name>w</name><pose>0 2 0 0 0 0</pose></include></model></sdf>");
-    const std::string inside = link_of("base", "") + "<include><uri>model://axle</uri><pose>0 0 1 0 0 0</pose></include>";
+    folder.write("lib/axle/model.sdf",
+                 "<sdf version='1.9'><model name='axle'>" + link_of("rod", "") +
+                     "<include><uri>model://wheel</uri><name>w</name><pose>0 2 0 0 0 0</pose></include></model></sdf>");
+    const std::string inside = link_of("base", "") +
+                               "<include><uri>model://axle</uri><pose>0 0 1 0 0 0</pose></include>";
     const Robot robot = load(folder, inside, {.model_paths = {folder / "lib"}});
     REQUIRE(robot.parts.size() == 1);
     CHECK(robot.parts[0].name == "axle::w::rim");
     check_bounds(robot.bounds(), {-0.5, 1.5, 0.5}, {0.5, 2.5, 1.5});
     // The folder itself; its neighbours are found, being in the folder above.
     check_bounds(load_robot((folder / "lib/axle").string()).bounds(), {-0.5, 1.5, -0.5}, {0.5, 2.5, 0.5});
-    CHECK_THROWS_WITH(load(folder, inside), Catch::Contains("model://axle") && Catch::Contains("; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell") && Catch::StartsWith((folder / "robot.sdf").string() + ": "));
+    CHECK_THROWS_WITH(load(folder, inside),
+                      Catch::Contains("model://axle") &&
+                          Catch::Contains("; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell") &&
+                          Catch::StartsWith((folder / "robot.sdf").string() + ": "));
 }
 
 TEST_CASE("models that include each other without end are refused, the same model twice is not")
@@ -100,39 +121,55 @@ TEST_CASE("models that include each other without end are refused, the same mode
     for (const std::string name : {"a", "b"}) {
         folder.write(name + "/model.config", "<model><name>x</name><sdf version='1.9'>model.sdf</sdf></model>");
         const std::string other = name == "a" ? "b" : "a";
-        folder.write(name + "/model.sdf", "<sdf version='1.9'><model name='" + name + "'>" + link_of("l", collision(small_box)) + "<include><uri> model://" + other +
+        folder.write(name + "/model.sdf", "<sdf version='1.9'><model name='" + name + "'>" +
+                                              link_of("l", collision(small_box)) + "<include><uri> model://" + other +
                                               " </uri></include></model></sdf>");
     }
-    const auto canonical = [&](const std::string& name) { return std::filesystem::canonical(folder / name / "model.sdf").string(); };
+    const auto canonical = [&](const std::string& name) {
+        return std::filesystem::canonical(folder / name / "model.sdf").string();
+    };
     CHECK_THROWS_WITH(load_robot((folder / "a").string()),
-                      Catch::Contains("model://a: leads back to itself: " + canonical("a") + " includes " + canonical("b") + " includes " + canonical("a")));
-    folder.write("b/model.sdf", "<sdf version='1.9'><model name='b'>" + link_of("l", collision(small_box)) + "<!-- <include><uri>model://a</uri></include> --></model></sdf>");
-    folder.write("a/model.sdf", "<sdf version='1.9'><model name='a'>" + link_of("l", "") + "<include><uri>model://b</uri></include><include><uri>model://b</uri><name>c</name>"
-                                "<pose>1 0 0 0 0 0</pose></include></model></sdf>");
+                      Catch::Contains("model://a: leads back to itself: " + canonical("a") + " includes " +
+                                      canonical("b") + " includes " + canonical("a")));
+    folder.write("b/model.sdf", "<sdf version='1.9'><model name='b'>" + link_of("l", collision(small_box)) +
+                                    "<!-- <include><uri>model://a</uri></include> --></model></sdf>");
+    folder.write("a/model.sdf", "<sdf version='1.9'><model name='a'>" + link_of("l", "") +
+                                    "<include><uri>model://b</uri></include><include><uri>model://b</uri><name>c</name>"
+                                    "<pose>1 0 0 0 0 0</pose></include></model></sdf>");
     CHECK(load_robot((folder / "a").string()).parts.size() == 2);
 }
 
 TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
 {
     const TempFolder folder;
-    const std::string turn = joint("turn", "revolute", "base", "arm", "<pose relative_to='base'>1 0 0 0 0 0</pose><axis><xyz>0 0 1</xyz><limit><lower>-2</lower><upper>2</upper></limit></axis>");
-    const std::string slide = joint("slide", "prismatic", "arm", "hand", "<axis><xyz expressed_in='__model__'>0 0 1</xyz><limit><lower>0</lower><upper>1</upper></limit></axis>");
-    const std::string arm = link_of("arm", "", "<pose>2 0 0 0 0 0</pose>"), hand_link = link_of("hand", collision(small_box), "<pose>3 0 0 0.5 0 0</pose>");
-    const std::string all = link_of("base", collision("<sphere><radius>0.1</radius></sphere>")) + arm + hand_link + turn + slide;
+    const std::string turn = joint("turn", "revolute", "base", "arm",
+                                   "<pose relative_to='base'>1 0 0 0 0 0</pose><axis><xyz>0 0 "
+                                   "1</xyz><limit><lower>-2</lower><upper>2</upper></limit></axis>");
+    const std::string slide = joint(
+        "slide", "prismatic", "arm", "hand",
+        "<axis><xyz expressed_in='__model__'>0 0 1</xyz><limit><lower>0</lower><upper>1</upper></limit></axis>");
+    const std::string arm = link_of("arm", "", "<pose>2 0 0 0 0 0</pose>"),
+                      hand_link = link_of("hand", collision(small_box), "<pose>3 0 0 0.5 0 0</pose>");
+    const std::string all = link_of("base", collision("<sphere><radius>0.1</radius></sphere>")) + arm + hand_link +
+                            turn + slide;
     const Robot robot = load(folder, all, {.joints = {{"turn", std::numbers::pi / 2}, {"slide", 1}}});
     CHECK(robot.parts[1].centre().isApprox(Vec3(1, 2, 1), 1e-9));
     CHECK(load(folder, all).parts[1].centre().isApprox(Vec3(3, 0, 0), 1e-9));
     // Seen from the hand it is the base that moves.
-    const Robot seen = load(folder, hand_link + arm + link_of("base", collision("<sphere><radius>0.1</radius></sphere>")) + turn + slide,
-                            {.joints = {{"turn", std::numbers::pi / 2}}});
+    const Robot seen = load(
+        folder, hand_link + arm + link_of("base", collision("<sphere><radius>0.1</radius></sphere>")) + turn + slide,
+        {.joints = {{"turn", std::numbers::pi / 2}}});
     CHECK(seen.parts[0].centre().isApprox(Vec3(3, 0, 0), 1e-9));
     CHECK(seen.parts[1].centre().isApprox(Vec3(1, 1, 0), 1e-9));
 
     const std::string file = (folder / "robot.sdf").string();
-    CHECK_THROWS_WITH(load(folder, all, {.joints = {{"turn", 3}}}), "load_robot: joint \"turn\" is 3, its limits in " + file + " are -2 to 2 rad");
-    CHECK_THROWS_WITH(load(folder, all, {.joints = {{"arm", 3}}}), "load_robot: joint \"arm\" is not in " + file + "; those that move: turn, slide");
+    CHECK_THROWS_WITH(load(folder, all, {.joints = {{"turn", 3}}}),
+                      "load_robot: joint \"turn\" is 3, its limits in " + file + " are -2 to 2 rad");
+    CHECK_THROWS_WITH(load(folder, all, {.joints = {{"arm", 3}}}),
+                      "load_robot: joint \"arm\" is not in " + file + "; those that move: turn, slide");
     const std::string loop = joint("loop", "fixed", "base", "hand", "");
-    CHECK_THROWS_WITH(load(folder, all + loop, {.joints = {{"turn", 1}}}), file + ": joints cannot be given: link \"hand\" hangs on several joints, a closed chain");
+    CHECK_THROWS_WITH(load(folder, all + loop, {.joints = {{"turn", 1}}}),
+                      file + ": joints cannot be given: link \"hand\" hangs on several joints, a closed chain");
     check_bounds(load(folder, all + loop).bounds(), load(folder, all).bounds().min, load(folder, all).bounds().max);
 }
 
@@ -141,16 +178,19 @@ TEST_CASE("meshes of SDF: scale, submesh, centre, and COLLADA's unit but not its
     const TempFolder folder;
     folder.write("two.obj", mesh_text::obj({{.name = "left", .mesh = mesh_text::box({0, 0, 0}, {1, 1, 1})},
                                             {.name = "right", .mesh = mesh_text::box({4, 4, 4}, {5, 6, 7})}}));
-    folder.write("cm.dae", mesh_text::dae({{.mesh = mesh_text::box({0, 0, 0}, {1, 2, 3})}}, {.up = "Y_UP", .unit = 0.1}));
+    folder.write("cm.dae",
+                 mesh_text::dae({{.mesh = mesh_text::box({0, 0, 0}, {1, 2, 3})}}, {.up = "Y_UP", .unit = 0.1}));
     const auto bounds = [&](const std::string& mesh, const std::string& pose = "0 0 0 0 0 0") {
         return load(folder, link_of("a", collision("<mesh>" + mesh + "</mesh>", pose))).bounds();
     };
     check_bounds(bounds("<uri>two.obj</uri><scale>2 1 1</scale>"), {0, 0, 0}, {10, 6, 7});
     check_bounds(bounds("<uri>two.obj</uri><submesh><name>right</name></submesh>"), {4, 4, 4}, {5, 6, 7});
-    check_bounds(bounds("<uri>two.obj</uri><submesh><name>right</name><center>true</center></submesh>", "0 0 9 0 0 0"), {-0.5, -1, 7.5}, {0.5, 1, 10.5});
+    check_bounds(bounds("<uri>two.obj</uri><submesh><name>right</name><center>true</center></submesh>", "0 0 9 0 0 0"),
+                 {-0.5, -1, 7.5}, {0.5, 1, 10.5});
     check_bounds(bounds("<uri>cm.dae</uri>"), {0, 0, 0}, {0.1, 0.2, 0.3}, 1e-7);
     check_bounds(bounds("<uri>file://" + (folder / "two.obj").string() + "</uri>"), {0, 0, 0}, {5, 6, 7});
-    CHECK_THROWS_WITH(bounds("<uri>two.obj</uri><submesh><name>up</name></submesh>"), Catch::Contains("two.obj: has no submesh \"up\"; it has left, right"));
+    CHECK_THROWS_WITH(bounds("<uri>two.obj</uri><submesh><name>up</name></submesh>"),
+                      Catch::Contains("two.obj: has no submesh \"up\"; it has left, right"));
 }
 
 TEST_CASE("an ellipsoid's polyhedron holds it, closely")
@@ -162,10 +202,14 @@ TEST_CASE("an ellipsoid's polyhedron holds it, closely")
     std::normal_distribution<double> normal;
     double farthest = -1;
     for (int k = 0; k < 2000; ++k) {
-        const Vec3 point = pose.rotation * Vec3(normal(random), normal(random), normal(random)).normalized().cwiseProduct(radii) + pose.position;
+        const Vec3 point = pose.rotation *
+                               Vec3(normal(random), normal(random), normal(random)).normalized().cwiseProduct(radii) +
+                           pose.position;
         for (const auto& f : hull.hull_faces) {
             const Vec3 a = hull.hull_vertices[std::size_t(f[0])];
-            const Vec3 outwards = (hull.hull_vertices[std::size_t(f[1])] - a).cross(hull.hull_vertices[std::size_t(f[2])] - a).normalized();
+            const Vec3 outwards = (hull.hull_vertices[std::size_t(f[1])] - a)
+                                      .cross(hull.hull_vertices[std::size_t(f[2])] - a)
+                                      .normalized();
             farthest = std::max(farthest, outwards.dot(point - a));
         }
     }
@@ -176,7 +220,8 @@ TEST_CASE("an ellipsoid's polyhedron holds it, closely")
     const TempFolder folder;
     const Robot robot = load(folder, link_of("a", collision("<ellipsoid><radii>1 2 3</radii></ellipsoid>")));
     REQUIRE(robot.notices.size() == 1);
-    CHECK_THAT(robot.notices[0], Catch::Contains("its ellipsoid counts as a polyhedron around it, 2.0 % more in volume"));
+    CHECK_THAT(robot.notices[0],
+               Catch::Contains("its ellipsoid counts as a polyhedron around it, 2.0 % more in volume"));
 }
 
 TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and line")
@@ -186,16 +231,23 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
     const std::string file = (folder / "robot.sdf").string() + ": ", in_a = file + "link \"a\": collision \"c\": ";
     const std::pair<std::string, std::string> cases[] = {
         {link_of("a", ""), file + "has no <collision>, needs at least one (<visual> does not count)"},
-        {link_of("a", collision("<box><size>1 0 1</size></box>")), file + "\"a::c\": <box> <size> is 0, needs > 0 and at most 1000 km (line 3)"},
-        {link_of("a", collision("<sphere><radius>-1</radius></sphere>")), file + "\"a::c\": <sphere> <radius> is -1, needs > 0 and at most 1000 km (line 3)"},
-        {link_of("a", collision("<plane><normal>0 0 1</normal></plane>")), in_a + "is a <plane>, which no robot can be made of: it has no end (line 3)"},
-        {link_of("a", collision("<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>1</height></polyline>")),
+        {link_of("a", collision("<box><size>1 0 1</size></box>")),
+         file + "\"a::c\": <box> <size> is 0, needs > 0 and at most 1000 km (line 3)"},
+        {link_of("a", collision("<sphere><radius>-1</radius></sphere>")),
+         file + "\"a::c\": <sphere> <radius> is -1, needs > 0 and at most 1000 km (line 3)"},
+        {link_of("a", collision("<plane><normal>0 0 1</normal></plane>")),
+         in_a + "is a <plane>, which no robot can be made of: it has no end (line 3)"},
+        {link_of("a",
+                 collision(
+                     "<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>1</height></polyline>")),
          in_a + "is a <polyline>, which robots cannot have here: a box or a mesh does (line 3)"},
         {link_of("a", collision("<mesh><uri>none.stl</uri></mesh>")),
-         in_a + "<mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the "
+         in_a + "<mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, "
+                "GAZEBO_MODEL_PATH, nor in the folders above the "
                 "file (line 3)"},
         {link_of("a", collision("<mesh><uri>flat.obj</uri></mesh>")),
-         in_a + "<mesh> cannot be used: " + (folder / "flat.obj").string() + ": its convex hull has no volume: its points lie in a plane (line 3)"},
+         in_a + "<mesh> cannot be used: " + (folder / "flat.obj").string() +
+             ": its convex hull has no volume: its points lie in a plane (line 3)"},
     };
     for (const auto& [text, wanted] : cases) {
         CHECK_THROWS_AS(load(folder, text), FileError);
@@ -209,21 +261,27 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
             return std::string(error.what());
         }
     };
-    CHECK(refused("<sdf version='1.9'><world name='w'/></sdf>") == file + "holds a <world>, needs a <model> to be a robot");
-    for (const std::string& text : {sdf_of(link_of("a", collision(small_box)) + link_of("a", collision(small_box))), sdf_of("<link"), std::string(),
-                                    sdf_of(link_of("a", collision(small_box), "<pose relative_to='q'/>")),
-                                    sdf_of(link_of("a", collision(small_box), "<pose relative_to='b'/>") + link_of("b", "", "<pose relative_to='a'/>"))}) {
+    CHECK(refused("<sdf version='1.9'><world name='w'/></sdf>") ==
+          file + "holds a <world>, needs a <model> to be a robot");
+    for (const std::string& text :
+         {sdf_of(link_of("a", collision(small_box)) + link_of("a", collision(small_box))), sdf_of("<link"),
+          std::string(), sdf_of(link_of("a", collision(small_box), "<pose relative_to='q'/>")),
+          sdf_of(link_of("a", collision(small_box), "<pose relative_to='b'/>") +
+                 link_of("b", "", "<pose relative_to='a'/>"))}) {
         INFO(text);
         CHECK_THAT(refused(text), Catch::StartsWith(file));
     }
     std::filesystem::create_directories(folder / "empty");
-    CHECK_THROWS_WITH(load_robot((folder / "empty").string()), (folder / "empty").string() + ": is a folder without model.config and .sdf file, needs to be a model's");
+    CHECK_THROWS_WITH(
+        load_robot((folder / "empty").string()),
+        (folder / "empty").string() + ": is a folder without model.config and .sdf file, needs to be a model's");
 }
 
 TEST_CASE("every prefix of an SDF robot is read or refused")
 {
     const TempFolder folder;
-    const std::string whole = sdf_of(link_of("a", collision(small_box)) + link_of("b", collision(small_box), "<pose>1 0 0 0 0 0</pose>") +
+    const std::string whole = sdf_of(link_of("a", collision(small_box)) +
+                                     link_of("b", collision(small_box), "<pose>1 0 0 0 0 0</pose>") +
                                      joint("j", "revolute", "a", "b", "<axis><xyz>0 0 1</xyz></axis>"));
     for (std::size_t length = 0; length < whole.size(); length += 23) {
         const auto file = folder.write("robot.sdf", whole.substr(0, length));
@@ -234,7 +292,8 @@ TEST_CASE("every prefix of an SDF robot is read or refused")
 TEST_CASE("an SDF model with an inertia that cannot be is taken, with a notice")
 {
     const TempFolder folder;
-    const std::string inertia = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>9</izz></inertia></inertial>";
+    const std::string inertia =
+        "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>9</izz></inertia></inertial>";
     const Robot robot = load(folder, link_of("a", inertia + collision(small_box)) + link_of("b", inertia));
     REQUIRE(robot.notices.size() == 1);
     CHECK_THAT(robot.notices[0], Catch::Contains("invalid inertia") && Catch::Contains("and 1 more such"));
@@ -245,7 +304,8 @@ namespace {
 std::vector<Corners> triangles_of(const hand::Mesh& mesh, const Vec3& shift = Vec3::Zero())
 {
     std::vector<Corners> out;
-    for (const auto& t : mesh.triangles) out.push_back({mesh.vertices[t[0]] + shift, mesh.vertices[t[1]] + shift, mesh.vertices[t[2]] + shift});
+    for (const auto& t : mesh.triangles)
+        out.push_back({mesh.vertices[t[0]] + shift, mesh.vertices[t[1]] + shift, mesh.vertices[t[2]] + shift});
     return out;
 }
 
@@ -254,7 +314,8 @@ double distance_out(const RobotPart& hull, const Vec3& point)
     double out = -1e9;
     for (const auto& f : hull.hull_faces) {
         const Vec3 a = hull.hull_vertices[std::size_t(f[0])];
-        const Vec3 normal = (hull.hull_vertices[std::size_t(f[1])] - a).cross(hull.hull_vertices[std::size_t(f[2])] - a);
+        const Vec3 normal =
+            (hull.hull_vertices[std::size_t(f[1])] - a).cross(hull.hull_vertices[std::size_t(f[2])] - a);
         if (normal.norm() > 1e-9) out = std::max(out, normal.normalized().dot(point - a));
     }
     return out;
@@ -321,10 +382,7 @@ TEST_CASE("an L comes apart into its two boxes, and no further")
     }
 }
 
-TEST_CASE("a convex mesh stays one part")
-{
-    CHECK(convex_split({triangles_of(hand::box({1, 2, 3}))}, 8).size() == 1);
-}
+TEST_CASE("a convex mesh stays one part") { CHECK(convex_split({triangles_of(hand::box({1, 2, 3}))}, 8).size() == 1); }
 
 TEST_CASE("parts of a ring hold its surface and its inside, and the more the closer")
 {
@@ -374,7 +432,8 @@ TEST_CASE("a solid cut along all three axes keeps what lies at the planes' cross
 {
     // A cross of three beams: its middle is a corner of eight boxes, and on no surface.
     std::vector<SurfacePiece> beams;
-    for (const Vec3& size : {Vec3(4, 1, 1), Vec3(1, 4, 1), Vec3(1, 1, 4)}) beams.push_back(triangles_of(hand::box(size)));
+    for (const Vec3& size : {Vec3(4, 1, 1), Vec3(1, 4, 1), Vec3(1, 1, 4)})
+        beams.push_back(triangles_of(hand::box(size)));
     std::mt19937 random(9);
     std::uniform_real_distribution<double> unit(-2, 2);
     for (const int most : {3, 7}) {

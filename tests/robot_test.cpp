@@ -21,28 +21,36 @@ namespace {
 
 Robot load_parts(const TempFolder& folder, const std::string& parts, const std::string& more = "")
 {
-    return load_robot(folder.write("robot.yaml", "format: spawnfield-robot/1\nname: test\nparts:\n" + parts + more).string());
+    return load_robot(
+        folder.write("robot.yaml", "format: spawnfield-robot/1\nname: test\nparts:\n" + parts + more).string());
 }
 
-std::string urdf(const std::string& inside) { return "<?xml version=\"1.0\"?>\n<robot name=\"test\">\n" + inside + "\n</robot>\n"; }
+std::string urdf(const std::string& inside)
+{
+    return "<?xml version=\"1.0\"?>\n<robot name=\"test\">\n" + inside + "\n</robot>\n";
+}
 
 std::string link_of(const std::string& name, const std::string& geometry, const std::string& origin = "xyz=\"0 0 0\"")
 {
-    return "<link name=\"" + name + "\"><collision><origin " + origin + "/><geometry>" + geometry + "</geometry></collision></link>\n";
+    return "<link name=\"" + name + "\"><collision><origin " + origin + "/><geometry>" + geometry +
+           "</geometry></collision></link>\n";
 }
 
-std::string joint_of(const std::string& parent, const std::string& child, const std::string& origin, const std::string& type = "fixed")
+std::string joint_of(const std::string& parent, const std::string& child, const std::string& origin,
+                     const std::string& type = "fixed")
 {
-    return "<joint name=\"" + parent + "_" + child + "\" type=\"" + type + "\"><origin " + origin + "/><parent link=\"" + parent +
-           "\"/><child link=\"" + child + "\"/><axis xyz=\"0 0 1\"/><limit lower=\"1\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>\n";
+    return "<joint name=\"" + parent + "_" + child + "\" type=\"" + type + "\"><origin " + origin +
+           "/><parent link=\"" + parent + "\"/><child link=\"" + child +
+           "\"/><axis xyz=\"0 0 1\"/><limit lower=\"1\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>\n";
 }
 
-std::string axis_joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child, const std::string& origin,
-                       const std::string& axis, const std::string& limits = "", const std::string& more = "")
+std::string axis_joint(const std::string& name, const std::string& type, const std::string& parent,
+                       const std::string& child, const std::string& origin, const std::string& axis,
+                       const std::string& limits = "", const std::string& more = "")
 {
     const std::string limit = limits.empty() ? "" : "<limit " + limits + " effort=\"1\" velocity=\"1\"/>";
-    return "<joint name=\"" + name + "\" type=\"" + type + "\"><origin " + origin + "/><parent link=\"" + parent + "\"/><child link=\"" + child +
-           "\"/><axis xyz=\"" + axis + "\"/>" + limit + more + "</joint>\n";
+    return "<joint name=\"" + name + "\" type=\"" + type + "\"><origin " + origin + "/><parent link=\"" + parent +
+           "\"/><child link=\"" + child + "\"/><axis xyz=\"" + axis + "\"/>" + limit + more + "</joint>\n";
 }
 
 Robot load_urdf(const TempFolder& folder, const std::string& inside, const RobotOptions& options = {})
@@ -96,10 +104,12 @@ TEST_CASE("a box robot that makes no sense is wrong usage, and told why")
 TEST_CASE("robot.yaml holds boxes, spheres, cylinders, capsules and contacts")
 {
     const TempFolder folder;
-    const Robot robot = load_parts(folder, "  - {name: base, box: [1, 2, 3], xyz: [0, 0, 1.5]}\n  - {sphere: 0.5, xyz: [2, 0, 0]}\n"
-                                           "  - {cylinder: {radius: 0.1, length: 4}, rpy_deg: [90, 0, 0]}\n"
-                                           "  - {capsule: {radius: 0.25, length: 1}, xyz: [0, 0, 5]}\n",
-                                   "contacts: [[0.5, 1, 0], [-0.5, -1, 0]]\n");
+    const Robot robot = load_parts(
+        folder,
+        "  - {name: base, box: [1, 2, 3], xyz: [0, 0, 1.5]}\n  - {sphere: 0.5, xyz: [2, 0, 0]}\n"
+        "  - {cylinder: {radius: 0.1, length: 4}, rpy_deg: [90, 0, 0]}\n"
+        "  - {capsule: {radius: 0.25, length: 1}, xyz: [0, 0, 5]}\n",
+        "contacts: [[0.5, 1, 0], [-0.5, -1, 0]]\n");
     CHECK(robot.name == "test");
     REQUIRE(robot.parts.size() == 4);
     check_bounds(robot.parts[0].bounds(), {-0.5, -1, 0}, {0.5, 1, 3});
@@ -133,7 +143,8 @@ TEST_CASE("a robot's mesh becomes its convex hull: scaled, turned up, turned, mo
     CHECK(hull.hull_vertices.size() == 10);  // of 16 corners four lie in walls of the hull and two are shared
     double volume = 0;
     for (const auto& f : hull.hull_faces) {
-        const Vec3 a = hull.hull_vertices[std::size_t(f[0])] - hull.centre(), b = hull.hull_vertices[std::size_t(f[1])] - hull.centre(),
+        const Vec3 a = hull.hull_vertices[std::size_t(f[0])] - hull.centre(),
+                   b = hull.hull_vertices[std::size_t(f[1])] - hull.centre(),
                    c = hull.hull_vertices[std::size_t(f[2])] - hull.centre();
         CHECK(a.dot(b.cross(c)) >= 0);  // counterclockwise from outside
         volume += a.dot(b.cross(c)) / 6;
@@ -151,12 +162,14 @@ TEST_CASE("the hull of a cloud of points holds them all, and its corners are amo
     double farthest = -1;
     for (const auto& f : hull.hull_faces) {
         const Vec3 a = hull.hull_vertices[std::size_t(f[0])];
-        const Vec3 normal = (hull.hull_vertices[std::size_t(f[1])] - a).cross(hull.hull_vertices[std::size_t(f[2])] - a);
+        const Vec3 normal =
+            (hull.hull_vertices[std::size_t(f[1])] - a).cross(hull.hull_vertices[std::size_t(f[2])] - a);
         if (normal.norm() < 1e-12) continue;
         for (const Vec3& point : points) farthest = std::max(farthest, normal.normalized().dot(point - a));
     }
     CHECK(farthest < 1e-9);
-    for (const Vec3& vertex : hull.hull_vertices) CHECK(std::find(points.begin(), points.end(), vertex) != points.end());
+    for (const Vec3& vertex : hull.hull_vertices)
+        CHECK(std::find(points.begin(), points.end(), vertex) != points.end());
     std::set<std::pair<int, int>> edges;  // closed: each edge once in each direction
     for (const auto& f : hull.hull_faces)
         for (std::size_t i = 0; i < 3; ++i) CHECK(edges.insert({f[i], f[(i + 1) % 3]}).second);
@@ -174,8 +187,10 @@ TEST_CASE("a URDF is the union of its links' collision shapes at zero joints")
 {
     const TempFolder folder;
     const Robot robot = load_urdf(folder, link_of("base", small_box, "xyz=\"0 0 1\"") +
-                                              "<link name=\"eye\"><visual><geometry><mesh filename=\"package://none/eye.dae\"/></geometry></visual></link>" +
-                                              joint_of("base", "eye", "xyz=\"9 9 9\"") + link_of("ball", "<sphere radius=\"0.5\"/>") +
+                                              "<link name=\"eye\"><visual><geometry><mesh "
+                                              "filename=\"package://none/eye.dae\"/></geometry></visual></link>" +
+                                              joint_of("base", "eye", "xyz=\"9 9 9\"") +
+                                              link_of("ball", "<sphere radius=\"0.5\"/>") +
                                               joint_of("base", "ball", "xyz=\"0 3 0\""));
     CHECK(robot.name == "test");
     REQUIRE(robot.parts.size() == 2);  // never what is only seen
@@ -186,8 +201,11 @@ TEST_CASE("a URDF is the union of its links' collision shapes at zero joints")
 TEST_CASE("several collisions of one link all count")
 {
     const TempFolder folder;
-    const Robot robot = load_urdf(folder, "<link name=\"a\"><collision><origin xyz=\"0 0 0\"/><geometry><box size=\"1 1 1\"/></geometry></collision>"
-                                          "<collision><origin xyz=\"5 0 0\"/><geometry><cylinder radius=\"1\" length=\"2\"/></geometry></collision></link>");
+    const Robot robot = load_urdf(
+        folder,
+        "<link name=\"a\"><collision><origin xyz=\"0 0 0\"/><geometry><box size=\"1 1 1\"/></geometry></collision>"
+        "<collision><origin xyz=\"5 0 0\"/><geometry><cylinder radius=\"1\" "
+        "length=\"2\"/></geometry></collision></link>");
     REQUIRE(robot.parts.size() == 2);
     CHECK(robot.parts[1].shape.kind == ShapeKind::Cylinder);
     check_bounds(robot.bounds(), {-0.5, -1, -1}, {6, 1, 1});
@@ -197,11 +215,14 @@ TEST_CASE("origins add up along a chain of joints, whatever their type and limit
 {
     const TempFolder folder;
     const std::string type = GENERATE("fixed", "revolute", "continuous", "prismatic");
-    const Robot robot = load_urdf(folder, "<link name=\"base\"/>" + joint_of("base", "arm", "xyz=\"1 0 0\" rpy=\"0 0 1.5707963267948966\"", type) +
-                                              "<link name=\"arm\"/>" + joint_of("arm", "hand", "xyz=\"2 0 0\" rpy=\"1.5707963267948966 0 0\"", type) +
-                                              link_of("hand", small_box, "xyz=\"0 0 3\" rpy=\"0 0 0\""));
+    const Robot robot = load_urdf(
+        folder,
+        "<link name=\"base\"/>" + joint_of("base", "arm", "xyz=\"1 0 0\" rpy=\"0 0 1.5707963267948966\"", type) +
+            "<link name=\"arm\"/>" + joint_of("arm", "hand", "xyz=\"2 0 0\" rpy=\"1.5707963267948966 0 0\"", type) +
+            link_of("hand", small_box, "xyz=\"0 0 3\" rpy=\"0 0 0\""));
     REQUIRE(robot.parts.size() == 1);
-    // hand frame: x is the base's y, y its z, z its x. Its origin is at (1, 2, 0), the box's centre 3 further along its z.
+    // hand frame: x is the base's y, y its z, z its x. Its origin is at (1, 2, 0), the box's centre 3 further along its
+    // z.
     const Pose& pose = robot.parts[0].shape.pose;
     const Vec3 centre = Vec3(1, 2, 0) + 3 * Vec3::UnitX();
     CHECK(pose.position.isApprox(centre, 1e-12));
@@ -222,22 +243,29 @@ TEST_CASE("package:// is found by --model-path first, then by looking upward fro
     const TempFolder folder;
     folder.write("ws/my_robot/meshes/hull.stl", mesh_text::stl(hand::box({1, 1, 1})));
     folder.write("other/my_robot/meshes/hull.stl", mesh_text::stl(hand::box({3, 3, 3})));
-    const std::string text = urdf(link_of("a", "<mesh filename=\"package://my_robot/meshes/hull.stl\" scale=\"2 1 1\"/>"));
-    const auto inside = folder.write("ws/my_robot/urdf/deep/robot.urdf", text), outside = folder.write("robot.urdf", text);
+    const std::string text = urdf(
+        link_of("a", "<mesh filename=\"package://my_robot/meshes/hull.stl\" scale=\"2 1 1\"/>"));
+    const auto inside = folder.write("ws/my_robot/urdf/deep/robot.urdf", text),
+               outside = folder.write("robot.urdf", text);
     check_bounds(load_robot(inside.string()).bounds(), {-1, -0.5, -0.5}, {1, 0.5, 0.5});
     check_bounds(load_robot(outside.string(), {{folder / "ws"}}).bounds(), {-1, -0.5, -0.5}, {1, 0.5, 0.5});
-    check_bounds(load_robot(inside.string(), {{folder / "none", folder / "other"}}).bounds(), {-3, -1.5, -1.5}, {3, 1.5, 1.5});
+    check_bounds(load_robot(inside.string(), {{folder / "none", folder / "other"}}).bounds(), {-3, -1.5, -1.5},
+                 {3, 1.5, 1.5});
     CHECK_THROWS_WITH(load_robot(outside.string()),
-                      outside.string() + ": link \"a\": <mesh> package://my_robot/meshes/hull.stl is found neither beside the file, nor in --model-path, "
-                                         "GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file");
+                      outside.string() +
+                          ": link \"a\": <mesh> package://my_robot/meshes/hull.stl is found neither beside the file, "
+                          "nor in --model-path, "
+                          "GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file");
 }
 
 TEST_CASE("file:// and relative mesh names work too; COLLADA's unit counts, its up axis does not")
 {
     const TempFolder folder;
-    const auto file = folder.write("meshes/a.dae", mesh_text::dae({{.mesh = mesh_text::box({0, 0, 0}, {1, 2, 3})}}, {.up = "Y_UP", .unit = 0.1}));
+    const auto file = folder.write(
+        "meshes/a.dae", mesh_text::dae({{.mesh = mesh_text::box({0, 0, 0}, {1, 2, 3})}}, {.up = "Y_UP", .unit = 0.1}));
     for (const std::string& name : {"file://" + file.string(), std::string("meshes/a.dae")})
-        check_bounds(load_urdf(folder, link_of("a", "<mesh filename=\"" + name + "\"/>")).bounds(), {0, 0, 0}, {0.1, 0.2, 0.3}, 1e-7);
+        check_bounds(load_urdf(folder, link_of("a", "<mesh filename=\"" + name + "\"/>")).bounds(), {0, 0, 0},
+                     {0.1, 0.2, 0.3}, 1e-7);
 }
 
 TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
@@ -248,11 +276,13 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
     const std::pair<std::string, std::string> parts[] = {
         {"  - {box: [1, 0, 1]}\n", "part 1: box has 0, needs > 0 (line 4)"},
         {"  - {box: [1, 1, 1]}\n  - {sphere: .nan}\n", "part 2: sphere is .nan, needs a finite number (line 5)"},
-        {"  - {box: [1, 1, 1], colour: red}\n", "part 1: colour is no known key; known: name, xyz, rpy, rpy_deg, box (line 4)"},
+        {"  - {box: [1, 1, 1], colour: red}\n",
+         "part 1: colour is no known key; known: name, xyz, rpy, rpy_deg, box (line 4)"},
         {"  - {name: a}\n", "part 1: has no geometry, needs one of box, sphere, cylinder, capsule, mesh (line 4)"},
         {"  - {box: [1, 1, 1], sphere: 1}\n", "part 1: sphere stands beside box, needs one geometry per part (line 4)"},
         {"  []\n", "parts is empty, needs at least one part (line 3)"},
-        {"  - {mesh: none.stl}\n", "part 1: mesh cannot be used: " + (folder / "none.stl").string() + ": does not exist; is the path right? (line 4)"},
+        {"  - {mesh: none.stl}\n", "part 1: mesh cannot be used: " + (folder / "none.stl").string() +
+                                       ": does not exist; is the path right? (line 4)"},
         {"  - {mesh: flat.obj, up: x}\n", "part 1: up is \"x\", needs one of y, z (line 4)"},
         {"  - {mesh: flat.obj}\n", "part 1: mesh cannot be used: " + (folder / "flat.obj").string() +
                                        ": its convex hull has no volume: its points lie in a plane (line 4)"},
@@ -266,20 +296,27 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
         {link_of("a", "<sphere radius=\"-0.5\"/>"), "link \"a\": <sphere radius> is -0.5, needs > 0"},
         {link_of("a", "<cylinder radius=\"1\" length=\"0\"/>"), "link \"a\": <cylinder> is 0, needs > 0"},
         {link_of("a", "<mesh filename=\"none.stl\"/>"),
-         "link \"a\": <mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file"},
-        {link_of("a", "<mesh filename=\"flat.obj\"/>"), "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
-                                                         ": its convex hull has no volume: its points lie in a plane"},
+         "link \"a\": <mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, "
+         "GAZEBO_MODEL_PATH, nor in the folders above the file"},
+        {link_of("a", "<mesh filename=\"flat.obj\"/>"),
+         "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
+             ": its convex hull has no volume: its points lie in a plane"},
         {"<link", "line 3: is no valid XML (xml error parsing element): is a tag left open or misspelt?"},
-        {link_of("a", small_box + "<sphere radius=\"9\"/>"), "line 3: <geometry> holds 2 shapes, needs one; give each a <collision> of its own"},
+        {link_of("a", small_box + "<sphere radius=\"9\"/>"),
+         "line 3: <geometry> holds 2 shapes, needs one; give each a <collision> of its own"},
         {link_of("a", small_box) + link_of("b", small_box) +
-             "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0\" quat_xyzw=\"0 0 1 0\"/></joint>",
+             "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0\" "
+             "quat_xyzw=\"0 0 1 0\"/></joint>",
          "line 5: <origin quat_xyzw> is not read, and a part would stand unturned; write it as rpy"},
-        {link_of("a", small_box) + link_of("b", small_box), "is no valid URDF: Failed to find root link: Two root links found: [a] and [b]"},
-        {link_of("a", "<box size=\"1 x 1\"/>"), "is no valid URDF: Unable to parse component [x] to a double (while parsing a vector value)"},
-        {link_of("a", "<box size=\"1 nan 1\"/>"), "is no valid URDF: Unable to parse component [nan] to a double (while parsing a vector value)"},
+        {link_of("a", small_box) + link_of("b", small_box),
+         "is no valid URDF: Failed to find root link: Two root links found: [a] and [b]"},
+        {link_of("a", "<box size=\"1 x 1\"/>"),
+         "is no valid URDF: Unable to parse component [x] to a double (while parsing a vector value)"},
+        {link_of("a", "<box size=\"1 nan 1\"/>"),
+         "is no valid URDF: Unable to parse component [nan] to a double (while parsing a vector value)"},
         // urdfdom would drop the link's box for this and go on.
-        {"<link name=\"a\"><inertial><mass value=\"x\"/></inertial><collision><geometry>" + small_box + "</geometry></collision></link>" +
-             link_of("b", small_box) + joint_of("a", "b", "xyz=\"0 0 0\""),
+        {"<link name=\"a\"><inertial><mass value=\"x\"/></inertial><collision><geometry>" + small_box +
+             "</geometry></collision></link>" + link_of("b", small_box) + joint_of("a", "b", "xyz=\"0 0 0\""),
          "is no valid URDF: Inertial: mass [x] is not a float"},
     };
     for (const auto& [text, wanted] : links) CHECK_THROWS_WITH(load_urdf(folder, text), xml + ": " + wanted);
@@ -287,21 +324,28 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
     CHECK_THROWS_WITH(load_urdf(folder, "<xacro:property name=\"a\" value=\"1\"/>"),
                       xml + ": holds xacro macros; expand them first: xacro robot.urdf > robot.urdf");
     const auto xacro = folder.write("husky.urdf.xacro", "");
-    CHECK_THROWS_WITH(load_robot(xacro.string()),
-                      xacro.string() +
-                          ": is a xacro file, which is not read; expand it first: xacro husky.urdf.xacro > robot.urdf");
+    CHECK_THROWS_WITH(
+        load_robot(xacro.string()),
+        xacro.string() + ": is a xacro file, which is not read; expand it first: xacro husky.urdf.xacro > robot.urdf");
 
     CHECK_THROWS_WITH(load_robot((folder / "none.yaml").string()),
-                      (folder / "none.yaml").string() + ": does not exist; a robot is a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
+                      (folder / "none.yaml").string() +
+                          ": does not exist; a robot is a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or "
+                          "box:LX,LY,LZ[@x,y,z]");
     const auto odd = folder.write("robot.txt", "");
-    CHECK_THROWS_WITH(load_robot(odd.string()), odd.string() + ": is no known robot format, needs a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
+    CHECK_THROWS_WITH(load_robot(odd.string()), odd.string() +
+                                                    ": is no known robot format, needs a robot.yaml, a .urdf, an SDF "
+                                                    "model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
 }
 
 TEST_CASE("joints turn and slide what hangs on them about their own axes")
 {
     const TempFolder folder;
-    const std::string arm = "<link name=\"base\"/>" + axis_joint("turn", "continuous", "base", "arm", "xyz=\"1 0 0\"", "0 0 2") + "<link name=\"arm\"/>" +
-                            axis_joint("slide", "prismatic", "arm", "hand", "xyz=\"1 0 0\"", "1 0 0", "lower=\"-1\" upper=\"0.5\"") +
+    const std::string arm = "<link name=\"base\"/>" +
+                            axis_joint("turn", "continuous", "base", "arm", "xyz=\"1 0 0\"", "0 0 2") +
+                            "<link name=\"arm\"/>" +
+                            axis_joint("slide", "prismatic", "arm", "hand", "xyz=\"1 0 0\"", "1 0 0",
+                                       "lower=\"-1\" upper=\"0.5\"") +
                             link_of("hand", small_box);
     // The arm points along y from (1, 0, 0); the hand slides out along it.
     const Robot robot = load_urdf(folder, arm, {.joints = {{"turn", std::numbers::pi / 2}, {"slide", 0.5}}});
@@ -315,25 +359,31 @@ TEST_CASE("a joint that mimics follows, and is told where that leads out of its 
 {
     const TempFolder folder;
     const std::string limits = "lower=\"-1\" upper=\"1\"";
-    const std::string arm = "<link name=\"base\"/>" + axis_joint("a", "prismatic", "base", "left", "xyz=\"0 0 0\"", "1 0 0", limits) +
+    const std::string arm = "<link name=\"base\"/>" +
+                            axis_joint("a", "prismatic", "base", "left", "xyz=\"0 0 0\"", "1 0 0", limits) +
                             link_of("left", small_box) +
-                            axis_joint("b", "prismatic", "base", "right", "xyz=\"0 0 0\"", "0 1 0", limits, "<mimic joint=\"a\" multiplier=\"-3\" offset=\"0.5\"/>") +
+                            axis_joint("b", "prismatic", "base", "right", "xyz=\"0 0 0\"", "0 1 0", limits,
+                                       "<mimic joint=\"a\" multiplier=\"-3\" offset=\"0.5\"/>") +
                             link_of("right", small_box);
     const Robot robot = load_urdf(folder, arm, {.joints = {{"a", 1}}});
     check_bounds(robot.parts[0].bounds(), {0.9, -0.2, -0.3}, {1.1, 0.2, 0.3});
     check_bounds(robot.parts[1].bounds(), {-0.1, -2.7, -0.3}, {0.1, -2.3, 0.3});
     REQUIRE(robot.notices.size() == 1);
-    CHECK(robot.notices[0] == (folder / "robot.urdf").string() + ": joint \"b\" stands at -2.5 m, as \"a\" has it, though its limits are -1 to 1 m");
+    CHECK(robot.notices[0] == (folder / "robot.urdf").string() +
+                                  ": joint \"b\" stands at -2.5 m, as \"a\" has it, though its limits are -1 to 1 m");
 }
 
 TEST_CASE("joints that cannot stand so are refused with what can be given")
 {
     const TempFolder folder;
     const std::string limits = "lower=\"0.5\" upper=\"1\"", file = (folder / "robot.urdf").string();
-    const std::string robot = link_of("base", small_box) + axis_joint("turn", "revolute", "base", "a", "xyz=\"0 0 0\"", "0 0 1", limits) +
-                              "<link name=\"a\"/>" + axis_joint("glue", "fixed", "base", "b", "xyz=\"0 0 0\"", "0 0 1") + "<link name=\"b\"/>" +
-                              axis_joint("free", "floating", "base", "c", "xyz=\"0 0 0\"", "0 0 1") + "<link name=\"c\"/>" +
-                              axis_joint("wheel", "continuous", "base", "d", "xyz=\"0 0 0\"", "0 0 1", "", "<mimic joint=\"turn\"/>") + "<link name=\"d\"/>";
+    const std::string robot =
+        link_of("base", small_box) + axis_joint("turn", "revolute", "base", "a", "xyz=\"0 0 0\"", "0 0 1", limits) +
+        "<link name=\"a\"/>" + axis_joint("glue", "fixed", "base", "b", "xyz=\"0 0 0\"", "0 0 1") +
+        "<link name=\"b\"/>" + axis_joint("free", "floating", "base", "c", "xyz=\"0 0 0\"", "0 0 1") +
+        "<link name=\"c\"/>" +
+        axis_joint("wheel", "continuous", "base", "d", "xyz=\"0 0 0\"", "0 0 1", "", "<mimic joint=\"turn\"/>") +
+        "<link name=\"d\"/>";
     const std::pair<JointPosition, std::string> cases[] = {
         {{"tern", 0.7}, "joint \"tern\" is not in " + file + "; those that move: turn"},
         {{"glue", 0}, "joint \"glue\" is fixed in " + file + "; those that move: turn"},
@@ -346,8 +396,10 @@ TEST_CASE("joints that cannot stand so are refused with what can be given")
         CHECK_THROWS_AS(load_urdf(folder, robot, {.joints = {joint}}), ArgumentError);
         CHECK_THROWS_WITH(load_urdf(folder, robot, {.joints = {joint}}), "load_robot: " + wanted);
     }
-    CHECK_THROWS_WITH(load_urdf(folder, robot, {.joints = {{"turn", 0.5}, {"turn", 0.6}}}), "load_robot: joint \"turn\" is given twice");
-    CHECK_THROWS_WITH(load_robot("box:1,1,1", {.joints = {{"a", 1}}}), "load_robot: joint \"a\" is given, but box:1,1,1 has no joints");
+    CHECK_THROWS_WITH(load_urdf(folder, robot, {.joints = {{"turn", 0.5}, {"turn", 0.6}}}),
+                      "load_robot: joint \"turn\" is given twice");
+    CHECK_THROWS_WITH(load_robot("box:1,1,1", {.joints = {{"a", 1}}}),
+                      "load_robot: joint \"a\" is given, but box:1,1,1 has no joints");
     const Robot at_zero = load_urdf(folder, robot);
     REQUIRE(at_zero.notices.size() == 1);
     CHECK(at_zero.notices[0] == file + ": joint \"turn\" stands at 0 rad, though its limits are 0.5 to 1 rad");
@@ -357,7 +409,10 @@ TEST_CASE("mimics of nothing and of themselves are told")
 {
     const TempFolder folder;
     const auto with_mimic = [&](const std::string& of) {
-        return link_of("base", small_box) + axis_joint("a", "continuous", "base", "x", "xyz=\"0 0 0\"", "0 0 1", "", "<mimic joint=\"" + of + "\"/>") + "<link name=\"x\"/>";
+        return link_of("base", small_box) +
+               axis_joint("a", "continuous", "base", "x", "xyz=\"0 0 0\"", "0 0 1", "",
+                          "<mimic joint=\"" + of + "\"/>") +
+               "<link name=\"x\"/>";
     };
     const std::string file = (folder / "robot.urdf").string();
     CHECK_THROWS_WITH(load_urdf(folder, with_mimic("q")), file + ": joint \"a\" mimics \"q\", which is no joint");
@@ -373,7 +428,8 @@ TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not kno
                                           {.name = "b", .mesh = mesh_text::box({0, 1, 0}, {1, 3, 1})}}));
     folder.write("open.obj", mesh_text::obj(open));
     folder.write("box.obj", mesh_text::obj(mesh_text::box({0, 0, 0}, {1, 1, 1})));
-    const Robot robot = load_parts(folder, "  - {mesh: l.obj, name: bend, scale: 2}\n  - {mesh: open.obj}\n  - {mesh: box.obj}\n");
+    const Robot robot = load_parts(
+        folder, "  - {mesh: l.obj, name: bend, scale: 2}\n  - {mesh: open.obj}\n  - {mesh: box.obj}\n");
     REQUIRE(robot.meshes.size() == 3);
     CHECK(*robot.meshes[0].mesh_volume == Approx(6 * 8));
     CHECK(robot.meshes[0].volume == Approx(9 * 8));
@@ -383,29 +439,37 @@ TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not kno
     const std::string file = (folder / "robot.yaml").string() + ": ";
     REQUIRE(robot.notices.size() == 2);
     CHECK(robot.notices[0] == file + "\"bend\": l.obj counts as its convex hull, 72 m3, 50 % more than the mesh");
-    CHECK(robot.notices[1] == file + "open.obj counts as its convex hull, 1 m3; how much more than the mesh is not known, as that is not watertight or overlaps itself");
+    CHECK(robot.notices[1] == file +
+                                  "open.obj counts as its convex hull, 1 m3; how much more than the mesh is not known, "
+                                  "as that is not watertight or overlaps itself");
 }
 
 TEST_CASE("a robot beyond all measure is refused, a chain longer than the call stack is not")
 {
-    CHECK_THROWS_WITH(load_robot("box:1e10,1,1"), "box:1e10,1,1: reaches 5e+09 m from its origin, needs at most 1000 "
-                                                  "m; is it in millimetres? divide its lengths by 1000");
+    CHECK_THROWS_WITH(load_robot("box:1e10,1,1"),
+                      "box:1e10,1,1: reaches 5e+09 m from its origin, needs at most 1000 "
+                      "m; is it in millimetres? divide its lengths by 1000");
     CHECK(load_robot("box:2000,1,1@0,0,0.5").parts.size() == 1);
     const TempFolder folder;
     const std::string box = "<collision><geometry><box size='1 1 1'/></geometry></collision>";
     std::string chain = "<robot name='snake'>\n<link name='l0'>" + box + "</link>";
     constexpr int links = 20000;
     for (int i = 1; i <= links; ++i)
-        chain += "<link name='l" + std::to_string(i) + "'/><joint name='j" + std::to_string(i) + "' type='fixed'><origin xyz='0.01 0 0'/><parent link='l" +
-                 std::to_string(i - 1) + "'/><child link='l" + std::to_string(i) + "'/></joint>";
-    chain += "<link name='tail'>" + box + "</link><joint name='t' type='fixed'><parent link='l" + std::to_string(links) + "'/><child link='tail'/></joint></robot>";
+        chain += "<link name='l" + std::to_string(i) + "'/><joint name='j" + std::to_string(i) +
+                 "' type='fixed'><origin xyz='0.01 0 0'/><parent link='l" + std::to_string(i - 1) +
+                 "'/><child link='l" + std::to_string(i) + "'/></joint>";
+    chain += "<link name='tail'>" + box + "</link><joint name='t' type='fixed'><parent link='l" +
+             std::to_string(links) + "'/><child link='tail'/></joint></robot>";
     CHECK(load_robot(folder.write("snake.urdf", chain).string()).bounds().max.x() == Approx(200.5));
     CHECK_THROWS_WITH(load_robot(folder.write("torn.urdf", "<robot name='a'>\n<link name='b'>\n</robot>").string()),
-                      (folder / "torn.urdf").string() + ": line 2: is no valid XML (xml error mismatched element): is a tag left open or misspelt?");
+                      (folder / "torn.urdf").string() +
+                          ": line 2: is no valid XML (xml error mismatched element): is a tag left open or misspelt?");
     std::string deep = "<robot name='a'>";
     for (int i = 0; i < 50000; ++i) deep += "<a>";
-    CHECK_THROWS_WITH(load_robot(folder.write("deep.urdf", deep).string()), Catch::Contains("elements may be nested 500 deep"));
-    CHECK(load_robot(folder.write("BIG.URDF", "<robot name='a'><link name='l'>" + box + "</link></robot>").string()).parts.size() == 1);
+    CHECK_THROWS_WITH(load_robot(folder.write("deep.urdf", deep).string()),
+                      Catch::Contains("elements may be nested 500 deep"));
+    CHECK(load_robot(folder.write("BIG.URDF", "<robot name='a'><link name='l'>" + box + "</link></robot>").string())
+              .parts.size() == 1);
 }
 
 TEST_CASE("real robots have the bounds that their sources tell")
@@ -419,17 +483,42 @@ TEST_CASE("real robots have the bounds that their sources tell")
     };
     const Wanted robots[] = {
         {"robot_husky/husky_description/urdf/husky.urdf", {-0.494, -0.343, -0.132}, {0.494, 0.343, 0.251}, 2, 0, 4, 1},
-        {"robot_jackal/jackal_description/urdf/jackal.urdf", {-0.229, -0.208, -0.064}, {0.229, 0.208, 0.184}, 1, 0, 4, 0},
-        {"robot_turtlebot3/turtlebot3_description/urdf/turtlebot3_burger.urdf", {-0.102, -0.089, 0}, {0.038, 0.089, 0.191}, 2, 0, 3, 0},
-        {"robot_turtlebot3/turtlebot3_description/urdf/turtlebot3_waffle.urdf", {-0.197, -0.153, 0}, {0.073, 0.153, 0.141}, 4, 0, 3, 0},
-        {"robot_anymal_c/anymal_c_simple_description/urdf/anymal.urdf", {-0.525, -0.331, -0.630}, {0.525, 0.331, 0.194}, 12, 4, 29, 0},
+        {"robot_jackal/jackal_description/urdf/jackal.urdf",
+         {-0.229, -0.208, -0.064},
+         {0.229, 0.208, 0.184},
+         1,
+         0,
+         4,
+         0},
+        {"robot_turtlebot3/turtlebot3_description/urdf/turtlebot3_burger.urdf",
+         {-0.102, -0.089, 0},
+         {0.038, 0.089, 0.191},
+         2,
+         0,
+         3,
+         0},
+        {"robot_turtlebot3/turtlebot3_description/urdf/turtlebot3_waffle.urdf",
+         {-0.197, -0.153, 0},
+         {0.073, 0.153, 0.141},
+         4,
+         0,
+         3,
+         0},
+        {"robot_anymal_c/anymal_c_simple_description/urdf/anymal.urdf",
+         {-0.525, -0.331, -0.630},
+         {0.525, 0.331, 0.194},
+         12,
+         4,
+         29,
+         0},
     };
     for (const Wanted& wanted : robots) {
         INFO(wanted.file);
         const Robot robot = load_robot((*shared / wanted.file).string());
         check_bounds(robot.bounds(), wanted.min, wanted.max, 1e-3);
         const auto count = [&](ShapeKind kind) {
-            return std::size_t(std::count_if(robot.parts.begin(), robot.parts.end(), [&](const auto& p) { return p.shape.kind == kind; }));
+            return std::size_t(std::count_if(robot.parts.begin(), robot.parts.end(),
+                                             [&](const auto& p) { return p.shape.kind == kind; }));
         };
         CHECK(count(ShapeKind::Box) == wanted.boxes);
         CHECK(count(ShapeKind::Sphere) == wanted.spheres);

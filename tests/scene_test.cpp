@@ -28,7 +28,8 @@ void check_near(const Vec3& found, const Vec3& wanted, double margin = 1e-12)
 std::size_t count(const Scene& scene, Label label)
 {
     return std::size_t(std::count(scene.triangle_labels.begin(), scene.triangle_labels.end(), label)) +
-           std::size_t(std::count_if(scene.primitives.begin(), scene.primitives.end(), [&](const auto& p) { return p.label == label; }));
+           std::size_t(std::count_if(scene.primitives.begin(), scene.primitives.end(),
+                                     [&](const auto& p) { return p.label == label; }));
 }
 
 /// Voxel (0, 0, 0) to (0.5, 0.5, 0.5), the pruned cube of eight at (2, 0, 0), and a free one.
@@ -36,13 +37,16 @@ std::string octomap_bytes(bool full = false)
 {
     octomap::OcTree tree(0.5);
     tree.updateNode(0.25, 0.25, 0.25, true);
-    for (int i = 0; i < 8; ++i) tree.updateNode(2.25 + 0.5 * (i & 1), 0.25 + 0.25 * (i & 2), 0.25 + 0.125 * (i & 4), true);
+    for (int i = 0; i < 8; ++i)
+        tree.updateNode(2.25 + 0.5 * (i & 1), 0.25 + 0.25 * (i & 2), 0.25 + 0.125 * (i & 4), true);
     tree.updateNode(-3.25, 0.25, 0.25, false);
     tree.toMaxLikelihood();
     tree.prune();
     std::ostringstream out;
-    if (full) tree.write(out);
-    else tree.writeBinary(out);
+    if (full)
+        tree.write(out);
+    else
+        tree.writeBinary(out);
     return out.str();
 }
 
@@ -51,10 +55,11 @@ std::string octomap_bytes(bool full = false)
 TEST_CASE("every primitive is read with its size and pose")
 {
     const TempFolder folder;
-    const Scene scene = load_parts(folder, "  - {name: b, box: [1, 2, 3], xyz: [4, 5, 6], rpy: [0.1, -0.2, 0.3]}\n"
-                                           "  - {name: s, sphere: 1.5, xyz: [-1, 0, 2]}\n"
-                                           "  - {name: c, cylinder: {radius: 0.25, length: 4}}\n"
-                                           "  - {name: k, capsule: {radius: 1, length: 2.5}}\n");
+    const Scene scene = load_parts(folder,
+                                   "  - {name: b, box: [1, 2, 3], xyz: [4, 5, 6], rpy: [0.1, -0.2, 0.3]}\n"
+                                   "  - {name: s, sphere: 1.5, xyz: [-1, 0, 2]}\n"
+                                   "  - {name: c, cylinder: {radius: 0.25, length: 4}}\n"
+                                   "  - {name: k, capsule: {radius: 1, length: 2.5}}\n");
     REQUIRE(scene.primitives.size() == 4);
     CHECK(scene.name == "test");
     const Shape& box = scene.primitives[0].shape;
@@ -62,7 +67,9 @@ TEST_CASE("every primitive is read with its size and pose")
     CHECK(box.size == Vec3(1, 2, 3));
     CHECK(box.pose.position == Vec3(4, 5, 6));
     using Eigen::AngleAxisd;
-    const Mat3 turned = (AngleAxisd(0.3, Vec3::UnitZ()) * AngleAxisd(-0.2, Vec3::UnitY()) * AngleAxisd(0.1, Vec3::UnitX())).toRotationMatrix();
+    const Mat3 turned = (AngleAxisd(0.3, Vec3::UnitZ()) * AngleAxisd(-0.2, Vec3::UnitY()) *
+                         AngleAxisd(0.1, Vec3::UnitX()))
+                            .toRotationMatrix();
     CHECK(box.pose.rotation.isApprox(turned, 1e-14));
 
     CHECK(scene.primitives[1].shape.kind == ShapeKind::Sphere);
@@ -82,7 +89,9 @@ TEST_CASE("every primitive is read with its size and pose")
 TEST_CASE("bounds of each primitive are those of the solid itself")
 {
     const TempFolder folder;
-    const auto bounds = [&](const std::string& shape) { return load_parts(folder, "  - {name: a, " + shape + "}\n").bounds(); };
+    const auto bounds = [&](const std::string& shape) {
+        return load_parts(folder, "  - {name: a, " + shape + "}\n").bounds();
+    };
     check_near(bounds("box: [1, 2, 3]").max, {0.5, 1, 1.5});
     check_near(size_of(bounds("box: [1, 2, 3], rpy_deg: [0, 0, 90]")), {2, 1, 3});
     check_near(bounds("sphere: 2, xyz: [1, 0, 0]").min, {-1, -2, -2});
@@ -101,14 +110,16 @@ TEST_CASE("roll, pitch and yaw turn about fixed axes, in radians or degrees")
     check_near(rotation("rpy_deg: [0, 0, 90]") * Vec3::UnitX(), Vec3::UnitY());
     check_near(rotation("rpy_deg: [0, 90, 0]") * Vec3::UnitX(), -Vec3::UnitZ());
     check_near(rotation("rpy_deg: [90, 0, 90]") * Vec3::UnitY(), Vec3::UnitZ());  // roll first, about the fixed x
-    CHECK(rotation("rpy_deg: [10, 20, 30]").isApprox(rotation("rpy: [0.17453292519943295, 0.3490658503988659, 0.5235987755982988]"), 1e-14));
+    CHECK(rotation("rpy_deg: [10, 20, 30]")
+              .isApprox(rotation("rpy: [0.17453292519943295, 0.3490658503988659, 0.5235987755982988]"), 1e-14));
     CHECK(rotation("xyz: [1, 2, 3]") == Mat3::Identity());
 }
 
 TEST_CASE("a plane is a sheet of two triangles that look up")
 {
     const TempFolder folder;
-    const Scene scene = load_parts(folder, "  - {name: lake, label: water, plane: [4, 6], xyz: [1, 2, 3], sides: up}\n");
+    const Scene scene = load_parts(folder,
+                                   "  - {name: lake, label: water, plane: [4, 6], xyz: [1, 2, 3], sides: up}\n");
     REQUIRE(scene.triangles.size() == 2);
     REQUIRE(scene.pieces.size() == 1);
     CHECK(scene.vertices.size() == 4);
@@ -121,7 +132,8 @@ TEST_CASE("a plane is a sheet of two triangles that look up")
     check_near(scene.bounds().max, {3, 5, 3});
     double area = 0;
     for (const Triangle& t : scene.triangles) {
-        const Vec3 normal = (scene.vertices[t[1]] - scene.vertices[t[0]]).cross(scene.vertices[t[2]] - scene.vertices[t[0]]);
+        const Vec3 normal =
+            (scene.vertices[t[1]] - scene.vertices[t[0]]).cross(scene.vertices[t[2]] - scene.vertices[t[0]]);
         CHECK(normal.z() > 0);
         area += normal.norm() / 2;
     }
@@ -131,7 +143,8 @@ TEST_CASE("a plane is a sheet of two triangles that look up")
 TEST_CASE("a tilted plane goes with its pose")
 {
     const TempFolder folder;
-    const Scene scene = load_parts(folder, "  - {name: ramp, label: terrain, plane: [4, 2], xyz: [0, 0, 1], rpy_deg: [0, -30, 0]}\n");
+    const Scene scene = load_parts(
+        folder, "  - {name: ramp, label: terrain, plane: [4, 2], xyz: [0, 0, 1], rpy_deg: [0, -30, 0]}\n");
     const Column column = column_at(Geometry(scene), 1.0, 0.5);
     REQUIRE(column.layers.size() == 1);
     CHECK(column.layers[0] == Approx(1 + std::tan(std::numbers::pi / 6)));
@@ -140,8 +153,10 @@ TEST_CASE("a tilted plane goes with its pose")
 TEST_CASE("labels come from the part, and are obstacle where it has none")
 {
     const TempFolder folder;
-    const Scene scene = load_parts(folder, "  - {name: a, box: [1, 1, 1]}\n  - {name: b, label: terrain, box: [1, 1, 1]}\n"
-                                           "  - {name: c, label: water, sphere: 1}\n  - {name: d, label: ignore, box: [99, 99, 99]}\n");
+    const Scene scene = load_parts(
+        folder,
+        "  - {name: a, box: [1, 1, 1]}\n  - {name: b, label: terrain, box: [1, 1, 1]}\n"
+        "  - {name: c, label: water, sphere: 1}\n  - {name: d, label: ignore, box: [99, 99, 99]}\n");
     REQUIRE(scene.primitives.size() == 3);
     CHECK(scene.primitives[0].label == Label::Obstacle);
     CHECK(scene.primitives[1].label == Label::Terrain);
@@ -155,8 +170,9 @@ TEST_CASE("labels come from the part, and are obstacle where it has none")
 TEST_CASE("label rules of the call come first, the first match wins, case does not count")
 {
     const TempFolder folder;
-    const std::string parts = "  - {name: Floor_1, label: obstacle, box: [1, 1, 1]}\n  - {name: floor_2, label: water, plane: [1, 1]}\n"
-                              "  - {name: wall, label: obstacle, box: [1, 1, 1]}\n";
+    const std::string parts =
+        "  - {name: Floor_1, label: obstacle, box: [1, 1, 1]}\n  - {name: floor_2, label: water, plane: [1, 1]}\n"
+        "  - {name: wall, label: obstacle, box: [1, 1, 1]}\n";
     const SceneOptions options{.labels = {{"*_1", Label::Ignore}, {"FLOOR*", Label::Terrain}}};
     const Scene scene = load_parts(folder, parts, options);
     CHECK(scene.parts[0].label == Label::Ignore);
@@ -185,7 +201,8 @@ TEST_CASE("each occupied leaf of an OctoMap part is a solid box of its size")
 {
     const TempFolder folder;
     folder.write("scan.bt", octomap_bytes());
-    const Scene scene = load_parts(folder, "  - {name: scan, label: terrain, octomap: scan.bt, xyz: [10, 0, 1], rpy_deg: [0, 0, 90]}\n");
+    const Scene scene = load_parts(
+        folder, "  - {name: scan, label: terrain, octomap: scan.bt, xyz: [10, 0, 1], rpy_deg: [0, 0, 90]}\n");
     REQUIRE(scene.primitives.size() == 2);
     CHECK(scene.parts[0].solid_pieces == 2);
     CHECK(scene.parts[0].kind == "octomap");
@@ -217,7 +234,8 @@ TEST_CASE("an OctoMap is a scene by itself: terrain with a notice, or as its lab
     const Scene labelled = load_scene(file, {.labels = {{"Hou*", Label::Obstacle}, {"*", Label::Terrain}}});
     CHECK(count(labelled, Label::Obstacle) == 2);
     CHECK(labelled.notices.size() == 1);
-    CHECK_THROWS_WITH(load_scene(file, {.labels = {{"*", Label::Ignore}}}), file.string() + ": has no geometry: all of it is ignored");
+    CHECK_THROWS_WITH(load_scene(file, {.labels = {{"*", Label::Ignore}}}),
+                      file.string() + ": has no geometry: all of it is ignored");
     CHECK_THROWS_AS(load_scene(file, {.scale = 2}), ArgumentError);
     CHECK_THROWS_AS(load_scene(file, {.up = 'y'}), ArgumentError);
 }
@@ -225,9 +243,11 @@ TEST_CASE("an OctoMap is a scene by itself: terrain with a notice, or as its lab
 TEST_CASE("a full OctoMap holds the same boxes as a binary one")
 {
     const TempFolder folder;
-    const Scene binary = load_scene(folder.write("a.bt", octomap_bytes())), full = load_scene(folder.write("a.ot", octomap_bytes(true)));
+    const Scene binary = load_scene(folder.write("a.bt", octomap_bytes())),
+                full = load_scene(folder.write("a.ot", octomap_bytes(true)));
     REQUIRE(full.primitives.size() == 2);
-    for (std::size_t i = 0; i < 2; ++i) CHECK(full.primitives[i].shape.pose.position == binary.primitives[i].shape.pose.position);
+    for (std::size_t i = 0; i < 2; ++i)
+        CHECK(full.primitives[i].shape.pose.position == binary.primitives[i].shape.pose.position);
 }
 
 TEST_CASE("a bare mesh without labels is terrain, and says so")
@@ -246,9 +266,10 @@ TEST_CASE("a bare mesh without labels is terrain, and says so")
 TEST_CASE("a bare mesh takes labels by node or material, and what no rule names is an obstacle")
 {
     const TempFolder folder;
-    const auto file = folder.write("town.obj", mesh_text::obj({{.name = "road", .material = "tar", .mesh = hand::box({1, 1, 1})},
-                                                               {.name = "pond", .material = "Blue", .mesh = hand::rectangle(1, 1)},
-                                                               {.name = "house", .material = "brick", .mesh = hand::box({1, 1, 1})}}));
+    const auto file = folder.write(
+        "town.obj", mesh_text::obj({{.name = "road", .material = "tar", .mesh = hand::box({1, 1, 1})},
+                                    {.name = "pond", .material = "Blue", .mesh = hand::rectangle(1, 1)},
+                                    {.name = "house", .material = "brick", .mesh = hand::box({1, 1, 1})}}));
     const Scene scene = load_scene(file, {.labels = {{"ROAD", Label::Terrain}, {"blu?", Label::Water}}});
     CHECK(count(scene, Label::Terrain) == 12);
     CHECK(count(scene, Label::Water) == 2);
@@ -294,9 +315,11 @@ TEST_CASE("real scenes have as many triangles of each label as their sources tel
         std::size_t terrain, obstacle, water;
     };
     const Wanted scenes[] = {
-        {"inspection/scene.yaml", 3360 + 340, 2067 + 7462, 2},  // materials; two triangles of the base station have no area
-        {"kaykit_town/scene.yaml", 3642 + 720, 54985 - 3642 - 720 - 18, 0},  // nodes; 18 triangles are ignored or have no area
-        {"interchange/scene.yaml", 448 + 900, 84, 0},           // materials of an OBJ
+        {"inspection/scene.yaml", 3360 + 340, 2067 + 7462,
+         2},  // materials; two triangles of the base station have no area
+        {"kaykit_town/scene.yaml", 3642 + 720, 54985 - 3642 - 720 - 18,
+         0},                                           // nodes; 18 triangles are ignored or have no area
+        {"interchange/scene.yaml", 448 + 900, 84, 0},  // materials of an OBJ
     };
     for (const Wanted& wanted : scenes) {
         INFO(wanted.file);
@@ -313,8 +336,10 @@ TEST_CASE("a label rule that matches nothing is told")
 {
     const TempFolder temp;
     temp.write("cube.obj", "o road_1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    const auto file = temp.write("scene.yaml", "format: spawnfield-scene/1\nparts:\n  - name: town\n    mesh: cube.obj\n    labels:\n"
-                                               "      - {node: \"road*\", label: terrain}\n      - {node: \"raod*\", label: terrain}\n");
+    const auto file = temp.write(
+        "scene.yaml",
+        "format: spawnfield-scene/1\nparts:\n  - name: town\n    mesh: cube.obj\n    labels:\n"
+        "      - {node: \"road*\", label: terrain}\n      - {node: \"raod*\", label: terrain}\n");
     SceneOptions options;
     options.labels = {{"ROAD*", Label::Terrain}, {"lake*", Label::Water}};
     const std::vector<std::string> notices = load_scene(file, options).notices;

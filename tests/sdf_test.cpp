@@ -24,7 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string world_of(const std::string& content) { return "<?xml version='1.0'?>\n<sdf version='1.9'><world name='test'>\n" + content + "\n</world></sdf>\n"; }
+std::string world_of(const std::string& content)
+{
+    return "<?xml version='1.0'?>\n<sdf version='1.9'><world name='test'>\n" + content + "\n</world></sdf>\n";
+}
 
 std::string collision(const std::string& geometry, const std::string& name = "c", const std::string& pose = "")
 {
@@ -33,16 +36,20 @@ std::string collision(const std::string& geometry, const std::string& name = "c"
 
 std::string model_of(const std::string& name, const std::string& geometry, const std::string& pose = "")
 {
-    return "<model name='" + name + "'>" + pose + "<static>true</static><link name='l'>" + collision(geometry) + "</link></model>";
+    return "<model name='" + name + "'>" + pose + "<static>true</static><link name='l'>" + collision(geometry) +
+           "</link></model>";
 }
 
 const std::string unit_box = "<box><size>1 1 1</size></box>";
-const std::string ground = "<model name='ground_plane'><static>1</static><link name='l'>" + collision("<plane><normal>0 0 1</normal><size>40 40</size></plane>") + "</link></model>";
+const std::string ground = "<model name='ground_plane'><static>1</static><link name='l'>" +
+                           collision("<plane><normal>0 0 1</normal><size>40 40</size></plane>") + "</link></model>";
 
 /// A folder of models of one box each, `names` by their side lengths.
 void write_model(const TempFolder& folder, const std::string& name, const std::string& content)
 {
-    folder.write("models/" + name + "/model.config", "<model><name>" + name + "</name><sdf version='1.4'>old.sdf</sdf><sdf version='1.6'>model.sdf</sdf></model>");
+    folder.write(
+        "models/" + name + "/model.config",
+        "<model><name>" + name + "</name><sdf version='1.4'>old.sdf</sdf><sdf version='1.6'>model.sdf</sdf></model>");
     folder.write("models/" + name + "/model.sdf", "<sdf version='1.6'>" + content + "</sdf>");
 }
 
@@ -61,7 +68,8 @@ std::map<std::string, Vec3> places(const Scene& scene)
         boxes[scene.parts[primitive.part].name].extend(box.max);
     }
     for (std::size_t t = 0; t < scene.triangles.size(); ++t)
-        for (const std::uint32_t corner : scene.triangles[t]) boxes[scene.parts[scene.pieces[scene.triangle_pieces[t]].part].name].extend(scene.vertices[corner]);
+        for (const std::uint32_t corner : scene.triangles[t])
+            boxes[scene.parts[scene.pieces[scene.triangle_pieces[t]].part].name].extend(scene.vertices[corner]);
     std::map<std::string, Vec3> out;
     for (const auto& [name, box] : boxes) out[name] = (box.min + box.max) / 2;
     return out;
@@ -96,11 +104,15 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 bool has_notice(const Scene& scene, const std::string& part)
 {
-    return std::any_of(scene.notices.begin(), scene.notices.end(), [&](const std::string& text) { return has(text, part); });
+    return std::any_of(scene.notices.begin(), scene.notices.end(),
+                       [&](const std::string& text) { return has(text, part); });
 }
 
 /// Vertical solids at (x, y), from all parts.
-std::vector<double> layers_at(const Scene& scene, double x, double y) { return column_at(Geometry(scene), x, y).layers; }
+std::vector<double> layers_at(const Scene& scene, double x, double y)
+{
+    return column_at(Geometry(scene), x, y).layers;
+}
 
 class Variable {
 public:
@@ -118,23 +130,33 @@ private:
 TEST_CASE("collisions stand where frames, nested models, includes and placement frames put them")
 {
     const TempFolder folder;
-    write_model(folder, "cart", "<model name='cart'><pose>5 0 0 0 0 0</pose><link name='body'><pose>0 0 1 0 0 0</pose>" +
-                                    collision(unit_box, "c", "<pose>0.5 0 0 0 0 0</pose>") + "</link></model>");
+    write_model(folder, "cart",
+                "<model name='cart'><pose>5 0 0 0 0 0</pose><link name='body'><pose>0 0 1 0 0 0</pose>" +
+                    collision(unit_box, "c", "<pose>0.5 0 0 0 0 0</pose>") + "</link></model>");
     folder.write("models/tug/model.config", "<model><name>tug</name><sdf version='1.8'>tug.sdf</sdf></model>");
-    folder.write("models/tug/tug.sdf", "<sdf version='1.8'><model name='tug' placement_frame='hook'><link name='body'>" + collision(unit_box) +
-                                           "</link><frame name='hook'><pose>2 0 0 0 0 0</pose></frame></model></sdf>");
-    write_model(folder, "train", "<model name='train'><include><uri>model://cart</uri><name>first</name><pose>1 0 0 0 0 1.5707963267948966</pose></include>"
-                                 "<include><uri>model://cart</uri><name>second</name></include></model>");
-    const std::string plain = "<include><uri>model://cart</uri></include>"
-                              "<include><uri>model://cart</uri><name>turned</name><pose>10 20 0 0 0 1.5707963267948966</pose></include>"
-                              "<include><uri>model://train</uri><pose>0 -30 0 0 0 3.141592653589793</pose></include>"
-                              "<include><uri>model://tug</uri><pose>0 50 0 0 0 0</pose></include>" +
-                              model_of("inline", unit_box, "<pose>-7 0 2 0 0 0</pose>");
-    const std::string framed = plain + "<frame name='dock'><pose>100 0 0 0 0 0</pose></frame>"
-                                       "<include><uri>model://cart</uri><name>docked</name><pose relative_to='dock'>0 1 0 0 0 0</pose></include>"
-                                       "<include><uri>model://tug</uri><name>hooked</name><placement_frame>body</placement_frame><pose>0 60 0 0 0 0</pose></include>" +
-                                       "<model name='beside'><pose relative_to='turned'>0 0 3 0 0 0</pose><link name='l'>" + collision(unit_box) + "</link></model>";
-    for (const std::string& content : {plain, framed}) {  // without frames the includes are read once each, with them by libsdformat alone
+    folder.write("models/tug/tug.sdf",
+                 "<sdf version='1.8'><model name='tug' placement_frame='hook'><link name='body'>" +
+                     collision(unit_box) + "</link><frame name='hook'><pose>2 0 0 0 0 0</pose></frame></model></sdf>");
+    write_model(folder, "train",
+                "<model name='train'><include><uri>model://cart</uri><name>first</name><pose>1 0 0 0 0 "
+                "1.5707963267948966</pose></include>"
+                "<include><uri>model://cart</uri><name>second</name></include></model>");
+    const std::string plain =
+        "<include><uri>model://cart</uri></include>"
+        "<include><uri>model://cart</uri><name>turned</name><pose>10 20 0 0 0 1.5707963267948966</pose></include>"
+        "<include><uri>model://train</uri><pose>0 -30 0 0 0 3.141592653589793</pose></include>"
+        "<include><uri>model://tug</uri><pose>0 50 0 0 0 0</pose></include>" +
+        model_of("inline", unit_box, "<pose>-7 0 2 0 0 0</pose>");
+    const std::string framed =
+        plain +
+        "<frame name='dock'><pose>100 0 0 0 0 0</pose></frame>"
+        "<include><uri>model://cart</uri><name>docked</name><pose relative_to='dock'>0 1 0 0 0 0</pose></include>"
+        "<include><uri>model://tug</uri><name>hooked</name><placement_frame>body</placement_frame><pose>0 60 0 0 0 "
+        "0</pose></include>" +
+        "<model name='beside'><pose relative_to='turned'>0 0 3 0 0 0</pose><link name='l'>" + collision(unit_box) +
+        "</link></model>";
+    for (const std::string& content :
+         {plain, framed}) {  // without frames the includes are read once each, with them by libsdformat alone
         const Scene scene = load_world(folder, content);
         CAPTURE(scene.notices);
         check_place(scene, "cart::body::c", {5.5, 0, 1});
@@ -157,25 +179,34 @@ TEST_CASE("collisions stand where frames, nested models, includes and placement 
 TEST_CASE("every geometry of SDF has its size")
 {
     const TempFolder folder;
-    folder.write("worlds/wedge.obj", "o big\nv 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-                                     "o small\nv 10 0 0\nv 11 0 0\nv 10 1 0\nv 10 0 1\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n");
+    folder.write("worlds/wedge.obj",
+                 "o big\nv 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+                 "o small\nv 10 0 0\nv 11 0 0\nv 10 1 0\nv 10 0 1\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n");
     const Scene scene = load_world(
-        folder, ground + model_of("sphere", "<sphere><radius>2</radius></sphere>", "<pose>0 0 10 0 0 0</pose>") +
-                    model_of("cylinder", "<cylinder><radius>1</radius><length>3</length></cylinder>", "<pose>0 0 20 0 0 0</pose>") +
-                    model_of("capsule", "<capsule><radius>1</radius><length>3</length></capsule>", "<pose>0 0 30 0 0 0</pose>") +
-                    model_of("ellipsoid", "<ellipsoid><radii>3 2 1</radii></ellipsoid>", "<pose>0 0 40 0 0 0</pose>") +
-                    model_of("mesh", "<mesh><uri>wedge.obj</uri><scale>2 1 0.5</scale></mesh>", "<pose>0 0 50 0 0 0</pose>") +
-                    model_of("part", "<mesh><uri>wedge.obj</uri><submesh><name>small</name></submesh></mesh>", "<pose>0 0 60 0 0 0</pose>") +
-                    model_of("centred", "<mesh><uri>wedge.obj</uri><submesh><name>small</name><center>1</center></submesh></mesh>", "<pose>0 0 70 0 0 0</pose>"),
+        folder,
+        ground + model_of("sphere", "<sphere><radius>2</radius></sphere>", "<pose>0 0 10 0 0 0</pose>") +
+            model_of("cylinder", "<cylinder><radius>1</radius><length>3</length></cylinder>",
+                     "<pose>0 0 20 0 0 0</pose>") +
+            model_of("capsule", "<capsule><radius>1</radius><length>3</length></capsule>",
+                     "<pose>0 0 30 0 0 0</pose>") +
+            model_of("ellipsoid", "<ellipsoid><radii>3 2 1</radii></ellipsoid>", "<pose>0 0 40 0 0 0</pose>") +
+            model_of("mesh", "<mesh><uri>wedge.obj</uri><scale>2 1 0.5</scale></mesh>", "<pose>0 0 50 0 0 0</pose>") +
+            model_of("part", "<mesh><uri>wedge.obj</uri><submesh><name>small</name></submesh></mesh>",
+                     "<pose>0 0 60 0 0 0</pose>") +
+            model_of("centred",
+                     "<mesh><uri>wedge.obj</uri><submesh><name>small</name><center>1</center></submesh></mesh>",
+                     "<pose>0 0 70 0 0 0</pose>"),
         {.labels = {{"*", Label::Terrain}}});
     CAPTURE(scene.notices);
     std::map<std::string, Bounds> boxes;
-    for (const Primitive& primitive : scene.primitives) boxes[scene.parts[primitive.part].name] = bounds_of(primitive.shape);
+    for (const Primitive& primitive : scene.primitives)
+        boxes[scene.parts[primitive.part].name] = bounds_of(primitive.shape);
     CHECK((boxes["sphere::l::c"].max - Vec3(2, 2, 12)).norm() < 1e-12);
     CHECK((boxes["cylinder::l::c"].max - Vec3(1, 1, 21.5)).norm() < 1e-12);
     CHECK((boxes["capsule::l::c"].max - Vec3(1, 1, 32.5)).norm() < 1e-12);
     for (std::size_t t = 0; t < scene.triangles.size(); ++t)
-        for (const std::uint32_t corner : scene.triangles[t]) boxes[scene.parts[scene.pieces[scene.triangle_pieces[t]].part].name].extend(scene.vertices[corner]);
+        for (const std::uint32_t corner : scene.triangles[t])
+            boxes[scene.parts[scene.pieces[scene.triangle_pieces[t]].part].name].extend(scene.vertices[corner]);
     CHECK((boxes["mesh::l::c"].max - Vec3(22, 2, 51)).norm() < 1e-6);
     CHECK((boxes["part::l::c"].min - Vec3(10, 0, 60)).norm() < 1e-6);
     CHECK((boxes["centred::l::c"].min - Vec3(-0.5, -0.5, 69.5)).norm() < 1e-6);
@@ -203,16 +234,22 @@ TEST_CASE("every geometry of SDF has its size")
 TEST_CASE("a polyline is extruded from its pose upwards, an outline within another is a hole")
 {
     const TempFolder folder;
-    const std::string outer = "<polyline><point>0 0</point><point>10 0</point><point>10 10</point><point>5 5</point><point>0 10</point><point>0 0</point><height>2</height></polyline>";
-    const std::string hole = "<polyline><point>1 1</point><point>3 1</point><point>3 3</point><point>1 3</point><height>2</height></polyline>";
-    const std::string island = "<polyline><point>1.5 1.5</point><point>2.5 1.5</point><point>2.5 2.5</point><point>1.5 2.5</point><height>2</height></polyline>";
+    const std::string outer =
+        "<polyline><point>0 0</point><point>10 0</point><point>10 10</point><point>5 5</point><point>0 "
+        "10</point><point>0 0</point><height>2</height></polyline>";
+    const std::string hole =
+        "<polyline><point>1 1</point><point>3 1</point><point>3 3</point><point>1 "
+        "3</point><height>2</height></polyline>";
+    const std::string island =
+        "<polyline><point>1.5 1.5</point><point>2.5 1.5</point><point>2.5 2.5</point><point>1.5 "
+        "2.5</point><height>2</height></polyline>";
     const Scene scene = load_world(folder, model_of("terrain", outer + hole + island, "<pose>0 0 1 0 0 0</pose>"));
     REQUIRE(scene.parts.size() == 1);
     CHECK(scene.parts[0].open_edges == 0);
     CHECK(scene.parts[0].solid_pieces == 2);
     const auto is_filled = [](double x, double y) {
         const bool in_outer = x > 0 && x < 10 && y > 0 && y < 10 && y < 5 + std::abs(x - 5);
-        const bool in_hole = x > 1 && x < 3 && y > 1 && y < 3, on_island = x > 1.5 && x < 2.5 && y > 1.5 && y < 2.5;
+        const bool in_hole = x > 1 && x < 3 && y > 1 && y<3, on_island = x> 1.5 && x < 2.5 && y > 1.5 && y < 2.5;
         return in_outer && (!in_hole || on_island);
     };
     int filled = 0;
@@ -227,9 +264,13 @@ TEST_CASE("a polyline is extruded from its pose upwards, an outline within anoth
             ++filled;
         }
     CHECK(filled > 500);
-    CHECK(has(refusal_of(folder, model_of("a", "<polyline><point>0 0</point><point>4 2</point><point>4 0</point><point>0 1</point><height>1</height></polyline>")),
+    CHECK(has(refusal_of(folder, model_of("a",
+                                          "<polyline><point>0 0</point><point>4 2</point><point>4 0</point><point>0 "
+                                          "1</point><height>1</height></polyline>")),
               "\"a::l::c\": <polyline>: its outline crosses itself near ("));
-    CHECK(has(refusal_of(folder, model_of("a", "<polyline><point>0 0</point><point>2 2</point><height>1</height></polyline>")), "outline 1 has 2 points, needs 3 or more"));
+    CHECK(has(refusal_of(folder,
+                         model_of("a", "<polyline><point>0 0</point><point>2 2</point><height>1</height></polyline>")),
+              "outline 1 has 2 points, needs 3 or more"));
 }
 
 TEST_CASE("a plane is infinite: it goes on beyond the bounds, whatever its drawn size")
@@ -271,7 +312,7 @@ TEST_CASE("a plane is infinite: it goes on beyond the bounds, whatever its drawn
     }
     has_bounds(load_world(folder, drawn("4")), {-2, -2, 0.25}, {2, 2, 0.25});
     has_bounds(load_world(folder, plane("")), {-10, -10, 0.25},
-               {10, 10, 0.25}); // nothing but a plane that nobody draws
+               {10, 10, 0.25});  // nothing but a plane that nobody draws
     // Bounds that are given are those of the cut.
     const Scene given = load_world(folder, drawn("2"), {.bounds = {Vec3(200, 200, 0), Vec3(210, 220, 5)}});
     CHECK(layers_at(given, 205, 210).size() == 1);
@@ -291,7 +332,9 @@ TEST_CASE("a heightmap's brightest pixel is its size high, and sampling interpol
     folder.write("worlds/x", "");
     write_grey_png(folder / "worlds/relief.png", 3, 3, pixels.data());
     const auto heights = [&](int sampling) {
-        return load_world(folder, model_of("h", "<heightmap><uri>relief.png</uri><size>20 10 40</size><pos>100 0 -5</pos><sampling>" + std::to_string(sampling) + "</sampling></heightmap>"));
+        return load_world(
+            folder, model_of("h", "<heightmap><uri>relief.png</uri><size>20 10 40</size><pos>100 0 -5</pos><sampling>" +
+                                      std::to_string(sampling) + "</sampling></heightmap>"));
     };
     for (const int sampling : {1, 2, 4}) {
         const Scene scene = heights(sampling);
@@ -309,10 +352,13 @@ TEST_CASE("a heightmap's brightest pixel is its size high, and sampling interpol
 TEST_CASE("an elevation model as <heightmap> keeps its lowest height, and is stretched to its size")
 {
     const TempFolder folder;
-    folder.write("worlds/dem.asc", "ncols 5\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n"
-                                   "100 120 140 160 180\n100 120 140 160 180\n100 120 -9 160 180\n100 120 140 160 180\n100 120 140 160 180\n");
+    folder.write(
+        "worlds/dem.asc",
+        "ncols 5\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n"
+        "100 120 140 160 180\n100 120 140 160 180\n100 120 -9 160 180\n100 120 140 160 180\n100 120 140 160 180\n");
     const auto load = [&](const std::string& size_z, const std::string& sampling) {
-        return load_world(folder, model_of("h", "<heightmap><uri>dem.asc</uri><size>16 16 " + size_z + "</size><sampling>" + sampling + "</sampling></heightmap>"));
+        return load_world(folder, model_of("h", "<heightmap><uri>dem.asc</uri><size>16 16 " + size_z +
+                                                    "</size><sampling>" + sampling + "</sampling></heightmap>"));
     };
     for (const auto& [size_z, share] : {std::pair{"80", 1.0}, std::pair{"20", 0.25}})
         for (const char* const sampling : {"1", "2"}) {
@@ -325,41 +371,55 @@ TEST_CASE("an elevation model as <heightmap> keeps its lowest height, and is str
             CHECK(has_notice(scene, "dem.asc: is taken as an elevation model"));
             CHECK_FALSE(has_notice(scene, "2^n + 1"));
         }
-    folder.write("worlds/dem.asc", "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3 4\n1 2 3 4\n1 2 3 4\n");
+    folder.write("worlds/dem.asc",
+                 "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3 4\n1 2 3 4\n1 2 3 4\n");
     CHECK(has_notice(load("3", "1"), "is 4 x 3 pixels large; Gazebo draws it anew to a square of 2^n + 1"));
 }
 
 TEST_CASE("what SDF does not know, or nothing touches, is told, with the file's own lines")
 {
     const TempFolder folder;
-    write_model(folder, "crate", "<model name='crate'>\n<link name='l'>" + collision(unit_box) + "<colision name='d'/></link></model>");
-    const std::string world = ground + "\n<include>\n<uri>model://crate</uri>\n</include>\n<!-- two\nlines -->\n<modle name='b'/>\n" +
-                              "<model name='a'>\n<link name='l'>" + collision(unit_box) + "\n" + collision(unit_box, "c", "<pose>3 0 0 0 0 0</pose>") +
-                              "\n<collision name='hollow'><geometry/></collision></link></model>";
+    write_model(folder, "crate",
+                "<model name='crate'>\n<link name='l'>" + collision(unit_box) + "<colision name='d'/></link></model>");
+    const std::string world =
+        ground + "\n<include>\n<uri>model://crate</uri>\n</include>\n<!-- two\nlines -->\n<modle name='b'/>\n" +
+        "<model name='a'>\n<link name='l'>" + collision(unit_box) + "\n" +
+        collision(unit_box, "c", "<pose>3 0 0 0 0 0</pose>") +
+        "\n<collision name='hollow'><geometry/></collision></link></model>";
     const Scene scene = load_world(folder, world);
     CAPTURE(scene.notices);
-    CHECK(has_notice(scene, "test.world: line 9: /sdf/world[@name=\"test\"]/modle[@name=\"b\"]: is no element that SDF has at this place"));
-    CHECK(has_notice(scene, "model.sdf: line 2: /sdf/model[@name=\"crate\"]/link[@name=\"l\"]/colision[@name=\"d\"]: is no element"));
+    CHECK(has_notice(
+        scene,
+        "test.world: line 9: /sdf/world[@name=\"test\"]/modle[@name=\"b\"]: is no element that SDF has at this place"));
+    CHECK(has_notice(
+        scene,
+        "model.sdf: line 2: /sdf/model[@name=\"crate\"]/link[@name=\"l\"]/colision[@name=\"d\"]: is no element"));
     CHECK(has_notice(scene, "collision with name[c] already exists. It is left out"));
     CHECK(has_notice(scene, "<collision>: 1 without a shape left out"));
     CHECK(scene.parts.size() == 3);
     CHECK(has(refusal_of(folder, world, {.strict = true}), "already exists"));
 
     const auto with_surface = [&](const std::string& contact) {
-        return load_world(folder, ground + "<model name='zone'><link name='l'><collision name='c'><geometry>" + unit_box + "</geometry><surface><contact>" + contact +
+        return load_world(folder, ground + "<model name='zone'><link name='l'><collision name='c'><geometry>" +
+                                      unit_box + "</geometry><surface><contact>" + contact +
                                       "</contact></surface></collision></link></model>");
     };
-    for (const char* const contact : {"<collide_bitmask>0x00</collide_bitmask>", "<collide_without_contact>1</collide_without_contact>"}) {
+    for (const char* const contact :
+         {"<collide_bitmask>0x00</collide_bitmask>", "<collide_without_contact>1</collide_without_contact>"}) {
         const Scene zone = with_surface(contact);
         CHECK(zone.parts.size() == 1);
-        CHECK(has_notice(zone, "<collision>: 1 left out, as by <collide_bitmask> or <collide_without_contact> nothing touches them"));
+        CHECK(has_notice(
+            zone,
+            "<collision>: 1 left out, as by <collide_bitmask> or <collide_without_contact> nothing touches them"));
     }
     CHECK(with_surface("<collide_bitmask>0x01</collide_bitmask>").parts.size() == 2);
 
-    const fs::path both = folder.write("worlds/both.sdf", "<sdf version='1.9'><world name='w'>" + ground + "</world>\n" + model_of("beside", unit_box) + "</sdf>");
+    const fs::path both = folder.write("worlds/both.sdf", "<sdf version='1.9'><world name='w'>" + ground +
+                                                              "</world>\n" + model_of("beside", unit_box) + "</sdf>");
     CHECK(has_notice(load_scene(both), "line 2: <model> stands beside <world>: it is left out"));
     folder.write("worlds/wedge.obj", mesh_text::obj(mesh_text::box(Vec3(0, 0, 0), Vec3(1, 1, 1))));
-    const Scene lost = load_world(folder, ground + model_of("m", "<mesh><uri>wedge.obj</uri><submesh><name>none</name></submesh></mesh>"));
+    const Scene lost = load_world(
+        folder, ground + model_of("m", "<mesh><uri>wedge.obj</uri><submesh><name>none</name></submesh></mesh>"));
     CHECK(has_notice(lost, "\"m::l::c\": <submesh> \"none\" is no node of "));
     CHECK(lost.parts.size() == 1);
 }
@@ -381,7 +441,8 @@ TEST_CASE("COLLADA in SDF has its unit, but keeps its axes")
 {
     const TempFolder folder;
     const auto write = [&](const std::string& up) {
-        folder.write("worlds/slab.dae", mesh_text::dae({{.mesh = mesh_text::box(Vec3(0, 0, 0), Vec3(400, 200, 100))}}, {.up = up, .unit = 0.01}));
+        folder.write("worlds/slab.dae", mesh_text::dae({{.mesh = mesh_text::box(Vec3(0, 0, 0), Vec3(400, 200, 100))}},
+                                                       {.up = up, .unit = 0.01}));
         return load_world(folder, model_of("m", "<mesh><uri>slab.dae</uri></mesh>"));
     };
     for (const char* const up : {"X_UP", "Y_UP", "Z_UP", ""}) {
@@ -393,16 +454,20 @@ TEST_CASE("COLLADA in SDF has its unit, but keeps its axes")
 TEST_CASE("what is ground is found by rules, and --label comes first")
 {
     const TempFolder folder;
-    const std::string world = ground + model_of("warehouse_GroundB_01", unit_box) + model_of("Sidewalk_7", unit_box) + model_of("background_wall", unit_box) +
-                              "<model name='house'><static>1</static><link name='l'>" + collision(unit_box, "floor_1") + collision(unit_box, "wall") + "</link></model>";
+    const std::string world = ground + model_of("warehouse_GroundB_01", unit_box) + model_of("Sidewalk_7", unit_box) +
+                              model_of("background_wall", unit_box) +
+                              "<model name='house'><static>1</static><link name='l'>" + collision(unit_box, "floor_1") +
+                              collision(unit_box, "wall") + "</link></model>";
     const auto labels = [](const Scene& scene) {
         std::map<std::string, std::string> out;
         for (const Part& part : scene.parts) out[part.name] = to_string(part.label);
         return out;
     };
     const Scene scene = load_world(folder, world);
-    const std::map<std::string, std::string> expected = {{"ground_plane::l::c", "terrain"}, {"warehouse_GroundB_01::l::c", "terrain"}, {"Sidewalk_7::l::c", "terrain"},
-                                                         {"background_wall::l::c", "obstacle"}, {"house::l::floor_1", "terrain"}, {"house::l::wall", "obstacle"}};
+    const std::map<std::string, std::string> expected = {
+        {"ground_plane::l::c", "terrain"}, {"warehouse_GroundB_01::l::c", "terrain"},
+        {"Sidewalk_7::l::c", "terrain"},   {"background_wall::l::c", "obstacle"},
+        {"house::l::floor_1", "terrain"},  {"house::l::wall", "obstacle"}};
     CHECK(labels(scene) == expected);
     std::map<std::string, std::size_t> counts;
     for (const NameRule& rule : scene.rules) counts[rule.what] = rule.count;
@@ -411,7 +476,11 @@ TEST_CASE("what is ground is found by rules, and --label comes first")
     CHECK(counts["name floor*"] == 1);
     CHECK(counts["all else"] == 2);
 
-    const Scene told = load_world(folder, world, {.labels = {{"house", Label::Water}, {"sidewalk_7::*", Label::Ignore}, {"wall", Label::Terrain}, {"nothing*", Label::Terrain}}});
+    const Scene told = load_world(folder, world,
+                                  {.labels = {{"house", Label::Water},
+                                              {"sidewalk_7::*", Label::Ignore},
+                                              {"wall", Label::Terrain},
+                                              {"nothing*", Label::Terrain}}});
     auto changed = labels(told);
     CHECK(changed["house::l::wall"] == "water");  // the first rule that matches
     CHECK(changed["house::l::floor_1"] == "water");
@@ -421,12 +490,16 @@ TEST_CASE("what is ground is found by rules, and --label comes first")
         if (rule.what == "name sidewalk*" || rule.what == "name floor*") CHECK(rule.count == 0);
     CHECK(has_notice(told, "label \"nothing*\" matches no model, link, collision, node or material"));
 
-    const std::string furniture = "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, "
-                                  "barrier, rail, cone, post or pole";
-    const Scene street = load_world(folder, ground + model_of("street_light", unit_box) + model_of("bridgeRailing", unit_box) + model_of("roadblock_2", unit_box) +
-                                                model_of("bridge_2", unit_box) + model_of("road_design", unit_box));
-    const std::map<std::string, std::string> on_street = {{"ground_plane::l::c", "terrain"}, {"street_light::l::c", "obstacle"}, {"bridgeRailing::l::c", "obstacle"},
-                                                          {"roadblock_2::l::c", "obstacle"}, {"bridge_2::l::c", "terrain"}, {"road_design::l::c", "terrain"}};
+    const std::string furniture =
+        "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, "
+        "barrier, rail, cone, post or pole";
+    const Scene street = load_world(folder, ground + model_of("street_light", unit_box) +
+                                                model_of("bridgeRailing", unit_box) +
+                                                model_of("roadblock_2", unit_box) + model_of("bridge_2", unit_box) +
+                                                model_of("road_design", unit_box));
+    const std::map<std::string, std::string> on_street = {
+        {"ground_plane::l::c", "terrain"}, {"street_light::l::c", "obstacle"}, {"bridgeRailing::l::c", "obstacle"},
+        {"roadblock_2::l::c", "obstacle"}, {"bridge_2::l::c", "terrain"},      {"road_design::l::c", "terrain"}};
     CHECK(labels(street) == on_street);
     for (const NameRule& rule : street.rules)
         if (rule.what == furniture) CHECK(rule.count == 3);
@@ -468,9 +541,13 @@ TEST_CASE("names are split into words, and walls, ceilings and the like are no g
 TEST_CASE("what is missing is told by its name, and refused where the caller is strict")
 {
     const TempFolder folder;
-    const std::string world = ground + "<include><uri>model://nowhere</uri></include><include><uri>model://nowhere</uri><name>again</name></include>" +
-                              model_of("statue", "<mesh><uri>model://statue/lost.dae</uri></mesh>") + "<model name='ghost'><static>1</static><link name='l'/></model>"
-                              "<actor name='walker'><skin><filename>walk.dae</filename></skin></actor><road name='r'><width>2</width><point>0 0 0</point><point>1 0 0</point></road>";
+    const std::string world =
+        ground +
+        "<include><uri>model://nowhere</uri></include><include><uri>model://nowhere</uri><name>again</name></include>" +
+        model_of("statue", "<mesh><uri>model://statue/lost.dae</uri></mesh>") +
+        "<model name='ghost'><static>1</static><link name='l'/></model>"
+        "<actor name='walker'><skin><filename>walk.dae</filename></skin></actor><road "
+        "name='r'><width>2</width><point>0 0 0</point><point>1 0 0</point></road>";
     const Scene scene = load_world(folder, world, {.allow_missing = true});
     CAPTURE(scene.notices);
     CHECK(has_notice(scene,
@@ -498,9 +575,10 @@ TEST_CASE("a world with includes that are not found is refused, with all of them
         "cart</uri></include>";
     const std::string refused = refusal_of(folder, ground + includes);
     CAPTURE(refused);
-    CHECK(has(refused, "test.world: 3 models that it includes are not found; name the folder that holds them with "
-                       "--model-path, download models of Fuel with `gz fuel "
-                       "download -u URI`, or pass --allow-missing to leave them out:\n"));
+    CHECK(has(refused,
+              "test.world: 3 models that it includes are not found; name the folder that holds them with "
+              "--model-path, download models of Fuel with `gz fuel "
+              "download -u URI`, or pass --allow-missing to leave them out:\n"));
     CHECK(has(refused, "\n  line 3: <include> <uri> model://desk is not found (2 includes)\n"));
     CHECK(has(refused, "line 5: <include> <uri> https://fuel.gazebosim.org/1.0/Somebody/models/Chair is not found\n"));
     CHECK(has(refused, "model.sdf: line 1: <include> <uri> model://wheel is not found"));
@@ -585,7 +663,9 @@ TEST_CASE("ground_plane and sun are built in, by all of their names, unless they
 TEST_CASE("models are found by --model-path, Gazebo's variables and above the file")
 {
     const TempFolder folder, elsewhere;
-    elsewhere.write("lib/crate/model.sdf", "<sdf version='1.6'><model name='crate'><link name='l'>" + collision("<mesh><uri>model://crate/meshes/crate.obj</uri></mesh>") + "</link></model></sdf>");
+    elsewhere.write("lib/crate/model.sdf", "<sdf version='1.6'><model name='crate'><link name='l'>" +
+                                               collision("<mesh><uri>model://crate/meshes/crate.obj</uri></mesh>") +
+                                               "</link></model></sdf>");
     elsewhere.write("lib/crate/meshes/crate.obj", mesh_text::obj(mesh_text::box(Vec3(0, 0, 0), Vec3(1, 1, 1))));
     const std::string world = ground + "<include><uri>model://crate</uri></include>";
     CHECK(load_world(folder, world, {.allow_missing = true}).parts.size() == 1);
@@ -614,29 +694,38 @@ TEST_CASE("faulty worlds are refused with file, line and element")
     expect("<model name='a'><link></model>", {"line 3", "is no valid XML"});
     expect(ground + "<include><name>x</name></include>", {"line 3: <include>: has no <uri>"});
     expect(model_of("a", "<box><size>1 x 1</size></box>"), {"line 3: <box> <size>: \"x\" is no finite number"});
-    expect(model_of("a", "<sphere><radius>1,5</radius></sphere>"), {"line 3: <sphere> <radius>: \"1,5\" is no finite number"});
+    expect(model_of("a", "<sphere><radius>1,5</radius></sphere>"),
+           {"line 3: <sphere> <radius>: \"1,5\" is no finite number"});
     expect("\n" + model_of("a", "<box><size>1 2 3 4</size></box>"), {"line 4: <box> <size>: has 4 numbers, needs 3"});
     expect(model_of("a", "<cylinder><radius>1</radius></cylinder>"), {"line 3: <cylinder>: has no <length>"});
-    expect(model_of("a", "<heightmap><uri>a.png</uri><size>4 4 -1</size></heightmap>"), {"\"a::l::c\": <heightmap> <size> is -1, needs > 0 and at most 1000 km (line 3)"});
-    expect(model_of("a", unit_box + "\n<sphere><radius>1</radius></sphere>"), {"\"a::l::c\": <geometry> holds <box>, <sphere>, needs one shape"});
+    expect(model_of("a", "<heightmap><uri>a.png</uri><size>4 4 -1</size></heightmap>"),
+           {"\"a::l::c\": <heightmap> <size> is -1, needs > 0 and at most 1000 km (line 3)"});
+    expect(model_of("a", unit_box + "\n<sphere><radius>1</radius></sphere>"),
+           {"\"a::l::c\": <geometry> holds <box>, <sphere>, needs one shape"});
     expect(model_of("a", "<box><size>1 -1 1</size></box>"), {"\"a::l::c\": <box> <size> is -1, needs > 0"});
     expect(model_of("a", "<sphere><radius>0</radius></sphere>"), {"<sphere> <radius> is 0, needs > 0"});
     expect(model_of("a", "<box><size>1 1e12 1</size></box>"), {"<box> <size> is 1e+12, needs > 0 and at most 1000 km"});
-    expect(model_of("a", "<plane><normal>0 0 0</normal></plane>"), {"<plane> <normal> is (0, 0, 0), needs a direction"});
+    expect(model_of("a", "<plane><normal>0 0 0</normal></plane>"),
+           {"<plane> <normal> is (0, 0, 0), needs a direction"});
     expect(model_of("a", unit_box, "<pose relative_to='nobody'>0 0 0 0 0 0</pose>"), {"nobody"});
     expect(model_of("a", unit_box, "<pose>0 0 0 0 0</pose>"), {"line 3", "pose"});
-    expect(model_of("a", unit_box, "<pose>inf 0 0 0 0 0</pose>"), {"line 3: <model> <pose>: \"inf\" is no finite number"});
-    expect("<population name='crowd'><model_count>3</model_count></population>", {"line 3: <population> \"crowd\" is not expanded here"});
+    expect(model_of("a", unit_box, "<pose>inf 0 0 0 0 0</pose>"),
+           {"line 3: <model> <pose>: \"inf\" is no finite number"});
+    expect("<population name='crowd'><model_count>3</model_count></population>",
+           {"line 3: <population> \"crowd\" is not expanded here"});
     expect("", {"has no models"});
     CHECK(has(refusal(folder.write("bare.world", "hello")), "is no valid XML"));
     CHECK(has(refusal(folder.write("empty.world", "")), "is empty"));
     CHECK(has(refusal(folder.write("other.sdf", "<mujoco/>")), "line 1: <mujoco> stands where"));
     CHECK(has(refusal(folder.write("noversion.sdf", "<sdf><world name='w'/></sdf>")), "line 1: <sdf> has no version"));
-    CHECK(has(refusal(folder.write("version.sdf", "<sdf version='abc'><world name='w'/></sdf>")), "line 1: <sdf> has version \"abc\", needs such as version=\"1.6\""));
-    const std::string only_lost = refusal(folder.write("lost.sdf", world_of(model_of("a", "<mesh><uri>nothere.dae</uri></mesh>"))));
+    CHECK(has(refusal(folder.write("version.sdf", "<sdf version='abc'><world name='w'/></sdf>")),
+              "line 1: <sdf> has version \"abc\", needs such as version=\"1.6\""));
+    const std::string only_lost = refusal(
+        folder.write("lost.sdf", world_of(model_of("a", "<mesh><uri>nothere.dae</uri></mesh>"))));
     CHECK(has(only_lost, "has no geometry: all of it is ignored, missing or without collision"));
     CHECK(has(only_lost, "nothere.dae is not found"));
-    CHECK(has(refusal(folder.write("two.sdf", "<sdf version='1.9'><world name='a'/><world name='b'/></sdf>")), "has 2 worlds, needs one"));
+    CHECK(has(refusal(folder.write("two.sdf", "<sdf version='1.9'><world name='a'/><world name='b'/></sdf>")),
+              "has 2 worlds, needs one"));
     CHECK(has(refusal(folder / "nowhere"), "does not exist"));
     fs::create_directories(folder / "hollow");
     CHECK(has(refusal(folder / "hollow"), "is a folder without model.config"));
@@ -660,17 +749,22 @@ TEST_CASE("models that include the next one twice, and so on, are refused before
     constexpr int doublings = 40;
     for (int i = 0; i < doublings; ++i) {
         const std::string next = std::to_string(i + 1), include = "<include><uri>model://m" + next + "</uri><name>";
-        write_model(folder, "m" + std::to_string(i), "<model name='m'>" + include + "a</name></include>" + include + "b</name></include></model>");
+        write_model(folder, "m" + std::to_string(i),
+                    "<model name='m'>" + include + "a</name></include>" + include + "b</name></include></model>");
     }
-    write_model(folder, "m" + std::to_string(doublings), "<model name='m'><link name='l'>" + collision(unit_box) + "</link></model>");
-    CHECK(has(refusal_of(folder, ground + "<include><uri>model://m0</uri></include>"), "is the one with which all includes come to more than 100000"));
+    write_model(folder, "m" + std::to_string(doublings),
+                "<model name='m'><link name='l'>" + collision(unit_box) + "</link></model>");
+    CHECK(has(refusal_of(folder, ground + "<include><uri>model://m0</uri></include>"),
+              "is the one with which all includes come to more than 100000"));
 }
 
 TEST_CASE("the real worlds hold what an independent reader finds in them")
 {
     const auto folder = shared_scenes();
     if (!folder) return;
-    for (const auto& [world, models, parts] : {std::tuple{"city/worlds/simple_city.world", "city/models", 939}, std::tuple{"warehouse/worlds/small_warehouse.world", "warehouse/models", 26}}) {
+    for (const auto& [world, models, parts] :
+         {std::tuple{"city/worlds/simple_city.world", "city/models", 939},
+          std::tuple{"warehouse/worlds/small_warehouse.world", "warehouse/models", 26}}) {
         CAPTURE(world);
         const Scene scene = load_scene(*folder / world);
         CHECK(scene.parts.size() == std::size_t(parts));
@@ -680,9 +774,11 @@ TEST_CASE("the real worlds hold what an independent reader finds in them")
         // The other reader's planes are as large as drawn, its pavements' lids fans.
         const auto sorted_middles = [](const Scene& of) {
             std::vector<std::array<double, 3>> out;
-            for (const Primitive& p : of.primitives) out.push_back({p.shape.pose.position.x(), p.shape.pose.position.y(), p.shape.pose.position.z()});
+            for (const Primitive& p : of.primitives)
+                out.push_back({p.shape.pose.position.x(), p.shape.pose.position.y(), p.shape.pose.position.z()});
             for (std::size_t t = 0; t < of.triangles.size(); ++t) {
-                const std::string& kind = of.parts[of.pieces[of.triangle_pieces[t]].part].kind, &name = of.parts[of.pieces[of.triangle_pieces[t]].part].name;
+                const std::string &kind = of.parts[of.pieces[of.triangle_pieces[t]].part].kind,
+                                  &name = of.parts[of.pieces[of.triangle_pieces[t]].part].name;
                 if (kind == "plane" || kind == "polyline") continue;
                 Vec3 middle = Vec3::Zero();
                 for (const std::uint32_t corner : of.triangles[t]) middle += of.vertices[corner] / 3;

@@ -48,12 +48,15 @@ std::string prism_obj(const Xml* polyline)
     std::string points, faces;
     std::size_t count = 0;
     const std::string height = text_of(polyline, "height");
-    for (const Xml* point = polyline->FirstChildElement("point"); point != nullptr; point = point->NextSiblingElement("point"), ++count)
+    for (const Xml* point = polyline->FirstChildElement("point"); point != nullptr;
+         point = point->NextSiblingElement("point"), ++count)
         points += "v " + std::string(point->GetText()) + " 0\nv " + point->GetText() + " " + height + "\n";
     const auto low = [&](std::size_t i) { return std::to_string(2 * (i % count) + 1) + " "; };
     const auto high = [&](std::size_t i) { return std::to_string(2 * (i % count) + 2) + " "; };
-    for (std::size_t i = 0; i < count; ++i) faces += "f " + low(i) + low(i + 1) + high(i + 1) + "\nf " + low(i) + high(i + 1) + high(i) + "\n";
-    for (std::size_t i = 1; i + 1 < count; ++i) faces += "f " + high(0) + high(i) + high(i + 1) + "\nf " + low(0) + low(i + 1) + low(i) + "\n";
+    for (std::size_t i = 0; i < count; ++i)
+        faces += "f " + low(i) + low(i + 1) + high(i + 1) + "\nf " + low(i) + high(i + 1) + high(i) + "\n";
+    for (std::size_t i = 1; i + 1 < count; ++i)
+        faces += "f " + high(0) + high(i) + high(i + 1) + "\nf " + low(0) + low(i + 1) + low(i) + "\n";
     return points + faces;
 }
 
@@ -75,7 +78,8 @@ public:
     void add_file(const std::filesystem::path& file)
     {
         tinyxml2::XMLDocument document;
-        if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) throw std::runtime_error("not read: " + file.string());
+        if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS)
+            throw std::runtime_error("not read: " + file.string());
         add_children(document.FirstChildElement("sdf")->FirstChildElement("world"), Eigen::Isometry3d::Identity(), "");
     }
 
@@ -100,7 +104,8 @@ private:
 
     void add_link(const Xml* link, const Eigen::Isometry3d& frame, const std::string& names)
     {
-        for (const Xml* collision = link->FirstChildElement("collision"); collision != nullptr; collision = collision->NextSiblingElement("collision"))
+        for (const Xml* collision = link->FirstChildElement("collision"); collision != nullptr;
+             collision = collision->NextSiblingElement("collision"))
             if (const Xml* const shape = collision->FirstChildElement("geometry")->FirstChildElement())
                 add_part(shape_line(shape), frame * pose_of(collision), names);
     }
@@ -111,8 +116,10 @@ private:
         if (kind == "box") return "box: " + list(numbers_of(text_of(shape, "size")));
         if (kind == "plane") return "plane: " + list(numbers_of(text_of(shape, "size")));
         if (kind == "sphere") return "sphere: " + text_of(shape, "radius");
-        if (kind == "cylinder") return "cylinder: {radius: " + text_of(shape, "radius") + ", length: " + text_of(shape, "length") + "}";
-        if (kind == "polyline") return "mesh: " + folder_.write("pavement" + std::to_string(count_) + ".obj", prism_obj(shape)).string();
+        if (kind == "cylinder")
+            return "cylinder: {radius: " + text_of(shape, "radius") + ", length: " + text_of(shape, "length") + "}";
+        if (kind == "polyline")
+            return "mesh: " + folder_.write("pavement" + std::to_string(count_) + ".obj", prism_obj(shape)).string();
         const std::filesystem::path file = resolved(text_of(shape, "uri"));
         if (kind != "mesh" || !std::filesystem::is_regular_file(file)) return "";
         const std::vector<double> scale = numbers_of(text_of(shape, "scale"));
@@ -123,12 +130,15 @@ private:
     {
         if (shape.empty()) return;
         bool ground = shape.starts_with("plane");
-        for (const char* const word : {"Ground", "sidewalk", "bridge", "pier", "parking_garage", "asphalt"}) ground |= names.find(word) != names.npos;
+        for (const char* const word : {"Ground", "sidewalk", "bridge", "pier", "parking_garage", "asphalt"})
+            ground |= names.find(word) != names.npos;
         const Mat3 r = pose.linear();
         const Vec3 at = pose.translation();
-        parts_ += "  - {name: p" + std::to_string(count_++) + ", label: " + (ground ? "terrain" : "obstacle") + ", " + shape +
-                  ", xyz: " + list({at.x(), at.y(), at.z()}) +
-                  ", rpy: " + list({std::atan2(r(2, 1), r(2, 2)), -std::asin(std::clamp(r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))}) + "}\n";
+        parts_ += "  - {name: p" + std::to_string(count_++) + ", label: " + (ground ? "terrain" : "obstacle") + ", " +
+                  shape + ", xyz: " + list({at.x(), at.y(), at.z()}) + ", rpy: " +
+                  list({std::atan2(r(2, 1), r(2, 2)), -std::asin(std::clamp(r(2, 0), -1.0, 1.0)),
+                        std::atan2(r(1, 0), r(0, 0))}) +
+                  "}\n";
     }
 
     const TempFolder& folder_;
@@ -139,7 +149,8 @@ private:
 
 }  // namespace
 
-std::filesystem::path scene_of_world(const TempFolder& folder, const std::filesystem::path& world, const std::filesystem::path& models)
+std::filesystem::path scene_of_world(const TempFolder& folder, const std::filesystem::path& world,
+                                     const std::filesystem::path& models)
 {
     WorldReader reader(folder, models);
     reader.add_file(world);

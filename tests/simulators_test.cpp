@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string urdf_text = R"(<robot name="cart"><link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+const std::string urdf_text =
+    R"(<robot name="cart"><link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
 <collision><origin xyz="0 0 0.1"/><geometry><box size="0.6 0.4 0.2"/></geometry></collision></link></robot>)";
 
 const std::string world_text = R"(<?xml version="1.0"?>
@@ -36,7 +37,9 @@ std::vector<RobotStart> random_robots(std::size_t count)
     Random random{4};
     std::vector<RobotStart> out;
     for (const std::string& name : names)
-        out.push_back({name, name, {random.between(-90, 90), random.between(-90, 90), random.between(-9, 9)},
+        out.push_back({name,
+                       name,
+                       {random.between(-90, 90), random.between(-90, 90), random.between(-9, 9)},
                        {random.between(-pi, pi), random.between(-pi / 2, pi / 2), random.between(-pi, pi)}});
     out.front().rpy.pitch = pi / 2;  // nose down
     return out;
@@ -98,13 +101,15 @@ TEST_CASE("bad patterns and names are refused, and the message names them")
         return message_of([&] { numbered_names("--name", pattern, count); });
     };
     CHECK(refused("husky", 2) == "--name \"husky\" gives all 2 robots one name, needs {i} or {i:03}");
-    for (const char* const pattern : {"r{", "r}", "r}{", "r{}", "r{j}", "r{i:3}", "r{i:00}", "r{i:012}", "r{i:0x}", "r{i", "r{i:03d}"})
+    for (const char* const pattern :
+         {"r{", "r}", "r}{", "r{}", "r{j}", "r{i:3}", "r{i:00}", "r{i:012}", "r{i:0x}", "r{i", "r{i:03d}"})
         CHECK_THAT(refused(pattern, 2), Contains("has braces that are no {i} or {i:03}"));
     CHECK_THAT(refused("r{i}{i}", 2), Contains("has braces twice"));
     CHECK_THAT(refused("", 1), Contains("is empty"));
     CHECK_THAT(refused("a\n{i}", 1), Contains("control character"));
     const std::vector<std::string> twice = {"a", "b", "a"};
-    CHECK(message_of([&] { check_names("column name:", twice); }) == "column name: \"a\" is the name of two robots, needs one each");
+    CHECK(message_of([&] { check_names("column name:", twice); }) ==
+          "column name: \"a\" is the name of two robots, needs one each");
 }
 
 TEST_CASE("names for ROS and SDF keep their rules")
@@ -143,7 +148,9 @@ TEST_CASE("libsdformat reads a new world's robots at their poses, of a URDF and 
     check_models(*of_urdf.WorldByIndex(0), robots);
 
     folder.write("models/cart/model.config", "<model><name>cart</name><sdf version=\"1.6\">model.sdf</sdf></model>");
-    folder.write("models/cart/model.sdf", "<sdf version=\"1.6\"><model name=\"cart\"><pose>9 9 9 0 0 0</pose><link name=\"base\"/></model></sdf>");
+    folder.write(
+        "models/cart/model.sdf",
+        "<sdf version=\"1.6\"><model name=\"cart\"><pose>9 9 9 0 0 0</pose><link name=\"base\"/></model></sdf>");
     folder.write("model.sdf", sdf_world(robots, {.uri = "model://cart"}));
     const sdf::Root of_model = sdf_root(folder / "model.sdf", folder / "models");
     CHECK(of_model.WorldByIndex(0)->Name() == "spawns");
@@ -155,9 +162,11 @@ TEST_CASE("a world's file keeps all that it has, and gets the robots")
     const TempFolder folder;
     const std::vector<RobotStart> robots = random_robots(5);
     const fs::path urdf = folder.write("cart.urdf", urdf_text);
-    const std::string text = sdf_world(robots, {.uri = urdf.string(), .world_text = world_text, .world_file = "yard.world"});
+    const std::string text = sdf_world(robots,
+                                       {.uri = urdf.string(), .world_text = world_text, .world_file = "yard.world"});
     const std::size_t end = world_text.rfind("  </world>");
-    CHECK(text.starts_with(world_text.substr(0, end) + "    <include>\n      <uri>"));  // the rest stays as it is, to the letter
+    CHECK(text.starts_with(world_text.substr(0, end) +
+                           "    <include>\n      <uri>"));  // the rest stays as it is, to the letter
     CHECK(text.ends_with("</include>\n" + world_text.substr(end)));
     folder.write("yard.sdf", text);
     const sdf::Root root = sdf_root(folder / "yard.sdf");
@@ -175,17 +184,21 @@ TEST_CASE("robots get into the right world, however its file is written")
     const std::vector<RobotStart> robots = random_robots(2);
     folder.write("cart/model.config", "<model><name>cart</name><sdf version=\"1.6\">model.sdf</sdf></model>");
     folder.write("cart/model.sdf", "<sdf version=\"1.6\"><model name=\"cart\"><link name=\"base\"/></model></sdf>");
-    const std::string plugin = "<plugin name='p' filename='f'><world>not this one</world><text><![CDATA[</world>]]></text></plugin>";
-    for (const std::string& text : {std::string("<sdf version='1.6'><world name='a'/></sdf>"), "<sdf version='1.6'><world name='a'>" + plugin + "</world></sdf>",
-                                    "<sdf version='1.6'><world name='a > b' >" + plugin + "<!--</world>--></world\n></sdf>\n<!-- <world> -->",
-                                    std::string("<sdf version='1.6'><world name='a>'/></sdf>")}) {
+    const std::string plugin =
+        "<plugin name='p' filename='f'><world>not this one</world><text><![CDATA[</world>]]></text></plugin>";
+    for (const std::string& text :
+         {std::string("<sdf version='1.6'><world name='a'/></sdf>"),
+          "<sdf version='1.6'><world name='a'>" + plugin + "</world></sdf>",
+          "<sdf version='1.6'><world name='a > b' >" + plugin + "<!--</world>--></world\n></sdf>\n<!-- <world> -->",
+          std::string("<sdf version='1.6'><world name='a>'/></sdf>")}) {
         INFO(text);
         folder.write("new.sdf", sdf_world(robots, {.uri = "model://cart", .world_text = text}));
         const sdf::Root root = sdf_root(folder / "new.sdf", folder.path());
         CHECK(root.WorldByIndex(0)->ModelCount() == 2);
         check_models(*root.WorldByIndex(0), robots);
     }
-    const std::string two = "<sdf version='1.6'>\n  <world name='a'>\n  </world>\n  <world name='b'>\n  </world>\n</sdf>\n";
+    const std::string two =
+        "<sdf version='1.6'>\n  <world name='a'>\n  </world>\n  <world name='b'>\n  </world>\n</sdf>\n";
     const std::string in_first = sdf_world(robots, {.uri = "model://cart", .world_name = "a", .world_text = two});
     CHECK(in_first.find("cart_2") < in_first.find("<world name='b'>"));
     CHECK(in_first.ends_with("  </world>\n  <world name='b'>\n  </world>\n</sdf>\n"));
@@ -197,7 +210,9 @@ TEST_CASE("a file that is no world, or whose names are taken, is refused with it
 {
     const std::vector<RobotStart> robots = random_robots(1);
     const auto refused = [&](const std::string& text, const std::string& name = "") {
-        return message_of([&] { sdf_world(robots, {.uri = "model://cart", .world_name = name, .world_text = text, .world_file = "a.world"}); });
+        return message_of([&] {
+            sdf_world(robots, {.uri = "model://cart", .world_name = name, .world_text = text, .world_file = "a.world"});
+        });
     };
     CHECK_THAT(refused("<sdf version='1.6'>\n<world>\n</sdf>"), Contains("a.world: line 2: is no valid XML"));
     CHECK(refused("<robot name='a'/>") == "a.world: has no <sdf> as its outermost element, needs an SDF world");
@@ -205,18 +220,24 @@ TEST_CASE("a file that is no world, or whose names are taken, is refused with it
     CHECK_THAT(refused("<sdf><world name='a'/><world name='b'/></sdf>"), Contains("has several worlds, \"a\", \"b\""));
     CHECK(refused("<sdf><world name='a'/><world name='b'/></sdf>", "b").empty());
     CHECK_THAT(refused(world_text, "c"), Contains("has no world \"c\", only \"yard\""));
-    CHECK(refused("<sdf>\n<world name='a'>\n<model name='cart_1'/></world></sdf>") == "a.world: line 2: <world> has a \"cart_1\" already; give the robots other names");
-    CHECK_THAT(refused("<sdf><world name='a'><include><name>cart_1</name><uri>model://x</uri></include></world></sdf>"), Contains("has a \"cart_1\" already"));
+    CHECK(refused("<sdf>\n<world name='a'>\n<model name='cart_1'/></world></sdf>") ==
+          "a.world: line 2: <world> has a \"cart_1\" already; give the robots other names");
+    CHECK_THAT(refused("<sdf><world name='a'><include><name>cart_1</name><uri>model://x</uri></include></world></sdf>"),
+               Contains("has a \"cart_1\" already"));
     const TempFolder folder;
     folder.write("models/cart/model.sdf", "<sdf version='1.6'><model name='cart_1'/></sdf>");
     CHECK_THAT(message_of([&] {
-                   sdf_world(robots, {.uri = "model://cart", .world_text = "<sdf><world name='a'><include><uri>model://cart</uri></include></world></sdf>",
-                                      .model_paths = {folder / "models"}});
+                   sdf_world(
+                       robots,
+                       {.uri = "model://cart",
+                        .world_text = "<sdf><world name='a'><include><uri>model://cart</uri></include></world></sdf>",
+                        .model_paths = {folder / "models"}});
                }),
                Contains("has a \"cart_1\" already"));
     CHECK_FALSE(message_of([&] { sdf_world(robots, {}); }).empty());
     for (std::size_t size = 1; size < world_text.size(); ++size)  // cut anywhere, it is refused or whole
-        if (const std::string message = refused(world_text.substr(0, size)); message.empty()) CHECK(size >= world_text.find("</sdf>") + 6);
+        if (const std::string message = refused(world_text.substr(0, size)); message.empty())
+            CHECK(size >= world_text.find("</sdf>") + 6);
 }
 
 TEST_CASE("launch files need something to spawn that is a URDF or SDF")
@@ -226,8 +247,10 @@ TEST_CASE("launch files need something to spawn that is a URDF or SDF")
         CHECK_THAT(message_of([&] { writer(robots, {}); }), Contains("neither a file nor a topic"));
         CHECK_THAT(message_of([&] { writer(robots, {.file = "a.urdf.xacro"}); }), Contains("is a template"));
     }
-    CHECK_THAT(message_of([&] { ros2_launch_py(robots, {.file = "$(find a)/b.urdf"}); }), Contains("is for launch files in XML"));
-    CHECK_THAT(ros2_launch_xml(robots, {.file = "$(find-pkg-share a)/b.urdf"}), Contains("-file $(find-pkg-share a)/b.urdf "));
+    CHECK_THAT(message_of([&] { ros2_launch_py(robots, {.file = "$(find a)/b.urdf"}); }),
+               Contains("is for launch files in XML"));
+    CHECK_THAT(ros2_launch_xml(robots, {.file = "$(find-pkg-share a)/b.urdf"}),
+               Contains("-file $(find-pkg-share a)/b.urdf "));
 }
 
 TEST_CASE("each tile of the terrain has its patches, an empty one is named")
@@ -248,7 +271,8 @@ TEST_CASE("sample and search write the robots of their CSV file in every format"
     const Arena arena;
     arena.write("cart.urdf", urdf_text);
     for (const std::string command : {"sample", "search"}) {
-        const std::string query = command + " map -n 7 --min-distance 1 --yaw random --robot cart.urdf --name 'cart_{i:02}' ";
+        const std::string query = command +
+                                  " map -n 7 --min-distance 1 --yaw random --robot cart.urdf --name 'cart_{i:02}' ";
         REQUIRE(arena(query + "-o spawns.csv").status == 0);
         const PoseTable table = read_poses(arena / "spawns.csv");
         const std::vector<RobotStart> robots = robot_starts(table, column_of(table, "name"), column_of(table, "name"));
@@ -264,9 +288,11 @@ TEST_CASE("sample and search write the robots of their CSV file in every format"
         CHECK(output("ros1-launch") == ros1_launch(robots, {.file = urdf}));
         CHECK(output("ros1-launch --topic description") == ros1_launch(robots, {.topic = "description"}));
         CHECK(output("ros2-launch-py --world-name yard") == ros2_launch_py(robots, {.file = urdf, .world = "yard"}));
-        CHECK(output("ros2-launch-xml --topic robot_description") == ros2_launch_xml(robots, {.topic = "robot_description"}));
+        CHECK(output("ros2-launch-xml --topic robot_description") ==
+              ros2_launch_xml(robots, {.topic = "robot_description"}));
         CHECK(output("sdf") == sdf_world(robots, {.uri = urdf}));
-        CHECK(output("sdf --robot-uri model://cart --world-name yard") == sdf_world(robots, {.uri = "model://cart", .world_name = "yard"}));
+        CHECK(output("sdf --robot-uri model://cart --world-name yard") ==
+              sdf_world(robots, {.uri = "model://cart", .world_name = "yard"}));
         CHECK(output("mujoco --joint-qpos 0.5,-1") == mujoco_keyframes(robots, {.joints = {0.5, -1}}));
         CHECK(output("mujoco --keys together") == mujoco_keyframes(robots, {.together = true}));
         CHECK(output("carla --blueprint walker.a") == carla_json(robots, "walker.a"));
@@ -275,9 +301,11 @@ TEST_CASE("sample and search write the robots of their CSV file in every format"
         CHECK(output("unity --unity-axes gltf") == unity_csv(robots, Frame::UnityGltf));
         CHECK(output("unreal") == unreal_csv(robots));
         output("isaaclab --quaternion xyzw -o isaac");
-        CHECK(names_in(arena / "isaac") == std::set<std::string>{"root_pose.npy", "flat_patches.npy", "terrain_origins.npy", "isaaclab.json"});
+        CHECK(names_in(arena / "isaac") ==
+              std::set<std::string>{"root_pose.npy", "flat_patches.npy", "terrain_origins.npy", "isaaclab.json"});
         CHECK(bytes_of(arena / "isaac/root_pose.npy") == root_poses_npy(robots, QuaternionOrder::Xyzw));
-        CHECK(nlohmann::json::parse(bytes_of(arena / "isaac/isaaclab.json"))["root_pose.npy"]["columns"] == "x y z qx qy qz qw");
+        CHECK(nlohmann::json::parse(bytes_of(arena / "isaac/isaaclab.json"))["root_pose.npy"]["columns"] ==
+              "x y z qx qy qz qw");
         const auto json = nlohmann::json::parse(output("json --namespace 'fleet/{i}'"));
         CHECK(json["poses"][6]["name"] == "cart_07");
         CHECK(json["poses"][6]["namespace"] == "fleet/7");
@@ -303,7 +331,8 @@ TEST_CASE("export writes the poses of a CSV file in every format, with roll and 
     CHECK(output("csv") == robots_csv(robots));
     CHECK(output("ros1-launch --robot-file cart.urdf") == ros1_launch(robots, {.file = urdf}));
     CHECK(output("ros2-launch-py --robot cart.urdf") == ros2_launch_py(robots, {.file = urdf}));
-    CHECK(output("ros2-launch-py --robot cart.urdf --package-path . --mesh-parts 2") == ros2_launch_py(robots, {.file = urdf}));
+    CHECK(output("ros2-launch-py --robot cart.urdf --package-path . --mesh-parts 2") ==
+          ros2_launch_py(robots, {.file = urdf}));
     CHECK(output("ros2-launch-xml --topic a") == ros2_launch_xml(robots, {.topic = "a"}));
     CHECK(output("sdf --robot-uri model://cart") == sdf_world(robots, {.uri = "model://cart"}));
     CHECK(output("mujoco --keys together") == mujoco_keyframes(robots, {.together = true}));
@@ -319,21 +348,26 @@ TEST_CASE("export writes the poses of a CSV file in every format, with roll and 
     CHECK_FALSE(json.contains("robot"));
 
     arena.write("twice.csv", "name,x,y,z\na,0,0,1\na,1,0,1\n");
-    CHECK_THAT(arena("export map --poses twice.csv --format json").err, Contains("column name: \"a\" is the name of two robots"));
+    CHECK_THAT(arena("export map --poses twice.csv --format json").err,
+               Contains("column name: \"a\" is the name of two robots"));
     arena.write("buried.csv", "x,y,z\n0,0,-50\n");
     const ProgramRun buried = arena("export map --poses buried.csv --format isaaclab -o new");
     CHECK(buried.status == 2);
     CHECK_THAT(buried.err, Contains("there is no ground below robot robot_1 at 0, 0, -50"));
     CHECK_THAT(arena("export map --format unity").err, Contains("--format unity needs --poses"));
-    CHECK_THAT(arena("export map --format unity --poses poses.csv --tiles 1,1").err, Contains("--tiles is not for --format unity; it is for isaaclab"));
-    CHECK_THAT(arena("export map --format nav2 --robot box:1,1,1 --poses poses.csv -o a.yaml").err, Contains("--poses is not for --format nav2"));
+    CHECK_THAT(arena("export map --format unity --poses poses.csv --tiles 1,1").err,
+               Contains("--tiles is not for --format unity; it is for isaaclab"));
+    CHECK_THAT(arena("export map --format nav2 --robot box:1,1,1 --poses poses.csv -o a.yaml").err,
+               Contains("--poses is not for --format nav2"));
     CHECK_FALSE(fs::exists(arena / "new"));
 }
 
 TEST_CASE("patches lie on the ground below the spawns")
 {
     const Arena arena;
-    CHECK(arena("sample map -n 20 --offset 0.3 --robot box:0.3,0.3,0.3 --layers top --region 3,-9,9,9 --format isaaclab -o isaac").status == 0);
+    CHECK(arena("sample map -n 20 --offset 0.3 --robot box:0.3,0.3,0.3 --layers top --region 3,-9,9,9 --format "
+                "isaaclab -o isaac")
+              .status == 0);
     const std::string bytes = bytes_of(arena / "isaac/flat_patches.npy");
     const Map map = read_map(arena / "map");
     REQUIRE(bytes.size() == 128 + 20 * 12);
@@ -356,10 +390,13 @@ TEST_CASE("the commands of each simulator's page and of the page on floors work 
         std::string script;
         bool is_code = false;
         for (std::string line; std::getline(text, line);) {
-            if (line.starts_with("```")) is_code = line == "```" && !is_code;
-            else if (is_code && (line.starts_with("spawnfield ") || line.starts_with("cp "))) script += line + "\n";
+            if (line.starts_with("```"))
+                is_code = line == "```" && !is_code;
+            else if (is_code && (line.starts_with("spawnfield ") || line.starts_with("cp ")))
+                script += line + "\n";
         }
-        for (std::size_t at = script.find("/tmp"); at != std::string::npos; at = script.find("/tmp")) script.replace(at, 4, ".");
+        for (std::size_t at = script.find("/tmp"); at != std::string::npos; at = script.find("/tmp"))
+            script.replace(at, 4, ".");
         INFO(page.string() + "\n" + script);
         CHECK(std::count(script.begin(), script.end(), '\n') >= 2);
         CHECK(run_program(folder, "--version && set -e && PATH=$PWD:$PATH\n" + script).status == 0);
@@ -369,15 +406,22 @@ TEST_CASE("the commands of each simulator's page and of the page on floors work 
 TEST_CASE("what a simulator would add to a pose, or not know, is refused or told")
 {
     const Arena arena;
-    const std::string link = "<link name='base'><collision name='c'><geometry><box><size>0.3 0.2 0.1</size></box></geometry></collision></link>"
-                             "<link name='arm'><collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision></link>"
-                             "<joint name='hinge' type='revolute'><parent>base</parent><child>arm</child><axis><xyz>0 0 1</xyz></axis></joint>";
+    const std::string link =
+        "<link name='base'><collision name='c'><geometry><box><size>0.3 0.2 "
+        "0.1</size></box></geometry></collision></link>"
+        "<link name='arm'><collision name='c'><geometry><box><size>0.1 0.1 "
+        "0.1</size></box></geometry></collision></link>"
+        "<joint name='hinge' type='revolute'><parent>base</parent><child>arm</child><axis><xyz>0 0 "
+        "1</xyz></axis></joint>";
     arena.write("frame.sdf", "<sdf version='1.9'><model name='m' placement_frame='arm'>" + link + "</model></sdf>");
     arena.write("posed.sdf", "<sdf version='1.9'><model name='m'><pose>0 0 7 0 0 0.4</pose>" + link + "</model></sdf>");
     arena.write("plain/model.sdf", "<sdf version='1.9'><model name='m'>" + link + "</model></sdf>");
     arena.write("plain/model.config", "<model><sdf>model.sdf</sdf></model>");
-    const auto run = [&](const std::string& arguments) { return arena("sample map -n 2 --offset 1 --max-height 2 " + arguments); };
-    const ProgramRun frame = run("--robot frame.sdf --format sdf"), posed = run("--robot posed.sdf --format ros1-launch");
+    const auto run = [&](const std::string& arguments) {
+        return arena("sample map -n 2 --offset 1 --max-height 2 " + arguments);
+    };
+    const ProgramRun frame = run("--robot frame.sdf --format sdf"),
+                     posed = run("--robot posed.sdf --format ros1-launch");
     CHECK(frame.status == 2);
     CHECK_THAT(frame.err, Contains("frame.sdf has placement_frame=\"arm\""));
     CHECK(posed.status == 2);
@@ -386,9 +430,11 @@ TEST_CASE("what a simulator would add to a pose, or not know, is refused or told
     CHECK(run("--robot frame.sdf --format ros2-launch-py").status == 0);
     const ProgramRun folder = run("--robot plain --format ros1-launch --joints hinge=0.25");
     CHECK(folder.status == 0);
-    CHECK_THAT(folder.out, Contains("-sdf -file " + (arena / "plain/model.sdf").string()) && Contains(" -J hinge 0.25"));
+    CHECK_THAT(folder.out,
+               Contains("-sdf -file " + (arena / "plain/model.sdf").string()) && Contains(" -J hinge 0.25"));
     CHECK(folder.err.find("says nothing about joints") == std::string::npos);
-    CHECK_THAT(run("--robot plain --format sdf --joints hinge=0.25").err, Contains("notice: --format sdf says nothing about joints"));
+    CHECK_THAT(run("--robot plain --format sdf --joints hinge=0.25").err,
+               Contains("notice: --format sdf says nothing about joints"));
     CHECK(run("--robot plain --format sdf --robot-file 'a/$(x)/b.urdf'").status == 2);
 }
 
@@ -404,20 +450,24 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
         CHECK(run.out.empty());
         return run.err;
     };
-    CHECK_THAT(refused("--format ros1-launch", 2), Contains("needs --robot-file FILE") && Contains("box:0.5,0.5,0.5 is neither"));
+    CHECK_THAT(refused("--format ros1-launch", 2),
+               Contains("needs --robot-file FILE") && Contains("box:0.5,0.5,0.5 is neither"));
     CHECK_THAT(refused("--format sdf", 2), Contains("needs --robot-uri URI"));
     CHECK_THAT(refused("--format isaaclab", 2), Contains("needs -o FOLDER"));
     CHECK_THAT(refused("--format isaaclab -o isaac", 1), Contains("holds notes.txt"));
     CHECK_THAT(refused("--format isaaclab --tiles 2 -o new", 2), Contains("--tiles is \"2\", needs ROWS,COLS"));
     CHECK_THAT(refused("--format isaaclab --tiles 40,40 -o new", 2), Contains("has no spawn"));
     CHECK_THAT(refused("--format mujoco --joint-qpos 1,a", 2), Contains("--joint-qpos: \"a\" is no finite number"));
-    CHECK_THAT(refused("--format ros2-launch-py --robot-file none.urdf", 4), Contains("none.urdf: does not exist (--robot-file)"));
-    CHECK_THAT(refused("--format ros2-launch-py --topic a --robot-file none.urdf", 2), Contains("--topic and --robot-file"));
+    CHECK_THAT(refused("--format ros2-launch-py --robot-file none.urdf", 4),
+               Contains("none.urdf: does not exist (--robot-file)"));
+    CHECK_THAT(refused("--format ros2-launch-py --topic a --robot-file none.urdf", 2),
+               Contains("--topic and --robot-file"));
     CHECK_THAT(refused("--format ros2-launch-py --topic a --name 'a-{i}'", 2), Contains("\"a-1\" has \"-\""));
     CHECK_THAT(refused("--format sdf --robot-uri model://a --name 'a::{i}'", 2), Contains("which no model's name may"));
     CHECK_THAT(refused("--format sdf --robot-uri model://a --world none.world", 4),
                Contains("none.world: does not exist"));
-    CHECK_THAT(refused("--format sdf --robot-uri model://a --world yard.world --world-name meadow", 4), Contains("has no world \"meadow\""));
+    CHECK_THAT(refused("--format sdf --robot-uri model://a --world yard.world --world-name meadow", 4),
+               Contains("has no world \"meadow\""));
     CHECK_THAT(refused("--name robot", 2), Contains("gives all 3 robots one name"));
     const ProgramRun idle = arena(query + "--format csv --tiles 1,1 --topic a");
     CHECK(idle.status == 0);
@@ -431,7 +481,8 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
         CHECK(run.status == 0);
         return run.err.find("are relative to this file") != std::string::npos;
     };
-    arena.write("near/a.world", "<sdf version='1.6'><world name='a'><include><uri>\n  models/b </uri></include></world></sdf>");
+    arena.write("near/a.world",
+                "<sdf version='1.6'><world name='a'><include><uri>\n  models/b </uri></include></world></sdf>");
     CHECK_FALSE(told_relative("yard.world", "new.sdf"));
     CHECK_FALSE(told_relative("yard.world", "near/new.sdf"));  // has no paths
     CHECK_FALSE(told_relative("near/a.world", "near/new.sdf"));

@@ -30,10 +30,7 @@ struct Convex {
 
 enum class Rounding { Inscribed, Circumscribed };
 
-Vec3 moved(const Pose& pose, const Vec3& point)
-{
-    return pose.rotation * point + pose.position;
-}
+Vec3 moved(const Pose& pose, const Vec3& point) { return pose.rotation * point + pose.position; }
 
 Convex segment(const Vec3& a, const Vec3& b, double radius)
 {
@@ -156,8 +153,8 @@ double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& triang
     const auto& [a, b, c] = triangle;
     const Vec3 normal = (b - a).cross(c - a).normalized();
     if (normal.squaredNorm() > 0.5 && is_over(point, triangle, normal)) return std::abs((point - a).dot(normal));
-    return std::min({distance_to_segment(point, a, b), distance_to_segment(point, b, c),
-                     distance_to_segment(point, c, a)});
+    return std::min(
+        {distance_to_segment(point, a, b), distance_to_segment(point, b, c), distance_to_segment(point, c, a)});
 }
 
 bool crosses(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& triangle)
@@ -307,10 +304,7 @@ bool is_inside(const Scene& scene, const Piece& piece, const Vec3& point)
 
 // ---- Collision of one robot part ----
 
-bool is_solid(Label label)
-{
-    return label == Label::Terrain || label == Label::Obstacle;
-}
+bool is_solid(Label label) { return label == Label::Terrain || label == Label::Obstacle; }
 
 bool touches_triangles(const Scene& scene, const Convex& body, double grow)
 {
@@ -395,9 +389,9 @@ Stretch within_tube(const Real3& start, const Real3& step, Real radius, Real hal
 Stretch within_capsule(const Real3& start, const Real3& step, Real radius, Real half_length)
 {
     Stretch all = nowhere;
-    for (const Stretch& part : {within_tube(start, step, radius, half_length),
-                                within_ball(start, step, {0, 0, half_length}, radius),
-                                within_ball(start, step, {0, 0, -half_length}, radius)}) {
+    for (const Stretch& part :
+         {within_tube(start, step, radius, half_length), within_ball(start, step, {0, 0, half_length}, radius),
+          within_ball(start, step, {0, 0, -half_length}, radius)}) {
         if (part.is_empty()) continue;
         all = all.is_empty() ? part : Stretch{std::min(all.from, part.from), std::max(all.to, part.to)};
     }
@@ -430,8 +424,10 @@ constexpr double touch = 1e-9;  // DESIGN.md: closer surfaces are one, and terra
 /// The part of a solid that lies under one triangle or primitive.
 void add_solid(Column& column, double bottom, double top, Label label, std::size_t owner)
 {
-    if (label == Label::Water) column.water.push_back(top);
-    else if (is_solid(label)) column.spans.push_back({bottom, top, label == Label::Terrain, owner});
+    if (label == Label::Water)
+        column.water.push_back(top);
+    else if (is_solid(label))
+        column.spans.push_back({bottom, top, label == Label::Terrain, owner});
 }
 
 /// Solid between odd and even crossings. Where one interval ends and the next begins there is no gap to stand in.
@@ -536,8 +532,10 @@ Column column(const Scene& scene, double x, double y)
     for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
         const Piece& piece = scene.pieces[i];
         const auto hits = crossings(scene, piece, {{x, y, 0}, 0, 0});
-        if (piece.solid) add_filled_piece(column, hits, i);
-        else add_sheet(column, hits, piece, i);
+        if (piece.solid)
+            add_filled_piece(column, hits, i);
+        else
+            add_sheet(column, hits, piece, i);
     }
     for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
         const Stretch stretch = vertical_stretch(scene.primitives[i].shape, x, y);
@@ -555,8 +553,10 @@ std::vector<double> layers(const Scene& scene, double x, double y)
     std::sort(terrain.begin(), terrain.end(), [](const Span& a, const Span& b) { return a.bottom < b.bottom; });
     std::vector<double> tops;
     for (const Span& span : terrain) {
-        if (!tops.empty() && span.bottom <= tops.back() + tolerance) tops.back() = std::max(tops.back(), span.top);
-        else tops.push_back(span.top);
+        if (!tops.empty() && span.bottom <= tops.back() + tolerance)
+            tops.back() = std::max(tops.back(), span.top);
+        else
+            tops.push_back(span.top);
     }
     std::reverse(tops.begin(), tops.end());
     return tops;
@@ -652,8 +652,8 @@ Verdict footing(const Scene& scene, const Stand& stand)
 
 }  // namespace
 
-std::optional<Verdict> footing(const Scene& scene, const Robot& robot, const std::vector<Vec3>& contacts, const Pose& scene_from_robot,
-                               double ground, double max_slope, double margin)
+std::optional<Verdict> footing(const Scene& scene, const Robot& robot, const std::vector<Vec3>& contacts,
+                               const Pose& scene_from_robot, double ground, double max_slope, double margin)
 {
     Stand stand = {{}, scene_from_robot.position, infinity, std::tan(max_slope)};
     stand.origin.z() = ground;

@@ -54,7 +54,8 @@ Decision decide(const spawnfield::Scene& scene, const spawnfield::Bounds& map_bo
 /// How a robot with these contacts would stand at a pose over ground of this height, as QueryOptions::max_slope tells:
 /// Valid, Steep or Unstable. Nothing where margin (m, and relative) more or less of anything gives another.
 std::optional<spawnfield::Verdict> footing(const spawnfield::Scene& scene, const spawnfield::Robot& robot,
-                                           const std::vector<spawnfield::Vec3>& contacts, const spawnfield::Pose& scene_from_robot,
-                                           double ground, double max_slope, double margin = 1e-3);
+                                           const std::vector<spawnfield::Vec3>& contacts,
+                                           const spawnfield::Pose& scene_from_robot, double ground, double max_slope,
+                                           double margin = 1e-3);
 
 }  // namespace slow

@@ -19,10 +19,7 @@ Pose at(double x, double y, double z, double roll = 0, double pitch = 0, double 
     return {{x, y, z}, rotation_of_rpy(roll, pitch, yaw)};
 }
 
-Shape box(const Vec3& size, const Pose& pose = {})
-{
-    return {ShapeKind::Box, size, pose};
-}
+Shape box(const Vec3& size, const Pose& pose = {}) { return {ShapeKind::Box, size, pose}; }
 
 Robot robot_of(const Shape& shape)
 {
@@ -43,10 +40,7 @@ Robot robot_of(const hand::Mesh& hull)
 }
 
 /// Unit cube that stands on its origin.
-Robot cube()
-{
-    return robot_of(box({1, 1, 1}, at(0, 0, 0.5)));
-}
+Robot cube() { return robot_of(box({1, 1, 1}, at(0, 0, 0.5))); }
 
 Scene scene_of(const Shape& shape, Label label = Label::Obstacle)
 {
@@ -63,10 +57,7 @@ Scene scene_of(const hand::Mesh& mesh, Label label = Label::Obstacle, const hand
 }
 
 /// A plane at z = 0, 20 x 20 m.
-Scene plane(Label label = Label::Terrain)
-{
-    return scene_of(hand::rectangle(20, 20), label, {.kind = "plane"});
-}
+Scene plane(Label label = Label::Terrain) { return scene_of(hand::rectangle(20, 20), label, {.kind = "plane"}); }
 
 slow::Decision decide(const Scene& scene, const Pose& pose, double max_water_depth = unlimited)
 {
@@ -161,7 +152,7 @@ TEST_CASE("a hull box collides like a box")
 
 TEST_CASE("edges that cross in the air are as far apart as their lines")
 {
-    const Scene beam = scene_of(box({4, 1, 1}, at(0, 0, 0, M_PI / 4)));  // an edge up, along x
+    const Scene beam = scene_of(box({4, 1, 1}, at(0, 0, 0, M_PI / 4)));       // an edge up, along x
     const Robot across = robot_of(box({1, 4, 1}, at(0, 0, 0, 0, M_PI / 4)));  // an edge down, along y
     check_distance(beam, across, at(0.3, 0.2, 2), 2 - 2 * std::sqrt(0.5));
 }
@@ -333,8 +324,8 @@ TEST_CASE("a pose near a limit gets no verdict")
     CHECK_FALSE(decide(scene, at(10, 0, 0.5)).verdict.has_value());
     CHECK_FALSE(decide(scene, at(0.3, 0.2, 1.0005)).verdict.has_value());
     CHECK_FALSE(decide(scene, at(0.3, 0.2, 0.0005)).verdict.has_value());
-    CHECK_FALSE(decide(scene, at(4.0005, 0.2, 0.1)).verdict.has_value());   // touches the box
-    CHECK_FALSE(decide(scene, at(5.4995, 0.2, 1.1)).verdict.has_value());   // over the box's edge
+    CHECK_FALSE(decide(scene, at(4.0005, 0.2, 0.1)).verdict.has_value());  // touches the box
+    CHECK_FALSE(decide(scene, at(5.4995, 0.2, 1.1)).verdict.has_value());  // over the box's edge
     hand::add_shape(scene, Label::Terrain, box({1, 1, 0.01}, at(-5, 0, 0)));
     CHECK_FALSE(decide(scene, at(-4.5005, 0.2, 0.1)).verdict.has_value());  // over a step of 5 mm, so which ground?
     CHECK(decide(scene, at(-4.502, 0.2, 0.1)).ground == 0.005);
@@ -421,8 +412,10 @@ TEST_CASE("random poses meet every verdict but footings, and few are too close t
         const Robot robot = random_robot(seed);
         for (const Pose& pose : random_poses(scene, seed, 30)) {
             const auto decision = slow::decide(scene, rough_bounds(scene), robot, pose, 1.0, unlimited);
-            if (decision.verdict) ++counts[std::size_t(*decision.verdict)];
-            else ++unclear;
+            if (decision.verdict)
+                ++counts[std::size_t(*decision.verdict)];
+            else
+                ++unclear;
         }
     }
     for (std::size_t i = 0; i < verdict_count; ++i) {
@@ -436,11 +429,14 @@ TEST_CASE("random poses meet every verdict but footings, and few are too close t
 TEST_CASE("footings are valid on a plane, steep on a slope, unstable over an edge, and nothing at a limit")
 {
     const std::vector<Vec3> contacts = {{0.5, 0.5, 0}, {-0.5, 0.5, 0}, {-0.5, -0.5, 0}, {0.5, -0.5, 0}};
-    const auto footing = [&](const Scene& scene, const Pose& pose, double max_slope) { return slow::footing(scene, cube(), contacts, pose, 0, max_slope); };
+    const auto footing = [&](const Scene& scene, const Pose& pose, double max_slope) {
+        return slow::footing(scene, cube(), contacts, pose, 0, max_slope);
+    };
     CHECK(footing(plane(), at(0, 0, 0.1), 0.2) == Verdict::Valid);
     CHECK(footing(plane(), at(9.6, 0, 0.1), 0.2) == Verdict::Unstable);
     CHECK(footing(plane(), at(9.5, 0, 0.1), 0.2) == std::nullopt);
-    const Scene slope = scene_of(hand::moved(hand::rectangle(20, 20), at(0, 0, 0, 0, 0.3, 0)), Label::Terrain, {.kind = "plane"});
+    const Scene slope = scene_of(hand::moved(hand::rectangle(20, 20), at(0, 0, 0, 0, 0.3, 0)), Label::Terrain,
+                                 {.kind = "plane"});
     CHECK(footing(slope, at(0, 0, 0.7, 0, 0, 1), 0.31) == Verdict::Valid);
     CHECK(footing(slope, at(0, 0, 0.7, 0, 0, 1), 0.3) == std::nullopt);
     CHECK(footing(slope, at(0, 0, 0.7, 0, 0, 1), 0.1) == Verdict::Steep);

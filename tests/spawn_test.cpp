@@ -20,14 +20,16 @@ Verdict judged(const Map& map, const CollisionChecker& checker, const Spawn& spa
     QueryOptions options;
     options.max_height = max_height;
     const Vec3& p = spawn.position;
-    return judge(map, checker, column_at(map.geometry, p.x(), p.y()), {p, rotation_from_rpy(0, 0, spawn.yaw)}, options).verdict;
+    return judge(map, checker, column_at(map.geometry, p.x(), p.y()), {p, rotation_from_rpy(0, 0, spawn.yaw)}, options)
+        .verdict;
 }
 
 double smallest_distance(const std::vector<Spawn>& spawns)
 {
     double smallest = 1e9;
     for (std::size_t i = 0; i < spawns.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) smallest = std::min(smallest, (spawns[i].position - spawns[j].position).norm());
+        for (std::size_t j = 0; j < i; ++j)
+            smallest = std::min(smallest, (spawns[i].position - spawns[j].position).norm());
     return smallest;
 }
 
@@ -64,31 +66,40 @@ std::vector<Vec3> slow_search(const Map& map, const CollisionChecker& checker, c
 }
 
 /// A valid pose in one of the chosen layers at (x, y), NaN if there is none.
-Spawn valid_at(const Map& map, const CollisionChecker& checker, const SampleOptions& options, double x, double y, Random& random)
+Spawn valid_at(const Map& map, const CollisionChecker& checker, const SampleOptions& options, double x, double y,
+               Random& random)
 {
     const Column column = column_at(map.geometry, x, y);
     const int count = int(column.layers.size());
     for (int layer = 0; layer < count; ++layer) {
         if (!options.layers.includes(layer, count)) continue;
-        const Spawn spawn{{x, y, column.layers[std::size_t(layer)] + *options.offset}, options.random_yaw ? random.between(-M_PI, M_PI) : options.yaw};
+        const Spawn spawn{{x, y, column.layers[std::size_t(layer)] + *options.offset},
+                          options.random_yaw ? random.between(-M_PI, M_PI) : options.yaw};
         QueryOptions query = options;
         query.max_height = 1e9;
-        if (judge(map, checker, column, {spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}, query).verdict == Verdict::Valid) return spawn;
+        if (judge(map, checker, column, {spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}, query).verdict ==
+            Verdict::Valid)
+            return spawn;
     }
     return {Vec3::Constant(std::nan("")), 0};
 }
 
 /// How many points of a grid could still be added.
-std::size_t room_left(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const SpawnList& list, int cells)
+std::size_t room_left(const Map& map, const CollisionChecker& checker, const SampleOptions& options,
+                      const SpawnList& list, int cells)
 {
     Random random{1};
     std::size_t count = 0;
     for (int i = 0; i <= cells; ++i)
         for (int j = 0; j <= cells; ++j) {
-            const Vec3 p = map.bounds.min + (map.bounds.max - map.bounds.min).cwiseProduct(Vec3(double(i) / cells, double(j) / cells, 0));
+            const Vec3 p =
+                map.bounds.min +
+                (map.bounds.max - map.bounds.min).cwiseProduct(Vec3(double(i) / cells, double(j) / cells, 0));
             for (const double layer : column_at(map.geometry, p.x(), p.y()).layers) {
                 const Vec3 at(p.x(), p.y(), layer + *options.offset);
-                const bool clear = std::all_of(list.spawns.begin(), list.spawns.end(), [&](const Spawn& s) { return (s.position - at).norm() >= options.min_distance; });
+                const bool clear = std::all_of(list.spawns.begin(), list.spawns.end(), [&](const Spawn& s) {
+                    return (s.position - at).norm() >= options.min_distance;
+                });
                 if (clear && judged(map, checker, {at, random.between(-M_PI, M_PI)}, 1e9) == Verdict::Valid) ++count;
             }
         }
@@ -108,10 +119,13 @@ Scene floor_scene(int kind)
 {
     Scene scene;
     if (kind == 0) hand::add_mesh(scene, Label::Terrain, hand::rectangle(10, 10));
-    if (kind == 1) hand::add_shape(scene, Label::Terrain, {ShapeKind::Box, {10, 10, 0.5}, {{0, 0, -0.25}, Mat3::Identity()}});
-    if (kind == 2) hand::add_mesh(scene, Label::Terrain, hand::moved(hand::box({10, 10, 0.5}), {{0, 0, -0.25}, Mat3::Identity()}));
+    if (kind == 1)
+        hand::add_shape(scene, Label::Terrain, {ShapeKind::Box, {10, 10, 0.5}, {{0, 0, -0.25}, Mat3::Identity()}});
+    if (kind == 2)
+        hand::add_mesh(scene, Label::Terrain, hand::moved(hand::box({10, 10, 0.5}), {{0, 0, -0.25}, Mat3::Identity()}));
     if (kind == 3) {
-        hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(10, 10), {{0, 0, 0}, rotation_from_rpy(0, 0.2, 0)}));
+        hand::add_mesh(scene, Label::Terrain,
+                       hand::moved(hand::rectangle(10, 10), {{0, 0, 0}, rotation_from_rpy(0, 0.2, 0)}));
         hand::add_shape(scene, Label::Obstacle, {ShapeKind::Box, {2, 3, 4}, {{2, 2, 0}, rotation_from_rpy(0, 0, 0.5)}});
         hand::add_shape(scene, Label::Obstacle, {ShapeKind::Cylinder, {0.5, 6, 0}, {{-2, -2, 0}, Mat3::Identity()}});
     }
@@ -197,7 +211,8 @@ TEST_CASE("20,000 samples are uniform by area over the feasible region")
     Scene scene;
     hand::add_mesh(scene, Label::Terrain, hand::rectangle(6, 6));
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(3, 3), {{0, 0, 2}, Mat3::Identity()}));
-    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(6, 6), {{8, 0, 4}, rotation_from_rpy(0, 1.0471975511965976, 0)}));
+    hand::add_mesh(scene, Label::Terrain,
+                   hand::moved(hand::rectangle(6, 6), {{8, 0, 4}, rotation_from_rpy(0, 1.0471975511965976, 0)}));
     const TestMap map = map_of(scene);
     const CollisionChecker checker = checker_of(map, load_robot("box:0.001,0.001,0.001@0,0,0"));
     SampleOptions options = sample_options(20000, 0);
@@ -207,9 +222,12 @@ TEST_CASE("20,000 samples are uniform by area over the feasible region")
     for (const Spawn& spawn : list.spawns) {
         const Vec3& p = spawn.position;
         std::size_t bin = 0;
-        if (p.x() > 6) bin = 45 + std::size_t((p.x() - 6.5) / 0.5) * 3 + std::size_t((p.y() + 3) / 2);
-        else if (p.z() > 1.5) bin = 36 + std::size_t(p.x() + 1.5) * 3 + std::size_t(p.y() + 1.5);
-        else bin = std::size_t(p.x() + 3) * 6 + std::size_t(p.y() + 3);
+        if (p.x() > 6)
+            bin = 45 + std::size_t((p.x() - 6.5) / 0.5) * 3 + std::size_t((p.y() + 3) / 2);
+        else if (p.z() > 1.5)
+            bin = 36 + std::size_t(p.x() + 1.5) * 3 + std::size_t(p.y() + 1.5);
+        else
+            bin = std::size_t(p.x() + 3) * 6 + std::size_t(p.y() + 3);
         REQUIRE(bin < observed.size());
         observed[bin] += 1;
     }
@@ -226,7 +244,8 @@ TEST_CASE("random yaw is uniform and a fixed yaw is kept")
     const CollisionChecker checker = checker_of(map, load_robot("box:0.1,0.1,0.1"));
     SampleOptions options = sample_options(4000, 0);
     std::vector<int> bins(8, 0);
-    for (const Spawn& spawn : sample(map, checker, options).spawns) ++bins[std::size_t((spawn.yaw + std::numbers::pi) / (std::numbers::pi / 4))];
+    for (const Spawn& spawn : sample(map, checker, options).spawns)
+        ++bins[std::size_t((spawn.yaw + std::numbers::pi) / (std::numbers::pi / 4))];
     for (const int n : bins) CHECK(std::abs(n - 500) < 100);
     options.random_yaw = false;
     options.yaw = 0.7;
@@ -242,7 +261,8 @@ TEST_CASE("a region narrows a sample and layers choose a storey")
     options.layers = {LayerChoice::Kind::Top, 0};
     for (const Spawn& spawn : sample(map, checker, options).spawns) {
         CHECK(spawn.position.z() == Approx(0.93 + 0.1));  // on the platform
-        CHECK((spawn.position.x() >= -3 && spawn.position.x() <= 0 && spawn.position.y() >= 5 && spawn.position.y() <= 9));
+        CHECK((spawn.position.x() >= -3 && spawn.position.x() <= 0 && spawn.position.y() >= 5 &&
+               spawn.position.y() <= 9));
     }
 }
 
@@ -314,10 +334,13 @@ TEST_CASE("a small island in a large map is found")
     const int around = GENERATE(0, 1, 2);
     CAPTURE(around);
     const Vec3 place(123.4, -77.7, 1);
-    const auto add = [&](Label label, const Vec3& size, const Vec3& centre) { hand::add_shape(scene, label, {ShapeKind::Box, size, {centre, Mat3::Identity()}}); };
+    const auto add = [&](Label label, const Vec3& size, const Vec3& centre) {
+        hand::add_shape(scene, label, {ShapeKind::Box, size, {centre, Mat3::Identity()}});
+    };
     add(Label::Terrain, {2, 2, 2}, place - Vec3(0, 0, 1));  // its top is at 1 m
     if (around > 0) add(Label::Terrain, {500, 500, 1}, {0, 0, -0.5});
-    if (around == 1) hand::add_mesh(scene, Label::Water, hand::moved(hand::rectangle(500, 500), {{0, 0, 0.5}, Mat3::Identity()}));
+    if (around == 1)
+        hand::add_mesh(scene, Label::Water, hand::moved(hand::rectangle(500, 500), {{0, 0, 0.5}, Mat3::Identity()}));
     if (around == 2) {  // a slab over all but the island
         add(Label::Obstacle, {250 + place.x() - 1, 500, 3}, {(place.x() - 1 - 250) / 2, 0, 1.5});
         add(Label::Obstacle, {250 - place.x() - 1, 500, 3}, {(place.x() + 1 + 250) / 2, 0, 1.5});
@@ -362,7 +385,8 @@ TEST_CASE("two floors above each other are filled equally")
     const SampleOptions options = sample_options(10000, 0.6);
     const SpawnList list = sample(map, checker, options);
     CHECK(list.is_full);
-    const auto upper = double(std::count_if(list.spawns.begin(), list.spawns.end(), [](const Spawn& s) { return s.position.z() > 2; }));
+    const auto upper = double(
+        std::count_if(list.spawns.begin(), list.spawns.end(), [](const Spawn& s) { return s.position.z() > 2; }));
     CHECK(upper == Approx(double(list.spawns.size()) / 2).epsilon(0.06));
     CHECK(room_left(map, checker, options, list, 200) == 0);
 }
@@ -421,7 +445,8 @@ TEST_CASE("counts and distances out of their limits are refused")
     const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
     CHECK_THROWS_WITH(sample(map, checker, sample_options(0, 1)), "sample: count is 0, needs >= 1");
-    CHECK_THROWS_WITH(sample(map, checker, sample_options(99999999999, 1)), "sample: count is 99999999999, needs at most 100000000");
+    CHECK_THROWS_WITH(sample(map, checker, sample_options(99999999999, 1)),
+                      "sample: count is 99999999999, needs at most 100000000");
     CHECK_THROWS_WITH(sample(map, checker, sample_options(1, -1)), "sample: min_distance is -1, needs >= 0 m");
     SearchOptions options;
     options.max_failures = 0;

@@ -16,7 +16,8 @@ TerrainMap rasterized(const Map& map, double cell, int threads = 0)
 std::vector<HeightImage> images(const TerrainMap& terrain, const std::string& name)
 {
     std::vector<HeightImage> out;
-    while (terrain.find(name + "." + std::to_string(out.size()))) out.push_back(page_image(terrain, name + "." + std::to_string(out.size())));
+    while (terrain.find(name + "." + std::to_string(out.size())))
+        out.push_back(page_image(terrain, name + "." + std::to_string(out.size())));
     return out;
 }
 
@@ -33,8 +34,10 @@ TEST_CASE("pages hold the layers and the water of the column at each cell's cent
         for (int col = 0; col < terrain.frame.cols; ++col) {
             const Column column = column_at(map.geometry, terrain.frame.x_of(col), terrain.frame.y_of(row));
             for (std::size_t k = 0; k < heights.size(); ++k) {
-                if (k < column.layers.size()) CHECK(heights[k](row, col) == float(column.layers[k]));
-                else CHECK(std::isnan(heights[k](row, col)));
+                if (k < column.layers.size())
+                    CHECK(heights[k](row, col) == float(column.layers[k]));
+                else
+                    CHECK(std::isnan(heights[k](row, col)));
             }
             CHECK(std::isnan(water(row, col)) == column.water.empty());
         }
@@ -55,8 +58,10 @@ TEST_CASE("a ball is as high as its equation says")
     for (int row = 0; row < terrain.frame.rows; ++row)
         for (int col = 0; col < terrain.frame.cols; ++col) {
             const double x = terrain.frame.x_of(col), y = terrain.frame.y_of(row), rest = 9 - x * x - y * y;
-            if (rest > 0) CHECK(top(row, col) == Approx(std::sqrt(rest)).margin(1e-6));
-            else CHECK(std::isnan(top(row, col)));
+            if (rest > 0)
+                CHECK(top(row, col) == Approx(std::sqrt(rest)).margin(1e-6));
+            else
+                CHECK(std::isnan(top(row, col)));
         }
 }
 
@@ -70,7 +75,8 @@ TEST_CASE("the page of obstacles holds the highest solid of a column that is no 
         for (int row = 0; row < terrain.frame.rows; row += 3)
             for (int col = 0; col < terrain.frame.cols; col += 2) {
                 const Column column = column_at(map.geometry, terrain.frame.x_of(col), terrain.frame.y_of(row));
-                const bool wanted = !column.spans.empty() && (column.layers.empty() || column.spans[0].top > column.layers[0]);
+                const bool wanted = !column.spans.empty() &&
+                                    (column.layers.empty() || column.spans[0].top > column.layers[0]);
                 CHECK(std::isnan(obstacle(row, col)) != wanted);
                 if (wanted) CHECK(obstacle(row, col) == float(column.spans[0].top));
                 obstacles += wanted;

@@ -13,8 +13,8 @@ struct TestMap : spawnfield::Map {
     spawnfield::Scene scene;
 };
 
-/// A scene with what queries need, without files, and a mask of this resolution (m). Poses beyond the bounds (empty: the
-/// scene's) are `outside`, solids there still count.
+/// A scene with what queries need, without files, and a mask of this resolution (m). Poses beyond the bounds (empty:
+/// the scene's) are `outside`, solids there still count.
 inline TestMap map_of(spawnfield::Scene scene, double resolution = 0.1, const spawnfield::Bounds& bounds = {})
 {
     TestMap map;
@@ -28,10 +28,7 @@ inline TestMap map_of(spawnfield::Scene scene, double resolution = 0.1, const sp
     return map;
 }
 
-inline TestMap training_map()
-{
-    return map_of(spawnfield::load_scene(source_folder() + "/maps/training/scene.yaml"));
-}
+inline TestMap training_map() { return map_of(spawnfield::load_scene(source_folder() + "/maps/training/scene.yaml")); }
 
 inline spawnfield::Robot husky() { return spawnfield::load_robot(source_folder() + "/maps/robots/husky.yaml"); }
 

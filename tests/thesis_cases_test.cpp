@@ -45,7 +45,8 @@ std::optional<Verdict> verdict_at(const RasterResult& result, const Vec3& positi
     return std::nullopt;
 }
 
-std::optional<Verdict> verdict_in_2d(const Scene& scene, double x, double y, double z, double max_slope = std::numeric_limits<double>::infinity())
+std::optional<Verdict> verdict_in_2d(const Scene& scene, double x, double y, double z,
+                                     double max_slope = std::numeric_limits<double>::infinity())
 {
     RasterOptions options;
     options.bounds = {{x, y, -100}, {x, y, 100}};
@@ -103,7 +104,8 @@ TEST_CASE("the path of a bridge is found under its frame, though all of it is on
 TEST_CASE("on the generated bridge frames and pillars are found out by their footing, the path is valid")
 {
     const worlds::World world = worlds::complex_district();
-    const auto bridge = std::find_if(world.landmarks.begin(), world.landmarks.end(), [](const auto& landmark) { return landmark.name == "bridge"; });
+    const auto bridge = std::find_if(world.landmarks.begin(), world.landmarks.end(),
+                                     [](const auto& landmark) { return landmark.name == "bridge"; });
     REQUIRE(bridge != world.landmarks.end());
     const TestMap map = map_of(world.scene, 0.25, bridge->where);
     const CollisionChecker checker = checker_of(map, husky());
@@ -117,7 +119,8 @@ TEST_CASE("on the generated bridge frames and pillars are found out by their foo
         std::size_t paths = 0, tops = 0;
         for (std::size_t i = 0; i + 1 < result.poses.size(); ++i) {
             const RasterPose &upper = result.poses[i], &lower = result.poses[i + 1];
-            if (upper.x != lower.x || upper.y != lower.y || std::abs(upper.z - lower.z - worlds::frame_top) > 1e-3) continue;
+            if (upper.x != lower.x || upper.y != lower.y || std::abs(upper.z - lower.z - worlds::frame_top) > 1e-3)
+                continue;
             paths += lower.verdict == Verdict::Valid;
             tops += upper.verdict == Verdict::Valid;
         }
@@ -134,7 +137,8 @@ TEST_CASE("on the generated bridge frames and pillars are found out by their foo
 TEST_CASE("terrain between two steps of a 3D raster is found where steps snap onto it")
 {
     Scene scene;
-    add_box(scene, {-10, -10, 0}, {10, 10, 1.3}, Label::Terrain);  // 1.2 m below the step above it, 1.3 m above the one below
+    add_box(scene, {-10, -10, 0}, {10, 10, 1.3},
+            Label::Terrain);  // 1.2 m below the step above it, 1.3 m above the one below
     RasterOptions options;
     options.dims = 3;
     options.step = 2.5;
@@ -149,10 +153,13 @@ TEST_CASE("a wheel in a steep slope collides")
 {
     Scene scene;
     const double rise = std::tan(30 * std::numbers::pi / 180);
-    hand::add_mesh(scene, Label::Terrain, hand::relief(20, 20, [&](double x, double) { return rise * std::max(0.0, x); }), {.kind = "heightmap"});
+    hand::add_mesh(scene, Label::Terrain,
+                   hand::relief(20, 20, [&](double x, double) { return rise * std::max(0.0, x); }),
+                   {.kind = "heightmap"});
     CHECK(verdict_in_2d(scene, -1, 0, 0.1) == Verdict::Valid);
-    CHECK(verdict_in_2d(scene, -0.6, 0, 0.1) == Verdict::Valid);      // the front is 0.495 m ahead: just before the slope
-    CHECK(verdict_in_2d(scene, 0, 0, 0.1) == Verdict::Collision);     // 0.29 m deep in it
+    CHECK(verdict_in_2d(scene, -0.6, 0, 0.1) == Verdict::Valid);   // the front is 0.495 m ahead: just before the slope
+    CHECK(verdict_in_2d(scene, 0, 0, 0.1) == Verdict::Collision);  // 0.29 m deep in it
     CHECK(verdict_in_2d(scene, 3, 0, 3 * rise + 0.1) == Verdict::Collision);
-    CHECK(verdict_in_2d(scene, -0.35, 0, 0.1) == Verdict::Valid);     // 0.145 m over the foot of the slope, which is 0.08 m high there
+    CHECK(verdict_in_2d(scene, -0.35, 0, 0.1) ==
+          Verdict::Valid);  // 0.145 m over the foot of the slope, which is 0.08 m high there
 }

@@ -60,8 +60,10 @@ TEST_CASE("Unity's frame is left-handed with y up")
 
 TEST_CASE("in the thesis's terms valid is valid, aerial and off_terrain are aerial, all the rest is invalid")
 {
-    for (const Verdict verdict : {Verdict::Outside, Verdict::Submerged, Verdict::Collision}) CHECK(thesis_class_of(verdict) == ThesisClass::Invalid);
-    for (const Verdict verdict : {Verdict::Aerial, Verdict::OffTerrain}) CHECK(thesis_class_of(verdict) == ThesisClass::Aerial);
+    for (const Verdict verdict : {Verdict::Outside, Verdict::Submerged, Verdict::Collision})
+        CHECK(thesis_class_of(verdict) == ThesisClass::Invalid);
+    for (const Verdict verdict : {Verdict::Aerial, Verdict::OffTerrain})
+        CHECK(thesis_class_of(verdict) == ThesisClass::Aerial);
     CHECK(thesis_class_of(Verdict::Valid) == ThesisClass::Valid);
 }
 
@@ -79,15 +81,18 @@ TEST_CASE("locations of rasters read back to the same poses, class by class, wit
             const TempFolder folder;
             const ThesisCounts with_air = write_thesis_locations(folder.path(), result, true);
             CHECK(locations(folder / "Valid_Locations.txt") == poses_of(result, true, {Verdict::Valid}));
-            CHECK(locations(folder / "Invalid_Locations.txt") == poses_of(result, true, {Verdict::Outside, Verdict::Submerged, Verdict::Collision}));
-            CHECK(locations(folder / "Air_Locations.txt") == poses_of(result, true, {Verdict::Aerial, Verdict::OffTerrain}));
+            CHECK(locations(folder / "Invalid_Locations.txt") ==
+                  poses_of(result, true, {Verdict::Outside, Verdict::Submerged, Verdict::Collision}));
+            CHECK(locations(folder / "Air_Locations.txt") ==
+                  poses_of(result, true, {Verdict::Aerial, Verdict::OffTerrain}));
             CHECK(with_air[std::size_t(ThesisClass::Aerial)] ==
                   result.counts[std::size_t(Verdict::Aerial)] + result.counts[std::size_t(Verdict::OffTerrain)]);
             const TempFolder other;
             const ThesisCounts without = write_thesis_locations(other.path(), result, false);
             CHECK(without == ThesisCounts{with_air[0], with_air[1], 0});
             CHECK_FALSE(fs::exists(other / "Air_Locations.txt"));
-            for (const char* const name : {"Valid_Locations.txt", "Invalid_Locations.txt"}) CHECK(bytes_of(other / name) == bytes_of(folder / name));
+            for (const char* const name : {"Valid_Locations.txt", "Invalid_Locations.txt"})
+                CHECK(bytes_of(other / name) == bytes_of(folder / name));
         }
     }
 }
@@ -117,7 +122,8 @@ TEST_CASE("raster --format thesis writes a folder whose counts are those of the 
     CHECK(value_of(stats, "Robot") == "husky");
     CHECK(value_of(stats, "Map hash") == read_map(arena / "map").hash);
     CHECK(std::stod(value_of(stats, "Verdict valid")) > 0);
-    CHECK(std::stod(value_of(times, "Load (s)")) + std::stod(value_of(times, "Query (s)")) <= std::stod(value_of(times, "Total (s)")));
+    CHECK(std::stod(value_of(times, "Load (s)")) + std::stod(value_of(times, "Query (s)")) <=
+          std::stod(value_of(times, "Total (s)")));
 
     CHECK(arena(command).status == 0);  // over its own result
     CHECK_FALSE(fs::exists(arena / "out/Air_Locations.txt"));
@@ -146,7 +152,8 @@ TEST_CASE("search and sample write their spawns as valid locations, and say what
         CHECK(value_of(stats, "Lines of Valid_Locations.txt") == "7");
         CHECK(value_of(stats, "Lines of Invalid_Locations.txt") == "0");
         CHECK(value_of(stats, "Positions that are not valid") == "counted, not written");
-        CHECK(names_in(arena / command) == std::set<std::string>{"Valid_Locations.txt", "Invalid_Locations.txt", "Stats.txt", "RunTime.txt"});
+        CHECK(names_in(arena / command) ==
+              std::set<std::string>{"Valid_Locations.txt", "Invalid_Locations.txt", "Stats.txt", "RunTime.txt"});
     }
     CHECK(arena("sample map -n 50 --min-distance 15 --format thesis -o few" + husky_option).status == 3);
     CHECK_FALSE(locations(arena / "few/Valid_Locations.txt").empty());
@@ -160,11 +167,13 @@ TEST_CASE("a folder that holds anything else is refused, and stays as it was")
     arena.write("out/notes.txt", "mine");
     const ProgramRun run = arena(command + "-o out");
     CHECK(run.status == 1);
-    CHECK(run.err == "spawnfield: out: holds notes.txt, which is no part of a thesis result; choose another name or remove it\n");
+    CHECK(run.err ==
+          "spawnfield: out: holds notes.txt, which is no part of a thesis result; choose another name or remove it\n");
     CHECK(bytes_of(arena / "out/Stats.txt") == "old");
     CHECK(bytes_of(arena / "out/notes.txt") == "mine");
     arena.write("file", "mine");
-    CHECK(arena(command + "-o file").err == "spawnfield: file: exists and is no folder; choose another name or remove it\n");
+    CHECK(arena(command + "-o file").err ==
+          "spawnfield: file: exists and is no folder; choose another name or remove it\n");
     arena.write("nested/Stats.txt/deep", "mine");
     CHECK(arena(command + "-o nested").status == 1);
     CHECK(bytes_of(arena / "nested/Stats.txt/deep") == "mine");
@@ -180,7 +189,8 @@ TEST_CASE("a folder that holds anything else is refused, and stays as it was")
     CHECK(arena(command + "-o link/").status == 0);
     CHECK(fs::is_symlink(arena / "link"));
     CHECK(names_in(arena / "empty").contains("Valid_Locations.txt"));
-    const ProgramRun stopped = interrupt_program(arena, "raster map --dims 3 --step 0.02 --no-height-check --format thesis -o empty" + husky_option, 1.0);
+    const ProgramRun stopped = interrupt_program(
+        arena, "raster map --dims 3 --step 0.02 --no-height-check --format thesis -o empty" + husky_option, 1.0);
     CHECK(stopped.status == 130);
     CHECK(value_of(bytes_of(arena / "empty/Stats.txt"), "Dimensions") == "2");
     CHECK(arena.names() == std::set<std::string>{"map", "out", "file", "nested", "empty", "link"});

@@ -22,15 +22,12 @@ TEST_CASE("a step is rounded to 1, 2, 2.5 or 5 times a power of ten")
 
 TEST_CASE("labels have the decimals that their step needs")
 {
-    const auto [step, label] = GENERATE(
-        table<double, std::string>({{0.09, "0.3"}, {0.025, "0.075"}, {2.5, "7.5"}, {25, "75"}, {0.2, "0.6"}, {10, "30"}}));
+    const auto [step, label] = GENERATE(table<double, std::string>(
+        {{0.09, "0.3"}, {0.025, "0.075"}, {2.5, "7.5"}, {25, "75"}, {0.2, "0.6"}, {10, "30"}}));
     CHECK(ticks_within(0, 10 * step, round_up(step)).label(3) == label);
 }
 
-TEST_CASE("zero has no sign")
-{
-    CHECK(ticks_within(-1, 1, round_up(0.5)).label(2) == "0.0");
-}
+TEST_CASE("zero has no sign") { CHECK(ticks_within(-1, 1, round_up(0.5)).label(2) == "0.0"); }
 
 TEST_CASE("ticks within a range are those in it, its ends included")
 {

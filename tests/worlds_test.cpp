@@ -26,7 +26,8 @@ std::string bytes_of_all(const worlds::World& world)
 {
     const TempFolder folder;
     worlds::write_world(world, folder.path());
-    return bytes_of(folder / "scene.yaml") + bytes_of(folder / "meshes/ground.obj") + bytes_of(folder / "landmarks.csv");
+    return bytes_of(folder / "scene.yaml") + bytes_of(folder / "meshes/ground.obj") +
+           bytes_of(folder / "landmarks.csv");
 }
 
 Bounds where(const worlds::World& world, const std::string& landmark)
@@ -93,7 +94,9 @@ TEST_CASE("equal meshes share a file, each at its own place")
     double largest = 0;
     for (std::size_t t = 0; t < scene.triangles.size(); ++t)
         for (int corner = 0; corner < 3; ++corner)
-            largest = std::max(largest, (scene.vertices[scene.triangles[t][corner]] - world.scene.vertices[world.scene.triangles[t][corner]]).norm());
+            largest = std::max(largest, (scene.vertices[scene.triangles[t][corner]] -
+                                         world.scene.vertices[world.scene.triangles[t][corner]])
+                                            .norm());
     CHECK(largest < 2e-5);
     for (const Piece& piece : scene.pieces) CHECK(piece.solid);
 }
@@ -181,7 +184,8 @@ TEST_CASE("the same seed gives the same complex district, another seed another")
         worlds::write_world(worlds::complex_district(seed), folder.path());
         std::map<std::string, std::string> files;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
-            if (entry.is_regular_file()) files[std::filesystem::relative(entry.path(), folder.path()).string()] = bytes_of(entry.path());
+            if (entry.is_regular_file())
+                files[std::filesystem::relative(entry.path(), folder.path()).string()] = bytes_of(entry.path());
         return files;
     };
     const auto files = files_of(5);
@@ -237,7 +241,8 @@ TEST_CASE("landmarks of the complex district hold what they say")
     REQUIRE(regions.size() == 5);
     const auto parts_in = [&, &map = map](const char* region, const char* kind) {
         const std::vector<Bounds> bounds = bounds_of(map.scene, kind);
-        return std::count_if(bounds.begin(), bounds.end(), [&](const Bounds& part) { return part.meets(regions.at(region)); });
+        return std::count_if(bounds.begin(), bounds.end(),
+                             [&](const Bounds& part) { return part.meets(regions.at(region)); });
     };
     const auto fences_in = [&, &map = map](const Bounds& region) {
         return std::count_if(map.scene.primitives.begin(), map.scene.primitives.end(), [&](const Primitive& primitive) {

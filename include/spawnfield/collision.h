@@ -17,9 +17,9 @@ struct CollisionHit {
 
 /// A scene and a robot, ready for queries. Const calls may run at the same time.
 ///
-/// FCL decides (Pan, Chitta, Manocha, FCL: A General Purpose Library for Collision and Proximity Queries, 2012), through
-/// its libccd solver. The robot is grown by touch_margin, so that a touching pair reads as collision whatever that
-/// solver's rounding says.
+/// FCL decides (Pan, Chitta, Manocha, FCL: A General Purpose Library for Collision and Proximity Queries, 2012),
+/// through its libccd solver. The robot is grown by touch_margin, so that a touching pair reads as collision whatever
+/// that solver's rounding says.
 class CollisionChecker {
 public:
     /// m; libccd's own tolerance for exact contact, measured.

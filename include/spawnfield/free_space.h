@@ -14,8 +14,8 @@ enum class Proof : std::uint8_t { Candidate, Free, Blocked };
 /// Free: no cell that a part of the robot overlaps, seen from above and 1e-5 m wider, holds anything solid between the
 /// part's lowest and highest point. Blocked: some cell that a part covers whole holds something solid inside the part,
 /// 1e-5 m from its surface. Each part counts by itself, so a low body and a thin mast do not block each other. Coarse
-/// cells first, finer ones where those cannot tell. This is grey dilation of the scene by the robot (Lozano-Pérez, Spatial
-/// planning: a configuration space approach, 1983), done only where it is asked for.
+/// cells first, finer ones where those cannot tell. This is grey dilation of the scene by the robot (Lozano-Pérez,
+/// Spatial planning: a configuration space approach, 1983), done only where it is asked for.
 class FreeSpace {
 public:
     /// m that proofs stay away from contact: more than FCL's tolerance and CollisionChecker::touch_margin.

@@ -8,10 +8,10 @@ namespace spawnfield {
 
 /// A scene cut into tiles as seen from above, so that a query touches only what is near it. Cheap to copy.
 ///
-/// Element e of the scene is triangle e, or primitive e - triangles. Tiles lie on grids of growing cell size; an element
-/// is in each of the at most 2 x 2 tiles that it overlaps on the first grid whose cells are no smaller than it. A tile
-/// holds its elements with their corners, labels and pieces, and a fine grid of its own that finds them; a tile that
-/// lies in a file is checked when it is first touched. About 90 bytes for each triangle of a closed mesh.
+/// Element e of the scene is triangle e, or primitive e - triangles. Tiles lie on grids of growing cell size; an
+/// element is in each of the at most 2 x 2 tiles that it overlaps on the first grid whose cells are no smaller than it.
+/// A tile holds its elements with their corners, labels and pieces, and a fine grid of its own that finds them; a tile
+/// that lies in a file is checked when it is first touched. About 90 bytes for each triangle of a closed mesh.
 class Geometry {
 public:
     Geometry();  ///< of nothing

@@ -49,10 +49,10 @@ void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult
 
 /// Hill-shaded top view of a map with title, legend, scale bar, north arrow and axes, 1000 pixels on its longer side.
 ///
-/// Terrain is coloured by height, obstacles (solid more than 1e-3 m above the top layer) are grey, the higher the lighter,
-/// water is blue where nothing stands out of it. If more than a quarter of the ground lies under something (a roof, another
-/// floor), there is one small picture for each floor of the map instead, at most 16: its highest layers, and what begins less
-/// than 2 m above them. Throws ArgumentError for a map without cells, OutputError.
+/// Terrain is coloured by height, obstacles (solid more than 1e-3 m above the top layer) are grey, the higher the
+/// lighter, water is blue where nothing stands out of it. If more than a quarter of the ground lies under something (a
+/// roof, another floor), there is one small picture for each floor of the map instead, at most 16: its highest layers,
+/// and what begins less than 2 m above them. Throws ArgumentError for a map without cells, OutputError.
 void write_preview(const Map& map, const TerrainMap& terrain, const std::filesystem::path& file);
 
 }  // namespace spawnfield

@@ -17,24 +17,26 @@ struct Map {
     double resolution = 0.1;          ///< of the terrain, m
     double occupancy_resolution = 0;  ///< m
     Geometry geometry;
-    SolidBounds solid_bounds;         ///< of the terrain's raster
-    std::optional<GeoOrigin> origin;  ///< where it lies in a survey's coordinates
-    int layers = 0;                   ///< most terrain layers above one cell centre
+    SolidBounds solid_bounds;                  ///< of the terrain's raster
+    std::optional<GeoOrigin> origin;           ///< where it lies in a survey's coordinates
+    int layers = 0;                            ///< most terrain layers above one cell centre
     std::optional<std::vector<Floor>> floors;  ///< as find_floors; nothing: in a map of format version 2
-    std::string scene_file;           ///< name of the file it was baked from
-    std::string scene_hash;           ///< xxh64 of that file, 16 hexadecimal digits
-    std::string hash;                 ///< of the map: of its files' checksums, 16 hexadecimal digits
+    std::string scene_file;                    ///< name of the file it was baked from
+    std::string scene_hash;                    ///< xxh64 of that file, 16 hexadecimal digits
+    std::string hash;                          ///< of the map: of its files' checksums, 16 hexadecimal digits
     std::filesystem::path folder;
 };
 
 /// The files of a map folder beside map.yaml. What else lies there is none of spawnfield's.
-inline constexpr std::array map_files{"bounds.bin", "geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"};
+inline constexpr std::array map_files{"bounds.bin",   "geometry.bin", "heightmap.png",
+                                      "occupancy.bt", "preview.png",  "terrain.tiff"};
 
 struct BakeOptions {
-    double resolution = 0;            ///< m; 0: 0.1 m, or coarser with a notice where that passes max_columns
-    double occupancy_resolution = 0;  ///< m; 0: 2.5 times the resolution, or coarser with a notice where OctoMap needs it
-    Bounds bounds = {};               ///< empty: the scene's
-    ZRange z = {};                    ///< z limits; without any: those of `bounds`, if given
+    double resolution = 0;  ///< m; 0: 0.1 m, or coarser with a notice where that passes max_columns
+    double occupancy_resolution =
+        0;               ///< m; 0: 2.5 times the resolution, or coarser with a notice where OctoMap needs it
+    Bounds bounds = {};  ///< empty: the scene's
+    ZRange z = {};       ///< z limits; without any: those of `bounds`, if given
     bool allow_no_terrain = false;
     int threads = 0;
     Progress progress = {};
@@ -52,10 +54,11 @@ struct BakeReport {
 
 /// Writes the map folder: map.yaml and map_files.
 ///
-/// A map with z limits has terrain.tiff, heightmap.png, preview.png and occupancy.bt within them; its geometry stays whole, as
-/// a robot collides with solid space beyond them too. Written into a temporary folder beside it, then renamed: an old map stays whole until the new one is complete. Other
-/// files that lie in an old map's folder move to the new one. Throws FileError if the scene has no terrain (unless allowed)
-/// or does not meet the bounds, ArgumentError for bad options, OutputError.
+/// A map with z limits has terrain.tiff, heightmap.png, preview.png and occupancy.bt within them; its geometry stays
+/// whole, as a robot collides with solid space beyond them too. Written into a temporary folder beside it, then
+/// renamed: an old map stays whole until the new one is complete. Other files that lie in an old map's folder move to
+/// the new one. Throws FileError if the scene has no terrain (unless allowed) or does not meet the bounds,
+/// ArgumentError for bad options, OutputError.
 BakeReport bake(Scene scene, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
                 const BakeOptions& options = {});
 

@@ -33,13 +33,13 @@ private:
 /// of their radius too wide.
 /// Throws ArgumentError unless resolution > 0 and the bounds lie within 32768 voxels of the scene's origin (OctoMap's
 /// 16-bit keys).
-OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution,
-                              int threads = 0, const Progress& progress = {});
+OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution, int threads = 0,
+                              const Progress& progress = {});
 
 /// Writes the same tree to a binary .bt, without making its nodes: a hundredth of the memory. Returns the number of its
 /// leaves. Throws OutputError too.
-std::size_t write_occupancy(const std::filesystem::path& file, const Geometry& geometry, const Bounds& bounds, double resolution,
-                            int threads = 0, const Progress& progress = {});
+std::size_t write_occupancy(const std::filesystem::path& file, const Geometry& geometry, const Bounds& bounds,
+                            double resolution, int threads = 0, const Progress& progress = {});
 
 /// Throws FileError.
 OccupancyTree read_occupancy(const std::filesystem::path& file);

@@ -8,7 +8,8 @@
 namespace spawnfield {
 
 /// A file that appears whole or not at all: written beside its name, renamed by commit(), removed if that never comes.
-/// What is no regular file (a pipe, /dev/null, /dev/stdout) is written directly; of a link, what it leads to is written.
+/// What is no regular file (a pipe, /dev/null, /dev/stdout) is written directly; of a link, what it leads to is
+/// written.
 class OutputFile {
 public:
     explicit OutputFile(std::filesystem::path file);  ///< throws OutputError
@@ -22,7 +23,8 @@ public:
     void flush();                        ///< so that only the renaming can still fail; throws OutputError
     void commit();                       ///< throws OutputError
 
-    /// Gives all files their names, or none: what was there before comes back if one cannot have its own. Throws OutputError.
+    /// Gives all files their names, or none: what was there before comes back if one cannot have its own. Throws
+    /// OutputError.
     static void commit_together(std::span<OutputFile* const> files);
 
 private:

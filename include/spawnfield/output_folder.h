@@ -7,8 +7,8 @@
 
 namespace spawnfield {
 
-/// A folder that appears whole or not at all: filled beside its name, takes its place by commit(), removed if that never
-/// comes. Of a link to a folder, what it leads to is replaced.
+/// A folder that appears whole or not at all: filled beside its name, takes its place by commit(), removed if that
+/// never comes. Of a link to a folder, what it leads to is replaced.
 class OutputFolder {
 public:
     using Path = std::filesystem::path;
@@ -22,15 +22,17 @@ public:
 
     const Path& path() const { return folder_; }  ///< where to write meanwhile
 
-    /// `keep` may take out of the old folder, if there was one, what it wants before the rest of it goes. Throws OutputError.
+    /// `keep` may take out of the old folder, if there was one, what it wants before the rest of it goes. Throws
+    /// OutputError.
     void commit(const std::function<void(const Path& old, const Path& now)>& keep = {});
 
 private:
     Path target_, folder_, old_;
 };
 
-/// Objection to a folder that holds anything but files of these names: so that only what was written by the same command is
-/// replaced. `kind` as "thesis result".
-std::function<std::string(const std::filesystem::path&)> holds_only(std::span<const char* const> names, const std::string& kind);
+/// Objection to a folder that holds anything but files of these names: so that only what was written by the same
+/// command is replaced. `kind` as "thesis result".
+std::function<std::string(const std::filesystem::path&)> holds_only(std::span<const char* const> names,
+                                                                    const std::string& kind);
 
 }  // namespace spawnfield

@@ -33,21 +33,24 @@ std::vector<Spawn> spawns_of(const PoseTable& table);
 std::vector<std::string> column_of(const PoseTable& table, const std::string& name);
 
 /// Robots at the poses of a list or table, with names and namespaces of the same number, or without.
-std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names = {}, const std::vector<std::string>& name_spaces = {});
-std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names = {}, const std::vector<std::string>& name_spaces = {});
+std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names = {},
+                                     const std::vector<std::string>& name_spaces = {});
+std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names = {},
+                                     const std::vector<std::string>& name_spaces = {});
 
-/// What a column `verdict` says of each pose, as `check` and `raster` write it; empty if there is none. Throws FileError, with the
-/// name of the file that the table was read from.
+/// What a column `verdict` says of each pose, as `check` and `raster` write it; empty if there is none. Throws
+/// FileError, with the name of the file that the table was read from.
 std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::path& file);
 
 /// The table's columns that are named as some that verdicts_csv adds: those take their place.
 std::vector<std::string> replaced_columns(const PoseTable& table);
 
 /// Table's columns but the replaced ones, then verdict,ground,height_above,hit. Numbers read back to the same double.
-std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const std::vector<Part>& parts);
+std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements,
+                         const std::vector<Part>& parts);
 
-/// x,y,z,yaw,layer,verdict, told to `sink` in pieces; layer is empty where the ground is no layer. With `aerial` also the
-/// aerial poses of a 3D raster that `raster` leaves out, in their places.
+/// x,y,z,yaw,layer,verdict, told to `sink` in pieces; layer is empty where the ground is no layer. With `aerial` also
+/// the aerial poses of a 3D raster that `raster` leaves out, in their places.
 void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink);
 
 /// x,y,z,roll,pitch,yaw.
@@ -56,10 +59,12 @@ std::string spawns_csv(const SpawnList& list);
 /// The same, after a column `name` if the robots have names.
 std::string robots_csv(std::span<const RobotStart> robots);
 
-/// Poses with names and quaternions (x, y, z, w), and what they were made from and with: settings, counts; of a sample also
-/// whether it is full. `robots` are the list's spawns.
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SampleOptions& options);
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SearchOptions& options);
+/// Poses with names and quaternions (x, y, z, w), and what they were made from and with: settings, counts; of a sample
+/// also whether it is full. `robots` are the list's spawns.
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+                        const SampleOptions& options);
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+                        const SearchOptions& options);
 
 /// The same of poses that come from somewhere else: without settings and counts.
 std::string poses_json(std::span<const RobotStart> robots, const Map& map, const Robot& robot);

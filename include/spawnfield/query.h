@@ -18,19 +18,19 @@ struct ExactTime {
 struct QueryOptions {
     double max_height = 1.0;  ///< m of the origin above its ground, inclusive, >= 0
     double max_water_depth = std::numeric_limits<double>::infinity();  ///< m of water above the ground that count, >= 0
-    /// rad from level, inclusive, 0 .. pi/2 without the ends: a pose that would be valid is asked how it would stand on the
-    /// ground, and may be `steep` or `unstable`. Infinite: it is not asked.
+    /// rad from level, inclusive, 0 .. pi/2 without the ends: a pose that would be valid is asked how it would stand on
+    /// the ground, and may be `steep` or `unstable`. Infinite: it is not asked.
     ///
-    /// Contacts are the robot's own if it has three or more that are not on one line; else the corners of the convex hull,
-    /// seen from above, of all that lies within 2 cm of its lowest point. They are moved to the pose, its roll and pitch too;
-    /// on one line then (a robot on its side), it is unstable. Below each contact lies a surface: the top of the highest solid,
-    /// terrain or obstacle, that begins no higher than the contact or the robot's lowest point; what touches is one solid.
-    /// A surface is in reach if it is at most r tan(max_slope) + 2 cm above or below the pose's ground, r being the
-    /// contact's horizontal distance from the origin.
-    /// All in reach: steep if the plane through the surfaces under the contacts (least squares) is inclined by more than
-    /// max_slope, else valid. Otherwise it hangs over an edge or against a wall: unstable; but steep where that plane is too
-    /// inclined and an even slope, off which no surface, nor the ground, lies by more than 2 cm + 10 % of their range.
-    /// So no pose that is valid becomes another with a larger max_slope. What is between the contacts is not looked at.
+    /// Contacts are the robot's own if it has three or more that are not on one line; else the corners of the convex
+    /// hull, seen from above, of all that lies within 2 cm of its lowest point. They are moved to the pose, its roll
+    /// and pitch too; on one line then (a robot on its side), it is unstable. Below each contact lies a surface: the
+    /// top of the highest solid, terrain or obstacle, that begins no higher than the contact or the robot's lowest
+    /// point; what touches is one solid. A surface is in reach if it is at most r tan(max_slope) + 2 cm above or below
+    /// the pose's ground, r being the contact's horizontal distance from the origin. All in reach: steep if the plane
+    /// through the surfaces under the contacts (least squares) is inclined by more than max_slope, else valid.
+    /// Otherwise it hangs over an edge or against a wall: unstable; but steep where that plane is too inclined and an
+    /// even slope, off which no surface, nor the ground, lies by more than 2 cm + 10 % of their range. So no pose that
+    /// is valid becomes another with a larger max_slope. What is between the contacts is not looked at.
     double max_slope = std::numeric_limits<double>::infinity();
     bool exhaustive = false;  ///< ask the CollisionChecker at every pose, never the FreeSpace: the same answers, slowly
     int threads = 0;          ///< 0: all cores; results are the same at any number
@@ -78,21 +78,21 @@ struct LayerChoice {
 };
 
 struct RasterOptions : QueryOptions {
-    int dims = 2;                ///< 2: a pose per column and layer; 3: a pose per column and height
-    Bounds bounds = {};          ///< empty: the map's; two-dimensional rasters leave z aside
-    ZRange z = {};               ///< 2D: layers beyond these heights, m, or beyond the map's z limits are no ground
+    int dims = 2;        ///< 2: a pose per column and layer; 3: a pose per column and height
+    Bounds bounds = {};  ///< empty: the map's; two-dimensional rasters leave z aside
+    ZRange z = {};       ///< 2D: layers beyond these heights, m, or beyond the map's z limits are no ground
     /// Columns and layers elsewhere are left out: they give no pose and count nowhere. 3D: of regions without z limits.
     Area area = {};
-    double step = 1.0;           ///< m between columns, > 0
-    double step_z = 0;           ///< m between heights, > 0; 0: as step
+    double step = 1.0;  ///< m between columns, > 0
+    double step_z = 0;  ///< m between heights, > 0; 0: as step
     /// m of the origin above its layer (2D, snap); with snap 0 .. max_height. Nothing: auto_offset().
     std::optional<double> offset = {};
-    double yaw = 0;              ///< rad
-    LayerChoice layers = {};     ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
-    bool height_check = true;    ///< false (3D only): collisions alone, at every pose; max_slope is not asked for
-    /// 3D with height check: each chosen layer within the bounds' z has its pose of the 2D raster, in place of the lowest
-    /// step at or above it (RasterGrid::step_above) if there is one, and of a step at its very place (to 1e-9 m). So no terrain
-    /// between two steps is lost.
+    double yaw = 0;            ///< rad
+    LayerChoice layers = {};   ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
+    bool height_check = true;  ///< false (3D only): collisions alone, at every pose; max_slope is not asked for
+    /// 3D with height check: each chosen layer within the bounds' z has its pose of the 2D raster, in place of the
+    /// lowest step at or above it (RasterGrid::step_above) if there is one, and of a step at its very place (to 1e-9
+    /// m). So no terrain between two steps is lost.
     bool snap = false;
 };
 
@@ -110,8 +110,8 @@ struct RasterGrid {
 
 struct RasterPose {
     double x, y, z;
-    /// The layer that is its ground (2D, snap: that it was placed on), 0 the highest; -1: its ground is no layer. Layers that
-    /// are no ground for the query (2D: RasterOptions::z, the map's z limits) are not counted.
+    /// The layer that is its ground (2D, snap: that it was placed on), 0 the highest; -1: its ground is no layer.
+    /// Layers that are no ground for the query (2D: RasterOptions::z, the map's z limits) are not counted.
     std::int32_t layer;
     Verdict verdict;
     bool snapped = false;  ///< 3D: on a layer, in place of a step
@@ -120,7 +120,7 @@ struct RasterPose {
 struct RasterResult {
     int dims = 2;
     RasterGrid grid;
-    Area area = {};                 ///< outside of which columns were left out
+    Area area = {};  ///< outside of which columns were left out
     double yaw = 0, offset = 0;
     ZRange z = {};                  ///< 2D: heights of the layers that are ground
     std::vector<RasterPose> poses;  ///< y after y, x fastest, from the top down; of 3D rasters without the aerial ones
@@ -131,7 +131,8 @@ struct RasterResult {
 /// Every pose of a raster. Throws ArgumentError for a step of 0, bounds the wrong way round, more than 2^31 columns.
 RasterResult raster(const Map& map, const CollisionChecker& checker, const RasterOptions& options);
 
-/// A raster's poses in their order, with `aerial` also the aerial ones of a 3D raster that it does not list, in their places.
+/// A raster's poses in their order, with `aerial` also the aerial ones of a 3D raster that it does not list, in their
+/// places.
 void for_each_pose(const RasterResult& raster, bool aerial, const std::function<void(const RasterPose&)>& visit);
 
 struct Spawn {
@@ -140,15 +141,15 @@ struct Spawn {
 };
 
 struct SpawnList {
-    std::vector<Spawn> spawns;    ///< in the order in which they were found
-    VerdictCounts counts{};       ///< of the positions that were judged
-    std::uint64_t draws = 0;      ///< all of them
-    std::uint64_t off_area = 0;   ///< draws that did not lie in SpawnOptions::area
+    std::vector<Spawn> spawns;       ///< in the order in which they were found
+    VerdictCounts counts{};          ///< of the positions that were judged
+    std::uint64_t draws = 0;         ///< all of them
+    std::uint64_t off_area = 0;      ///< draws that did not lie in SpawnOptions::area
     std::uint64_t near_avoided = 0;  ///< draws too near to a point of SpawnOptions::avoid
-    std::uint64_t too_close = 0;  ///< draws nearer than min_distance to an earlier one
+    std::uint64_t too_close = 0;     ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
     bool is_full = false;  ///< sample: fewer than count, and proven that none fits beside them and the avoided points
-    double undecided_area = 0;    ///< sample, if fewer and not proven: horizontal m2 in which one may still fit
+    double undecided_area = 0;  ///< sample, if fewer and not proven: horizontal m2 in which one may still fit
 };
 
 /// More than anybody starts, and what still fits into memory.
@@ -162,16 +163,17 @@ struct AvoidedPoints {
 };
 
 struct SpawnOptions : QueryOptions {
-    std::size_t count = 1;       ///< 1 .. max_spawns
-    double min_distance = 0;     ///< m between positions, >= 0
-    Bounds bounds = {};          ///< empty: the map's; sample leaves z aside
-    /// Positions lie in it. Draws elsewhere are failures that nobody judges (SpawnList::off_area); draws are made from its bounds only.
+    std::size_t count = 1;    ///< 1 .. max_spawns
+    double min_distance = 0;  ///< m between positions, >= 0
+    Bounds bounds = {};       ///< empty: the map's; sample leaves z aside
+    /// Positions lie in it. Draws elsewhere are failures that nobody judges (SpawnList::off_area); draws are made from
+    /// its bounds only.
     Area area = {};
     /// Draws nearer to one of these points than its distance are failures that are not judged
     /// (SpawnList::near_avoided).
     std::vector<AvoidedPoints> avoid = {};
-    bool random_yaw = false;     ///< uniform in [-pi, pi), else yaw
-    double yaw = 0;              ///< rad
+    bool random_yaw = false;  ///< uniform in [-pi, pi), else yaw
+    double yaw = 0;           ///< rad
     std::uint64_t seed = 0;
 };
 
@@ -186,17 +188,17 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
 struct SampleOptions : SpawnOptions {
     std::optional<double> offset = {};  ///< m of the origin above its layer, at most max_height; nothing: auto_offset()
     LayerChoice layers = {};
-    ZRange z = {};                      ///< layers beyond these heights, m, or beyond the map's z limits are no ground
+    ZRange z = {};  ///< layers beyond these heights, m, or beyond the map's z limits are no ground
 };
 
 /// Valid poses distributed uniformly by horizontal area over the feasible region of all chosen layers, each confirmed
 /// exactly, at least min_distance apart, none nearer to a point of `avoid` than its distance.
 ///
-/// When draws keep failing, it goes over to cells that cover the region: those in which no further spawn can stand are proven
-/// so from the scene's geometry and left out, the others are drawn from, uniformly by area as before, and split. It ends
-/// with fewer than count when no cell is left (is_full), or when the cells are too small (0.1 mm) or too many to go on.
-/// Sources: White, Cline, Egbert, Poisson disk point sets by hierarchical dart throwing, 2007; Ebeida et al., A simple
-/// algorithm for maximal Poisson-disk sampling in high dimensions, 2012.
+/// When draws keep failing, it goes over to cells that cover the region: those in which no further spawn can stand are
+/// proven so from the scene's geometry and left out, the others are drawn from, uniformly by area as before, and split.
+/// It ends with fewer than count when no cell is left (is_full), or when the cells are too small (0.1 mm) or too many
+/// to go on. Sources: White, Cline, Egbert, Poisson disk point sets by hierarchical dart throwing, 2007; Ebeida et al.,
+/// A simple algorithm for maximal Poisson-disk sampling in high dimensions, 2012.
 SpawnList sample(const Map& map, const CollisionChecker& checker, const SampleOptions& options);
 
 }  // namespace spawnfield

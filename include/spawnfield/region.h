@@ -9,14 +9,15 @@ namespace spawnfield {
 
 /// A closed set of the map's x-y plane, m: what lies in any of some polygons, at the heights of a range.
 ///
-/// A point is in a polygon if it is inside an odd number of its rings (so holes are rings too, and a ring that crosses itself has its
-/// doubly wound part outside), or within 1e-9 m of a ring.
+/// A point is in a polygon if it is inside an odd number of its rings (so holes are rings too, and a ring that crosses
+/// itself has its doubly wound part outside), or within 1e-9 m of a ring.
 struct Region {
     using Ring = std::vector<Eigen::Vector2d>;  ///< 3 corners or more, the first one once; finite; either way round
     using Polygon = std::vector<Ring>;
     std::string name;  ///< in words for the user: its file
     std::vector<Polygon> polygons;
-    /// Heights of the region, m: of layers where poses stand on layers (sample, 2D rasters), of the robot's origin in `search`.
+    /// Heights of the region, m: of layers where poses stand on layers (sample, 2D rasters), of the robot's origin in
+    /// `search`.
     ZRange z = {};
     std::vector<std::string> notices = {};  ///< what was assumed while reading
 
@@ -37,12 +38,12 @@ Region box_region(double x0, double y0, double x1, double y1, const ZRange& z = 
 /// What of a nav2 map is the region: its free cells, or as its keepout filter has it the occupied ones.
 enum class MapCells { Free, Occupied };
 
-/// Reads GeoJSON (Polygon, MultiPolygon, Feature, FeatureCollection, GeometryCollection; coordinates are metres of the map), CSV (x,y in a
-/// row for each corner; an empty line, or another value in a column `polygon`, begins the next), or a nav2 map.yaml. By extension: .json,
-/// .geojson; .yaml, .yml; else CSV.
+/// Reads GeoJSON (Polygon, MultiPolygon, Feature, FeatureCollection, GeometryCollection; coordinates are metres of the
+/// map), CSV (x,y in a row for each corner; an empty line, or another value in a column `polygon`, begins the next), or
+/// a nav2 map.yaml. By extension: .json, .geojson; .yaml, .yml; else CSV.
 ///
-/// Throws FileError with line or element: rings that are not closed (GeoJSON), of fewer than 3 corners, numbers that are not finite,
-/// geometries without area.
+/// Throws FileError with line or element: rings that are not closed (GeoJSON), of fewer than 3 corners, numbers that
+/// are not finite, geometries without area.
 Region read_region(const std::filesystem::path& file, MapCells cells = MapCells::Free);
 
 /// The same for the text of a GeoJSON or CSV file; it is GeoJSON if it starts with a brace. `name` stands for the file

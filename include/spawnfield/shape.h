@@ -11,8 +11,9 @@ enum class ShapeKind : std::uint8_t { Box, Sphere, Cylinder, Capsule, Hull };
 /// A convex solid at a place. Cylinders and capsules lie along their own z, all are centred on their own origin.
 struct Shape {
     ShapeKind kind = ShapeKind::Box;
-    Vec3 size = Vec3::Zero();  ///< box: side lengths; sphere: radius, -, -; cylinder, capsule: radius, straight length, -
-    Pose pose;                 ///< parent_from_shape
+    Vec3 size =
+        Vec3::Zero();  ///< box: side lengths; sphere: radius, -, -; cylinder, capsule: radius, straight length, -
+    Pose pose;         ///< parent_from_shape
 };
 
 /// Vertical interval of a solid, m.

@@ -30,8 +30,8 @@ using HeightImage = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// water          highest water surface at the cell's centre
 /// obstacle       highest obstacle at the cell's centre where it stands above height.0, or where there is no terrain
 ///
-/// Pages are kept as deflated tiles of tile x tile cells, row after row, the last ones padded with NaN: a tile of nothing
-/// takes about 300 bytes. There are no pages of nothing but height.0.
+/// Pages are kept as deflated tiles of tile x tile cells, row after row, the last ones padded with NaN: a tile of
+/// nothing takes about 300 bytes. There are no pages of nothing but height.0.
 struct TerrainMap {
     static constexpr int tile = 256;
     struct Page {
@@ -54,8 +54,8 @@ HeightImage page_image(const TerrainMap& terrain, const std::string& name);
 /// Throws std::runtime_error on damaged tiles.
 HeightImage highest_within(const TerrainMap& terrain, const ZRange& z);
 
-/// Vertical rays at the cells' centres. Layers and water beyond the z limits are left out, and so are obstacles that begin
-/// above them or end below them. O(elements + cells covered).
+/// Vertical rays at the cells' centres. Layers and water beyond the z limits are left out, and so are obstacles that
+/// begin above them or end below them. O(elements + cells covered).
 TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,
                              const Progress& progress = {}, const ZRange& z_limits = {});
 

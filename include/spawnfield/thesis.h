@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-/// Results as the tools of the MSc thesis (Ropelato: feasible spawn locations in Unity) read them: a folder of text files.
+/// Results as the tools of the MSc thesis (Ropelato: feasible spawn locations in Unity) read them: a folder of text
+/// files.
 namespace spawnfield {
 
 /// Unity's frame is left-handed with y up: (x, y, z) there is our (x, z, y), metres.
@@ -20,19 +21,24 @@ inline constexpr std::size_t thesis_class_count = 3;
 ThesisClass thesis_class_of(Verdict verdict);
 
 /// All files of a thesis folder; Air_Locations.txt is there only if it was asked for.
-inline constexpr std::array thesis_files{"Valid_Locations.txt", "Invalid_Locations.txt", "Air_Locations.txt", "Stats.txt", "RunTime.txt"};
+inline constexpr std::array thesis_files{"Valid_Locations.txt", "Invalid_Locations.txt", "Air_Locations.txt",
+                                         "Stats.txt", "RunTime.txt"};
 
 /// Lines of a file, by class: those that were written.
 using ThesisCounts = std::array<std::uint64_t, thesis_class_count>;
 
-/// Writes the locations' files into a folder: a line "x, y, z" per pose in Unity's frame, numbers that read back to the same
-/// double. With `air` also Air_Locations.txt, of 3D rasters with the aerial poses that `raster` leaves out. Throws OutputError.
-ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air, const Progress& progress = {});
+/// Writes the locations' files into a folder: a line "x, y, z" per pose in Unity's frame, numbers that read back to the
+/// same double. With `air` also Air_Locations.txt, of 3D rasters with the aerial poses that `raster` leaves out. Throws
+/// OutputError.
+ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air,
+                                    const Progress& progress = {});
 
-/// Spawns are valid locations. No others are kept, so Invalid_Locations.txt is empty: thesis_stats tells how many there were.
+/// Spawns are valid locations. No others are kept, so Invalid_Locations.txt is empty: thesis_stats tells how many there
+/// were.
 ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const SpawnList& list);
 
-/// Stats.txt: "Name: value" per line: the settings, what was judged by class and by verdict, and the lines of each file.
+/// Stats.txt: "Name: value" per line: the settings, what was judged by class and by verdict, and the lines of each
+/// file.
 std::string thesis_stats(const std::vector<std::pair<std::string, std::string>>& settings, const VerdictCounts& counts,
                          const ThesisCounts& written);
 

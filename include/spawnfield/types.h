@@ -38,12 +38,14 @@ struct Bounds {
     bool is_empty() const { return !(min.array() <= max.array()).all(); }
     bool contains_xy(double x, double y, double tolerance) const
     {
-        return x >= min.x() - tolerance && x <= max.x() + tolerance && y >= min.y() - tolerance && y <= max.y() + tolerance;
+        return x >= min.x() - tolerance && x <= max.x() + tolerance && y >= min.y() - tolerance &&
+               y <= max.y() + tolerance;
     }
     /// Whether the closed boxes share a point, seen along the first axes alone.
     bool meets(const Bounds& other, int axes = 3) const
     {
-        return (min.head(axes).array() <= other.max.head(axes).array()).all() && (max.head(axes).array() >= other.min.head(axes).array()).all();
+        return (min.head(axes).array() <= other.max.head(axes).array()).all() &&
+               (max.head(axes).array() >= other.min.head(axes).array()).all();
     }
     ZRange z() const { return {min.z(), max.z()}; }
     void extend(const Vec3& point)

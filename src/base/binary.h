@@ -11,7 +11,8 @@
 
 namespace spawnfield {
 
-static_assert(std::endian::native == std::endian::little, "the map's binary files are little-endian; this machine needs a byte swap");
+static_assert(std::endian::native == std::endian::little,
+              "the map's binary files are little-endian; this machine needs a byte swap");
 
 /// Appends plain values one by one: never a struct with padding.
 class BinaryWriter {

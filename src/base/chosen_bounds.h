@@ -7,8 +7,8 @@
 
 namespace spawnfield {
 
-/// What the caller asked for, or `fallback` for default Bounds; of the first `axes` axes, the others are the fallback's.
-/// Throws ArgumentError unless they are finite and the lower corner comes first.
+/// What the caller asked for, or `fallback` for default Bounds; of the first `axes` axes, the others are the
+/// fallback's. Throws ArgumentError unless they are finite and the lower corner comes first.
 inline Bounds chosen_bounds(const char* function, const Bounds& wanted, const Bounds& fallback, int axes = 3)
 {
     const Bounds unset;
@@ -18,8 +18,10 @@ inline Bounds chosen_bounds(const char* function, const Bounds& wanted, const Bo
         const std::string letter(1, "xyz"[axis]);
         out.min[axis] = wanted.min[axis];
         out.max[axis] = wanted.max[axis];
-        if (!std::isfinite(out.min[axis])) throw ArgumentError(function, "bounds.min." + letter, out.min[axis], "a finite number, m");
-        if (!std::isfinite(out.max[axis])) throw ArgumentError(function, "bounds.max." + letter, out.max[axis], "a finite number, m");
+        if (!std::isfinite(out.min[axis]))
+            throw ArgumentError(function, "bounds.min." + letter, out.min[axis], "a finite number, m");
+        if (!std::isfinite(out.max[axis]))
+            throw ArgumentError(function, "bounds.max." + letter, out.max[axis], "a finite number, m");
         if (out.max[axis] < out.min[axis])
             throw ArgumentError(function, "bounds.max." + letter, out.max[axis], "at least bounds.min." + letter);
     }

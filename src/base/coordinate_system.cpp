@@ -18,20 +18,26 @@ std::optional<CoordinateSystem> coordinate_system(const std::string& definition)
 
 void tell_unit(const std::string& file, const std::string& what, double unit, std::vector<std::string>& notices)
 {
-    if (std::abs(unit) != 1) notices.push_back(file + ": " + what + " are in units of " + number(std::abs(unit)) + " m and were converted to metres");
+    if (std::abs(unit) != 1)
+        notices.push_back(file + ": " + what + " are in units of " + number(std::abs(unit)) +
+                          " m and were converted to metres");
 }
 
 void tell_height_unit(const std::string& file, double unit, const std::string& place, std::vector<std::string>& notices)
 {
     tell_unit(file, "heights", unit, notices);
-    if (unit < 0) notices.push_back(file + ": has depths by " + place + ", which counts downwards; the heights are their negatives");
+    if (unit < 0)
+        notices.push_back(file + ": has depths by " + place +
+                          ", which counts downwards; the heights are their negatives");
 }
 
 void refuse_globe(const std::string& file, bool is_geocentric, const std::string& name)
 {
-    throw FileError(file, std::string("is in ") + (is_geocentric ? "coordinates of the whole globe (geocentric" : "degrees (geographic") +
+    throw FileError(file, std::string("is in ") +
+                              (is_geocentric ? "coordinates of the whole globe (geocentric" : "degrees (geographic") +
                               (name.empty() ? "" : ", " + name) +
-                              "), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in metres such as the UTM zone's");
+                              "), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in "
+                              "metres such as the UTM zone's");
 }
 
 }  // namespace spawnfield

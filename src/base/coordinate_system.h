@@ -14,7 +14,7 @@ struct CoordinateSystem {
         Degrees,  ///< longitude and latitude
         Globe     ///< x, y and z from the Earth's centre
     };
-    std::string name;                   ///< in the register's or the file's own words, printable ASCII
+    std::string name;  ///< in the register's or the file's own words, printable ASCII
     Place place = Place::None;
     double unit = 1;                    ///< m, of x and y on a plane
     std::optional<double> height_unit;  ///< m; < 0 where it counts downwards (depths); nothing: it has no heights
@@ -22,15 +22,16 @@ struct CoordinateSystem {
 
 /// By PROJ, of "EPSG:2263", or of a WKT of any kind (ESRI's .prj too); nothing if PROJ does not know it, or it is none.
 ///
-/// What asks PROJ is a module of its own (src/crs), loaded at the first call: PROJ brings libcurl and SQLite with it, 30 ms that every
-/// start of a program would pay. Throws std::runtime_error if it cannot be loaded, or has no database.
+/// What asks PROJ is a module of its own (src/crs), loaded at the first call: PROJ brings libcurl and SQLite with it,
+/// 30 ms that every start of a program would pay. Throws std::runtime_error if it cannot be loaded, or has no database.
 std::optional<CoordinateSystem> coordinate_system(const std::string& definition);
 
 /// Adds the notice that `what` ("heights") was converted; none for metres.
 void tell_unit(const std::string& file, const std::string& what, double unit, std::vector<std::string>& notices);
 
 /// The same for heights; and if `unit` is < 0, that by `place`, which says so, they are depths.
-void tell_height_unit(const std::string& file, double unit, const std::string& place, std::vector<std::string>& notices);
+void tell_height_unit(const std::string& file, double unit, const std::string& place,
+                      std::vector<std::string>& notices);
 
 /// Throws the FileError of a file in coordinates that are no lengths on a plane; `name` ("EPSG:4326") may be empty.
 [[noreturn]] void refuse_globe(const std::string& file, bool is_geocentric, const std::string& name);

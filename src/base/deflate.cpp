@@ -24,7 +24,8 @@ void inflate_into(std::string_view stream, char* out, std::size_t size)
 {
     thread_local const Decompressor decompressor(libdeflate_alloc_decompressor());
     if (!decompressor) throw std::bad_alloc();
-    if (libdeflate_zlib_decompress(decompressor.get(), stream.data(), stream.size(), out, size, nullptr) != LIBDEFLATE_SUCCESS)
+    if (libdeflate_zlib_decompress(decompressor.get(), stream.data(), stream.size(), out, size, nullptr) !=
+        LIBDEFLATE_SUCCESS)
         throw std::runtime_error("a compressed tile is damaged");
 }
 
@@ -55,7 +56,8 @@ std::string deflate_floats(std::span<const float> values, std::size_t cols)
         auto* const row = reinterpret_cast<std::uint8_t*>(bytes.get()) + first * sizeof(float);
         for (std::size_t col = 0; col < cols; ++col) {
             const auto bits = std::bit_cast<std::uint32_t>(values[first + col]);
-            for (std::size_t plane = 0; plane < 4; ++plane) row[plane * cols + col] = std::uint8_t(bits >> (24 - 8 * plane));
+            for (std::size_t plane = 0; plane < 4; ++plane)
+                row[plane * cols + col] = std::uint8_t(bits >> (24 - 8 * plane));
         }
         for (std::size_t at = 4 * cols - 1; at > 0; --at) row[at] = std::uint8_t(row[at] - row[at - 1]);
     }

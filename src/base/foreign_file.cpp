@@ -80,7 +80,7 @@ const ForeignKind* kind_of(const fs::path& file)
     return is_mjcf ? &mjcf : nullptr;
 }
 
-void refuse(const fs::path& file, const char* const ForeignKind::* advice)
+void refuse(const fs::path& file, const char* const ForeignKind::*advice)
 {
     const ForeignKind* const kind = kind_of(file);
     if (kind == nullptr) return;

@@ -42,17 +42,22 @@ TIFFExtendProc parent_extender = nullptr;
 
 void extend_tags(TIFF* tiff)
 {
-    static char names[8][20] = {"ModelPixelScale", "ModelTiepoint", "ModelTransformation", "GeoKeyDirectory",
-                                "GeoDoubleParams", "GeoAsciiParams", "GDALMetadata", "GDALNoData"};
+    static char names[8][20] = {"ModelPixelScale", "ModelTiepoint",  "ModelTransformation", "GeoKeyDirectory",
+                                "GeoDoubleParams", "GeoAsciiParams", "GDALMetadata",        "GDALNoData"};
     const auto any = [](std::uint32_t tag, TIFFDataType type, char* name) {
         return TIFFFieldInfo{tag, TIFF_VARIABLE2, TIFF_VARIABLE2, type, FIELD_CUSTOM, 1, 1, name};
     };
-    const auto text = [](std::uint32_t tag, char* name) { return TIFFFieldInfo{tag, TIFF_VARIABLE, TIFF_VARIABLE, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name}; };
-    static const TIFFFieldInfo fields[] = {
-        any(model_pixel_scale, TIFF_DOUBLE, names[0]), any(model_tiepoint, TIFF_DOUBLE, names[1]),
-        any(model_transformation, TIFF_DOUBLE, names[2]), any(geo_key_directory, TIFF_SHORT, names[3]),
-        any(geo_double_params, TIFF_DOUBLE, names[4]), text(geo_ascii_params, names[5]),
-        text(gdal_metadata, names[6]), text(gdal_no_data, names[7])};
+    const auto text = [](std::uint32_t tag, char* name) {
+        return TIFFFieldInfo{tag, TIFF_VARIABLE, TIFF_VARIABLE, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name};
+    };
+    static const TIFFFieldInfo fields[] = {any(model_pixel_scale, TIFF_DOUBLE, names[0]),
+                                           any(model_tiepoint, TIFF_DOUBLE, names[1]),
+                                           any(model_transformation, TIFF_DOUBLE, names[2]),
+                                           any(geo_key_directory, TIFF_SHORT, names[3]),
+                                           any(geo_double_params, TIFF_DOUBLE, names[4]),
+                                           text(geo_ascii_params, names[5]),
+                                           text(gdal_metadata, names[6]),
+                                           text(gdal_no_data, names[7])};
     TIFFMergeFieldInfo(tiff, fields, std::uint32_t(std::size(fields)));
     if (parent_extender != nullptr) parent_extender(tiff);
 }
@@ -75,11 +80,12 @@ std::string text_of(TIFF* tiff, std::uint32_t tag)
 bool second_page_is_mask(TIFF* tiff)
 {
     std::uint32_t kind = 0;
-    return TIFFReadDirectory(tiff) == 1 && TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind) == 1 && (kind & FILETYPE_MASK) != 0;
+    return TIFFReadDirectory(tiff) == 1 && TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind) == 1 &&
+           (kind & FILETYPE_MASK) != 0;
 }
 
-/// The GeoKeyDirectory: a head of four numbers, then four for each key: id, tag that holds its value (0: the last number is it),
-/// count, offset in that tag.
+/// The GeoKeyDirectory: a head of four numbers, then four for each key: id, tag that holds its value (0: the last
+/// number is it), count, offset in that tag.
 class GeoKeys {
 public:
     GeoKeys(const GeoTags& tags, const std::string& file) : tags_(tags), file_(file)
@@ -100,7 +106,8 @@ public:
     {
         const std::uint16_t* const entry = find(key);
         if (entry == nullptr || entry[1] != geo_double_params) return std::nullopt;
-        if (entry[3] >= tags_.doubles.size()) throw FileError(file_, "has a GeoKey " + std::to_string(key) + " without its value");
+        if (entry[3] >= tags_.doubles.size())
+            throw FileError(file_, "has a GeoKey " + std::to_string(key) + " without its value");
         return tags_.doubles[entry[3]];
     }
 
@@ -152,13 +159,17 @@ Affine affine(const GeoTags& tags, const std::string& file)
     const std::vector<double>& m = tags.transformation;
     if (m.size() >= 16) {
         if (m[1] != 0 || m[4] != 0)
-            throw FileError(file, "is rotated against its coordinates (ModelTransformation), needs rows from west to east; gdalwarp makes it so");
+            throw FileError(file,
+                            "is rotated against its coordinates (ModelTransformation), needs rows from west to east; "
+                            "gdalwarp makes it so");
         return {m[3], m[0], m[7], -m[5]};
     }
     const std::vector<double>&scale = tags.pixel_scale, &tie = tags.tiepoints;
     if (scale.size() < 2 || tie.size() < 6)
-        throw FileError(file, "has " + std::to_string(tie.size() / 6) + " tie points and " + (scale.size() < 2 ? "no" : "a") +
-                                  " pixel scale (ModelPixelScale), needs one of each, or a ModelTransformation; gdalwarp makes it so");
+        throw FileError(
+            file,
+            "has " + std::to_string(tie.size() / 6) + " tie points and " + (scale.size() < 2 ? "no" : "a") +
+                " pixel scale (ModelPixelScale), needs one of each, or a ModelTransformation; gdalwarp makes it so");
     return {tie[3] - tie[0] * scale[0], scale[0], tie[4] + tie[1] * scale[1], scale[1]};
 }
 
@@ -188,10 +199,13 @@ double unit_by_system(const GeoKeys& keys, const std::string& file, std::vector<
         return 1;
     }
     const std::optional<CoordinateSystem> found = coordinate_system(code);
-    if (found && (found->place == Place::Degrees || found->place == Place::Globe)) refuse_globe(file, found->place == Place::Globe, code);
+    if (found && (found->place == Place::Degrees || found->place == Place::Globe))
+        refuse_globe(file, found->place == Place::Globe, code);
     if (!found || found->place != Place::Plane)
-        throw FileError(file, "is in " + code + ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives it "
-                              "another, or tell its spacing in metres with the key cell");
+        throw FileError(file, "is in " + code +
+                                  ", which PROJ does not know as a projection, so that nobody knows its unit; "
+                                  "gdal_edit.py -a_srs gives it "
+                                  "another, or tell its spacing in metres with the key cell");
     return found->unit;
 }
 
@@ -203,7 +217,8 @@ double linear_unit(const GeoKeys& keys, const std::string& file, std::vector<std
                                                                : metres_of(*code);
     if (!size || !std::isfinite(*size) || !(*size > 0))
         throw FileError(file, "has x and y in unit " + std::to_string(*code) +
-                                  " (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, 9003); reproject it with gdalwarp -t_srs");
+                                  " (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, "
+                                  "9003); reproject it with gdalwarp -t_srs");
     tell_unit(file, "x and y", *size, notices);
     return *size;
 }
@@ -232,20 +247,22 @@ void refuse_scaled(const GeoTags& tags, const std::string& file)
         const std::string text = metadata_item(tags.metadata, role);
         double value = none;
         if (text.empty() || (parse_number(text, value) && value == none)) continue;
-        throw FileError(file, std::string("has heights with a ") + role + " of " + text + ", needs plain ones; gdal_translate -unscale -ot Float32 makes them");
+        throw FileError(file, std::string("has heights with a ") + role + " of " + text +
+                                  ", needs plain ones; gdal_translate -unscale -ot Float32 makes them");
     }
 }
 
 /// What one place of a file says of the unit of its heights.
 struct UnitWord {
-    std::string place;              ///< for complaints
-    std::optional<double> metres;   ///< < 0 of depths; nothing: a unit that is not known
+    std::string place;             ///< for complaints
+    std::optional<double> metres;  ///< < 0 of depths; nothing: a unit that is not known
 };
 
 UnitWord unit_of_band(const std::string& type)
 {
     UnitWord word{"\"" + type + "\"", {}};
-    if (type == "m" || type == "metre" || type == "meter" || type == "metres" || type == "meters" || type == "Meter") word.metres = 1;
+    if (type == "m" || type == "metre" || type == "meter" || type == "metres" || type == "meters" || type == "Meter")
+        word.metres = 1;
     if (type == "ft" || type == "foot" || type == "feet" || type == "Foot") word.metres = metres_of(9002);
     if (type == "sft" || type == "us-ft" || type == "US survey foot") word.metres = metres_of(9003);
     return word;
@@ -262,11 +279,13 @@ std::vector<UnitWord> height_units(const GeoTags& tags, const std::string& file)
 {
     const GeoKeys keys(tags, file);
     std::vector<UnitWord> words;
-    if (const std::string type = metadata_item(tags.metadata, "unittype"); !type.empty()) words.push_back(unit_of_band(type));
+    if (const std::string type = metadata_item(tags.metadata, "unittype"); !type.empty())
+        words.push_back(unit_of_band(type));
     const std::string system = epsg_code(keys, vertical_crs);
     const UnitWord by_system = system.empty() ? UnitWord{} : unit_of_system(system);
     if (by_system.metres) words.push_back(by_system);
-    if (const auto code = keys.number(vertical_units)) words.push_back({std::to_string(*code) + " (VerticalUnitsGeoKey)", metres_of(*code)});
+    if (const auto code = keys.number(vertical_units))
+        words.push_back({std::to_string(*code) + " (VerticalUnitsGeoKey)", metres_of(*code)});
     if (!system.empty() && !by_system.metres) words.push_back(by_system);
     return words;
 }
@@ -278,8 +297,9 @@ void tell_other_units(const std::vector<UnitWord>& words, const std::string& fil
     const double unit = std::abs(*words[0].metres);
     for (const UnitWord& word : words)
         if (word.metres && std::abs(std::abs(*word.metres) - unit) > feet_apart * unit)
-            notices.push_back(file + ": says that heights are in units of " + number(unit) + " m by " + words[0].place + ", and of " +
-                              number(std::abs(*word.metres)) + " m by " + word.place + "; they are taken by the first");
+            notices.push_back(file + ": says that heights are in units of " + number(unit) + " m by " + words[0].place +
+                              ", and of " + number(std::abs(*word.metres)) + " m by " + word.place +
+                              "; they are taken by the first");
 }
 
 }  // namespace
@@ -303,7 +323,10 @@ GeoTags read_geo_tags(const std::filesystem::path& file)
     return tags;
 }
 
-bool is_georeferenced(const GeoTags& tags) { return !tags.pixel_scale.empty() || !tags.tiepoints.empty() || !tags.transformation.empty(); }
+bool is_georeferenced(const GeoTags& tags)
+{
+    return !tags.pixel_scale.empty() || !tags.tiepoints.empty() || !tags.transformation.empty();
+}
 
 GeoFrame geo_frame(const GeoTags& tags, const std::string& file, std::vector<std::string>& notices)
 {
@@ -313,9 +336,16 @@ GeoFrame geo_frame(const GeoTags& tags, const std::string& file, std::vector<std
     check(a, file);
     const unsigned type = keys.number(raster_type).value_or(1);
     if (type != 1 && type != 2 && type != user_defined)
-        throw FileError(file, "has GTRasterTypeGeoKey " + std::to_string(type) + ", needs 1 (pixels are areas) or 2 (points)");
+        throw FileError(
+            file, "has GTRasterTypeGeoKey " + std::to_string(type) + ", needs 1 (pixels are areas) or 2 (points)");
     const double half = type == 2 ? 0 : 0.5;
-    return {a.x + half * a.dx, a.y - half * a.dy, a.dx, a.dy, linear_unit(keys, file, notices), keys.number(model_type) == 1u, crs_of(keys)};
+    return {a.x + half * a.dx,
+            a.y - half * a.dy,
+            a.dx,
+            a.dy,
+            linear_unit(keys, file, notices),
+            keys.number(model_type) == 1u,
+            crs_of(keys)};
 }
 
 std::optional<double> no_data_value(const GeoTags& tags, const std::string& file)
@@ -323,7 +353,8 @@ std::optional<double> no_data_value(const GeoTags& tags, const std::string& file
     const std::size_t start = tags.no_data.find_first_not_of(' ');
     if (start == std::string::npos) return std::nullopt;
     double value = 0;
-    if (!parse_number(std::string_view(tags.no_data).substr(start, tags.no_data.find_last_not_of(' ') + 1 - start), value))
+    if (!parse_number(std::string_view(tags.no_data).substr(start, tags.no_data.find_last_not_of(' ') + 1 - start),
+                      value))
         throw FileError(file, "has a GDAL_NODATA of \"" + tags.no_data + "\", needs a number");
     return value;
 }
@@ -335,9 +366,11 @@ double height_unit(const GeoTags& tags, const std::string& file, std::vector<std
     if (words.empty()) return 1;
     if (!words[0].metres)
         throw FileError(file, "has heights in unit " + words[0].place +
-                                  ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they are");
+                                  ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units "
+                                  "m or ft says which they are");
     tell_other_units(words, file, notices);
-    const auto depths = std::find_if(words.begin(), words.end(), [](const UnitWord& word) { return word.metres.value_or(1) < 0; });
+    const auto depths = std::find_if(words.begin(), words.end(),
+                                     [](const UnitWord& word) { return word.metres.value_or(1) < 0; });
     const bool is_depth = depths != words.end();
     const double unit = std::abs(*words[0].metres) * (is_depth ? -1 : 1);
     tell_height_unit(file, unit, is_depth ? depths->place : words[0].place, notices);

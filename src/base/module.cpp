@@ -20,7 +20,8 @@ const void* module_symbol(const char* file_name, const char* symbol, const std::
     const void* const found = module == nullptr ? nullptr : dlsym(module, symbol);
     if (found != nullptr) return found;
     const char* const reason = dlerror();
-    throw std::runtime_error(failure + ": " + file.string() + " cannot be loaded: " + (reason != nullptr ? reason : "no reason is told"));
+    throw std::runtime_error(failure + ": " + file.string() +
+                             " cannot be loaded: " + (reason != nullptr ? reason : "no reason is told"));
 }
 
 }  // namespace spawnfield

@@ -82,7 +82,7 @@ void OutputFile::keep_old()
     if (target_.empty() || !fs::exists(target_, error)) return;
     const fs::path old = target_.string() + ".old-" + std::to_string(getpid());
     fs::remove(old, error);
-    fs::create_hard_link(target_, old, error);  // so that there is a file of this name at all times
+    fs::create_hard_link(target_, old, error);      // so that there is a file of this name at all times
     if (error) fs::copy_file(target_, old, error);  // file systems without links
     if (error) fail(error.message());
     old_ = old;
@@ -91,8 +91,10 @@ void OutputFile::keep_old()
 void OutputFile::put_old_back() noexcept
 {
     std::error_code ignored;
-    if (old_.empty() && !target_.empty()) fs::remove(target_, ignored);
-    else if (!old_.empty()) fs::rename(old_, target_, ignored);
+    if (old_.empty() && !target_.empty())
+        fs::remove(target_, ignored);
+    else if (!old_.empty())
+        fs::rename(old_, target_, ignored);
     old_.clear();
 }
 

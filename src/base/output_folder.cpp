@@ -30,7 +30,10 @@ void refuse_foreign(const fs::path& target, const std::function<std::string(cons
 }
 
 /// At one blow, so that there is a target at any moment; false where the file system cannot.
-bool exchange(const fs::path& a, const fs::path& b) { return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0; }
+bool exchange(const fs::path& a, const fs::path& b)
+{
+    return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
+}
 
 }  // namespace
 

@@ -24,8 +24,9 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
 {
     std::atomic<std::size_t> done{0};
     std::mutex telling;
-    // What TBB's own hand-over already orders, in words that a thread sanitizer reads, as the library is not instrumented:
-    // what came before the loop comes before its parts, and what they did before what comes after, be it an exception.
+    // What TBB's own hand-over already orders, in words that a thread sanitizer reads, as the library is not
+    // instrumented: what came before the loop comes before its parts, and what they did before what comes after, be it
+    // an exception.
     std::atomic<bool> started{false}, finished{false};
     struct AtEnd {
         std::atomic<bool>& flag;

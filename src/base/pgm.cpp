@@ -23,8 +23,10 @@ public:
             if (text_[at_] == '#') at_ = std::min(text_.find('\n', at_), text_.size() - 1);
         std::uint64_t value = 0;
         const std::size_t start = at_;
-        for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9' && value < 1u << 31; ++at_) value = 10 * value + std::uint64_t(text_[at_] - '0');
-        if (at_ == start || value >= 1u << 31) throw FileError(file_, "is cut short or a damaged PGM image: " + what + " is no whole number");
+        for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9' && value < 1u << 31; ++at_)
+            value = 10 * value + std::uint64_t(text_[at_] - '0');
+        if (at_ == start || value >= 1u << 31)
+            throw FileError(file_, "is cut short or a damaged PGM image: " + what + " is no whole number");
         return std::uint32_t(value);
     }
 
@@ -43,7 +45,9 @@ private:
 
 std::uint32_t within(std::uint32_t value, std::uint32_t most, const std::string& file, const std::string& what)
 {
-    if (value < 1 || value > most) throw FileError(file, "has a " + what + " of " + std::to_string(value) + ", needs 1 to " + std::to_string(most));
+    if (value < 1 || value > most)
+        throw FileError(file,
+                        "has a " + what + " of " + std::to_string(value) + ", needs 1 to " + std::to_string(most));
     return value;
 }
 
@@ -52,10 +56,12 @@ void read_text(Reader& reader, std::size_t count, std::vector<double>& pixels)
     for (std::size_t i = 0; i < count; ++i) pixels.push_back(reader.number("pixel " + std::to_string(i)));
 }
 
-void read_bytes(std::string_view bytes, std::size_t count, bool wide, std::vector<double>& pixels, const std::string& file)
+void read_bytes(std::string_view bytes, std::size_t count, bool wide, std::vector<double>& pixels,
+                const std::string& file)
 {
     if (bytes.size() < count * (wide ? 2 : 1))
-        throw FileError(file, "is cut short: it has " + std::to_string(bytes.size()) + " bytes of pixels, needs " + std::to_string(count * (wide ? 2 : 1)));
+        throw FileError(file, "is cut short: it has " + std::to_string(bytes.size()) + " bytes of pixels, needs " +
+                                  std::to_string(count * (wide ? 2 : 1)));
     const auto byte = [&](std::size_t i) { return std::uint8_t(bytes[i]); };
     for (std::size_t i = 0; i < count; ++i) pixels.push_back(wide ? byte(2 * i) * 256 + byte(2 * i + 1) : byte(i));
 }
@@ -70,16 +76,22 @@ GreyImage read_pgm(const std::filesystem::path& path, std::uint64_t most)
     if (!is_pgm(text)) throw FileError(file, "is no PGM image (P2 or P5)");
     Reader reader(text, file);
     constexpr std::uint32_t most_side = 2147483647;
-    const std::uint32_t cols = within(reader.number("the width"), most_side, file, "width"), rows = within(reader.number("the height"), most_side, file, "height");
+    const std::uint32_t cols = within(reader.number("the width"), most_side, file, "width"),
+                        rows = within(reader.number("the height"), most_side, file, "height");
     if (std::uint64_t(rows) * cols > most)
-        throw FileError(file, "has " + std::to_string(cols) + " x " + std::to_string(rows) + " pixels, needs at most " + std::to_string(most));
+        throw FileError(file, "has " + std::to_string(cols) + " x " + std::to_string(rows) + " pixels, needs at most " +
+                                  std::to_string(most));
     const std::uint32_t largest = within(reader.number("the largest value"), 65535, file, "largest value");
     GreyImage image{int(rows), int(cols), double(largest), {}};
     const std::size_t count = std::size_t(rows) * cols;
-    if (text[1] == '2') read_text(reader, count, image.pixels);
-    else read_bytes(reader.rest(), count, largest > 255, image.pixels, file);
+    if (text[1] == '2')
+        read_text(reader, count, image.pixels);
+    else
+        read_bytes(reader.rest(), count, largest > 255, image.pixels, file);
     for (const double pixel : image.pixels)
-        if (pixel > largest) throw FileError(file, "has a pixel of " + number(pixel) + ", needs at most its largest value " + std::to_string(largest));
+        if (pixel > largest)
+            throw FileError(file, "has a pixel of " + number(pixel) + ", needs at most its largest value " +
+                                      std::to_string(largest));
     return image;
 }
 

@@ -58,11 +58,14 @@ public:
         return true;
     }
 
-    bool prepare(bool in_full)  ///< whole bytes for each sample; in full: palettes and transparency as colours and alpha
+    bool prepare(
+        bool in_full)  ///< whole bytes for each sample; in full: palettes and transparency as colours and alpha
     {
         if (setjmp(png_jmpbuf(png_))) return false;
-        if (in_full) png_set_expand(png_);
-        else png_set_expand_gray_1_2_4_to_8(png_);
+        if (in_full)
+            png_set_expand(png_);
+        else
+            png_set_expand_gray_1_2_4_to_8(png_);
         png_set_interlace_handling(png_);
         png_read_update_info(png_, info_);
         return true;
@@ -111,8 +114,8 @@ void append_chunk(std::string& out, const char* type, std::string_view data)
     append_big_endian(out, libdeflate_crc32(0, out.data() + start, out.size() - start));
 }
 
-/// Every row as differences from the one above (filter 2): good for heights and pictures alike, and the same choice always.
-/// libpng, which deflates with zlib, would take three times as long. put_row(row, out) writes the bytes of one.
+/// Every row as differences from the one above (filter 2): good for heights and pictures alike, and the same choice
+/// always. libpng, which deflates with zlib, would take three times as long. put_row(row, out) writes the bytes of one.
 template <class PutRow>
 std::string png_bytes(const std::string& name, int rows, int cols, int bits, int colour, std::size_t row_bytes,
                       const PutRow& put_row)
@@ -162,14 +165,16 @@ void require(bool good, const Reader& reader, const std::string& file)
 void check_size(const Reader& reader, const std::string& file, std::uint64_t most)
 {
     if (std::uint64_t(reader.rows()) * std::uint64_t(reader.cols()) > most)
-        throw FileError(file, "has " + std::to_string(reader.cols()) + " x " + std::to_string(reader.rows()) + " pixels, needs at most " + std::to_string(most));
+        throw FileError(file, "has " + std::to_string(reader.cols()) + " x " + std::to_string(reader.rows()) +
+                                  " pixels, needs at most " + std::to_string(most));
 }
 
 /// All samples of a prepared reader, of one byte or two, row after row.
 Bytes read_samples(Reader& reader, const std::string& file)
 {
     const std::size_t rows = std::size_t(reader.rows());
-    const std::size_t row_bytes = std::size_t(reader.cols()) * std::size_t(reader.channels()) * (reader.bits() == 16 ? 2 : 1);
+    const std::size_t row_bytes = std::size_t(reader.cols()) * std::size_t(reader.channels()) *
+                                  (reader.bits() == 16 ? 2 : 1);
     // Not cleared, so that a damaged header which tells of a giant costs nothing.
     Bytes data = std::make_unique_for_overwrite<png_byte[]>(rows * row_bytes);
     const auto starts = std::make_unique_for_overwrite<png_bytep[]>(rows);
@@ -178,7 +183,10 @@ Bytes read_samples(Reader& reader, const std::string& file)
     return data;
 }
 
-std::uint16_t sample(const Bytes& data, std::size_t i, bool wide) { return wide ? std::uint16_t(data[2 * i] * 256 + data[2 * i + 1]) : data[i]; }
+std::uint16_t sample(const Bytes& data, std::size_t i, bool wide)
+{
+    return wide ? std::uint16_t(data[2 * i] * 256 + data[2 * i + 1]) : data[i];
+}
 
 /// Of an image that is stored in colours, or with transparency, but has none.
 GreyImage grey_of(const ColourImage& image, const std::string& file)
@@ -191,10 +199,11 @@ GreyImage grey_of(const ColourImage& image, const std::string& file)
         const std::uint16_t* const pixel = &image.samples[i];
         const auto refuse = [&](const char* what) {
             const std::size_t at = grey.pixels.size(), cols = std::size_t(image.cols);
-            throw FileError(file, "has a pixel that is " + std::string(what) + " (column " + std::to_string(at % cols) + ", row " +
-                                      std::to_string(at / cols) + "), needs to be a grey image");
+            throw FileError(file, "has a pixel that is " + std::string(what) + " (column " + std::to_string(at % cols) +
+                                      ", row " + std::to_string(at / cols) + "), needs to be a grey image");
         };
-        if (std::any_of(pixel + 1, pixel + colours, [&](std::uint16_t value) { return value != pixel[0]; })) refuse("coloured");
+        if (std::any_of(pixel + 1, pixel + colours, [&](std::uint16_t value) { return value != pixel[0]; }))
+            refuse("coloured");
         if (has_alpha && pixel[colours] != image.largest) refuse("transparent");
         grey.pixels.push_back(pixel[0]);
     }

@@ -12,8 +12,9 @@ namespace spawnfield {
 
 bool is_png(std::string_view start);  ///< its first 8 bytes or more
 
-/// 1 to 16 bits, interlaced or not; pixels of fewer than 8 bits are spread over 0 .. 255. Gamma and transparency are not
-/// applied. Of images stored in colours all pixels need to be grey, and opaque. Throws FileError; for more than `most` pixels before any is read.
+/// 1 to 16 bits, interlaced or not; pixels of fewer than 8 bits are spread over 0 .. 255. Gamma and transparency are
+/// not applied. Of images stored in colours all pixels need to be grey, and opaque. Throws FileError; for more than
+/// `most` pixels before any is read.
 GreyImage read_grey_png(const std::filesystem::path& file, std::uint64_t most = max_pixels);
 
 /// 1 to 4 channels: grey or red, green, blue, then alpha.
@@ -22,8 +23,8 @@ struct ColourImage {
     std::vector<std::uint16_t> samples;                   ///< pixel after pixel, rows from the top
 };
 
-/// Of any kind: palettes become colours, transparency alpha, fewer than 8 bits 8. Gamma is not applied. Throws FileError; for more than
-/// `most` pixels before any is read.
+/// Of any kind: palettes become colours, transparency alpha, fewer than 8 bits 8. Gamma is not applied. Throws
+/// FileError; for more than `most` pixels before any is read.
 ColourImage read_colour_png(const std::filesystem::path& file, std::uint64_t most = max_pixels);
 
 /// Bytes of a PNG file of 8-bit blue, green, red. Same pixels, same bytes. Throws OutputError that begins

@@ -20,7 +20,8 @@ template <class Polygon>
 double area_of(const Polygon& polygon)
 {
     double twice = 0;
-    for (std::size_t k = 1; k + 1 < polygon.size(); ++k) twice += cross(polygon[k] - polygon[0], polygon[k + 1] - polygon[0]);
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
+        twice += cross(polygon[k] - polygon[0], polygon[k + 1] - polygon[0]);
     return twice / 2;
 }
 

@@ -20,7 +20,8 @@ inline std::string trimmed(std::string_view text)
 {
     constexpr std::string_view space = " \t\r\n";
     const std::size_t first = text.find_first_not_of(space);
-    return first == std::string_view::npos ? "" : std::string(text.substr(first, text.find_last_not_of(space) + 1 - first));
+    return first == std::string_view::npos ? ""
+                                           : std::string(text.substr(first, text.find_last_not_of(space) + 1 - first));
 }
 
 }  // namespace spawnfield

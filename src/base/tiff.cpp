@@ -36,14 +36,25 @@ Layout layout(TIFF* tiff)
 }
 
 bool is_float(const Layout& l) { return l.format == SAMPLEFORMAT_IEEEFP && (l.bits == 32 || l.bits == 64); }
-bool is_unsigned(const Layout& l) { return l.format == SAMPLEFORMAT_UINT && (l.bits == 8 || l.bits == 16 || l.bits == 32); }
-bool is_signed(const Layout& l) { return l.format == SAMPLEFORMAT_INT && (l.bits == 8 || l.bits == 16 || l.bits == 32); }
-bool has_white(const Layout& l) { return is_unsigned(l) && l.bits < 32; }  ///< a picture, perhaps, of which the largest value is white
+bool is_unsigned(const Layout& l)
+{
+    return l.format == SAMPLEFORMAT_UINT && (l.bits == 8 || l.bits == 16 || l.bits == 32);
+}
+bool is_signed(const Layout& l)
+{
+    return l.format == SAMPLEFORMAT_INT && (l.bits == 8 || l.bits == 16 || l.bits == 32);
+}
+bool has_white(const Layout& l)
+{
+    return is_unsigned(l) && l.bits < 32;
+}  ///< a picture, perhaps, of which the largest value is white
 
 void check(const Layout& l, const std::string& file, std::uint64_t most)
 {
     if (l.photometric == PHOTOMETRIC_PALETTE) throw FileError(file, "has a palette, needs 1 channel (grey)");
-    if (l.channels != 1) throw FileError(file, "has " + std::to_string(l.channels) + " channels, needs 1 (grey); gdal_translate -b 1 takes the first");
+    if (l.channels != 1)
+        throw FileError(file, "has " + std::to_string(l.channels) +
+                                  " channels, needs 1 (grey); gdal_translate -b 1 takes the first");
     if (!is_float(l) && !is_unsigned(l) && !is_signed(l))
         throw FileError(file, "has pixels of " + std::to_string(l.bits) +
                                   (l.format == SAMPLEFORMAT_UINT     ? " bits"
@@ -52,11 +63,14 @@ void check(const Layout& l, const std::string& file, std::uint64_t most)
                                                                      : " bits of no known kind") +
                                   ", needs integers of 8, 16 or 32 bits, or float of 32 or 64");
     if (l.orientation != ORIENTATION_TOPLEFT)
-        throw FileError(file, "is stored turned or mirrored (orientation " + std::to_string(l.orientation) + "), needs its upper left corner first (1)");
+        throw FileError(file, "is stored turned or mirrored (orientation " + std::to_string(l.orientation) +
+                                  "), needs its upper left corner first (1)");
     if (std::max({std::uint64_t(l.rows), std::uint64_t(l.cols), std::uint64_t(l.rows) * l.cols}) > most)
-        throw FileError(file, "has " + std::to_string(l.cols) + " x " + std::to_string(l.rows) + " pixels, needs at most " + std::to_string(most));
+        throw FileError(file, "has " + std::to_string(l.cols) + " x " + std::to_string(l.rows) +
+                                  " pixels, needs at most " + std::to_string(most));
     if (!TIFFIsCODECConfigured(l.compression))
-        throw FileError(file, "is compressed in a way that libtiff cannot decode here (scheme " + std::to_string(l.compression) + "); save it with deflate");
+        throw FileError(file, "is compressed in a way that libtiff cannot decode here (scheme " +
+                                  std::to_string(l.compression) + "); save it with deflate");
 }
 
 template <typename Pixel>
@@ -70,8 +84,13 @@ double value(const std::byte* bytes)
 double value(const Layout& l, const std::byte* bytes)
 {
     if (l.format == SAMPLEFORMAT_IEEEFP) return l.bits == 32 ? value<float>(bytes) : value<double>(bytes);
-    if (is_signed(l)) return l.bits == 8 ? value<std::int8_t>(bytes) : l.bits == 16 ? value<std::int16_t>(bytes) : value<std::int32_t>(bytes);
-    return l.bits == 8 ? value<std::uint8_t>(bytes) : l.bits == 16 ? value<std::uint16_t>(bytes) : value<std::uint32_t>(bytes);
+    if (is_signed(l))
+        return l.bits == 8    ? value<std::int8_t>(bytes)
+               : l.bits == 16 ? value<std::int16_t>(bytes)
+                              : value<std::int32_t>(bytes);
+    return l.bits == 8    ? value<std::uint8_t>(bytes)
+           : l.bits == 16 ? value<std::uint16_t>(bytes)
+                          : value<std::uint32_t>(bytes);
 }
 
 /// Adds the pixels of rows from .. to, line after line. Returns false if they cannot be decoded.
@@ -96,7 +115,8 @@ bool read_tiles(TIFF* tiff, const Layout& l, std::vector<double>& pixels)
             const std::uint32_t cols = std::min(l.tile_cols, l.cols - left);
             for (std::size_t row = 0; row < rows; ++row)
                 for (std::size_t col = 0; col < cols; ++col)
-                    pixels[(top + row) * l.cols + left + col] = value(l, tile.get() + (row * l.tile_cols + col) * l.pixel_bytes());
+                    pixels[(top + row) * l.cols + left + col] = value(
+                        l, tile.get() + (row * l.tile_cols + col) * l.pixel_bytes());
         }
     }
     return true;

@@ -25,9 +25,8 @@ Mat3 rotation_from_rpy(double roll, double pitch, double yaw)
     const double cp = std::cos(pitch), sp = std::sin(pitch);
     const double cy = std::cos(yaw), sy = std::sin(yaw);
     Mat3 rotation;
-    rotation << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,
-                sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,
-                -sp,     cp * sr,                cp * cr;
+    rotation << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, sy * cp, sy * sp * sr + cy * cr,
+        sy * sp * cr - cy * sr, -sp, cp * sr, cp * cr;
     return rotation;
 }
 

@@ -15,16 +15,21 @@ std::unique_ptr<tinyxml2::XMLDocument> read_xml(const std::filesystem::path& fil
     require_file(file);
     auto document = std::make_unique<tinyxml2::XMLDocument>();
     const tinyxml2::XMLError error = document->LoadFile(file.c_str());
-    if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED || error == tinyxml2::XML_ERROR_FILE_READ_ERROR)
+    if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED ||
+        error == tinyxml2::XML_ERROR_FILE_READ_ERROR)
         throw FileError(file.string(), "cannot be read");
-    if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT || (error == tinyxml2::XML_SUCCESS && document->RootElement() == nullptr))
+    if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT ||
+        (error == tinyxml2::XML_SUCCESS && document->RootElement() == nullptr))
         throw FileError(file.string(), "is empty, needs " + expected);
     if (error == tinyxml2::XML_SUCCESS) return document;
     std::string name = lower_case(document->ErrorName());
     std::replace(name.begin(), name.end(), '_', ' ');
-    const std::string line = document->ErrorLineNum() > 0 ? "line " + std::to_string(document->ErrorLineNum()) + ": " : "";
-    throw FileError(file.string(), line + "is no valid XML (" + name + ")" +
-                                       (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED ? ": elements may be nested 500 deep" : ": is a tag left open or misspelt?"));
+    const std::string line = document->ErrorLineNum() > 0 ? "line " + std::to_string(document->ErrorLineNum()) + ": "
+                                                          : "";
+    throw FileError(file.string(),
+                    line + "is no valid XML (" + name + ")" +
+                        (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED ? ": elements may be nested 500 deep"
+                                                                       : ": is a tag left open or misspelt?"));
 }
 
 std::string text_of(const Xml& parent, const char* name)

@@ -38,8 +38,10 @@ void join(std::vector<Hit>& intervals, double tolerance)
         }
         Hit& current = intervals[kept - 1];
         const bool same_top = std::abs(next.z.top - current.z.top) <= touch_tolerance;
-        if (same_top) current.terrain = current.terrain || next.terrain;
-        else if (next.z.top > current.z.top) current.terrain = next.terrain;
+        if (same_top)
+            current.terrain = current.terrain || next.terrain;
+        else if (next.z.top > current.z.top)
+            current.terrain = next.terrain;
         current.z.top = std::max(current.z.top, next.z.top);
     }
     intervals.resize(kept);
@@ -76,8 +78,10 @@ public:
 private:
     static void add(const Interval& z, const SurfaceHit& hit, bool terrain, Column& out)
     {
-        if (hit.water) out.water.push_back(z.top);
-        else out.spans.push_back({z.bottom, z.top, hit.part, terrain, !hit.open});
+        if (hit.water)
+            out.water.push_back(z.top);
+        else
+            out.spans.push_back({z.bottom, z.top, hit.part, terrain, !hit.open});
     }
 
     /// Of a filled piece, which is water throughout or nowhere.
@@ -96,7 +100,8 @@ private:
 
     static bool is_same(const Span& l, const Span& r)
     {
-        return l.bottom == r.bottom && l.top == r.top && l.part == r.part && l.terrain == r.terrain && l.sealed == r.sealed;
+        return l.bottom == r.bottom && l.top == r.top && l.part == r.part && l.terrain == r.terrain &&
+               l.sealed == r.sealed;
     }
 
     void finish(std::size_t first_span, std::size_t first_water, Column& out)
@@ -136,7 +141,8 @@ ColumnBuilder& builder()
 
 bool counts(const Tile& tile, std::uint32_t element, Surfaces surfaces)
 {
-    return surfaces == Surfaces::All || !tile.is_triangle(element) || tile.pieces[tile.triangles[element].piece].solid != 0;
+    return surfaces == Surfaces::All || !tile.is_triangle(element) ||
+           tile.pieces[tile.triangles[element].piece].solid != 0;
 }
 
 /// Hits of the line through (x, y) in the order of their elements.
@@ -146,7 +152,9 @@ void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, 
     geometry.impl().visit_at(x, y, [&](const Tile& tile, std::span<const std::uint32_t> elements) {
         for (const std::uint32_t element : elements) {
             const ElementBox& box = tile.boxes[element];
-            if (box.min[0] > x || box.max[0] < x || box.min[1] > y || box.max[1] < y || !counts(tile, element, surfaces)) continue;
+            if (box.min[0] > x || box.max[0] < x || box.min[1] > y || box.max[1] < y ||
+                !counts(tile, element, surfaces))
+                continue;
             if (const auto hit = hit_of(tile, element, x, y)) hits.push_back(*hit);
         }
     });
@@ -185,9 +193,12 @@ Columns::Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surf
     if (count == 0) return;
     // Looking at an element costs about as much as a tenth of looking a column up.
     const double elements = geometry.impl().elements_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
-                                                          grid.x_of(grid.first_col + grid.cols), grid.y_of(grid.first_row + grid.rows));
-    if (elements > 10.0 * double(count)) look_up(geometry, grid, surfaces);
-    else scan(geometry, grid, surfaces);
+                                                          grid.x_of(grid.first_col + grid.cols),
+                                                          grid.y_of(grid.first_row + grid.rows));
+    if (elements > 10.0 * double(count))
+        look_up(geometry, grid, surfaces);
+    else
+        scan(geometry, grid, surfaces);
 }
 
 void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
@@ -253,14 +264,16 @@ public:
         if (next_[head] == none) return {&hits_[head], 1};
         sorted_.clear();
         for (std::uint32_t h = head; h != none; h = next_[h]) sorted_.push_back(hits_[h]);
-        std::sort(sorted_.begin(), sorted_.end(), [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
+        std::sort(sorted_.begin(), sorted_.end(),
+                  [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
         return sorted_;
     }
 
 private:
     static bool is_same_sheet(const SurfaceHit& l, const SurfaceHit& r)
     {
-        return !l.filled && !r.filled && l.piece == r.piece && l.z.top == r.z.top && l.terrain == r.terrain && l.water == r.water && l.part == r.part;
+        return !l.filled && !r.filled && l.piece == r.piece && l.z.top == r.z.top && l.terrain == r.terrain &&
+               l.water == r.water && l.part == r.part;
     }
 
     static constexpr std::uint32_t none = 0xffffffff;
@@ -279,24 +292,30 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
     const auto visit = [&](const Tile& tile, std::uint32_t element) {
         if (!counts(tile, element, surfaces)) return;
         const ElementBox& box = tile.boxes[element];
-        const IndexRange cols = indices_in(box.min[0], box.max[0], grid.x0, a_step, grid.shift, grid.first_col, grid.cols);
+        const IndexRange cols = indices_in(box.min[0], box.max[0], grid.x0, a_step, grid.shift, grid.first_col,
+                                           grid.cols);
         if (cols.is_empty()) return;
-        const IndexRange rows = indices_in(box.min[1], box.max[1], grid.y0, a_step, grid.shift, grid.first_row, grid.rows);
+        const IndexRange rows = indices_in(box.min[1], box.max[1], grid.y0, a_step, grid.shift, grid.first_row,
+                                           grid.rows);
         if (rows.is_empty()) return;
         const auto visit_columns = [&](auto seen) {
             for (int j = rows.first; j <= rows.last; ++j) {
                 seen.set_y(grid.y_of(grid.first_row + j));
                 for (int i = cols.first; i <= cols.last; ++i) {
                     const std::size_t column = std::size_t(j) * std::size_t(grid.cols) + std::size_t(i);
-                    if (seen.meet(grid.x_of(grid.first_col + i), [&]() -> SurfaceHit& { return hits.add(column); })) hits.drop_repeated(column);
+                    if (seen.meet(grid.x_of(grid.first_col + i), [&]() -> SurfaceHit& { return hits.add(column); }))
+                        hits.drop_repeated(column);
                 }
             }
         };
-        if (tile.is_triangle(element)) visit_columns(SeenTriangle(tile, element));
-        else visit_columns(SeenPrimitive(tile, element));
+        if (tile.is_triangle(element))
+            visit_columns(SeenTriangle(tile, element));
+        else
+            visit_columns(SeenPrimitive(tile, element));
     };
-    geometry.impl().visit_in(grid.x_of(grid.first_col), grid.y_of(grid.first_row), grid.x_of(grid.first_col + grid.cols - 1),
-                             grid.y_of(grid.first_row + grid.rows - 1), visit);
+    geometry.impl().visit_in(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
+                             grid.x_of(grid.first_col + grid.cols - 1), grid.y_of(grid.first_row + grid.rows - 1),
+                             visit);
     if (hits.are_none()) {
         starts_.resize(count + 1);
         return;

@@ -13,13 +13,17 @@ struct ColumnView {
     std::span<const double> layers, water;
 
     ColumnView() = default;
-    ColumnView(std::span<const Span> s, std::span<const double> l, std::span<const double> w) : spans(s), layers(l), water(w) {}
+    ColumnView(std::span<const Span> s, std::span<const double> l, std::span<const double> w)
+        : spans(s), layers(l), water(w)
+    {
+    }
     ColumnView(const Column& column) : spans(column.spans), layers(column.layers), water(column.water) {}
 };
 
 std::optional<Ground> ground_below(const ColumnView& column, double z);
 
-/// The part of `heights` (a column's layers or water surfaces, from the top down) that lies in the range, to touch_tolerance.
+/// The part of `heights` (a column's layers or water surfaces, from the top down) that lies in the range, to
+/// touch_tolerance.
 inline std::span<const double> heights_within(std::span<const double> heights, const ZRange& z)
 {
     std::size_t first = 0, end = heights.size();
@@ -28,8 +32,8 @@ inline std::span<const double> heights_within(std::span<const double> heights, c
     return heights.subspan(first, end - first);
 }
 
-/// Top of the highest obstacle that begins within or below the range and ends within or above it, where it stands above the
-/// highest of the column's `layers` or there are none.
+/// Top of the highest obstacle that begins within or below the range and ends within or above it, where it stands above
+/// the highest of the column's `layers` or there are none.
 inline std::optional<double> obstacle_above(const ColumnView& column, std::span<const double> layers, const ZRange& z)
 {
     for (const Span& span : column.spans) {
@@ -80,7 +84,8 @@ private:
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void end_column()
     {
-        starts_.push_back({std::uint32_t(column_.spans.size()), std::uint32_t(column_.layers.size()), std::uint32_t(column_.water.size())});
+        starts_.push_back({std::uint32_t(column_.spans.size()), std::uint32_t(column_.layers.size()),
+                           std::uint32_t(column_.water.size())});
     }
 
     int cols_ = 0;

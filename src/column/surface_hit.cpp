@@ -57,7 +57,8 @@ bool may_meet(const std::array<Vec3, 3>& corners, double x, double y)
 {
     constexpr double reach = touch_tolerance;
     const Interval along_x = extent(corners, 0), along_y = extent(corners, 1);
-    return along_x.bottom <= x + reach && along_x.top >= x - reach && along_y.bottom <= y + reach && along_y.top >= y - reach;
+    return along_x.bottom <= x + reach && along_x.top >= x - reach && along_y.bottom <= y + reach &&
+           along_y.top >= y - reach;
 }
 
 bool is_crossed(const std::array<Vec3, 3>& corners, double x, double y)
@@ -95,9 +96,19 @@ void SeenTriangle::prepare()
     const TileTriangle& from = tile_.triangles[triangle_];
     const TilePiece& piece = tile_.pieces[from.piece];
     const bool filled = piece.solid != 0, looks_up = twice_area_ > 0;
-    within_ = {.element = tile_.ids[triangle_], .piece = piece.piece, .part = piece.part, .is_primitive = false, .filled = filled,
-               .open = piece.open != 0, .terrain = from.label == Label::Terrain && (piece.sides_up == 0 || filled || looks_up),
-               .water = from.label == Label::Water, .crosses = filled, .touches = !filled, .z = {}, .crossing = 0, .piece_bottom = piece.bottom};
+    within_ = {.element = tile_.ids[triangle_],
+               .piece = piece.piece,
+               .part = piece.part,
+               .is_primitive = false,
+               .filled = filled,
+               .open = piece.open != 0,
+               .terrain = from.label == Label::Terrain && (piece.sides_up == 0 || filled || looks_up),
+               .water = from.label == Label::Water,
+               .crosses = filled,
+               .touches = !filled,
+               .z = {},
+               .crossing = 0,
+               .piece_bottom = piece.bottom};
     is_prepared_ = true;
 }
 
@@ -130,9 +141,19 @@ std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double
     const TilePrimitive& primitive = tile.primitive(element);
     const auto interval = vertical_interval(primitive.shape(), x, y);
     if (!interval) return std::nullopt;
-    return SurfaceHit{.element = tile.ids[element], .piece = 0, .part = primitive.part, .is_primitive = true, .filled = true, .open = false,
-                      .terrain = primitive.label == Label::Terrain, .water = primitive.label == Label::Water, .crosses = false,
-                      .touches = true, .z = *interval, .crossing = 0, .piece_bottom = 0};
+    return SurfaceHit{.element = tile.ids[element],
+                      .piece = 0,
+                      .part = primitive.part,
+                      .is_primitive = true,
+                      .filled = true,
+                      .open = false,
+                      .terrain = primitive.label == Label::Terrain,
+                      .water = primitive.label == Label::Water,
+                      .crosses = false,
+                      .touches = true,
+                      .z = *interval,
+                      .crossing = 0,
+                      .piece_bottom = 0};
 }
 
 }  // namespace spawnfield

@@ -14,8 +14,8 @@ namespace spawnfield {
 struct SurfaceHit {
     std::uint32_t element, piece, part;  ///< of the scene; primitives have no piece
     bool is_primitive, filled, open, terrain, water;
-    bool crosses;         ///< goes through a triangle of a filled piece at `crossing`, each edge counted once
-    bool touches;         ///< meets it in z, edges included
+    bool crosses;  ///< goes through a triangle of a filled piece at `crossing`, each edge counted once
+    bool touches;  ///< meets it in z, edges included
     Interval z;
     double crossing;      ///< height, m
     double piece_bottom;  ///< as Piece, m
@@ -44,8 +44,8 @@ public:
         for (std::size_t k = 0; k < 3; ++k) edges_[k].across = edges_[k].x * (y - corners_[k].y());
     }
 
-    /// Where the vertical line through (x, y) meets it: new_hit(), a SurfaceHit&, is written if it does. Sheets seen edge-on
-    /// give nothing.
+    /// Where the vertical line through (x, y) meets it: new_hit(), a SurfaceHit&, is written if it does. Sheets seen
+    /// edge-on give nothing.
     template <class NewHit>
     bool meet(double x, const NewHit& new_hit)
     {
@@ -83,8 +83,8 @@ private:
     struct Edge {
         double x, y;            ///< m
         double squared_length;  ///< seen from above, m2
-        double rim;             ///< what the square of a cross product passes well off the edge; upright edges have none
-        double across;          ///< the line's part of that product, m2
+        double rim;     ///< what the square of a cross product passes well off the edge; upright edges have none
+        double across;  ///< the line's part of that product, m2
     };
 
     void prepare();
@@ -110,9 +110,9 @@ private:
 
     // Of those that are hit:
     bool is_prepared_ = false;
-    double twice_area_ = 0;                 ///< seen from above; above 0 where it looks up
+    double twice_area_ = 0;  ///< seen from above; above 0 where it looks up
     double slope_x_ = 0, slope_y_ = 0, low_ = 0, high_ = 0;
-    SurfaceHit within_;                     ///< of a line that goes well through it, but for the height
+    SurfaceHit within_;  ///< of a line that goes well through it, but for the height
 };
 
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y);

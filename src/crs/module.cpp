@@ -22,8 +22,9 @@ Context open_context()
     proj_log_level(context.get(), PJ_LOG_NONE);
     proj_context_set_enable_network(context.get(), 0);
     if (proj_context_get_database_path(context.get()) == nullptr)  // so of one that another version wrote
-        throw std::runtime_error("coordinate systems cannot be looked up: PROJ " + std::string(proj_info().version) +
-                                 " finds no proj.db that fits it (package proj-data; is PROJ_LIB or PROJ_DATA set to another folder?)");
+        throw std::runtime_error(
+            "coordinate systems cannot be looked up: PROJ " + std::string(proj_info().version) +
+            " finds no proj.db that fits it (package proj-data; is PROJ_LIB or PROJ_DATA set to another folder?)");
     return context;
 }
 
@@ -33,7 +34,9 @@ std::optional<double> axis_unit(PJ_CONTEXT* context, const PJ* axes, int index)
     const char* direction = nullptr;
     double factor = 0;
     if (index >= proj_cs_get_axis_count(context, axes)) return std::nullopt;
-    if (proj_cs_get_axis_info(context, axes, index, nullptr, nullptr, &direction, &factor, nullptr, nullptr, nullptr) != 1) return std::nullopt;
+    if (proj_cs_get_axis_info(context, axes, index, nullptr, nullptr, &direction, &factor, nullptr, nullptr, nullptr) !=
+        1)
+        return std::nullopt;
     if (!(factor > 0) || direction == nullptr) return std::nullopt;
     return std::string(direction) == "down" ? -factor : factor;
 }
@@ -94,7 +97,8 @@ std::optional<CoordinateSystem> crs_module::find_system(const std::string& defin
     const std::string epsg = "EPSG:";
     const Context context = open_context();
     const Object system(definition.starts_with(epsg)
-                            ? proj_create_from_database(context.get(), "EPSG", definition.c_str() + epsg.size(), PJ_CATEGORY_CRS, 0, nullptr)
+                            ? proj_create_from_database(context.get(), "EPSG", definition.c_str() + epsg.size(),
+                                                        PJ_CATEGORY_CRS, 0, nullptr)
                             : proj_create_from_wkt(context.get(), definition.c_str(), nullptr, nullptr, nullptr));
     if (!system) return std::nullopt;
     std::optional<CoordinateSystem> found = describe(context.get(), system.get());

@@ -49,8 +49,14 @@ std::string carla_objects_json(std::span<const RobotStart> robots, const std::st
     for (const RobotStart& robot : robots) {
         const Vec3& p = robot.position;
         const Rpy& rpy = robot.rpy;
-        const Json point = {{"x", p.x()}, {"y", p.y()}, {"z", p.z()}, {"roll", rpy.roll * degrees}, {"pitch", rpy.pitch * degrees}, {"yaw", rpy.yaw * degrees}};
-        out["objects"].push_back({{"type", blueprint}, {"id", robot.name}, {"spawn_point", point}, {"sensors", Json::array()}});
+        const Json point = {{"x", p.x()},
+                            {"y", p.y()},
+                            {"z", p.z()},
+                            {"roll", rpy.roll * degrees},
+                            {"pitch", rpy.pitch * degrees},
+                            {"yaw", rpy.yaw * degrees}};
+        out["objects"].push_back(
+            {{"type", blueprint}, {"id", robot.name}, {"spawn_point", point}, {"sensors", Json::array()}});
     }
     return dumped(out);
 }

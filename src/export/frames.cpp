@@ -22,7 +22,8 @@ Mat3 axes(const Vec3& x, const Vec3& y, const Vec3& z)
 std::array<FrameRule, 6> make_rules()
 {
     const Vec3 forward = Vec3::UnitX(), left = Vec3::UnitY(), up = Vec3::UnitZ();
-    const Mat3 same = Mat3::Identity(), unreal = axes(forward, -left, up), unity = axes(-left, up, forward), gltf = axes(forward, up, -left);
+    const Mat3 same = Mat3::Identity(), unreal = axes(forward, -left, up), unity = axes(-left, up, forward),
+               gltf = axes(forward, up, -left);
     // A glTF of Unity is (-x, y, z) of it, and what is baked as y up is (x, -z, y) of that: (-x, -z, y) of Unity.
     const Mat3 unity_gltf = axes(-forward, up, -left);
     return {{{Frame::Ros, same, same, 1},
@@ -61,7 +62,8 @@ Eigen::Quaterniond quaternion_from(const Rpy& rpy)
     const double cr = std::cos(rpy.roll / 2), sr = std::sin(rpy.roll / 2);
     const double cp = std::cos(rpy.pitch / 2), sp = std::sin(rpy.pitch / 2);
     const double cy = std::cos(rpy.yaw / 2), sy = std::sin(rpy.yaw / 2);
-    return unsigned_zeros({cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy});
+    return unsigned_zeros({cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
+                           cr * cp * sy - sr * sp * cy});
 }
 
 const FrameRule& rule_of(Frame frame)
@@ -105,8 +107,14 @@ Mat3 rotation_out_of(Frame frame, const Mat3& rotation)
     return rule.world_axes.transpose() * rotation * rule.body_axes;
 }
 
-Rotator rotator_from(const Rpy& rpy) { return {rpy.roll * degrees + 0.0, 0 - rpy.pitch * degrees, 0 - rpy.yaw * degrees}; }
+Rotator rotator_from(const Rpy& rpy)
+{
+    return {rpy.roll * degrees + 0.0, 0 - rpy.pitch * degrees, 0 - rpy.yaw * degrees};
+}
 
-Rpy rpy_from(const Rotator& rotator) { return {rotator.roll / degrees, -rotator.pitch / degrees, -rotator.yaw / degrees}; }
+Rpy rpy_from(const Rotator& rotator)
+{
+    return {rotator.roll / degrees, -rotator.pitch / degrees, -rotator.yaw / degrees};
+}
 
 }  // namespace spawnfield

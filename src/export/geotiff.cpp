@@ -32,7 +32,8 @@ std::vector<Band> bands_of(int layers, bool has_verdicts)
 {
     std::vector<Band> bands{{"elevation", "m"}};
     for (int layer = 1; layer < layers; ++layer) bands.push_back({"elevation_" + std::to_string(layer), "m"});
-    bands.insert(bands.end(), {{"layers", ""}, {"clearance", "m"}, {"slope", "degrees"}, {"water", "m"}, {"obstacle", "m"}});
+    bands.insert(bands.end(),
+                 {{"layers", ""}, {"clearance", "m"}, {"slope", "degrees"}, {"water", "m"}, {"obstacle", "m"}});
     if (has_verdicts) bands.push_back({"verdict", ""});
     return bands;
 }
@@ -56,9 +57,11 @@ struct Tiles {
         for (int row = row0; row < row1; row += part)
             for (int col = col0; col < col1; col += part) {
                 const int part_rows = std::min(part, row1 - row), part_cols = std::min(part, col1 - col);
-                const Columns centres(geometry, {frame.x0, frame.y0, frame.cell, col, frame.rows - row - part_rows, part_cols, part_rows, 0.5});
+                const Columns centres(geometry, {frame.x0, frame.y0, frame.cell, col, frame.rows - row - part_rows,
+                                                 part_cols, part_rows, 0.5});
                 for (int j = 0; j < part_rows; ++j)
-                    for (int i = 0; i < part_cols; ++i) visit(row + part_rows - 1 - j - top, col + i - left, centres.at(i, j));
+                    for (int i = 0; i < part_cols; ++i)
+                        visit(row + part_rows - 1 - j - top, col + i - left, centres.at(i, j));
             }
     }
 };
@@ -71,8 +74,9 @@ int most_layers(const Map& map, const GridFrame& frame, const GeoTiffOptions& op
     const Tiles tiles(frame);
     std::vector<int> most(std::size_t(tiles.rows) * std::size_t(tiles.cols), 0);
     parallel_for(most.size(), options.threads, {}, [&](std::size_t t) {
-        tiles.visit_cells(map.geometry, t, 0,
-                          [&](int, int, const ColumnView& column) { most[t] = std::max(most[t], int(heights_within(column.layers, z).size())); });
+        tiles.visit_cells(map.geometry, t, 0, [&](int, int, const ColumnView& column) {
+            most[t] = std::max(most[t], int(heights_within(column.layers, z).size()));
+        });
     });
     return *std::max_element(most.begin(), most.end());
 }
@@ -88,8 +92,10 @@ float clearance(const ColumnView& column, double height)
 
 class TileBands {
 public:
-    TileBands(const Map& map, const Tiles& tiles, const VerdictImage* verdicts, const GeoTiffOptions& options, int layer_bands)
-        : map_(map), tiles_(tiles), verdicts_(verdicts), layers_(options.layers), z_(ground_z(map, options)), layer_bands_(std::size_t(layer_bands))
+    TileBands(const Map& map, const Tiles& tiles, const VerdictImage* verdicts, const GeoTiffOptions& options,
+              int layer_bands)
+        : map_(map), tiles_(tiles), verdicts_(verdicts), layers_(options.layers), z_(ground_z(map, options)),
+          layer_bands_(std::size_t(layer_bands))
     {
     }
 
@@ -98,7 +104,8 @@ public:
     {
         constexpr int border = 1;
         HeightImage chosen = HeightImage::Constant(side + 2 * border, side + 2 * border, no_data);
-        std::vector<std::vector<float>> bands(layer_bands_ + 5 + (verdicts_ != nullptr), std::vector<float>(tile_cells, no_data));
+        std::vector<std::vector<float>> bands(layer_bands_ + 5 + (verdicts_ != nullptr),
+                                              std::vector<float>(tile_cells, no_data));
         tiles_.visit_cells(map_.geometry, tile, border, [&](int row, int col, const ColumnView& column) {
             const bool inside = row >= 0 && row < side && col >= 0 && col < side;
             const std::span<const double> heights = heights_within(column.layers, z_);
@@ -121,7 +128,8 @@ private:
         return -1;
     }
 
-    void add_cell(std::vector<std::vector<float>>& bands, std::size_t cell, const ColumnView& column, std::span<const double> heights, int layer) const
+    void add_cell(std::vector<std::vector<float>>& bands, std::size_t cell, const ColumnView& column,
+                  std::span<const double> heights, int layer) const
     {
         for (std::size_t l = 0; l < heights.size(); ++l) bands[l][cell] = float(heights[l]);
         bands[layer_bands_][cell] = float(heights.size());
@@ -160,19 +168,22 @@ private:
 
 // ---------------------------------------------------------------- tags
 
-constexpr std::uint32_t pixel_scale_tag = 33550, tiepoint_tag = 33922, geo_keys_tag = 34735, geo_text_tag = 34737, gdal_metadata_tag = 42112,
-                        gdal_no_data_tag = 42113;
+constexpr std::uint32_t pixel_scale_tag = 33550, tiepoint_tag = 33922, geo_keys_tag = 34735, geo_text_tag = 34737,
+                        gdal_metadata_tag = 42112, gdal_no_data_tag = 42113;
 
 std::string escaped(const std::string& text)
 {
     std::string out;
-    for (const char c : text) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+    for (const char c : text)
+        out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
     return out;
 }
 
 std::string layer_text(const LayerChoice& layers)
 {
-    return layers.kind == LayerChoice::Kind::Top ? "top" : layers.kind == LayerChoice::Kind::Bottom ? "bottom" : std::to_string(layers.index);
+    return layers.kind == LayerChoice::Kind::Top      ? "top"
+           : layers.kind == LayerChoice::Kind::Bottom ? "bottom"
+                                                      : std::to_string(layers.index);
 }
 
 std::string metadata(const Map& map, const std::vector<Band>& bands, const LayerChoice& layers, bool has_verdicts)
@@ -207,19 +218,27 @@ std::optional<std::uint16_t> epsg_code(const std::string& crs)
 void set_geo_keys(TIFF* tiff, const std::optional<std::uint16_t>& code)
 {
     static const std::string citation = "spawnfield scene, m, x right, y up|";
-    const std::uint16_t user_defined = 32767, projected = 1, pixel_is_area = 1, metre = 9001, length = std::uint16_t(citation.size());
+    const std::uint16_t user_defined = 32767, projected = 1, pixel_is_area = 1, metre = 9001,
+                        length = std::uint16_t(citation.size());
     // Version, revision, number of keys; then key, place, count, value.
-    const std::uint16_t survey[] = {1,    1, 0, 3,                     //
-                                    1024, 0, 1, projected,             // GTModelType
-                                    1025, 0, 1, pixel_is_area,         // GTRasterType
-                                    3072, 0, 1, code.value_or(0)};     // ProjectedCSType
-    const std::uint16_t local[] = {1,    1,            0,      4,              //
-                                   1024, 0,            1,      user_defined,   // GTModelType
-                                   1025, 0,            1,      pixel_is_area,  // GTRasterType
-                                   1026, geo_text_tag, length, 0,              // GTCitation
-                                   3076, 0,            1,      metre};         // ProjLinearUnits
-    if (code) TIFFSetField(tiff, geo_keys_tag, int(std::size(survey)), survey);
-    else TIFFSetField(tiff, geo_keys_tag, int(std::size(local)), local);
+    const std::uint16_t survey[] = {1,    1, 0, 3,                  //
+                                    1024, 0, 1, projected,          // GTModelType
+                                    1025, 0, 1, pixel_is_area,      // GTRasterType
+                                    3072, 0, 1, code.value_or(0)};  // ProjectedCSType
+    const std::uint16_t local[] = {1,      1,
+                                   0,      4,  //
+                                   1024,   0,
+                                   1,      user_defined,  // GTModelType
+                                   1025,   0,
+                                   1,      pixel_is_area,  // GTRasterType
+                                   1026,   geo_text_tag,
+                                   length, 0,  // GTCitation
+                                   3076,   0,
+                                   1,      metre};  // ProjLinearUnits
+    if (code)
+        TIFFSetField(tiff, geo_keys_tag, int(std::size(survey)), survey);
+    else
+        TIFFSetField(tiff, geo_keys_tag, int(std::size(local)), local);
     if (!code) TIFFSetField(tiff, geo_text_tag, citation.c_str());
 }
 
@@ -228,7 +247,8 @@ void set_geo_tags(TIFF* tiff, const GridFrame& frame, const std::optional<GeoOri
     const GeoOrigin origin = survey.value_or(GeoOrigin{});
     const double scale[] = {frame.cell / origin.unit, frame.cell / origin.unit, 0};
     const double top = frame.y0 + frame.rows * frame.cell;
-    const double tiepoint[] = {0, 0, 0, origin.x + frame.x0 / origin.unit, origin.y + top / origin.unit, 0};  // the upper left corner
+    const double tiepoint[] = {0, 0, 0, origin.x + frame.x0 / origin.unit, origin.y + top / origin.unit,
+                               0};  // the upper left corner
     TIFFSetField(tiff, pixel_scale_tag, int(std::size(scale)), scale);
     TIFFSetField(tiff, tiepoint_tag, int(std::size(tiepoint)), tiepoint);
     set_geo_keys(tiff, epsg_code(origin.crs));
@@ -259,7 +279,8 @@ void set_tags(TIFF* tiff, const GridFrame& frame, std::size_t bands)
 }
 
 /// Row of tiles after row of tiles. Returns false if one cannot be written.
-bool write_tiles(TIFF* tiff, const TileBands& source, const Tiles& tiles, std::size_t bands, const GeoTiffOptions& options)
+bool write_tiles(TIFF* tiff, const TileBands& source, const Tiles& tiles, std::size_t bands,
+                 const GeoTiffOptions& options)
 {
     const std::size_t count = std::size_t(tiles.rows) * std::size_t(tiles.cols);
     for (int row = 0; row < tiles.rows; ++row) {
@@ -267,12 +288,14 @@ bool write_tiles(TIFF* tiff, const TileBands& source, const Tiles& tiles, std::s
         Progress progress;
         if (options.progress) progress = [&](double share) { options.progress((row + share) / tiles.rows); };
         const std::size_t first = std::size_t(row) * streams.size();
-        parallel_for(streams.size(), options.threads, progress, [&](std::size_t col) { streams[col] = source.streams(first + col); });
+        parallel_for(streams.size(), options.threads, progress,
+                     [&](std::size_t col) { streams[col] = source.streams(first + col); });
         for (std::size_t band = 0; band < bands; ++band)
             for (std::size_t col = 0; col < streams.size(); ++col) {
                 std::string& bytes = streams[col][band];
                 const auto number = std::uint32_t(band * count + first + col);
-                if (TIFFWriteRawTile(tiff, number, bytes.data(), tmsize_t(bytes.size())) != tmsize_t(bytes.size())) return false;
+                if (TIFFWriteRawTile(tiff, number, bytes.data(), tmsize_t(bytes.size())) != tmsize_t(bytes.size()))
+                    return false;
             }
     }
     return true;
@@ -290,15 +313,19 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
     const int layers = std::max(1, most_layers(map, frame, options));
     const std::vector<Band> bands = bands_of(layers, verdicts != nullptr);
     const Tiles tiles(frame);
-    const double most_bytes = double(tiles.rows) * tiles.cols * double(bands.size()) * (sizeof(float) * tile_cells + 1000);
+    const double most_bytes = double(tiles.rows) * tiles.cols * double(bands.size()) *
+                              (sizeof(float) * tile_cells + 1000);
     OutputFile out(file);
     Tiff tiff = open_tiff(out.path(), most_bytes < 4e9 ? "w" : "w8");
-    const auto failed = [&] { return OutputError(file.string(), "cannot be written; is there space, and is it a file?"); };
+    const auto failed = [&] {
+        return OutputError(file.string(), "cannot be written; is there space, and is it a file?");
+    };
     if (!tiff) throw failed();
     set_tags(tiff.get(), frame, bands.size());
     set_geo_tags(tiff.get(), frame, survey_of(map, options));
     TIFFSetField(tiff.get(), gdal_metadata_tag, metadata(map, bands, options.layers, verdicts != nullptr).c_str());
-    if (!write_tiles(tiff.get(), TileBands(map, tiles, verdicts, options, layers), tiles, bands.size(), options) || TIFFFlush(tiff.get()) != 1)
+    if (!write_tiles(tiff.get(), TileBands(map, tiles, verdicts, options, layers), tiles, bands.size(), options) ||
+        TIFFFlush(tiff.get()) != 1)
         throw failed();
     tiff.reset();
     out.commit();

@@ -167,16 +167,27 @@ public:
                 low[axis] = std::min(low[axis], point[axis]);
                 high[axis] = std::max(high[axis], point[axis]);
             }
-        const std::size_t position = accessors_.add({{"bufferView", 0}, {"byteOffset", points_.size()}, {"componentType", 5126},
-                                                     {"count", surface.points().size()}, {"type", "VEC3"}, {"min", low}, {"max", high}});
-        const std::size_t index = accessors_.add({{"bufferView", 1}, {"byteOffset", indices_.size()}, {"componentType", 5125},
-                                                  {"count", surface.indices().size()}, {"type", "SCALAR"}});
+        const std::size_t position = accessors_.add({{"bufferView", 0},
+                                                     {"byteOffset", points_.size()},
+                                                     {"componentType", 5126},
+                                                     {"count", surface.points().size()},
+                                                     {"type", "VEC3"},
+                                                     {"min", low},
+                                                     {"max", high}});
+        const std::size_t index = accessors_.add({{"bufferView", 1},
+                                                  {"byteOffset", indices_.size()},
+                                                  {"componentType", 5125},
+                                                  {"count", surface.indices().size()},
+                                                  {"type", "SCALAR"}});
         append(points_, surface.points());
         append(indices_, surface.indices());
         return {{"attributes", {{"POSITION", position}}}, {"indices", index}, {"material", material}};
     }
 
-    std::size_t mesh(const std::string& name, const Json& primitives) { return meshes_.add({{"name", name}, {"primitives", primitives}}); }
+    std::size_t mesh(const std::string& name, const Json& primitives)
+    {
+        return meshes_.add({{"name", name}, {"primitives", primitives}});
+    }
 
     void write(const Map& map, std::size_t root, const std::function<void(std::string_view)>& sink)
     {
@@ -185,8 +196,9 @@ public:
         const std::uint64_t data = points_.size() + indices_.size();  // multiples of 4 both
         const std::uint64_t total = 12 + 8 + json.size() + (data > 0 ? 8 + data : 0);
         if (total > 0xffffffff)
-            throw OutputError(map.name + " as GLB", "would have " + std::to_string(total) +
-                                                        " bytes, the format holds at most 4294967295; leave parts out of the scene");
+            throw OutputError(map.name + " as GLB",
+                              "would have " + std::to_string(total) +
+                                  " bytes, the format holds at most 4294967295; leave parts out of the scene");
         const auto word = [](std::uint64_t value) {
             const auto typed = std::uint32_t(value);
             return std::string(reinterpret_cast<const char*>(&typed), sizeof typed);
@@ -209,17 +221,23 @@ private:
 
     std::string head(const Map& map, std::size_t root)
     {
-        Json json{{"asset", {{"version", "2.0"}, {"generator", "spawnfield " + version()}, {"extras", {{"map", map.name}, {"map_hash", map.hash}}}}},
+        Json json{{"asset",
+                   {{"version", "2.0"},
+                    {"generator", "spawnfield " + version()},
+                    {"extras", {{"map", map.name}, {"map_hash", map.hash}}}}},
                   {"scene", 0},
                   {"scenes", {{{"nodes", {root}}}}}};
         std::string text = text_of(json);
         text.pop_back();
         text += ",\"nodes\":" + nodes.take();
         if (meshes_.size() > 0) {
-            json = {{{"buffer", 0}, {"byteLength", points_.size()}, {"byteStride", sizeof(Point)}, {"target", 34962}},
-                    {{"buffer", 0}, {"byteOffset", points_.size()}, {"byteLength", indices_.size()}, {"target", 34963}}};
-            text += ",\"materials\":" + materials_.take() + ",\"meshes\":" + meshes_.take() + ",\"accessors\":" + accessors_.take();
-            text += ",\"bufferViews\":" + text_of(json) + ",\"buffers\":[{\"byteLength\":" + std::to_string(points_.size() + indices_.size()) + "}]";
+            json = {
+                {{"buffer", 0}, {"byteLength", points_.size()}, {"byteStride", sizeof(Point)}, {"target", 34962}},
+                {{"buffer", 0}, {"byteOffset", points_.size()}, {"byteLength", indices_.size()}, {"target", 34963}}};
+            text += ",\"materials\":" + materials_.take() + ",\"meshes\":" + meshes_.take() +
+                    ",\"accessors\":" + accessors_.take();
+            text += ",\"bufferViews\":" + text_of(json) +
+                    ",\"buffers\":[{\"byteLength\":" + std::to_string(points_.size() + indices_.size()) + "}]";
         }
         return text + "}";
     }
@@ -264,8 +282,8 @@ std::vector<Range> ranges_by_part(const std::vector<Element>& elements, std::siz
 }
 
 /// A node of the part's name; nothing if all of it is ignored.
-std::optional<std::size_t> add_part(GlbFile& file, const Elements& elements, const Range& triangles, const Range& primitives, const std::string& name,
-                                    const Vec3& origin, int sides)
+std::optional<std::size_t> add_part(GlbFile& file, const Elements& elements, const Range& triangles,
+                                    const Range& primitives, const std::string& name, const Vec3& origin, int sides)
 {
     std::array<Surface, 3> surfaces;  // by label
     for (std::size_t e = triangles.from; e < triangles.to; ++e) {
@@ -294,7 +312,9 @@ Surface marker_surface(const Robot* robot)
 {
     Surface out;
     const Vec3 origin = Vec3::Zero();
-    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) { out.add(rounded(a, origin), rounded(b, origin), rounded(c, origin)); };
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+        out.add(rounded(a, origin), rounded(b, origin), rounded(c, origin));
+    };
     if (robot == nullptr) {
         tessellate_cone(origin, Vec3::UnitX(), 0.25, 16, add);
         return out;
@@ -336,7 +356,8 @@ private:
         const std::size_t verdict = std::size_t(markers_.verdicts.empty() ? Verdict::Valid : markers_.verdicts[pose]);
         std::optional<std::size_t>& mesh = meshes_[verdict];
         if (mesh) return *mesh;
-        const std::string name = markers_.verdicts.empty() ? "spawn" : std::string("spawn ") + to_string(Verdict(verdict));
+        const std::string name = markers_.verdicts.empty() ? "spawn"
+                                                           : std::string("spawn ") + to_string(Verdict(verdict));
         primitive_["material"] = file_.material(name, verdict_palette[verdict]);
         mesh = file_.mesh(name, Json::array({primitive_}));
         return *mesh;
@@ -353,7 +374,8 @@ void check(const GlbMarkers& markers)
     const std::size_t poses = markers.poses.size();
     const auto fits = [&](const char* name, std::size_t size) {
         if (size != 0 && size != poses)
-            throw ArgumentError("write_glb", name, double(size), "one for each of the " + std::to_string(poses) + " poses, or none");
+            throw ArgumentError("write_glb", name, double(size),
+                                "one for each of the " + std::to_string(poses) + " poses, or none");
     };
     fits("markers.verdicts", markers.verdicts.size());
     fits("markers.names", markers.names.size());
@@ -361,7 +383,8 @@ void check(const GlbMarkers& markers)
 
 }  // namespace
 
-void write_glb(const Map& map, const GlbMarkers& markers, const std::function<void(std::string_view)>& sink, int threads, const Progress& progress)
+void write_glb(const Map& map, const GlbMarkers& markers, const std::function<void(std::string_view)>& sink,
+               int threads, const Progress& progress)
 {
     check(markers);
     const Bounds& bounds = map.geometry.bounds();
@@ -375,7 +398,8 @@ void write_glb(const Map& map, const GlbMarkers& markers, const std::function<vo
         const std::vector<Range> triangles = ranges_by_part(elements.triangles, parts.size());
         const std::vector<Range> primitives = ranges_by_part(elements.primitives, parts.size());
         for (std::size_t part = 0; part < parts.size(); ++part) {
-            const auto node = add_part(file, elements, triangles[part], primitives[part], parts[part].name, origin, sides);
+            const auto node = add_part(file, elements, triangles[part], primitives[part], parts[part].name, origin,
+                                       sides);
             if (node) children.push_back(*node);
             if (progress) progress(double(part + 1) / double(parts.size()));
         }

@@ -28,7 +28,8 @@ std::vector<std::vector<Vec3>> tiles_of(std::span<const Vec3> points, const Tile
     std::vector<std::vector<Vec3>> tiles(std::size_t(grid.rows) * std::size_t(grid.cols));
     const Bounds& b = grid.bounds;
     for (const Vec3& p : points) {
-        const int row = part_of(p.x(), b.min.x(), b.max.x(), grid.rows), col = part_of(p.y(), b.min.y(), b.max.y(), grid.cols);
+        const int row = part_of(p.x(), b.min.x(), b.max.x(), grid.rows),
+                  col = part_of(p.y(), b.min.y(), b.max.y(), grid.cols);
         tiles[std::size_t(row * grid.cols + col)].push_back(p);
     }
     return tiles;
@@ -48,8 +49,10 @@ std::string root_poses_npy(std::span<const RobotStart> robots, QuaternionOrder o
     for (const RobotStart& robot : robots) {
         const Eigen::Quaterniond q = quaternion_in(Frame::Ros, robot.rpy);
         values.insert(values.end(), robot.position.data(), robot.position.data() + 3);
-        if (order == QuaternionOrder::Wxyz) values.insert(values.end(), {q.w(), q.x(), q.y(), q.z()});
-        else values.insert(values.end(), {q.x(), q.y(), q.z(), q.w()});
+        if (order == QuaternionOrder::Wxyz)
+            values.insert(values.end(), {q.w(), q.x(), q.y(), q.z()});
+        else
+            values.insert(values.end(), {q.x(), q.y(), q.z(), q.w()});
     }
     return npy({robots.size(), 7}, values);
 }
@@ -64,8 +67,11 @@ TerrainPatches terrain_patches(std::span<const Vec3> points, const TileGrid& gri
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         const std::vector<Vec3>& tile = tiles[i];
         if (tile.empty() && !points.empty())
-            throw ArgumentError("terrain_patches", "tile " + std::to_string(i / std::size_t(grid.cols)) + "," + std::to_string(i % std::size_t(grid.cols)) +
-                                                       " (row, column, from 0) has no spawn, needs one in each: more spawns, or fewer tiles");
+            throw ArgumentError(
+                "terrain_patches",
+                "tile " + std::to_string(i / std::size_t(grid.cols)) + "," +
+                    std::to_string(i % std::size_t(grid.cols)) +
+                    " (row, column, from 0) has no spawn, needs one in each: more spawns, or fewer tiles");
         for (std::size_t n = 0; n < out.patches_per_tile; ++n) append(patches, tile[n % tile.size()]);
         append(origins, tile.empty() ? Vec3(Vec3::Constant(std::nan(""))) : tile.front());
     }

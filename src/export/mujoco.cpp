@@ -14,7 +14,8 @@ void append(std::string& text, double value)
 void append_qpos(std::string& text, const RobotStart& robot, const std::vector<double>& joints)
 {
     const Eigen::Quaterniond q = quaternion_in(Frame::Ros, robot.rpy);
-    for (const double value : {robot.position.x(), robot.position.y(), robot.position.z(), q.w(), q.x(), q.y(), q.z()}) append(text, value);
+    for (const double value : {robot.position.x(), robot.position.y(), robot.position.z(), q.w(), q.x(), q.y(), q.z()})
+        append(text, value);
     for (const double joint : joints) append(text, joint);
 }
 
@@ -27,7 +28,8 @@ std::string key(const std::string& name, const std::string& qpos)
 
 std::string mujoco_keyframes(std::span<const RobotStart> robots, const KeyframeOptions& options)
 {
-    std::string text = "<!-- " + made_by(robots.size()) + ": x y z (m), quaternion w x y z" + (options.joints.empty() ? "" : ", joints") +
+    std::string text = "<!-- " + made_by(robots.size()) + ": x y z (m), quaternion w x y z" +
+                       (options.joints.empty() ? "" : ", joints") +
                        "; right-handed, x forward, y left, z up -->\n<mujoco>\n  <keyframe>\n";
     std::string all;
     for (const RobotStart& robot : robots) {

@@ -39,11 +39,13 @@ Pattern read_pattern(const std::string& option, const std::string& text)
     }
     const bool is_pair = open != std::string::npos && close != std::string::npos && open < close;
     if (!is_pair || !read_place(text.substr(open + 1, close - open - 1), pattern.digits))
-        fail(option, text, "has braces that are no {i} or {i:03} (the robot's number, with zeros up to so many digits, 1 to 9)");
+        fail(option, text,
+             "has braces that are no {i} or {i:03} (the robot's number, with zeros up to so many digits, 1 to 9)");
     pattern.before = text.substr(0, open);
     pattern.after = text.substr(close + 1);
     pattern.has_number = true;
-    if (pattern.after.find_first_of("{}") != std::string::npos) fail(option, text, "has braces twice, needs one {i} or {i:03}");
+    if (pattern.after.find_first_of("{}") != std::string::npos)
+        fail(option, text, "has braces twice, needs one {i} or {i:03}");
     return pattern;
 }
 
@@ -71,14 +73,16 @@ std::string ros_fault(const std::string& name, int ros)
 std::vector<std::string> numbered_names(const std::string& option, const std::string& pattern, std::size_t count)
 {
     const Pattern parts = read_pattern(option, pattern);
-    if (!parts.has_number && count > 1) fail(option, pattern, "gives all " + std::to_string(count) + " robots one name, needs {i} or {i:03}");
+    if (!parts.has_number && count > 1)
+        fail(option, pattern, "gives all " + std::to_string(count) + " robots one name, needs {i} or {i:03}");
     std::vector<std::string> names;
     for (std::size_t i = 1; i <= count; ++i) {
         std::string number = parts.has_number ? std::to_string(i) : "";
         if (number.size() < parts.digits) number.insert(0, parts.digits - number.size(), '0');
         names.push_back(parts.before + number + parts.after);
     }
-    check_names(option, std::span(names).first(std::min<std::size_t>(names.size(), 1)));  // the others differ by their numbers
+    check_names(option,
+                std::span(names).first(std::min<std::size_t>(names.size(), 1)));  // the others differ by their numbers
     return names;
 }
 
@@ -97,7 +101,9 @@ void check_ros_names(const std::string& option, std::span<const std::string> nam
 {
     for (const std::string& name : names)
         if (const std::string fault = ros_fault(name, ros); !fault.empty())
-            fail(option, name, fault + ", which no name in ROS " + std::to_string(ros) + " may; it needs letters, digits, _ and /, a letter first");
+            fail(option, name,
+                 fault + ", which no name in ROS " + std::to_string(ros) +
+                     " may; it needs letters, digits, _ and /, a letter first");
 }
 
 void check_model_names(const std::string& option, std::span<const std::string> names)
@@ -105,8 +111,11 @@ void check_model_names(const std::string& option, std::span<const std::string> n
     for (const std::string& name : names) {
         for (const char c : name)
             if (!is_letter(c) && !is_digit(c) && std::strchr("_-./+", c) == nullptr)
-                fail(option, name, std::string("has \"") + c + "\", which no model's name may; it needs letters, digits and _ - . / +");
-        if (name.starts_with("__") && name.ends_with("__")) fail(option, name, "has __ at both ends, which SDF keeps for itself");
+                fail(option, name,
+                     std::string("has \"") + c +
+                         "\", which no model's name may; it needs letters, digits and _ - . / +");
+        if (name.starts_with("__") && name.ends_with("__"))
+            fail(option, name, "has __ at both ends, which SDF keeps for itself");
     }
 }
 

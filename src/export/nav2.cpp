@@ -44,11 +44,14 @@ std::filesystem::path nav2_image_of(const std::filesystem::path& yaml)
 {
     const std::string extension = yaml.extension().string();
     if (extension != ".yaml" && extension != ".yml")
-        throw ArgumentError("nav2_image_of", "the file's name is \"" + yaml.string() + "\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
+        throw ArgumentError("nav2_image_of",
+                            "the file's name is \"" + yaml.string() +
+                                "\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
     return std::filesystem::path(yaml).replace_extension(".pgm");
 }
 
-void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml, const std::vector<std::string>& comment)
+void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml,
+                    const std::vector<std::string>& comment)
 {
     const std::filesystem::path pgm = nav2_image_of(yaml);
     OutputFile pixels(pgm), text(yaml);

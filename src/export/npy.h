@@ -14,7 +14,8 @@ template <class T>
 std::string npy(std::initializer_list<std::size_t> shape, const std::vector<T>& values)
 {
     static_assert(std::is_same_v<T, double> || std::is_same_v<T, float>);
-    std::string header = std::string("{'descr': '<f") + (sizeof(T) == 8 ? "8" : "4") + "', 'fortran_order': False, 'shape': (";
+    std::string header = std::string("{'descr': '<f") + (sizeof(T) == 8 ? "8" : "4") +
+                         "', 'fortran_order': False, 'shape': (";
     for (const std::size_t length : shape) header += std::to_string(length) + ", ";
     if (shape.size() > 1) header.resize(header.size() - 2);
     header += "), }";

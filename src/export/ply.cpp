@@ -13,7 +13,8 @@ std::string header(std::size_t points, const std::vector<std::string>& comment)
     for (const std::string& line : comment) text += "comment " + one_line(line) + "\n";
     text += "comment verdict: " + verdict_numbers() + "\nelement vertex " + std::to_string(points) + "\n";
     for (const char* const axis : {"x", "y", "z"}) text += std::string("property double ") + axis + "\n";
-    for (const char* const name : {"red", "green", "blue", "verdict"}) text += std::string("property uchar ") + name + "\n";
+    for (const char* const name : {"red", "green", "blue", "verdict"})
+        text += std::string("property uchar ") + name + "\n";
     return text + "end_header\n";
 }
 
@@ -27,13 +28,15 @@ void put(BinaryWriter& out, const RasterPose& pose)
 
 }  // namespace
 
-void write_ply(const RasterResult& raster, const std::vector<std::string>& comment, const std::function<void(std::string_view)>& sink)
+void write_ply(const RasterResult& raster, const std::vector<std::string>& comment,
+               const std::function<void(std::string_view)>& sink)
 {
     constexpr std::size_t points_a_piece = 10000;
     sink(header(raster.poses.size(), comment));
     for (std::size_t first = 0; first < raster.poses.size(); first += points_a_piece) {
         BinaryWriter piece;
-        for (std::size_t p = first; p < std::min(first + points_a_piece, raster.poses.size()); ++p) put(piece, raster.poses[p]);
+        for (std::size_t p = first; p < std::min(first + points_a_piece, raster.poses.size()); ++p)
+            put(piece, raster.poses[p]);
         sink(piece.take());
     }
 }

@@ -15,7 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 using tinyxml2::XMLElement;
 
-void add_text(XMLElement& parent, const char* name, const std::string& text) { parent.InsertNewChildElement(name)->SetText(text.c_str()); }
+void add_text(XMLElement& parent, const char* name, const std::string& text)
+{
+    parent.InsertNewChildElement(name)->SetText(text.c_str());
+}
 
 void add_robot(XMLElement& world, const RobotStart& robot, const std::string& uri)
 {
@@ -43,7 +46,9 @@ std::set<std::string> names_in(const XMLElement& world, const SdfWorldOptions& o
     for (const XMLElement* child = world.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
         const XMLElement* const given = child->FirstChildElement("name");
         const bool is_include = std::string_view(child->Name()) == "include";
-        const std::string name = !is_include ? attribute_of(*child, "name") : given != nullptr ? text_of(*child, "name") : name_of_included(*child, options, paths);
+        const std::string name = !is_include        ? attribute_of(*child, "name")
+                                 : given != nullptr ? text_of(*child, "name")
+                                                    : name_of_included(*child, options, paths);
         if (!name.empty()) names.insert(name);
     }
     return names;
@@ -68,7 +73,8 @@ FoundWorld find_world(XMLElement& sdf, const SdfWorldOptions& options)
     FoundWorld found;
     std::string names;
     int index = 0, count = 0;
-    for (XMLElement* world = sdf.FirstChildElement("world"); world != nullptr; world = world->NextSiblingElement("world"), ++index) {
+    for (XMLElement* world = sdf.FirstChildElement("world"); world != nullptr;
+         world = world->NextSiblingElement("world"), ++index) {
         const std::string name = attribute_of(*world, "name");
         names += (names.empty() ? "\"" : ", \"") + name + "\"";
         if (!options.world_name.empty() && name != options.world_name) continue;
@@ -84,15 +90,18 @@ FoundWorld find_world(XMLElement& sdf, const SdfWorldOptions& options)
 FoundWorld parse_world(tinyxml2::XMLDocument& document, const std::string& text, const SdfWorldOptions& options)
 {
     if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-        throw FileError(options.world_file, "line " + std::to_string(document.ErrorLineNum()) + ": is no valid XML (" + document.ErrorName() + ")");
+        throw FileError(options.world_file, "line " + std::to_string(document.ErrorLineNum()) + ": is no valid XML (" +
+                                                document.ErrorName() + ")");
     XMLElement* const sdf = document.FirstChildElement("sdf");
-    if (sdf == nullptr) throw FileError(options.world_file, "has no <sdf> as its outermost element, needs an SDF world");
+    if (sdf == nullptr)
+        throw FileError(options.world_file, "has no <sdf> as its outermost element, needs an SDF world");
     return find_world(*sdf, options);
 }
 
 bool is_tag(std::string_view text, std::string_view start)
 {
-    return text.starts_with(start) && text.size() > start.size() && std::string_view(" \t\r\n/>").find(text[start.size()]) != std::string_view::npos;
+    return text.starts_with(start) && text.size() > start.size() &&
+           std::string_view(" \t\r\n/>").find(text[start.size()]) != std::string_view::npos;
 }
 
 /// Where the end tag of the file's world of this number begins, in valid XML; npos if it has none (<world/>).
@@ -101,9 +110,12 @@ std::size_t end_of_world(std::string_view text, int index)
     int depth = 0, number = -1;
     for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1)) {
         const std::string_view rest = text.substr(at);
-        if (rest.starts_with("<!--")) at = text.find("-->", at);
-        else if (rest.starts_with("<![CDATA[")) at = text.find("]]>", at);
-        else if (is_tag(rest, "</world") && --depth == 0 && number == index) return at;
+        if (rest.starts_with("<!--"))
+            at = text.find("-->", at);
+        else if (rest.starts_with("<![CDATA["))
+            at = text.find("]]>", at);
+        else if (is_tag(rest, "</world") && --depth == 0 && number == index)
+            return at;
         else if (is_tag(rest, "<world")) {
             if (depth == 0) ++number;
             at = text.find('>', at);
@@ -114,7 +126,8 @@ std::size_t end_of_world(std::string_view text, int index)
     return std::string_view::npos;
 }
 
-/// The file's own text with the robots before the world's end tag, indented as that is; empty if this is no way to do it.
+/// The file's own text with the robots before the world's end tag, indented as that is; empty if this is no way to do
+/// it.
 std::string inserted(std::span<const RobotStart> robots, const SdfWorldOptions& options, int index)
 {
     const std::string& text = options.world_text;
@@ -143,12 +156,15 @@ std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& op
     std::set<std::string> taken = names_in(*found.element, options);
     for (const RobotStart& robot : robots)
         if (!taken.insert(robot.name).second)
-            throw FileError(options.world_file, "line " + std::to_string(found.element->GetLineNum()) + ": <world> has a \"" + robot.name +
+            throw FileError(options.world_file, "line " + std::to_string(found.element->GetLineNum()) +
+                                                    ": <world> has a \"" + robot.name +
                                                     "\" already; give the robots other names");
     for (const RobotStart& robot : robots) add_robot(*found.element, robot, options.uri);
     const std::string text = inserted(robots, options, found.index);
     tinyxml2::XMLDocument again;
-    if (!text.empty() && names_in(*parse_world(again, text, options).element, options) == names_in(*found.element, options)) return text;
+    if (!text.empty() &&
+        names_in(*parse_world(again, text, options).element, options) == names_in(*found.element, options))
+        return text;
     return printed(document);
 }
 

@@ -14,7 +14,8 @@ void tessellate_box(const Shape& box, const VisitTriangle& visit)
         const Vec3 sign(bits & 1 ? 0.5 : -0.5, bits & 2 ? 0.5 : -0.5, bits & 4 ? 0.5 : -0.5);
         return box.pose.rotation * box.size.cwiseProduct(sign) + box.pose.position;
     };
-    static constexpr int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    static constexpr int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                        {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     for (const auto& face : faces) {
         visit(corner(face[0]), corner(face[1]), corner(face[2]));
         visit(corner(face[0]), corner(face[2]), corner(face[3]));
@@ -36,7 +37,8 @@ void turn(const std::vector<OutlinePoint>& outline, const Pose& pose, int sides,
     };
     for (std::size_t ring = 0; ring + 1 < outline.size(); ++ring)
         for (int side = 0; side < sides; ++side) {
-            const Vec3 a = point(ring, side), b = point(ring, side + 1), c = point(ring + 1, side + 1), d = point(ring + 1, side);
+            const Vec3 a = point(ring, side), b = point(ring, side + 1), c = point(ring + 1, side + 1),
+                       d = point(ring + 1, side);
             if (outline[ring].radius > 0) visit(a, b, c);
             if (outline[ring + 1].radius > 0) visit(a, c, d);
         }
@@ -66,7 +68,9 @@ void tessellate(const Shape& shape, int sides, const VisitTriangle& visit)
     case ShapeKind::Box: return tessellate_box(shape, visit);
     case ShapeKind::Sphere: return turn(capsule_outline(radius, 0, sides), shape.pose, sides, visit);
     case ShapeKind::Capsule: return turn(capsule_outline(radius, length, sides), shape.pose, sides, visit);
-    case ShapeKind::Cylinder: return turn({{0, -length / 2}, {radius, -length / 2}, {radius, length / 2}, {0, length / 2}}, shape.pose, sides, visit);
+    case ShapeKind::Cylinder:
+        return turn({{0, -length / 2}, {radius, -length / 2}, {radius, length / 2}, {0, length / 2}}, shape.pose, sides,
+                    visit);
     case ShapeKind::Hull: break;
     }
 }

@@ -8,8 +8,9 @@ namespace spawnfield {
 
 using VisitTriangle = std::function<void(const Vec3&, const Vec3&, const Vec3&)>;
 
-/// Triangles of a closed surface around the shape, counterclockwise from outside; corners that are shared are the same bits. Round
-/// shapes become polygons of `sides` sides, a multiple of 4, whose corners lie on the surface. Not for hulls.
+/// Triangles of a closed surface around the shape, counterclockwise from outside; corners that are shared are the same
+/// bits. Round shapes become polygons of `sides` sides, a multiple of 4, whose corners lie on the surface. Not for
+/// hulls.
 void tessellate(const Shape& shape, int sides, const VisitTriangle& visit);
 
 /// Of a hull its own faces.

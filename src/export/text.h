@@ -7,7 +7,8 @@
 
 namespace spawnfield {
 
-/// The shortest text without an exponent that reads back to the same double. (roslaunch's spawn_model takes -1e-05 for an option.)
+/// The shortest text without an exponent that reads back to the same double. (roslaunch's spawn_model takes -1e-05 for
+/// an option.)
 std::string plain_number(double value);
 
 std::string xml_escaped(std::string_view text);

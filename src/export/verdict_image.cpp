@@ -16,9 +16,12 @@ RasterOptions strip_options(const GridFrame& frame, int first, int last, const R
     out.dims = 2;
     out.step = frame.cell;
     const double beyond = frame.cell / 4;  // no centre is lost to rounding
-    out.bounds = {Vec3(frame.x_of(0), frame.y_of(last), 0), Vec3(frame.x_of(frame.cols - 1) + beyond, frame.y_of(first) + beyond, 0)};
+    out.bounds = {Vec3(frame.x_of(0), frame.y_of(last), 0),
+                  Vec3(frame.x_of(frame.cols - 1) + beyond, frame.y_of(first) + beyond, 0)};
     if (options.progress)
-        out.progress = [=, &frame](double share) { options.progress((first + share * (last - first + 1)) / frame.rows); };
+        out.progress = [=, &frame](double share) {
+            options.progress((first + share * (last - first + 1)) / frame.rows);
+        };
     return out;
 }
 
@@ -27,7 +30,8 @@ void add_strip(VerdictImage& image, int last, const RasterResult& strip)
     for (const RasterPose& pose : strip.poses) {
         const int col = int(std::round((pose.x - strip.grid.x0) / strip.grid.step));
         const int row = last - int(std::round((pose.y - strip.grid.y0) / strip.grid.step));
-        image.verdicts[std::size_t(row) * std::size_t(image.frame.cols) + std::size_t(col)] = std::uint8_t(pose.verdict);
+        image.verdicts[std::size_t(row) * std::size_t(image.frame.cols) + std::size_t(col)] = std::uint8_t(
+            pose.verdict);
     }
     for (std::size_t verdict = 0; verdict < verdict_count; ++verdict) image.counts[verdict] += strip.counts[verdict];
     image.exact_checks += strip.exact_checks;
@@ -35,7 +39,8 @@ void add_strip(VerdictImage& image, int last, const RasterResult& strip)
 
 }  // namespace
 
-VerdictImage verdict_image(const Map& map, const CollisionChecker& checker, const GridFrame& frame, const RasterOptions& options)
+VerdictImage verdict_image(const Map& map, const CollisionChecker& checker, const GridFrame& frame,
+                           const RasterOptions& options)
 {
     if (options.layers.kind == LayerChoice::Kind::All)
         throw ArgumentError("verdict_image", "layers is all, needs top, bottom or a number: a cell has one verdict");

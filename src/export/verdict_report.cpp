@@ -178,9 +178,11 @@ private:
         std::string text = "row " + std::to_string(index + 1) + ": " + xml_text(report_.table.rows[index]) + "\n";
         text += "position " + listed({p.x(), p.y(), p.z()}) + " m; ";
         text += "roll, pitch, yaw " + listed({rpy.roll, rpy.pitch, rpy.yaw}) + " rad\n";
-        if (judged.ground) text += "ground at " + rounded(judged.ground->height) + " m, " +
-                                   rounded(height_above(report_, index)) + " m below the origin\n";
-        else text += "no ground below the origin\n";
+        if (judged.ground)
+            text += "ground at " + rounded(judged.ground->height) + " m, " + rounded(height_above(report_, index)) +
+                    " m below the origin\n";
+        else
+            text += "no ground below the origin\n";
         if (judged.hit) text += "hit " + xml_text(hit_name(report_, *judged.hit)) + "\n";
         return text;
     }

@@ -12,7 +12,7 @@ namespace spawnfield {
 /// Heights of a tile: base + value * quantum, m. Value 0: nothing.
 struct BoundsHead {
     double base, quantum;
-    double slack;                 ///< some solid point of the cell is within this of each upper end, m; infinite: not known
+    double slack;  ///< some solid point of the cell is within this of each upper end, m; infinite: not known
     std::uint32_t bound_cells, bounds;  ///< cells that have intervals, and how many they have together
     std::uint32_t solid_cells, solids;
 };
@@ -23,10 +23,10 @@ struct QuantizedSpan {
 
 /// Intervals of those cells of a tile that have some.
 struct CellIntervals {
-    const std::uint64_t* marks = nullptr;    ///< a bit for each cell that has some; nullptr: none has
-    const std::uint16_t* ranks = nullptr;    ///< marked cells before each 64 cells
-    const std::uint32_t* starts = nullptr;   ///< in spans, by rank of the cell, and the end
-    const QuantizedSpan* spans = nullptr;    ///< from the bottom up
+    const std::uint64_t* marks = nullptr;   ///< a bit for each cell that has some; nullptr: none has
+    const std::uint16_t* ranks = nullptr;   ///< marked cells before each 64 cells
+    const std::uint32_t* starts = nullptr;  ///< in spans, by rank of the cell, and the end
+    const QuantizedSpan* spans = nullptr;   ///< from the bottom up
 
     bool has(std::uint32_t cell) const { return marks != nullptr && (marks[cell / 64] >> (cell % 64) & 1) != 0; }
     /// Of a cell that has some.
@@ -45,7 +45,8 @@ struct BoundsTile {
 
     const BoundsHead* head = nullptr;
     const std::uint16_t* tops = nullptr;  ///< of all that is solid in the cell, rounded up
-    CellIntervals bounds;  ///< that hold all that is solid in the cell, where there is a gap; elsewhere all below the top may be
+    CellIntervals
+        bounds;  ///< that hold all that is solid in the cell, where there is a gap; elsewhere all below the top may be
     CellIntervals solids;  ///< what is solid for certain at the cell's centre, rounded inwards
 
     BoundsTile() = default;
@@ -58,18 +59,18 @@ struct BoundsTile {
 std::uint64_t bounds_tile_size(const BoundsHead& head);
 
 struct BoundsLevel {
-    double cell = 0;                          ///< m
-    std::uint32_t cols = 0, rows = 0;         ///< cells
+    double cell = 0;                   ///< m
+    std::uint32_t cols = 0, rows = 0;  ///< cells
     std::uint32_t tile_cols = 0, tile_rows = 0;
-    std::vector<TileEntry> tiles;             ///< row after row; row 0 is the smallest y; a size of 0: nothing solid
+    std::vector<TileEntry> tiles;  ///< row after row; row 0 is the smallest y; a size of 0: nothing solid
 };
 
 struct SolidBounds::Impl {
-    double x0 = 0, y0 = 0;   ///< lower left corner of all levels
-    bool is_whole = false;   ///< nothing solid lies beyond the raster
+    double x0 = 0, y0 = 0;            ///< lower left corner of all levels
+    bool is_whole = false;            ///< nothing solid lies beyond the raster
     std::vector<BoundsLevel> levels;  ///< finest first
     Bytes bytes;
-    std::string file;        ///< that they lie in, for messages; empty: in memory, and trusted
+    std::string file;  ///< that they lie in, for messages; empty: in memory, and trusted
 
     void make_states();
 

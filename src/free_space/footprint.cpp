@@ -59,7 +59,10 @@ PartCorners corners_of(const RobotPart& part, const Mat3& rotation)
         break;
     case ShapeKind::Box:
         for (int corner = 0; corner < 8; ++corner)
-            out.around.push_back(pose.rotation * (0.5 * Vec3(corner & 1 ? size[0] : -size[0], corner & 2 ? size[1] : -size[1], corner & 4 ? size[2] : -size[2])) + pose.position);
+            out.around.push_back(pose.rotation *
+                                     (0.5 * Vec3(corner & 1 ? size[0] : -size[0], corner & 2 ? size[1] : -size[1],
+                                                 corner & 4 ? size[2] : -size[2])) +
+                                 pose.position);
         out.within = out.around;
         break;
     case ShapeKind::Sphere: add_ball(pose.position, size[0], out); break;
@@ -78,7 +81,8 @@ Polygon2 widened(const Polygon2& polygon, double reach)
 {
     Polygon2 corners;
     for (const Vec2& p : polygon)
-        for (int corner = 0; corner < 4; ++corner) corners.push_back(p + reach * Vec2(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1));
+        for (int corner = 0; corner < 4; ++corner)
+            corners.push_back(p + reach * Vec2(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1));
     return convex_hull(std::move(corners));
 }
 
@@ -120,7 +124,8 @@ Polygon2 slice(const PartCorners& corners, double z)
 Prism prism_within(const PartCorners& corners)
 {
     const std::vector<Vec3>& points = corners.within;
-    const auto [low, high] = std::minmax_element(points.begin(), points.end(), [](const Vec3& l, const Vec3& r) { return l.z() < r.z(); });
+    const auto [low, high] = std::minmax_element(points.begin(), points.end(),
+                                                 [](const Vec3& l, const Vec3& r) { return l.z() < r.z(); });
     const double height = high->z() - low->z();
     Prism best;
     double best_volume = 0;
@@ -149,18 +154,21 @@ Prism prism_within(const PartCorners& corners)
     return best;
 }
 
-constexpr double reach = CollisionChecker::touch_margin * 2 + FreeSpace::margin;  // hulls grow by up to sqrt(3) times as much
+constexpr double reach = CollisionChecker::touch_margin * 2 +
+                         FreeSpace::margin;  // hulls grow by up to sqrt(3) times as much
 
 }  // namespace
 
 Polygon2 convex_hull(Polygon2 points)
 {
-    std::sort(points.begin(), points.end(), [](const Vec2& l, const Vec2& r) { return l.x() != r.x() ? l.x() < r.x() : l.y() < r.y(); });
+    std::sort(points.begin(), points.end(),
+              [](const Vec2& l, const Vec2& r) { return l.x() != r.x() ? l.x() < r.x() : l.y() < r.y(); });
     points.erase(std::unique(points.begin(), points.end()), points.end());
     if (points.size() < 3) return points;
     Polygon2 hull;
     const auto add = [&](const Vec2& p, std::size_t kept) {
-        while (hull.size() >= kept + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) hull.pop_back();
+        while (hull.size() >= kept + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
+            hull.pop_back();
         hull.push_back(p);
     };
     for (const Vec2& p : points) add(p, 0);
@@ -215,13 +223,16 @@ std::vector<Footprint> yaw_free_footprints(const Robot& robot)
         for (const Vec2& p : footprint.outer.polygon) farthest = std::max(farthest, p.norm());
         footprint.outer.polygon = disc((farthest + reach) / std::cos(std::numbers::pi / disc_sides));
         Polygon2& inner = footprint.inner.polygon;
-        double nearest = std::numeric_limits<double>::infinity();  // of its rim to the origin; below 0: the origin is outside
+        double nearest =
+            std::numeric_limits<double>::infinity();  // of its rim to the origin; below 0: the origin is outside
         for (std::size_t k = 0; k < inner.size(); ++k) {
             const Vec2 edge = inner[(k + 1) % inner.size()] - inner[k];
             if (edge.norm() > 0) nearest = std::min(nearest, cross(edge, -inner[k]) / edge.norm());
         }
-        if (inner.empty() || !(nearest > 0)) inner.clear();
-        else inner = disc(nearest);
+        if (inner.empty() || !(nearest > 0))
+            inner.clear();
+        else
+            inner = disc(nearest);
     }
     return out;
 }

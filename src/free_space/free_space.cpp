@@ -28,13 +28,15 @@ template <class Test>
 const QuantizedSpan* lowest_where(std::span<const QuantizedSpan> spans, const Test& test)
 {
     constexpr std::size_t few = 8;
-    const auto lowest = spans.size() <= few ? std::find_if(spans.begin(), spans.end(), test)
-                                            : std::partition_point(spans.begin(), spans.end(), [&](const QuantizedSpan& span) { return !test(span); });
+    const auto lowest = spans.size() <= few
+                            ? std::find_if(spans.begin(), spans.end(), test)
+                            : std::partition_point(spans.begin(), spans.end(),
+                                                   [&](const QuantizedSpan& span) { return !test(span); });
     return lowest == spans.end() ? nullptr : &*lowest;
 }
 
-/// Cells along a part's width in each pass: a look at what is near, one that follows the part's shape, one that is as fine
-/// as pays beside an exact check.
+/// Cells along a part's width in each pass: a look at what is near, one that follows the part's shape, one that is as
+/// fine as pays beside an exact check.
 constexpr std::array cells_along{1.4, 6.0, 24.0};
 
 }  // namespace
@@ -135,12 +137,14 @@ void Mask::cover(const Part& part, Pass& pass) const
         // Lines first..last + 1 between rows: where they enter and leave the inner polygon.
         thread_local std::vector<std::array<double, 2>> lines;
         lines.assign(pass.rows.size() + 1, {inf, -inf});
-        visit_rim(part.footprint.inner.polygon, [](double, int) {}, [&](double x, int line) {
-            if (line < first || line > last + 1) return;
-            auto& [from, to] = lines[std::size_t(line - first)];
-            from = std::min(from, x);
-            to = std::max(to, x);
-        });
+        visit_rim(
+            part.footprint.inner.polygon, [](double, int) {},
+            [&](double x, int line) {
+                if (line < first || line > last + 1) return;
+                auto& [from, to] = lines[std::size_t(line - first)];
+                from = std::min(from, x);
+                to = std::max(to, x);
+            });
         for (std::size_t k = 0; k < pass.rows.size(); ++k) {
             pass.rows[k].inner_low = std::max(lines[k][0], lines[k + 1][0]);
             pass.rows[k].inner_high = std::min(lines[k][1], lines[k + 1][1]);
@@ -172,7 +176,8 @@ bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
 {
     constexpr int side = BoundsTile::side;
     const double u = (x - raster_.x0) / raster_.levels[pass.level].cell;
-    const int low = floor_of(u + pass.low), high = floor_of(u + pass.high), first = pass.rows.front().row, last = pass.rows.back().row;
+    const int low = floor_of(u + pass.low), high = floor_of(u + pass.high), first = pass.rows.front().row,
+              last = pass.rows.back().row;
     const int known_cols = int(raster_.whole_cols(pass.level)), known_rows = int(raster_.whole_rows(pass.level));
     if (low < 0 || first < 0 || high >= known_cols || last >= known_rows) return false;
     const double bottom = z + part.footprint.outer.bottom;
@@ -192,8 +197,8 @@ bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
 /// A part's heights at a pose, in those of a tile.
 struct Mask::Heights {
     double bottom, top, inner_bottom, inner_top;  ///< m
-    std::uint32_t below = 0;              ///< cells that reach up to this value are under the part
-    std::uint32_t hit_low = 1, hit_high = 0;  ///< upper ends from the one to the other are inside it
+    std::uint32_t below = 0;                      ///< cells that reach up to this value are under the part
+    std::uint32_t hit_low = 1, hit_high = 0;      ///< upper ends from the one to the other are inside it
 
     void set_tile(const BoundsHead& head, double a_quantum)
     {
@@ -210,11 +215,13 @@ bool Mask::is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& hei
 {
     if (heights.is_hit(tile.tops[cell])) return true;
     if (tile.bounds.has(cell)) {
-        const QuantizedSpan* top = lowest_where(tile.bounds.of(cell), [&](const QuantizedSpan& span) { return span.top >= heights.hit_low; });
+        const QuantizedSpan* top = lowest_where(tile.bounds.of(cell),
+                                                [&](const QuantizedSpan& span) { return span.top >= heights.hit_low; });
         if (top != nullptr && heights.is_hit(top->top)) return true;
     }
     if (!tile.solids.has(cell)) return false;
-    const QuantizedSpan* solid = lowest_where(tile.solids.of(cell), [&](const QuantizedSpan& span) { return tile.height(span.top) >= heights.inner_bottom; });
+    const QuantizedSpan* solid = lowest_where(
+        tile.solids.of(cell), [&](const QuantizedSpan& span) { return tile.height(span.top) >= heights.inner_bottom; });
     return solid != nullptr && tile.height(solid->bottom) <= heights.inner_top;
 }
 
@@ -222,7 +229,8 @@ bool Mask::is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& hei
 bool Mask::is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights)
 {
     if (!tile.bounds.has(cell)) return false;
-    const QuantizedSpan* span = lowest_where(tile.bounds.of(cell), [&](const QuantizedSpan& s) { return tile.height(s.top) >= heights.bottom; });
+    const QuantizedSpan* span = lowest_where(
+        tile.bounds.of(cell), [&](const QuantizedSpan& s) { return tile.height(s.top) >= heights.bottom; });
     return span == nullptr || tile.height(span->bottom) > heights.top;
 }
 
@@ -240,13 +248,16 @@ Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const 
     return {std::max(out.first, range.first << finer), std::min(out.last, (range.last << finer) + (1 << finer) - 1)};
 }
 
-/// Looks at each cell that is open: free, blocked if some cell within the part is hit, or what is left for a finer pass.
+/// Looks at each cell that is open: free, blocked if some cell within the part is hit, or what is left for a finer
+/// pass.
 Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const
 {
     const BoundsLevel& level = raster_.levels[pass.level];
     const Footprint& footprint = part.footprint;
     const bool has_inner = !footprint.inner.polygon.empty();
-    Heights heights{.bottom = z + footprint.outer.bottom, .top = z + footprint.outer.top, .inner_bottom = z + footprint.inner.bottom,
+    Heights heights{.bottom = z + footprint.outer.bottom,
+                    .top = z + footprint.outer.top,
+                    .inner_bottom = z + footprint.inner.bottom,
                     .inner_top = z + footprint.inner.top};
     const double u = (x - raster_.x0) / level.cell;
     const int known_cols = int(raster_.whole_cols(pass.level)), known_rows = int(raster_.whole_rows(pass.level));
@@ -254,7 +265,8 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
     constexpr int side = BoundsTile::side;
     const OpenTile* open = nullptr;
     for (std::size_t n = 0; n < pass.rows.size(); ++n) {
-        const std::size_t middle = pass.rows.size() / 2, k = n % 2 == 0 ? middle + n / 2 : middle - (n + 1) / 2;  // outwards: hits are found soon
+        const std::size_t middle = pass.rows.size() / 2,
+                          k = n % 2 == 0 ? middle + n / 2 : middle - (n + 1) / 2;  // outwards: hits are found soon
         const CoverRow& cover = pass.rows[k];
         CellRange& left = pass.left[k];
         left = no_cells;
@@ -270,7 +282,8 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
         }
         const int first = std::max(0, low), last = std::min(int(level.cols) - 1, high);
         CellRange inner = no_cells;
-        if (has_inner && cover.inner_low < cover.inner_high) inner = {ceil_of(u + cover.inner_low), floor_of(u + cover.inner_high) - 1};
+        if (has_inner && cover.inner_low < cover.inner_high)
+            inner = {ceil_of(u + cover.inner_low), floor_of(u + cover.inner_high) - 1};
         for (int col = first; col <= last;) {
             const int end = std::min(last, col / side * side + side - 1);
             if (open == nullptr || col / side != open->col || cover.row / side != open->row) {
@@ -324,7 +337,8 @@ bool Mask::is_pierced(std::span<const Span> spans, double z) const
 }
 
 FreeSpace::FreeSpace(const SolidBounds& bounds, const Robot& robot)
-    : impl_(std::make_unique<const Impl>(Impl{bounds, robot, footprints(robot, Mat3::Identity(), true), yaw_free_footprints(robot)}))
+    : impl_(std::make_unique<const Impl>(
+          Impl{bounds, robot, footprints(robot, Mat3::Identity(), true), yaw_free_footprints(robot)}))
 {
 }
 FreeSpace::FreeSpace(FreeSpace&&) noexcept = default;
@@ -334,8 +348,10 @@ Proof FreeSpace::at(const Pose& scene_from_robot) const
 {
     Mask mask(*impl_);
     const Mat3& turn = scene_from_robot.rotation;
-    if (turn(2, 2) == 1) mask.face(std::atan2(turn(1, 0), turn(0, 0)));
-    else mask.face(turn);
+    if (turn(2, 2) == 1)
+        mask.face(std::atan2(turn(1, 0), turn(0, 0)));
+    else
+        mask.face(turn);
     mask.set_y(scene_from_robot.position.y());
     return mask.at(scene_from_robot.position.x(), scene_from_robot.position.z());
 }

@@ -14,22 +14,23 @@ namespace spawnfield {
 struct FreeSpace::Impl {
     SolidBounds bounds;
     Robot robot;
-    std::vector<Footprint> ahead;     ///< upright, at yaw 0
+    std::vector<Footprint> ahead;  ///< upright, at yaw 0
     std::vector<Footprint> every_yaw;
 };
 
-/// Asks the mask, and keeps what neighbouring poses share: the footprints at one rotation, and the cells that they cover
-/// from one row of poses. One for each thread.
+/// Asks the mask, and keeps what neighbouring poses share: the footprints at one rotation, and the cells that they
+/// cover from one row of poses. One for each thread.
 class Mask {
 public:
     explicit Mask(const FreeSpace::Impl& space) : space_(space), raster_(space.bounds.impl()) {}
 
-    void face(double yaw);                ///< upright
+    void face(double yaw);  ///< upright
     void face_every_yaw();
-    void face(const Mat3& rotation);      ///< any; if tilted, nothing is Blocked
-    void set_y(double y);                 ///< of the poses to come, m
+    void face(const Mat3& rotation);  ///< any; if tilted, nothing is Blocked
+    void set_y(double y);             ///< of the poses to come, m
     Proof at(double x, double z);
-    /// Whether something solid on the vertical line through the origin, whose spans these are, is inside a part for certain.
+    /// Whether something solid on the vertical line through the origin, whose spans these are, is inside a part for
+    /// certain.
     bool is_pierced(std::span<const Span> spans, double z) const;
 
 private:
@@ -50,10 +51,11 @@ private:
     struct Pass {
         std::size_t level;
         bool is_ready = false;
-        std::vector<CoverRow> rows;         ///< one after the other
-        double low = 0, high = 0;           ///< of all rows
-        std::vector<CellRange> left;        ///< of each row: outside of it, all is proven free at the last pose that was asked for
-        std::array<OpenTile, 4> tiles;      ///< the last ones that were looked at: all that a part straddles
+        std::vector<CoverRow> rows;  ///< one after the other
+        double low = 0, high = 0;    ///< of all rows
+        std::vector<CellRange>
+            left;  ///< of each row: outside of it, all is proven free at the last pose that was asked for
+        std::array<OpenTile, 4> tiles;  ///< the last ones that were looked at: all that a part straddles
     };
     struct Part {
         Footprint footprint;

@@ -11,9 +11,9 @@
 namespace spawnfield {
 namespace {
 
-constexpr double steps = 65500;           // of a tile's heights, with room for rounding outwards
-constexpr double least_quantum = 1e-6;    // m
-constexpr double least_solid = 1e-4;      // m; thinner ones are surfaces, which the intervals tell
+constexpr double steps = 65500;         // of a tile's heights, with room for rounding outwards
+constexpr double least_quantum = 1e-6;  // m
+constexpr double least_solid = 1e-4;    // m; thinner ones are surfaces, which the intervals tell
 constexpr std::size_t alignment = 64;
 constexpr std::uint32_t side = BoundsTile::side;
 
@@ -53,7 +53,8 @@ void add_cell(const CellSpans& surfaces, std::uint32_t cell, std::span<const Spa
 }
 
 /// Cells of one tile of the finest level; those beyond the raster stay empty.
-LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, std::uint32_t tile_col, std::uint32_t tile_row)
+LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, std::uint32_t tile_col,
+                     std::uint32_t tile_row)
 {
     const BoundsLevel& level = raster.levels[0];
     const int col0 = int(tile_col * side), row0 = int(tile_row * side);
@@ -97,8 +98,12 @@ public:
     {
         out_.reserve(bounds_tile_size(head_) + alignment);
         put(head_);
-        put_list(tile_.bounds, 2, head_.bound_cells, [&](const Interval& span) { return QuantizedSpan{down(span.bottom), up(span.top)}; });
-        put_list(tile_.solids, 1, head_.solid_cells, [&](const Interval& span) { return QuantizedSpan{up(span.bottom), down(span.top)}; });
+        put_list(tile_.bounds, 2, head_.bound_cells, [&](const Interval& span) {
+            return QuantizedSpan{down(span.bottom), up(span.top)};
+        });
+        put_list(tile_.solids, 1, head_.solid_cells, [&](const Interval& span) {
+            return QuantizedSpan{up(span.bottom), down(span.top)};
+        });
         std::array<std::uint16_t, BoundsTile::cells> tops;
         for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) {
             const std::uint32_t end = tile_.bounds.starts[cell + 1];
@@ -151,7 +156,8 @@ private:
             if (cell % 64 == 0) ranks[cell / 64] = std::uint16_t(starts.size() - 1);
             if (count_of(list, cell) < least) continue;
             marks[cell / 64] |= std::uint64_t{1} << (cell % 64);
-            for (std::uint32_t k = list.starts[cell]; k < list.starts[cell + 1]; ++k) spans.push_back(quantize(list.spans[k]));
+            for (std::uint32_t k = list.starts[cell]; k < list.starts[cell + 1]; ++k)
+                spans.push_back(quantize(list.spans[k]));
             starts.push_back(std::uint32_t(spans.size()));
         }
         put(marks);
@@ -184,13 +190,16 @@ bool is_consistent(std::string_view view)
             if (list.ranks[word] != marked) return false;
             marked += std::uint32_t(std::popcount(list.marks[word]));
         }
-        return marked == cells && list.starts[0] == 0 && list.starts[cells] == spans && std::is_sorted(list.starts, list.starts + cells + 1);
+        return marked == cells && list.starts[0] == 0 && list.starts[cells] == spans &&
+               std::is_sorted(list.starts, list.starts + cells + 1);
     };
-    return counts_up(tile.bounds, head.bound_cells, head.bounds) && counts_up(tile.solids, head.solid_cells, head.solids);
+    return counts_up(tile.bounds, head.bound_cells, head.bounds) &&
+           counts_up(tile.solids, head.solid_cells, head.solids);
 }
 
 /// The next coarser cells: what is solid in any of the four finer ones. A gap stays only where all four have it.
-LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>& finer, std::uint32_t tile_col, std::uint32_t tile_row)
+LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>& finer, std::uint32_t tile_col,
+                 std::uint32_t tile_row)
 {
     LooseTile out;
     std::array<BoundsTile, 4> tiles;
@@ -215,7 +224,8 @@ LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>
                 if (!tile.bounds.has(cell)) {
                     highest = std::max(highest, tile.tops[cell]);
                 } else {
-                    for (const QuantizedSpan& span : tile.bounds.of(cell)) joined.push_back({tile.height(span.bottom), tile.height(span.top)});
+                    for (const QuantizedSpan& span : tile.bounds.of(cell))
+                        joined.push_back({tile.height(span.bottom), tile.height(span.top)});
                 }
             }
             if (highest > 0) joined.push_back({tile.height(0), tile.height(highest)});
@@ -257,7 +267,8 @@ BoundsTile::BoundsTile(std::string_view bytes) : head(reinterpret_cast<const Bou
 void SolidBounds::Impl::make_states()
 {
     states_.clear();
-    for (const BoundsLevel& level : levels) states_.push_back(std::make_unique<std::atomic<std::uint8_t>[]>(level.tiles.size()));
+    for (const BoundsLevel& level : levels)
+        states_.push_back(std::make_unique<std::atomic<std::uint8_t>[]>(level.tiles.size()));
 }
 
 void SolidBounds::Impl::verify(std::string_view view, const TileEntry& entry) const
@@ -272,14 +283,18 @@ SolidBounds::SolidBounds() : impl_(std::make_shared<const Impl>()) {}
 
 SolidBounds::SolidBounds(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
-SolidBounds::SolidBounds(const Geometry& geometry, const Bounds& bounds, double cell, int threads, const Progress& progress)
+SolidBounds::SolidBounds(const Geometry& geometry, const Bounds& bounds, double cell, int threads,
+                         const Progress& progress)
 {
     auto impl = std::make_shared<Impl>();
     impl->x0 = bounds.min.x();
     impl->y0 = bounds.min.y();
-    const auto count = [&](int axis, double size) { return std::uint32_t(std::max(1.0, std::ceil((bounds.max[axis] - bounds.min[axis]) / size - 1e-9))); };
+    const auto count = [&](int axis, double size) {
+        return std::uint32_t(std::max(1.0, std::ceil((bounds.max[axis] - bounds.min[axis]) / size - 1e-9)));
+    };
     const Bounds solid = geometry.bounds();
-    impl->is_whole = solid.is_empty() || ((solid.min - bounds.min).head<2>().minCoeff() >= 0 && (bounds.max - solid.max).head<2>().minCoeff() >= 0);
+    impl->is_whole = solid.is_empty() || ((solid.min - bounds.min).head<2>().minCoeff() >= 0 &&
+                                          (bounds.max - solid.max).head<2>().minCoeff() >= 0);
     std::string bytes;
     std::vector<std::string> finer;
     for (double size = cell;; size *= 2) {
@@ -304,8 +319,10 @@ SolidBounds::SolidBounds(const Geometry& geometry, const Bounds& bounds, double 
             level.tiles[t].size = tiles[t].size();
             bytes += tiles[t];
         }
-        if (first) impl->levels.back() = level;
-        else impl->levels.push_back(level);
+        if (first)
+            impl->levels.back() = level;
+        else
+            impl->levels.push_back(level);
         finer = std::move(tiles);
         if (std::max(level.cols, level.rows) <= 4) break;
     }

@@ -12,8 +12,8 @@
 namespace spawnfield {
 namespace {
 
-constexpr double pad = 1e-8;          // m; wider than touch_tolerance, so a line on an edge finds its triangle
-constexpr int refinement = 4;         // between the cell sizes of two levels
+constexpr double pad = 1e-8;   // m; wider than touch_tolerance, so a line on an edge finds its triangle
+constexpr int refinement = 4;  // between the cell sizes of two levels
 constexpr double elements_a_tile = 256;
 constexpr double most_tiles_along = 1024;  // so that thin scenes have no more tiles than others
 constexpr double refs_an_element = 6;
@@ -43,8 +43,8 @@ struct Members {
     std::vector<std::uint32_t> starts, elements;
 };
 
-Members sort_into_tiles(const Geometry::Impl& geometry, const TileLevel& level, const std::vector<std::uint32_t>& elements,
-                        const std::vector<ElementBox>& boxes)
+Members sort_into_tiles(const Geometry::Impl& geometry, const TileLevel& level,
+                        const std::vector<std::uint32_t>& elements, const std::vector<ElementBox>& boxes)
 {
     Members out;
     out.starts.assign(std::size_t{level.cols} * level.rows + 1, 0);
@@ -54,7 +54,8 @@ Members sort_into_tiles(const Geometry::Impl& geometry, const TileLevel& level, 
         for (std::uint32_t r = row(box.min[1]); r <= row(box.max[1]); ++r)
             for (std::uint32_t c = col(box.min[0]); c <= col(box.max[0]); ++c) visit(std::size_t{r} * level.cols + c);
     };
-    for (const std::uint32_t element : elements) visit_tiles(boxes[element], [&](std::size_t tile) { ++out.starts[tile + 1]; });
+    for (const std::uint32_t element : elements)
+        visit_tiles(boxes[element], [&](std::size_t tile) { ++out.starts[tile + 1]; });
     for (std::size_t tile = 1; tile < out.starts.size(); ++tile) out.starts[tile] += out.starts[tile - 1];
     out.elements.resize(out.starts.back());
     std::vector<std::uint32_t> next(out.starts.begin(), out.starts.end() - 1);
@@ -77,9 +78,17 @@ public:
     {
         number_corners();
         const double side = level_.cell;
-        TileHead head{.x0 = geometry_.x0 + col_ * side, .y0 = geometry_.y0 + row_ * side, .bin = side, .vertices = std::uint32_t(vertices_.size()), .triangles = triangles_,
-                      .primitives = std::uint32_t(elements_.size()) - triangles_, .pieces = std::uint32_t(pieces_.size()),
-                      .refs = 0, .bin_cols = 1, .bin_rows = 1, .unused = 0};
+        TileHead head{.x0 = geometry_.x0 + col_ * side,
+                      .y0 = geometry_.y0 + row_ * side,
+                      .bin = side,
+                      .vertices = std::uint32_t(vertices_.size()),
+                      .triangles = triangles_,
+                      .primitives = std::uint32_t(elements_.size()) - triangles_,
+                      .pieces = std::uint32_t(pieces_.size()),
+                      .refs = 0,
+                      .bin_cols = 1,
+                      .bin_rows = 1,
+                      .unused = 0};
         sort_into_bins(head, side);
         out_.reserve(tile_size(head));
         put(head);
@@ -98,7 +107,8 @@ public:
 private:
     void number_corners()
     {
-        triangles_ = std::uint32_t(std::partition_point(elements_.begin(), elements_.end(), [&](std::uint32_t e) { return is_triangle(scene_, e); }) -
+        triangles_ = std::uint32_t(std::partition_point(elements_.begin(), elements_.end(),
+                                                        [&](std::uint32_t e) { return is_triangle(scene_, e); }) -
                                    elements_.begin());
         for (std::size_t e = 0; e < triangles_; ++e) {
             for (const std::uint32_t corner : scene_.triangles[elements_[e]]) vertices_.push_back(corner);
@@ -140,8 +150,10 @@ private:
 
     static std::array<std::uint32_t, 4> bins_of(const TileHead& head, const ElementBox& box)
     {
-        return {cell_number(box.min[0] - head.x0, head.bin, head.bin_cols), cell_number(box.max[0] - head.x0, head.bin, head.bin_cols),
-                cell_number(box.min[1] - head.y0, head.bin, head.bin_rows), cell_number(box.max[1] - head.y0, head.bin, head.bin_rows)};
+        return {cell_number(box.min[0] - head.x0, head.bin, head.bin_cols),
+                cell_number(box.max[0] - head.x0, head.bin, head.bin_cols),
+                cell_number(box.min[1] - head.y0, head.bin, head.bin_rows),
+                cell_number(box.max[1] - head.y0, head.bin, head.bin_rows)};
     }
 
     template <class Visit>
@@ -157,7 +169,8 @@ private:
     TileTriangle packed_triangle(std::uint32_t element) const
     {
         TileTriangle out{};
-        for (std::size_t corner = 0; corner < 3; ++corner) out.corners[corner] = number_in(vertices_, scene_.triangles[element][corner]);
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            out.corners[corner] = number_in(vertices_, scene_.triangles[element][corner]);
         out.piece = number_in(pieces_, scene_.triangle_pieces[element]);
         out.label = scene_.triangle_labels[element];
         out.home = home_of(element);
@@ -236,7 +249,8 @@ bool is_consistent(std::string_view view, std::size_t parts)
         if (p.kind > ShapeKind::Capsule || p.label > Label::Water || !below(p.part, parts)) return false;
     if (tile.starts.front() != 0 || tile.starts.back() != tile.refs.size()) return false;
     return std::is_sorted(tile.starts.begin(), tile.starts.end()) &&
-           std::all_of(tile.refs.begin(), tile.refs.end(), [&](std::uint32_t ref) { return below(ref, tile.elements()); });
+           std::all_of(tile.refs.begin(), tile.refs.end(),
+                       [&](std::uint32_t ref) { return below(ref, tile.elements()); });
 }
 
 }  // namespace
@@ -244,9 +258,10 @@ bool is_consistent(std::string_view view, std::size_t parts)
 std::uint64_t tile_size(const TileHead& head)
 {
     const std::uint64_t elements = std::uint64_t{head.triangles} + head.primitives;
-    return sizeof(TileHead) + head.vertices * sizeof(Vec3) + head.primitives * sizeof(TilePrimitive) + head.pieces * sizeof(TilePiece) +
-           head.triangles * sizeof(TileTriangle) + elements * (sizeof(ElementBox) + 4) +
-           (std::uint64_t{head.bin_cols} * head.bin_rows + 1) * 4 + head.refs * 4ull;
+    return sizeof(TileHead) + head.vertices * sizeof(Vec3) + head.primitives * sizeof(TilePrimitive) +
+           head.pieces * sizeof(TilePiece) + head.triangles * sizeof(TileTriangle) +
+           elements * (sizeof(ElementBox) + 4) + (std::uint64_t{head.bin_cols} * head.bin_rows + 1) * 4 +
+           head.refs * 4ull;
 }
 
 Tile::Tile(std::string_view bytes) : head(reinterpret_cast<const TileHead*>(bytes.data()))
@@ -288,7 +303,9 @@ const HeightRun* Geometry::Impl::make_height_runs(std::size_t level, std::size_t
         run.high = std::max(run.high, box.max[2]);
     }
     const HeightRun* there = nullptr;  // another thread may have been quicker
-    if (runs_[level][number].compare_exchange_strong(there, made.get(), std::memory_order_acq_rel, std::memory_order_acquire)) return made.release();
+    if (runs_[level][number].compare_exchange_strong(there, made.get(), std::memory_order_acq_rel,
+                                                     std::memory_order_acquire))
+        return made.release();
     return there;
 }
 
@@ -315,11 +332,14 @@ double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, 
             const double start = origin + n * level.cell;
             return std::clamp((std::min(high, start + level.cell) - std::max(low, start)) / level.cell, 0.0, 1.0);
         };
-        const std::uint32_t col0 = cell_number(low_x - x0, level.cell, level.cols), col1 = cell_number(high_x - x0, level.cell, level.cols);
-        const std::uint32_t row0 = cell_number(low_y - y0, level.cell, level.rows), row1 = cell_number(high_y - y0, level.cell, level.rows);
+        const std::uint32_t col0 = cell_number(low_x - x0, level.cell, level.cols),
+                            col1 = cell_number(high_x - x0, level.cell, level.cols);
+        const std::uint32_t row0 = cell_number(low_y - y0, level.cell, level.rows),
+                            row1 = cell_number(high_y - y0, level.cell, level.rows);
         for (std::uint32_t row = row0; row <= row1; ++row)
             for (std::uint32_t col = col0; col <= col1; ++col)
-                sum += double(level.tiles[std::size_t{row} * level.cols + col].size) * share(low_x, high_x, x0, col) * share(low_y, high_y, y0, row);
+                sum += double(level.tiles[std::size_t{row} * level.cols + col].size) * share(low_x, high_x, x0, col) *
+                       share(low_y, high_y, y0, row);
     }
     return sum / bytes_an_element;
 }
@@ -340,7 +360,8 @@ Geometry::Geometry(const Scene& scene, int threads)
     impl->elements = elements;
     impl->parts = scene.parts;
     impl->labels = scene.count_labels();
-    impl->has_filled_meshes = std::any_of(scene.pieces.begin(), scene.pieces.end(), [](const Piece& p) { return p.solid; });
+    impl->has_filled_meshes = std::any_of(scene.pieces.begin(), scene.pieces.end(),
+                                          [](const Piece& p) { return p.solid; });
     if (elements > 0) {
         std::vector<ElementBox> boxes(elements);
         parallel_for(elements, threads, {}, [&](std::size_t e) { boxes[e] = box_of(scene, std::uint32_t(e)); });
@@ -348,8 +369,10 @@ Geometry::Geometry(const Scene& scene, int threads)
         impl->bounds = bounds;
         impl->x0 = bounds.min.x() - pad;
         impl->y0 = bounds.min.y() - pad;
-        const double width = bounds.max.x() - bounds.min.x() + 2 * pad, depth = bounds.max.y() - bounds.min.y() + 2 * pad;
-        double cell = std::max(std::sqrt(width * depth * elements_a_tile / elements), std::max(width, depth) / most_tiles_along);
+        const double width = bounds.max.x() - bounds.min.x() + 2 * pad,
+                     depth = bounds.max.y() - bounds.min.y() + 2 * pad;
+        double cell = std::max(std::sqrt(width * depth * elements_a_tile / elements),
+                               std::max(width, depth) / most_tiles_along);
 
         std::vector<std::vector<std::uint32_t>> members(1);
         for (std::uint32_t element = 0; element < elements; ++element) {
@@ -363,12 +386,14 @@ Geometry::Geometry(const Scene& scene, int threads)
         std::string bytes;
         for (const std::vector<std::uint32_t>& list : members) {
             if (!list.empty()) {
-                TileLevel level{cell, std::uint32_t(std::ceil(width / cell)), std::uint32_t(std::ceil(depth / cell)), {}};
+                TileLevel level{
+                    cell, std::uint32_t(std::ceil(width / cell)), std::uint32_t(std::ceil(depth / cell)), {}};
                 const Members sorted = sort_into_tiles(*impl, level, list, boxes);
                 level.tiles.resize(sorted.starts.size() - 1);
                 std::vector<std::string> tiles(level.tiles.size());
                 parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
-                    const std::span<const std::uint32_t> in_tile(sorted.elements.data() + sorted.starts[t], sorted.starts[t + 1] - sorted.starts[t]);
+                    const std::span<const std::uint32_t> in_tile(sorted.elements.data() + sorted.starts[t],
+                                                                 sorted.starts[t + 1] - sorted.starts[t]);
                     if (in_tile.empty()) return;
                     tiles[t] = TileBuilder(scene, boxes, in_tile, *impl, level, t).build();
                     level.tiles[t].checksum = XXH64(tiles[t].data(), tiles[t].size(), 0);

@@ -22,14 +22,18 @@ SphereMesh icosahedron()
                 corner[(axis + 2) % 3] = b;
                 mesh.vertices.push_back(corner);
             }
-    const auto are_neighbours = [&](std::uint32_t i, std::uint32_t j) { return (mesh.vertices[i] - mesh.vertices[j]).norm() < 2.1; };
+    const auto are_neighbours = [&](std::uint32_t i, std::uint32_t j) {
+        return (mesh.vertices[i] - mesh.vertices[j]).norm() < 2.1;
+    };
     for (std::uint32_t i = 0; i < 12; ++i)
         for (std::uint32_t j = i + 1; j < 12; ++j)
             for (std::uint32_t k = j + 1; k < 12; ++k) {
                 if (!are_neighbours(i, j) || !are_neighbours(j, k) || !are_neighbours(k, i)) continue;
                 const Vec3 normal = (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]);
-                if (normal.dot(mesh.vertices[i]) > 0) mesh.triangles.push_back({i, j, k});
-                else mesh.triangles.push_back({i, k, j});
+                if (normal.dot(mesh.vertices[i]) > 0)
+                    mesh.triangles.push_back({i, j, k});
+                else
+                    mesh.triangles.push_back({i, k, j});
             }
     for (Vec3& vertex : mesh.vertices) vertex.normalize();
     return mesh;
@@ -60,7 +64,8 @@ SphereMesh mesh_around_unit_sphere(int rounds)
     for (int round = 0; round < rounds; ++round) mesh = cut_in_four(std::move(mesh));
     double nearest = 1;  // of the faces to the centre
     for (const auto& [i, j, k] : mesh.triangles) {
-        const Vec3 normal = (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]).normalized();
+        const Vec3 normal =
+            (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]).normalized();
         nearest = std::min(nearest, normal.dot(mesh.vertices[i]));
     }
     for (Vec3& vertex : mesh.vertices) vertex /= nearest;

@@ -13,7 +13,8 @@
 
 namespace spawnfield {
 
-// What a tile consists of, as it lies in memory and in geometry.bin: no padding, multiples of 8 bytes or followed by some.
+// What a tile consists of, as it lies in memory and in geometry.bin: no padding, multiples of 8 bytes or followed by
+// some.
 
 /// Smallest box around an element, widened by touch_tolerance and rounded outwards.
 struct ElementBox {
@@ -49,10 +50,7 @@ struct TilePrimitive {
     Label label;
     Home home;
 
-    Shape shape() const
-    {
-        return {kind, Vec3(size.data()), {Vec3(position.data()), Mat3(rotation.data())}};
-    }
+    Shape shape() const { return {kind, Vec3(size.data()), {Vec3(position.data()), Mat3(rotation.data())}}; }
 };
 
 struct TileHead {
@@ -89,8 +87,14 @@ struct Tile {
         return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
     }
     const TilePrimitive& primitive(std::uint32_t element) const { return primitives[element - head->triangles]; }
-    Home home(std::uint32_t element) const { return is_triangle(element) ? triangles[element].home : primitive(element).home; }
-    Label label(std::uint32_t element) const { return is_triangle(element) ? triangles[element].label : primitive(element).label; }
+    Home home(std::uint32_t element) const
+    {
+        return is_triangle(element) ? triangles[element].home : primitive(element).home;
+    }
+    Label label(std::uint32_t element) const
+    {
+        return is_triangle(element) ? triangles[element].label : primitive(element).label;
+    }
     std::uint32_t part(std::uint32_t element) const
     {
         return is_triangle(element) ? pieces[triangles[element].piece].part : primitive(element).part;
@@ -129,13 +133,13 @@ struct HeightRun {
 struct Geometry::Impl {
     double x0 = 0, y0 = 0;  ///< corner that all levels share
     std::uint64_t elements = 0;
-    Bounds bounds;          ///< of all elements
+    Bounds bounds;            ///< of all elements
     std::vector<Part> parts;  ///< of the scene, in its order
     LabelCounts labels{};
     bool has_filled_meshes = false;
     std::vector<TileLevel> levels;
-    Bytes bytes;             ///< of all tiles
-    std::string file;        ///< that they lie in, for messages; empty: in memory, and trusted
+    Bytes bytes;       ///< of all tiles
+    std::string file;  ///< that they lie in, for messages; empty: in memory, and trusted
 
     Impl() = default;
     Impl(Impl&&) = default;
@@ -166,7 +170,8 @@ struct Geometry::Impl {
         for (std::size_t l = 0; l < levels.size(); ++l) {
             const TileLevel& level = levels[l];
             if (dx > level.cell * level.cols || dy > level.cell * level.rows) continue;
-            const std::size_t t = std::size_t{cell_number(dy, level.cell, level.rows)} * level.cols + cell_number(dx, level.cell, level.cols);
+            const std::size_t t = std::size_t{cell_number(dy, level.cell, level.rows)} * level.cols +
+                                  cell_number(dx, level.cell, level.cols);
             if (level.tiles[t].size == 0) continue;
             const Tile tile = open(l, t);
             visit(tile, tile.bin(tile.bin_col(x), tile.bin_row(y)));
@@ -201,16 +206,22 @@ struct Geometry::Impl {
 private:
     struct AnyHeight {};
 
-    /// Elements near the rectangle for which meets(box) holds, which is nowhere else, nor off these heights: an Interval or AnyHeight.
+    /// Elements near the rectangle for which meets(box) holds, which is nowhere else, nor off these heights: an
+    /// Interval or AnyHeight.
     template <class Heights, class Meets, class Visit>
-    void visit_if(double low_x, double low_y, double high_x, double high_y, const Heights& heights, const Meets& meets, const Visit& visit) const
+    void visit_if(double low_x, double low_y, double high_x, double high_y, const Heights& heights, const Meets& meets,
+                  const Visit& visit) const
     {
         for (std::size_t l = 0; l < levels.size(); ++l) {
             const TileLevel& level = levels[l];
             // Not past the rim: the outermost tiles would answer.
-            if (high_x < x0 || high_y < y0 || low_x > x0 + level.cell * level.cols || low_y > y0 + level.cell * level.rows) continue;
-            const std::uint32_t col0 = cell_number(low_x - x0, level.cell, level.cols), col1 = cell_number(high_x - x0, level.cell, level.cols);
-            const std::uint32_t row0 = cell_number(low_y - y0, level.cell, level.rows), row1 = cell_number(high_y - y0, level.cell, level.rows);
+            if (high_x < x0 || high_y < y0 || low_x > x0 + level.cell * level.cols ||
+                low_y > y0 + level.cell * level.rows)
+                continue;
+            const std::uint32_t col0 = cell_number(low_x - x0, level.cell, level.cols),
+                                col1 = cell_number(high_x - x0, level.cell, level.cols);
+            const std::uint32_t row0 = cell_number(low_y - y0, level.cell, level.rows),
+                                row1 = cell_number(high_y - y0, level.cell, level.rows);
             for (std::uint32_t row = row0; row <= row1; ++row)
                 for (std::uint32_t col = col0; col <= col1; ++col) {
                     const std::size_t t = std::size_t{row} * level.cols + col;
@@ -219,14 +230,18 @@ private:
                     const HeightRun* runs = nullptr;
                     if constexpr (std::is_same_v<Heights, Interval>) runs = height_runs(l, t, tile);
                     const auto may_meet = [&](std::uint32_t element) {
-                        if constexpr (std::is_same_v<Heights, Interval>) return runs == nullptr || runs[element / HeightRun::length].meets(heights);
-                        else return true;
+                        if constexpr (std::is_same_v<Heights, Interval>)
+                            return runs == nullptr || runs[element / HeightRun::length].meets(heights);
+                        else
+                            return true;
                     };
                     visit_tile(tile, low_x, low_y, high_x, high_y, may_meet, meets, [&](std::uint32_t element) {
-                        // In several tiles: the one that holds the lower left corner of what box and rectangle share tells.
+                        // In several tiles: the one that holds the lower left corner of what box and rectangle share
+                        // tells.
                         const ElementBox& box = tile.boxes[element];
                         const Home home = tile.home(element);
-                        if ((box.min[0] > low_x ? home.col != 0 : col == col0) && (box.min[1] > low_y ? home.row != 0 : row == row0))
+                        if ((box.min[0] > low_x ? home.col != 0 : col == col0) &&
+                            (box.min[1] > low_y ? home.row != 0 : row == row0))
                             visit(tile, element);
                     });
                 }
@@ -235,10 +250,11 @@ private:
 
     /// may_meet(element) speaks for the whole run that the element is in.
     template <class MayMeet, class Meets, class Visit>
-    static void visit_tile(const Tile& tile, double low_x, double low_y, double high_x, double high_y, const MayMeet& may_meet, const Meets& meets,
-                           const Visit& visit)
+    static void visit_tile(const Tile& tile, double low_x, double low_y, double high_x, double high_y,
+                           const MayMeet& may_meet, const Meets& meets, const Visit& visit)
     {
-        const std::uint32_t col0 = tile.bin_col(low_x), col1 = tile.bin_col(high_x), row0 = tile.bin_row(low_y), row1 = tile.bin_row(high_y);
+        const std::uint32_t col0 = tile.bin_col(low_x), col1 = tile.bin_col(high_x), row0 = tile.bin_row(low_y),
+                            row1 = tile.bin_row(high_y);
         // Most bins: all elements in their order, rather than bin by bin.
         if (2.0 * (col1 - col0 + 1) * (row1 - row0 + 1) > double(tile.head->bin_cols) * tile.head->bin_rows) {
             for (std::uint32_t first = 0; first < tile.elements(); first += HeightRun::length) {
@@ -293,7 +309,7 @@ private:
     }
     const HeightRun* make_height_runs(std::size_t level, std::size_t number, const Tile& tile) const;
 
-    mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> states_;  ///< 1: checked
+    mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> states_;    ///< 1: checked
     mutable std::vector<std::unique_ptr<std::atomic<const HeightRun*>[]>> runs_;  ///< owned
 };
 

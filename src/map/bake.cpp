@@ -49,7 +49,9 @@ double default_resolution(const Bounds& bounds, BakeReport& report)
     const auto side = [&](int axis) { return std::ceil((bounds.max[axis] - bounds.min[axis]) / resolution); };
     while (side(0) * side(1) > max_columns || std::max(side(0), side(1)) > max_side) resolution *= 2;
     if (resolution > 0.1)
-        report.notices.push_back("resolution is " + number(resolution) + " m, as 0.1 m would pass 100 million columns, or a million along one side (--resolution sets it)");
+        report.notices.push_back(
+            "resolution is " + number(resolution) +
+            " m, as 0.1 m would pass 100 million columns, or a million along one side (--resolution sets it)");
     return resolution;
 }
 
@@ -60,7 +62,8 @@ double default_occupancy_resolution(const Bounds& bounds, double resolution, Bak
     const double reach = std::max(bounds.min.cwiseAbs().maxCoeff(), bounds.max.cwiseAbs().maxCoeff());
     while (reach / voxel > 32767) voxel *= 2;
     if (voxel > wanted)
-        report.notices.push_back("occupancy resolution is " + number(voxel) + " m, as OctoMap reaches 32768 voxels from the origin and the scene lies " +
+        report.notices.push_back("occupancy resolution is " + number(voxel) +
+                                 " m, as OctoMap reaches 32768 voxels from the origin and the scene lies " +
                                  number(reach) + " m out (--occupancy-resolution sets it)");
     return voxel;
 }
@@ -112,8 +115,10 @@ Progress part_of(const Progress& progress, double from, double to)
 Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& options, BakeReport& report)
 {
     if (!options.allow_no_terrain && !scene.has_terrain())
-        throw FileError(scene_file.string(), "has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') "
-                                             "or pass --allow-no-terrain");
+        throw FileError(
+            scene_file.string(),
+            "has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') "
+            "or pass --allow-no-terrain");
     if (!(options.resolution >= 0)) throw ArgumentError("bake", "resolution", options.resolution, "> 0 m (0: chosen)");
     if (!(options.z.low <= options.z.high)) throw ArgumentError("bake", "z.high", options.z.high, "at least z.low");
     if (!(options.occupancy_resolution >= 0))
@@ -125,7 +130,9 @@ Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& 
     map.z_limits = !options.z.is_unlimited() ? options.z : options.bounds.is_empty() ? ZRange{} : map.bounds.z();
     if (std::isfinite(map.z_limits.low)) map.bounds.min.z() = map.z_limits.low;
     if (std::isfinite(map.z_limits.high)) map.bounds.max.z() = map.z_limits.high;
-    if (!map.bounds.meets(extent)) throw FileError(scene_file.string(), "bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
+    if (!map.bounds.meets(extent))
+        throw FileError(scene_file.string(),
+                        "bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
     const Vec3 size = map.bounds.max - map.bounds.min;
     constexpr double tiny = 1 + 1e-9;  // m: no robot's world is smaller, but what is left of one may be
     if (options.bounds.is_empty() && size.x() <= tiny && size.y() <= tiny)
@@ -156,20 +163,23 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     const Bounds extent = scene.bounds();
     scene = {};
     lap("geometry");
-    const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads, part_of(options.progress, 0, 0.3), map.z_limits);
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads,
+                                                 part_of(options.progress, 0, 0.3), map.z_limits);
     map.floors = find_floors(terrain, options.threads);
     lap("terrain");
     const std::pair<double, double> z_range = write_images(terrain, target.path(), map, options.threads);
     if (map.layers == 0 && has_terrain)
-        report.notices.push_back("no robot can stand in the bounds " + to_string(map.bounds) + ": there is no terrain at any cell's centre; the scene is " +
-                                 to_string(extent));
+        report.notices.push_back("no robot can stand in the bounds " + to_string(map.bounds) +
+                                 ": there is no terrain at any cell's centre; the scene is " + to_string(extent));
     lap("images");
-    map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads, part_of(options.progress, 0.3, 0.6));
+    map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads,
+                                   part_of(options.progress, 0.3, 0.6));
     write_bounds(target.path() / "bounds.bin", map.solid_bounds);
     map.solid_bounds = {};
     lap("bounds");
-    report.occupancy_leaves = write_occupancy(target.path() / "occupancy.bt", map.geometry, map.bounds, map.occupancy_resolution,
-                                              options.threads, part_of(options.progress, 0.6, 0.9));
+    report.occupancy_leaves = write_occupancy(target.path() / "occupancy.bt", map.geometry, map.bounds,
+                                              map.occupancy_resolution, options.threads,
+                                              part_of(options.progress, 0.6, 0.9));
     lap("occupancy");
 
     write_geometry(target.path() / "geometry.bin", map.geometry);

@@ -33,10 +33,13 @@ bool is_consistent(const SolidBounds::Impl& bounds)
 {
     constexpr std::uint32_t most = 1u << 30;  // cells along one side
     for (const BoundsLevel& level : bounds.levels) {
-        if (!(level.cell > 0) || level.cols == 0 || level.rows == 0 || level.cols > most || level.rows > most) return false;
+        if (!(level.cell > 0) || level.cols == 0 || level.rows == 0 || level.cols > most || level.rows > most)
+            return false;
         if (level.tiles.size() != std::uint64_t{level.tile_cols} * level.tile_rows) return false;
         for (const TileEntry& tile : level.tiles)
-            if (tile.offset % 8 != 0 || tile.offset > bounds.bytes.view.size() || tile.size > bounds.bytes.view.size() - tile.offset) return false;
+            if (tile.offset % 8 != 0 || tile.offset > bounds.bytes.view.size() ||
+                tile.size > bounds.bytes.view.size() - tile.offset)
+                return false;
     }
     return true;
 }

@@ -90,7 +90,8 @@ private:
             visit(i0, j, range_of(strip, 2));
             return;
         }
-        // A plane over a convex polygon is highest and lowest at the polygon's corners and where its rim crosses cell borders.
+        // A plane over a convex polygon is highest and lowest at the polygon's corners and where its rim crosses cell
+        // borders.
         std::fill(cells_.begin() + i0, cells_.begin() + i1 + 1, none);
         std::fill(borders_.begin() + i0, borders_.begin() + i1 + 2, none);
         for (std::size_t k = 0; k < strip.size(); ++k) {
@@ -99,15 +100,18 @@ private:
             add_crossings(p.x() < q.x() ? p : q, p.x() < q.x() ? q : p, i0, i1);
         }
         for (int i = i0; i <= i1; ++i) {
-            const Interval &cell = cells_[std::size_t(i)], &left = borders_[std::size_t(i)], &right = borders_[std::size_t(i) + 1];
-            const Interval range{std::min({cell.bottom, left.bottom, right.bottom}), std::max({cell.top, left.top, right.top})};
+            const Interval &cell = cells_[std::size_t(i)], &left = borders_[std::size_t(i)],
+                           &right = borders_[std::size_t(i) + 1];
+            const Interval range{std::min({cell.bottom, left.bottom, right.bottom}),
+                                 std::max({cell.top, left.top, right.top})};
             if (range.bottom <= range.top) visit(i, j, range);
         }
     }
 
     void add_corner(const Vec3& p, int i0, int i1)
     {
-        const int from = std::max(i0, first_cell(p.x() - block_.x0)), to = std::min(i1, last_cell(p.x() - block_.x0, block_.cols));
+        const int from = std::max(i0, first_cell(p.x() - block_.x0)),
+                  to = std::min(i1, last_cell(p.x() - block_.x0, block_.cols));
         for (int i = from; i <= to; ++i) extend(cells_[std::size_t(i)], p.z());
     }
 
@@ -115,16 +119,23 @@ private:
     {
         const double width = right.x() - left.x();
         if (!(width > 0)) return;
-        const auto border = [&](double x) { return std::clamp((x - block_.x0) / block_.cell, double(i0) - 1, double(i1) + 2); };
-        const int from = std::max(i0, int(std::ceil(border(left.x())))), to = std::min(i1 + 1, int(std::floor(border(right.x()))));
-        const double slope = (right.z() - left.z()) / width, low = std::min(left.z(), right.z()), high = std::max(left.z(), right.z());
+        const auto border = [&](double x) {
+            return std::clamp((x - block_.x0) / block_.cell, double(i0) - 1, double(i1) + 2);
+        };
+        const int from = std::max(i0, int(std::ceil(border(left.x())))),
+                  to = std::min(i1 + 1, int(std::floor(border(right.x()))));
+        const double slope = (right.z() - left.z()) / width, low = std::min(left.z(), right.z()),
+                     high = std::max(left.z(), right.z());
         for (int i = from; i <= to; ++i) {
             const double z = left.z() + (block_.x0 + i * block_.cell - left.x()) * slope;
             extend(borders_[std::size_t(i)], std::clamp(z, low, high));
         }
     }
 
-    int first_cell(double offset) const { return int(std::clamp(std::floor((offset - touch_tolerance) / block_.cell), 0.0, 1e9)); }
+    int first_cell(double offset) const
+    {
+        return int(std::clamp(std::floor((offset - touch_tolerance) / block_.cell), 0.0, 1e9));
+    }
     int last_cell(double offset, int count) const
     {
         return int(std::clamp(std::floor((offset + touch_tolerance) / block_.cell), -1.0, double(count - 1)));
@@ -173,7 +184,8 @@ public:
         for (std::size_t k = 0; k < own_.size();) {
             const std::uint32_t cell = own_[k].cell;
             Interval z = own_[k].z;
-            for (++k; k < own_.size() && own_[k].cell == cell; ++k) z = {std::min(z.bottom, own_[k].z.bottom), std::max(z.top, own_[k].z.top)};
+            for (++k; k < own_.size() && own_[k].cell == cell; ++k)
+                z = {std::min(z.bottom, own_[k].z.bottom), std::max(z.top, own_[k].z.top)};
             add(cell, z);
         }
     }
@@ -203,7 +215,9 @@ private:
 
     void add_face(const Polygon& face)
     {
-        scanner_.scan(face.data(), face.size(), [&](int i, int j, const Interval& z) { own_.push_back({block_.id(i, j), z}); });
+        scanner_.scan(face.data(), face.size(), [&](int i, int j, const Interval& z) {
+            own_.push_back({block_.id(i, j), z});
+        });
     }
 
     void add_box(const Shape& shape)
@@ -211,7 +225,8 @@ private:
         for (int axis = 0; axis < 3; ++axis)
             for (const double side : {-0.5, 0.5}) {
                 face_.clear();
-                for (const auto& [u, v] : {std::pair{-0.5, -0.5}, std::pair{0.5, -0.5}, std::pair{0.5, 0.5}, std::pair{-0.5, 0.5}}) {
+                for (const auto& [u, v] :
+                     {std::pair{-0.5, -0.5}, std::pair{0.5, -0.5}, std::pair{0.5, 0.5}, std::pair{-0.5, 0.5}}) {
                     Vec3 corner;
                     corner[axis] = side * shape.size[axis];
                     corner[(axis + 1) % 3] = u * shape.size[(axis + 1) % 3];
@@ -277,16 +292,17 @@ CellSpans::CellSpans(const Geometry& geometry, const CellBlock& block)
     : first_(std::size_t(block.cols) * std::size_t(block.rows), none), more_(first_.size()), cols_(block.cols)
 {
     Collector collector(*this, block);
-    geometry.impl().visit_in(block.x0 - touch_tolerance, block.y0 - touch_tolerance, block.x0 + block.cols * block.cell + touch_tolerance,
-                             block.y0 + block.rows * block.cell + touch_tolerance, [&](const Tile& tile, std::uint32_t element) {
-                                 if (tile.label(element) == Label::Water) return;
-                                 if (!tile.is_triangle(element)) {
-                                     collector.add_primitive(tile.primitive(element).shape());
-                                     return;
-                                 }
-                                 const TilePiece& piece = tile.pieces[tile.triangles[element].piece];
-                                 collector.add_triangle(tile.corners(element), piece.open != 0 ? &piece.bottom : nullptr);
-                             });
+    geometry.impl().visit_in(
+        block.x0 - touch_tolerance, block.y0 - touch_tolerance, block.x0 + block.cols * block.cell + touch_tolerance,
+        block.y0 + block.rows * block.cell + touch_tolerance, [&](const Tile& tile, std::uint32_t element) {
+            if (tile.label(element) == Label::Water) return;
+            if (!tile.is_triangle(element)) {
+                collector.add_primitive(tile.primitive(element).shape());
+                return;
+            }
+            const TilePiece& piece = tile.pieces[tile.triangles[element].piece];
+            collector.add_triangle(tile.corners(element), piece.open != 0 ? &piece.bottom : nullptr);
+        });
     collector.finish();
 }
 
@@ -298,7 +314,8 @@ void CellSpans::get(std::uint32_t cell, std::vector<Interval>& out) const
     if (!more_[cell]) return;
     const std::size_t row = cell / std::uint32_t(cols_);
     const auto end = further_.begin() + starts_[row + 1];
-    auto span = std::lower_bound(further_.begin() + starts_[row], end, cell, [](const Further& f, std::uint32_t c) { return f.cell < c; });
+    auto span = std::lower_bound(further_.begin() + starts_[row], end, cell,
+                                 [](const Further& f, std::uint32_t c) { return f.cell < c; });
     for (; span != end && span->cell == cell; ++span) out.push_back(span->z);
     join_spans(out);
 }
@@ -310,7 +327,8 @@ void join_spans(std::vector<Interval>& spans)
     for (const Interval& next : spans) {
         if (kept > 0 && next.bottom <= spans[kept - 1].top + touch_tolerance)
             spans[kept - 1].top = std::max(spans[kept - 1].top, next.top);
-        else spans[kept++] = next;
+        else
+            spans[kept++] = next;
     }
     spans.resize(kept);
 }

@@ -12,9 +12,9 @@ struct CellBlock {
     std::uint32_t id(int i, int j) const { return std::uint32_t(j) * std::uint32_t(cols) + std::uint32_t(i); }
 };
 
-/// Heights between which solid surfaces, and the filling of primitives, lie anywhere in the closed cells of a block; water
-/// left out. Of the inside of meshes it knows nothing, but for meshes with holes that are filled by wish: those count down
-/// to their lowest vertex.
+/// Heights between which solid surfaces, and the filling of primitives, lie anywhere in the closed cells of a block;
+/// water left out. Of the inside of meshes it knows nothing, but for meshes with holes that are filled by wish: those
+/// count down to their lowest vertex.
 ///
 /// Upper ends are attained: some solid point of the cell, or within 1e-8 m of it, is as high. Cylinders become prisms
 /// around them that are at most 4e-6 m wider, or 4096-sided: then is_tight() is false.
@@ -36,9 +36,9 @@ private:
         std::uint32_t cell;
         Interval z;
     };
-    std::vector<Interval> first_;    ///< one for each cell; bottom > top: none
-    std::vector<bool> more_;         ///< whether the cell has further ones
-    std::vector<Further> further_;   ///< what does not touch the first one; sorted by cell
+    std::vector<Interval> first_;        ///< one for each cell; bottom > top: none
+    std::vector<bool> more_;             ///< whether the cell has further ones
+    std::vector<Further> further_;       ///< what does not touch the first one; sorted by cell
     std::vector<std::uint32_t> starts_;  ///< in further_, by row of the block
     int cols_;
     bool tight_ = true;

@@ -33,8 +33,8 @@ std::vector<float> tile_of(const TerrainMap::Page& page, std::size_t tile)
     return heights;
 }
 
-/// How often each bin occurs. Bins of one tile mostly lie close together: then a table counts them, without a look-up for
-/// each cell.
+/// How often each bin occurs. Bins of one tile mostly lie close together: then a table counts them, without a look-up
+/// for each cell.
 Histogram counted(const std::vector<std::int64_t>& bins)
 {
     Histogram out;
@@ -61,7 +61,8 @@ Histogram ground_in_tile(const std::vector<const TerrainMap::Page*>& layers, std
         std::vector<float> heights = tile_of(*layer, tile);
         for (std::size_t cell = 0; cell < tile_cells; ++cell) {
             const bool is_low = !above.empty() && above[cell] - heights[cell] < room;
-            if (!std::isnan(heights[cell]) && !is_low) bins.push_back(std::int64_t(std::round(double(heights[cell]) / step)));
+            if (!std::isnan(heights[cell]) && !is_low)
+                bins.push_back(std::int64_t(std::round(double(heights[cell]) / step)));
         }
         above = std::move(heights);
     }
@@ -73,7 +74,8 @@ Histogram ground_of(const TerrainMap& terrain, double room, int threads)
     std::vector<const TerrainMap::Page*> layers;
     for (int k = 0; k < terrain.layers(); ++k) layers.push_back(terrain.find("height." + std::to_string(k)));
     std::vector<Histogram> tiles(std::size_t(terrain.tile_rows()) * std::size_t(terrain.tile_cols()));
-    parallel_for(tiles.size(), threads, {}, [&](std::size_t tile) { tiles[tile] = ground_in_tile(layers, tile, room); });
+    parallel_for(tiles.size(), threads, {},
+                 [&](std::size_t tile) { tiles[tile] = ground_in_tile(layers, tile, room); });
     Histogram sum;
     for (const Histogram& tile : tiles)
         for (const auto& [bin, cells] : tile) sum[bin] += cells;
@@ -89,16 +91,23 @@ public:
         for (const auto& [bin, cells] : counts) {
             bins_.push_back(bin);
             sums_.push_back(total() + cells);
-            for (int by = -smoothing; by <= smoothing; ++by) density[bin + by] += cells * std::uint64_t(smoothing + 1 - std::abs(by));
+            for (int by = -smoothing; by <= smoothing; ++by)
+                density[bin + by] += cells * std::uint64_t(smoothing + 1 - std::abs(by));
         }
         density_.assign(density.begin(), density.end());
     }
 
     std::uint64_t total() const { return sums_.empty() ? 0 : sums_.back(); }
-    std::int64_t median() const { return bins_[std::size_t(std::lower_bound(sums_.begin(), sums_.end(), (total() + 1) / 2) - sums_.begin())]; }
+    std::int64_t median() const
+    {
+        return bins_[std::size_t(std::lower_bound(sums_.begin(), sums_.end(), (total() + 1) / 2) - sums_.begin())];
+    }
 
     /// Cells whose bins are first .. last.
-    std::uint64_t cells_in(std::int64_t first, std::int64_t last) const { return cells_below(last + 1) - cells_below(first); }
+    std::uint64_t cells_in(std::int64_t first, std::int64_t last) const
+    {
+        return cells_below(last + 1) - cells_below(first);
+    }
 
     std::uint64_t flat_cells(std::int64_t peak) const
     {
@@ -111,9 +120,11 @@ public:
     {
         std::vector<std::size_t> candidates, chosen;
         for (std::size_t i = 0; i < density_.size(); ++i)
-            if (density_at(i, -1) < density_[i].second && density_at(i, 1) <= density_[i].second && double(flat_cells(density_[i].first)) >= least)
+            if (density_at(i, -1) < density_[i].second && density_at(i, 1) <= density_[i].second &&
+                double(flat_cells(density_[i].first)) >= least)
                 candidates.push_back(i);
-        std::stable_sort(candidates.begin(), candidates.end(), [&](std::size_t a, std::size_t b) { return density_[a].second > density_[b].second; });
+        std::stable_sort(candidates.begin(), candidates.end(),
+                         [&](std::size_t a, std::size_t b) { return density_[a].second > density_[b].second; });
         for (const std::size_t peak : candidates) {
             const auto above = std::lower_bound(chosen.begin(), chosen.end(), peak);
             if (above != chosen.end() && !has_valley(peak, *above, peak)) continue;
@@ -147,9 +158,9 @@ private:
         return false;
     }
 
-    std::vector<std::int64_t> bins_;                                   ///< with ground, rising
-    std::vector<std::uint64_t> sums_;                                  ///< cells up to and with each of bins_
-    std::vector<std::pair<std::int64_t, std::uint64_t>> density_;      ///< bins with some, rising
+    std::vector<std::int64_t> bins_;                               ///< with ground, rising
+    std::vector<std::uint64_t> sums_;                              ///< cells up to and with each of bins_
+    std::vector<std::pair<std::int64_t, std::uint64_t>> density_;  ///< bins with some, rising
 };
 
 double height_of(std::int64_t bin) { return double(bin) * step; }
@@ -165,7 +176,8 @@ std::vector<Floor> floors_at(const std::vector<std::int64_t>& peaks, const Groun
         if (k > 0) floor.z.low = out.back().z.high + 4 * touch_tolerance;  // so that no layer is in both
         const bool is_top = k + 1 == peaks.size();
         if (!is_top) floor.z.high = (height_of(peaks[k]) + height_of(peaks[k + 1])) / 2;
-        const std::int64_t last = is_top ? std::numeric_limits<std::int64_t>::max() / 2 : std::int64_t(std::floor(double(peaks[k] + peaks[k + 1]) / 2));
+        const std::int64_t last = is_top ? std::numeric_limits<std::int64_t>::max() / 2
+                                         : std::int64_t(std::floor(double(peaks[k] + peaks[k + 1]) / 2));
         const double cells = double(ground.cells_in(first, last));
         floor.area = cells * cell_area;
         floor.share = cells / double(ground.total());
@@ -176,7 +188,8 @@ std::vector<Floor> floors_at(const std::vector<std::int64_t>& peaks, const Groun
 }
 
 /// The peak whose ground is least flat, if that is not flat enough.
-std::optional<std::size_t> least_flat(const std::vector<std::int64_t>& peaks, const std::vector<Floor>& floors, const GroundHeights& ground)
+std::optional<std::size_t> least_flat(const std::vector<std::int64_t>& peaks, const std::vector<Floor>& floors,
+                                      const GroundHeights& ground)
 {
     std::optional<std::size_t> worst;
     double least = least_flat_share;

@@ -38,7 +38,8 @@ std::string written_head(const Geometry::Impl& geometry)
         out.put_text(part.name);
         out.put_text(part.kind);
         out.put(std::uint32_t(part.label));
-        for (const std::uint32_t n : {part.solid_pieces, part.sheet_pieces, part.open_edges, part.triangles}) out.put(n);
+        for (const std::uint32_t n : {part.solid_pieces, part.sheet_pieces, part.open_edges, part.triangles})
+            out.put(n);
     }
     return out.take();
 }
@@ -54,7 +55,8 @@ void read_parts(BinaryReader& in, Geometry::Impl& geometry)
         part.name = in.get_text();
         part.kind = in.get_text();
         part.label = Label(std::min(in.get<std::uint32_t>(), std::uint32_t(Label::Ignore)));
-        for (std::uint32_t* n : {&part.solid_pieces, &part.sheet_pieces, &part.open_edges, &part.triangles}) *n = in.get<std::uint32_t>();
+        for (std::uint32_t* n : {&part.solid_pieces, &part.sheet_pieces, &part.open_edges, &part.triangles})
+            *n = in.get<std::uint32_t>();
         geometry.parts.push_back(std::move(part));
     }
 }
@@ -63,9 +65,12 @@ void read_parts(BinaryReader& in, Geometry::Impl& geometry)
 bool is_consistent(const Geometry::Impl& geometry)
 {
     for (const TileLevel& level : geometry.levels) {
-        if (!(level.cell > 0) || level.tiles.size() != std::uint64_t{level.cols} * level.rows || level.tiles.empty()) return false;
+        if (!(level.cell > 0) || level.tiles.size() != std::uint64_t{level.cols} * level.rows || level.tiles.empty())
+            return false;
         for (const TileEntry& tile : level.tiles)
-            if (tile.offset % 8 != 0 || tile.offset > geometry.bytes.view.size() || tile.size > geometry.bytes.view.size() - tile.offset) return false;
+            if (tile.offset % 8 != 0 || tile.offset > geometry.bytes.view.size() ||
+                tile.size > geometry.bytes.view.size() - tile.offset)
+                return false;
     }
     return true;
 }

@@ -23,18 +23,21 @@ void check_size(const fs::path& folder, const ListedFile& file)
     if (error) throw FileError((folder / file.name).string(), "is missing; bake the map again");
     if (bytes != file.bytes)
         throw FileError((folder / file.name).string(), "has " + std::to_string(bytes) + " bytes, map.yaml says " +
-                                                           std::to_string(file.bytes) + ": it was cut short or altered; bake the map again");
+                                                           std::to_string(file.bytes) +
+                                                           ": it was cut short or altered; bake the map again");
 }
 
 void check_sum(const fs::path& folder, const ListedFile& file)
 {
     if (checksum(read_file(folder / file.name)) != file.checksum)
-        throw FileError((folder / file.name).string(), "differs from its checksum in map.yaml: it was altered; bake the map again");
+        throw FileError((folder / file.name).string(),
+                        "differs from its checksum in map.yaml: it was altered; bake the map again");
 }
 
 const ListedFile& listed(const MapYaml& yaml, const std::string& name)
 {
-    const auto file = std::find_if(yaml.files.begin(), yaml.files.end(), [&](const ListedFile& f) { return f.name == name; });
+    const auto file = std::find_if(yaml.files.begin(), yaml.files.end(),
+                                   [&](const ListedFile& f) { return f.name == name; });
     if (file == yaml.files.end()) throw FileError((yaml.map.folder / "map.yaml").string(), "files lists no " + name);
     return *file;
 }
@@ -57,8 +60,9 @@ TerrainMap read_terrain(const Map& map)
     check_size(map.folder, listed(yaml, "terrain.tiff"));
     check_sum(map.folder, listed(yaml, "terrain.tiff"));
     TerrainMap terrain = read_terrain_file(file, yaml.frame);
-    const bool same = std::equal(terrain.pages.begin(), terrain.pages.end(), yaml.pages.begin(), yaml.pages.end(),
-                                 [](const TerrainMap::Page& page, const std::string& name) { return page.name == name; });
+    const bool same = std::equal(
+        terrain.pages.begin(), terrain.pages.end(), yaml.pages.begin(), yaml.pages.end(),
+        [](const TerrainMap::Page& page, const std::string& name) { return page.name == name; });
     if (!same) throw FileError(file.string(), "has other pages than map.yaml names; bake the map again");
     return terrain;
 }

@@ -57,7 +57,8 @@ std::string label_counts(const LabelCounts& counts)
 {
     std::string out;
     for (std::size_t label = 0; label < counts.size(); ++label)
-        out += std::string("  ") + to_string(Label(label)) + ": {triangles: " + std::to_string(counts[label].triangles) +
+        out += std::string("  ") + to_string(Label(label)) +
+               ": {triangles: " + std::to_string(counts[label].triangles) +
                ", primitives: " + std::to_string(counts[label].primitives) + "}\n";
     return out;
 }
@@ -67,7 +68,8 @@ std::string file_lines(const fs::path& folder)
     std::string out;
     for (const char* const name : map_files) {
         const std::string bytes = read_file(folder / name);
-        out += std::string("  ") + name + ": {bytes: " + std::to_string(bytes.size()) + ", xxh64: \"" + checksum(bytes) + "\"";
+        out += std::string("  ") + name + ": {bytes: " + std::to_string(bytes.size()) + ", xxh64: \"" +
+               checksum(bytes) + "\"";
         if (const std::string head = head_checksum(bytes); !head.empty()) out += ", head_xxh64: \"" + head + "\"";
         out += "}\n";
     }
@@ -102,12 +104,17 @@ std::string origin_text(const GeoOrigin& origin)
     return "{x: " + number(origin.x) + ", y: " + number(origin.y) + ", unit: " + number(origin.unit) + crs + "}";
 }
 
-GeoOrigin read_origin(const YamlMap& map) { return {map.finite("x"), map.finite("y"), map.positive("unit"), map.text("crs", "")}; }
+GeoOrigin read_origin(const YamlMap& map)
+{
+    return {map.finite("x"), map.finite("y"), map.positive("unit"), map.text("crs", "")};
+}
 
 /// Limits that are infinite as YAML 1.2 has them.
 std::string z_text(const ZRange& z)
 {
-    const auto limit = [](double value) { return std::isfinite(value) ? number(value) : std::string(value < 0 ? "-.inf" : ".inf"); };
+    const auto limit = [](double value) {
+        return std::isfinite(value) ? number(value) : std::string(value < 0 ? "-.inf" : ".inf");
+    };
     return "[" + limit(z.low) + ", " + limit(z.high) + "]";
 }
 
@@ -129,7 +136,8 @@ std::string floor_lines(const std::vector<Floor>& floors)
     if (floors.empty()) return " []\n";
     std::string out = "\n";
     for (const Floor& floor : floors)
-        out += "  - {height: " + number(floor.height) + ", z: " + z_text(floor.z) + ", area: " + number(floor.area) + ", share: " + number(floor.share) + "}\n";
+        out += "  - {height: " + number(floor.height) + ", z: " + z_text(floor.z) + ", area: " + number(floor.area) +
+               ", share: " + number(floor.share) + "}\n";
     return out;
 }
 
@@ -168,8 +176,9 @@ int version_of(const fs::path& file, const std::string& text)
     const std::string found = text.substr(at + format_prefix.size(), text.find('\n') - at - format_prefix.size());
     if (found == std::to_string(map_format_version)) return map_format_version;
     if (found == std::to_string(oldest_format)) return oldest_format;
-    throw FileError(file.string(), "has format version " + found + ", this program reads " + std::to_string(oldest_format) + " and " +
-                                       std::to_string(map_format_version) + "; bake the map again or use a newer spawnfield");
+    throw FileError(file.string(), "has format version " + found + ", this program reads " +
+                                       std::to_string(oldest_format) + " and " + std::to_string(map_format_version) +
+                                       "; bake the map again or use a newer spawnfield");
 }
 
 /// For what is given as a map and is not a folder.
@@ -188,7 +197,8 @@ int version_of(const fs::path& file, const std::string& text)
 
 }  // namespace
 
-std::string write_map_yaml(const fs::path& folder, const Map& map, const TerrainMap& terrain, std::pair<double, double> heightmap_range)
+std::string write_map_yaml(const fs::path& folder, const Map& map, const TerrainMap& terrain,
+                           std::pair<double, double> heightmap_range)
 {
     const GridFrame& frame = terrain.frame;
     std::string text = "format: " + format_prefix + std::to_string(map_format_version) + "\n";
@@ -197,21 +207,27 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
     text += "libraries: " + libraries() + "\n";
     text += "scene: {file: " + quoted(map.scene_file) + ", xxh64: \"" + map.scene_hash + "\"}\n";
     text += "# metres, x forward, y left, z up\n";
-    text += "bounds: {min: " + list_of({map.bounds.min.x(), map.bounds.min.y(), map.bounds.min.z()}) + ", max: " +
-            list_of({map.bounds.max.x(), map.bounds.max.y(), map.bounds.max.z()}) + "}\n";
+    text += "bounds: {min: " + list_of({map.bounds.min.x(), map.bounds.min.y(), map.bounds.min.z()}) +
+            ", max: " + list_of({map.bounds.max.x(), map.bounds.max.y(), map.bounds.max.z()}) + "}\n";
     if (!map.z_limits.is_unlimited())
-        text += "# poses beyond these heights are outside, layers beyond them are no ground\nz_limits: " + z_text(map.z_limits) + "\n";
+        text += "# poses beyond these heights are outside, layers beyond them are no ground\nz_limits: " +
+                z_text(map.z_limits) + "\n";
     text += "resolution: " + number(map.resolution) + "\n";
     text += "occupancy_resolution: " + number(map.occupancy_resolution) + "\n";
     text += "# of every image: row 0 is the largest y, column 0 the smallest x; x0, y0 is the lower left corner\n";
     text += "frame: {x0: " + number(frame.x0) + ", y0: " + number(frame.y0) + ", cell: " + number(frame.cell) +
             ", rows: " + std::to_string(frame.rows) + ", cols: " + std::to_string(frame.cols) + "}\n";
-    if (map.origin) text += "# survey coordinates of 0, 0, in units of so many metres\norigin: " + origin_text(*map.origin) + "\n";
+    if (map.origin)
+        text += "# survey coordinates of 0, 0, in units of so many metres\norigin: " + origin_text(*map.origin) + "\n";
     text += "layers: " + std::to_string(map.layers) + "\n";
-    text += "# from the lowest up: z has the layers that belong to it, area is m2 of ground, share is of all ground\nfloors:" + floor_lines(*map.floors);
+    text +=
+        "# from the lowest up: z has the layers that belong to it, area is m2 of ground, share is of all "
+        "ground\nfloors:" +
+        floor_lines(*map.floors);
     text += "terrain:  # pages of terrain.tiff, float32 metres, NaN: nothing\n";
     for (const TerrainMap::Page& page : terrain.pages) text += "  - " + page.name + "\n";
-    text += "heightmap: {z: " + list_of({heightmap_range.first, heightmap_range.second}) + ", no_terrain: 0}  # of pixels 0 and 65535\n";
+    text += "heightmap: {z: " + list_of({heightmap_range.first, heightmap_range.second}) +
+            ", no_terrain: 0}  # of pixels 0 and 65535\n";
     text += "labels:\n" + label_counts(map.geometry.labels());
     text += "files:\n" + file_lines(folder);
     const std::string hash = checksum(text);
@@ -224,7 +240,8 @@ MapYaml read_map_yaml(const fs::path& folder)
     std::error_code unreachable;
     if (!fs::is_directory(folder, unreachable)) refuse_as_map(folder);
     const fs::path file = folder / "map.yaml";
-    if (!fs::is_regular_file(file)) throw FileError(folder.string(), "is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
+    if (!fs::is_regular_file(file))
+        throw FileError(folder.string(), "is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
     const std::string text = read_file(file);
     const int format = version_of(file, text);
     MapYaml out;
@@ -246,7 +263,8 @@ MapYaml read_map_yaml(const fs::path& folder)
     const YamlMap files = root.map("files");
     for (const std::string& name : files.keys()) {
         const YamlMap entry = files.map(name);
-        out.files.push_back({name, entry.text("xxh64"), entry.text("head_xxh64", ""), std::uintmax_t(entry.finite("bytes"))});
+        out.files.push_back(
+            {name, entry.text("xxh64"), entry.text("head_xxh64", ""), std::uintmax_t(entry.finite("bytes"))});
     }
     return out;
 }

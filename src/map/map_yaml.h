@@ -4,9 +4,10 @@
 
 namespace spawnfield {
 
-/// map.yaml of a folder whose other files are written: what they are, their sizes and checksums. Returns the map's hash.
+/// map.yaml of a folder whose other files are written: what they are, their sizes and checksums. Returns the map's
+/// hash.
 std::string write_map_yaml(const std::filesystem::path& folder, const Map& map, const TerrainMap& terrain,
-                    std::pair<double, double> heightmap_range);
+                           std::pair<double, double> heightmap_range);
 
 /// A file of the map as map.yaml lists it.
 struct ListedFile {

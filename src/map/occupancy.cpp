@@ -32,9 +32,11 @@ VoxelBox voxels_in(const Bounds& bounds, double resolution)
         const double low = std::floor(bounds.min[axis] / resolution + 1e-9);
         const double high = std::max(low, std::ceil(bounds.max[axis] / resolution - 1e-9) - 1);
         if (!(low >= -key_offset && high < key_offset))
-            throw ArgumentError("build_occupancy", "occupancy resolution", resolution,
-                                "at least " + number(std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis])) / (key_offset - 1)) +
-                                    " m here (OctoMap reaches 32768 voxels from the origin)");
+            throw ArgumentError(
+                "build_occupancy", "occupancy resolution", resolution,
+                "at least " +
+                    number(std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis])) / (key_offset - 1)) +
+                    " m here (OctoMap reaches 32768 voxels from the origin)");
         box.low[axis] = int(low);
         box.high[axis] = int(high);
     }
@@ -56,8 +58,10 @@ void append(Profile& profile, int end, Content content)
 {
     const int from = profile.empty() ? 0 : profile.back().end;
     if (end <= from) return;
-    if (!profile.empty() && profile.back().content == content) profile.back().end = end;
-    else profile.push_back({end, content});
+    if (!profile.empty() && profile.back().content == content)
+        profile.back().end = end;
+    else
+        profile.push_back({end, content});
 }
 
 /// Columns of cubes with a side of 2^level voxels, over a rectangle; beyond it is the unknown. Counted in cubes from
@@ -80,7 +84,8 @@ public:
     Content at(int x, int y, int z) const
     {
         const auto column = at(x, y);
-        return std::upper_bound(column.begin(), column.end(), z, [](int at, const Stretch& s) { return at < s.end; })->content;
+        return std::upper_bound(column.begin(), column.end(), z, [](int at, const Stretch& s) { return at < s.end; })
+            ->content;
     }
 
     void add(std::span<const Stretch> column)  ///< row after row
@@ -138,7 +143,8 @@ private:
 };
 
 /// Profiles of the voxel columns of a part of the box, from its i0-th and j0-th on.
-Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double resolution, int i0, int j0, int cols, int rows)
+Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double resolution, int i0, int j0, int cols,
+                        int rows)
 {
     const CellBlock block{(box.low[0] + i0) * resolution, (box.low[1] + j0) * resolution, resolution, cols, rows};
     const CellSpans surfaces(geometry, block);
@@ -163,11 +169,14 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
             runs.clear();
             surfaces.get(block.id(i, j), touching);
             for (const Interval& span : touching)  // voxels, as closed boxes, that it touches
-                add(voxel(std::ceil((span.bottom - touch_tolerance) / resolution) - 1), voxel(std::floor((span.top + touch_tolerance) / resolution)));
+                add(voxel(std::ceil((span.bottom - touch_tolerance) / resolution) - 1),
+                    voxel(std::floor((span.top + touch_tolerance) / resolution)));
             if (may_be_filled)
                 for (const Span& span : centres.at(i, j).spans)  // voxels whose centres are in it
-                    add(voxel(std::ceil(span.bottom / resolution - 0.5)), voxel(std::floor(span.top / resolution - 0.5)));
-            if (runs.size() > 1) std::sort(runs.begin(), runs.end(), [](const Run& l, const Run& r) { return l.low < r.low; });
+                    add(voxel(std::ceil(span.bottom / resolution - 0.5)),
+                        voxel(std::floor(span.top / resolution - 0.5)));
+            if (runs.size() > 1)
+                std::sort(runs.begin(), runs.end(), [](const Run& l, const Run& r) { return l.low < r.low; });
             profile.clear();
             append(profile, box.low[2] + key_offset, Content::Unknown);
             for (const Run& run : runs) {
@@ -181,15 +190,15 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
     return out;
 }
 
-/// A tree as a .bt file has it: of each inner node two bits for each of its children, then those children that are inner
-/// nodes themselves.
+/// A tree as a .bt file has it: of each inner node two bits for each of its children, then those children that are
+/// inner nodes themselves.
 struct TreeBytes {
     std::string nodes;
     std::size_t inner = 1, leaves = 0;  ///< the root is inner
 };
 
-/// Writes what is under a cube that is Mixed. `levels` ends with the profiles of its level; what is under Mixed cubes of
-/// levels[0] comes from `under`.
+/// Writes what is under a cube that is Mixed. `levels` ends with the profiles of its level; what is under Mixed cubes
+/// of levels[0] comes from `under`.
 template <class Under>
 void write_cube(std::span<const Profiles> levels, int x, int y, int z, const Under& under, TreeBytes& out)
 {
@@ -201,14 +210,17 @@ void write_cube(std::span<const Profiles> levels, int x, int y, int z, const Und
         const Content content = below.at(2 * x + (child & 1), 2 * y + (child >> 1 & 1), 2 * z + (child >> 2));
         contents[std::size_t(child)] = content;
         bits |= unsigned(content) << (2 * child);
-        if (content == Content::Mixed) ++out.inner;
-        else if (content != Content::Unknown) ++out.leaves;
+        if (content == Content::Mixed)
+            ++out.inner;
+        else if (content != Content::Unknown)
+            ++out.leaves;
     }
     out.nodes += char(bits & 0xff);
     out.nodes += char(bits >> 8);
     for (int child = 0; child < 8; ++child)
         if (contents[std::size_t(child)] == Content::Mixed)
-            write_cube(levels.first(levels.size() - 1), 2 * x + (child & 1), 2 * y + (child >> 1 & 1), 2 * z + (child >> 2), under, out);
+            write_cube(levels.first(levels.size() - 1), 2 * x + (child & 1), 2 * y + (child >> 1 & 1),
+                       2 * z + (child >> 2), under, out);
 }
 
 /// Cubes with a side of 2^block_level voxels, one over the other.
@@ -223,7 +235,8 @@ Tower build_tower(const Geometry& geometry, const VoxelBox& box, double resoluti
     constexpr int side = 1 << block_level;
     const auto part = [&](int axis, int cube) {  // of the box's voxels: the first, and how many
         const int low = std::max(0, cube * side - key_offset - box.low[std::size_t(axis)]);
-        const int end = std::min(box.high[std::size_t(axis)] + 1, (cube + 1) * side - key_offset) - box.low[std::size_t(axis)];
+        const int end = std::min(box.high[std::size_t(axis)] + 1, (cube + 1) * side - key_offset) -
+                        box.low[std::size_t(axis)];
         return std::pair{low, end - low};
     };
     const auto [i0, cols] = part(0, x);
@@ -238,15 +251,18 @@ Tower build_tower(const Geometry& geometry, const VoxelBox& box, double resoluti
             if (stretch.content == Content::Mixed) {
                 TreeBytes& cube = tower.cubes[z];
                 cube.inner = 0;
-                write_cube(std::span<const Profiles>(levels), x, y, z, [](int, int, int, TreeBytes&) {}, cube);
+                write_cube(
+                    std::span<const Profiles>(levels), x, y, z, [](int, int, int, TreeBytes&) {}, cube);
             }
     }
     return tower;
 }
 
-TreeBytes build_tree(const Geometry& geometry, const Bounds& bounds, double resolution, int threads, const Progress& progress)
+TreeBytes build_tree(const Geometry& geometry, const Bounds& bounds, double resolution, int threads,
+                     const Progress& progress)
 {
-    if (!(resolution > 0) || !std::isfinite(resolution)) throw ArgumentError("build_occupancy", "resolution", resolution, "> 0 m");
+    if (!(resolution > 0) || !std::isfinite(resolution))
+        throw ArgumentError("build_occupancy", "resolution", resolution, "> 0 m");
     const VoxelBox box = voxels_in(bounds, resolution);
     const auto cube_of = [&](int voxel) { return (voxel + key_offset) >> block_level; };
     const int x0 = cube_of(box.low[0]), y0 = cube_of(box.low[1]);
@@ -259,21 +275,23 @@ TreeBytes build_tree(const Geometry& geometry, const Bounds& bounds, double reso
     for (const Tower& tower : towers) levels.back().add(tower.profile);
     while (levels.back().level() < depth) levels.push_back(levels.back().halved());
     TreeBytes out;
-    write_cube(std::span<const Profiles>(levels), 0, 0, 0,
-               [&](int x, int y, int z, TreeBytes& tree) {
-                   const TreeBytes& cube = towers[std::size_t(y - y0) * std::size_t(cols) + std::size_t(x - x0)].cubes.at(z);
-                   tree.nodes += cube.nodes;
-                   tree.inner += cube.inner;
-                   tree.leaves += cube.leaves;
-               },
-               out);
+    write_cube(
+        std::span<const Profiles>(levels), 0, 0, 0,
+        [&](int x, int y, int z, TreeBytes& tree) {
+            const TreeBytes& cube = towers[std::size_t(y - y0) * std::size_t(cols) + std::size_t(x - x0)].cubes.at(z);
+            tree.nodes += cube.nodes;
+            tree.inner += cube.inner;
+            tree.leaves += cube.leaves;
+        },
+        out);
     return out;
 }
 
 /// A whole .bt file. octomap's own writeBinary tells standard error about it, so its header is written here.
 std::string bt_file(double resolution, std::size_t size, const std::string& nodes)
 {
-    return "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid OcTree\nsize " +
+    return "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as it "
+           "is!)\n#\nid OcTree\nsize " +
            std::to_string(size) + "\nres " + number(resolution) + "\ndata\n" + nodes;
 }
 
@@ -300,8 +318,8 @@ void OccupancyTree::write(const std::filesystem::path& file) const
     write_file_atomically(file, bt_file(resolution(), impl_->tree->size(), nodes.str()));
 }
 
-OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution,
-                              int threads, const Progress& progress)
+OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution, int threads,
+                              const Progress& progress)
 {
     const TreeBytes bytes = build_tree(geometry, bounds, resolution, threads, progress);
     std::istringstream nodes(bytes.nodes, std::ios::binary);
@@ -312,8 +330,8 @@ OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, do
     return OccupancyTree(std::move(impl));
 }
 
-std::size_t write_occupancy(const std::filesystem::path& file, const Geometry& geometry, const Bounds& bounds, double resolution, int threads,
-                            const Progress& progress)
+std::size_t write_occupancy(const std::filesystem::path& file, const Geometry& geometry, const Bounds& bounds,
+                            double resolution, int threads, const Progress& progress)
 {
     const TreeBytes tree = build_tree(geometry, bounds, resolution, threads, progress);
     write_file_atomically(file, bt_file(resolution, tree.inner + tree.leaves, tree.nodes));

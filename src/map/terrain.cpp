@@ -33,8 +33,9 @@ struct TilePages {
 class TileRaster {
 public:
     TileRaster(const Geometry& geometry, const GridFrame& frame, const ZRange& z_limits, int tile_row, int tile_col)
-        : geometry_(geometry), frame_(frame), z_limits_(z_limits), row0_(tile_row * TerrainMap::tile), col0_(tile_col * TerrainMap::tile),
-          rows_(std::min(TerrainMap::tile, frame.rows - row0_)), cols_(std::min(TerrainMap::tile, frame.cols - col0_))
+        : geometry_(geometry), frame_(frame), z_limits_(z_limits), row0_(tile_row * TerrainMap::tile),
+          col0_(tile_col * TerrainMap::tile), rows_(std::min(TerrainMap::tile, frame.rows - row0_)),
+          cols_(std::min(TerrainMap::tile, frame.cols - col0_))
     {
     }
 
@@ -45,7 +46,8 @@ public:
         for (int j0 = 0; j0 < rows_; j0 += part)  // upwards in y, as the block counts
             for (int i0 = 0; i0 < cols_; i0 += part) {
                 const int rows = std::min(part, rows_ - j0), cols = std::min(part, cols_ - i0);
-                const Columns centres(geometry_, {frame_.x0, frame_.y0, frame_.cell, col0_ + i0, first_row + j0, cols, rows, 0.5});
+                const Columns centres(geometry_,
+                                      {frame_.x0, frame_.y0, frame_.cell, col0_ + i0, first_row + j0, cols, rows, 0.5});
                 for (int j = 0; j < rows; ++j)
                     for (int i = 0; i < cols; ++i) add_cell(rows_ - 1 - j0 - j, i0 + i, centres.at(i, j));
             }
@@ -60,7 +62,8 @@ private:
     void add_cell(int row, int col, const ColumnView& column)
     {
         const std::size_t cell = std::size_t(row) * TerrainMap::tile + std::size_t(col);
-        const std::span<const double> layers = heights_within(column.layers, z_limits_), water = heights_within(column.water, z_limits_);
+        const std::span<const double> layers = heights_within(column.layers, z_limits_),
+                                      water = heights_within(column.water, z_limits_);
         while (pages_.height.size() < layers.size()) pages_.height.emplace_back();
         for (std::size_t layer = 0; layer < layers.size(); ++layer) set(pages_.height[layer], cell, layers[layer]);
         if (!water.empty()) set(pages_.water, cell, water.front());
@@ -81,7 +84,8 @@ private:
 };
 
 /// Moves one page's tiles out of theirs, unless nothing is in any of them.
-void add_page(const std::string& name, std::vector<TilePages<std::string>>& tiles, bool even_if_empty, TerrainMap& out, const auto& stream_of)
+void add_page(const std::string& name, std::vector<TilePages<std::string>>& tiles, bool even_if_empty, TerrainMap& out,
+              const auto& stream_of)
 {
     TerrainMap::Page page{name, {}};
     bool any = even_if_empty;
@@ -99,13 +103,16 @@ void add_page(const std::string& name, std::vector<TilePages<std::string>>& tile
 GridFrame frame_around(const Bounds& bounds, double cell)
 {
     if (!(cell > 0) || !std::isfinite(cell)) throw ArgumentError("frame_around", "cell", cell, "> 0 m");
-    const auto count = [&](int axis) { return std::max(1.0, std::ceil((bounds.max[axis] - bounds.min[axis]) / cell - 1e-9)); };
+    const auto count = [&](int axis) {
+        return std::max(1.0, std::ceil((bounds.max[axis] - bounds.min[axis]) / cell - 1e-9));
+    };
     const double cols = count(0), rows = count(1);
     if (!(cols * rows <= max_columns))
         throw ArgumentError("frame_around", "columns at a cell of " + number(cell) + " m", cols * rows,
                             "at most " + number(max_columns) + "; take a coarser resolution");
     if (!(std::max(cols, rows) <= max_side))
-        throw ArgumentError("frame_around", "columns along one side at a cell of " + number(cell) + " m", std::max(cols, rows),
+        throw ArgumentError("frame_around", "columns along one side at a cell of " + number(cell) + " m",
+                            std::max(cols, rows),
                             "at most " + number(max_side) + " (PNG's limit); take a coarser resolution");
     return {bounds.min.x(), bounds.min.y(), cell, int(rows), int(cols)};
 }
@@ -130,8 +137,10 @@ HeightImage page_image(const TerrainMap& terrain, const std::string& name)
     for (std::size_t t = 0; t < page->tiles.size(); ++t) {
         if (page->tiles[t] == empty_tile()) continue;
         inflate_floats(page->tiles[t], TerrainMap::tile, {tile.data(), tile_cells});
-        const int row = int(t) / terrain.tile_cols() * TerrainMap::tile, col = int(t) % terrain.tile_cols() * TerrainMap::tile;
-        const int rows = std::min(TerrainMap::tile, terrain.frame.rows - row), cols = std::min(TerrainMap::tile, terrain.frame.cols - col);
+        const int row = int(t) / terrain.tile_cols() * TerrainMap::tile,
+                  col = int(t) % terrain.tile_cols() * TerrainMap::tile;
+        const int rows = std::min(TerrainMap::tile, terrain.frame.rows - row),
+                  cols = std::min(TerrainMap::tile, terrain.frame.cols - col);
         image.block(row, col, rows, cols) = tile.topLeftCorner(rows, cols);
     }
     return image;
@@ -152,18 +161,20 @@ HeightImage highest_within(const TerrainMap& terrain, const ZRange& z)
     return out;
 }
 
-TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads,
-                             const Progress& progress, const ZRange& z_limits)
+TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads, const Progress& progress,
+                             const ZRange& z_limits)
 {
     TerrainMap out;
     out.frame = frame;
     std::vector<TilePages<std::string>> tiles(std::size_t(out.tile_rows()) * std::size_t(out.tile_cols()));
-    parallel_for(tiles.size(), threads, progress,
-                 [&](std::size_t t) { tiles[t] = TileRaster(geometry, frame, z_limits, int(t) / out.tile_cols(), int(t) % out.tile_cols()).run(); });
+    parallel_for(tiles.size(), threads, progress, [&](std::size_t t) {
+        tiles[t] = TileRaster(geometry, frame, z_limits, int(t) / out.tile_cols(), int(t) % out.tile_cols()).run();
+    });
     std::size_t layers = 1;  // a page of heights even if there is no terrain
     for (const auto& tile : tiles) layers = std::max(layers, tile.height.size());
     for (std::size_t k = 0; k < layers; ++k)
-        add_page("height." + std::to_string(k), tiles, true, out, [&](auto& tile) { return k < tile.height.size() ? &tile.height[k] : nullptr; });
+        add_page("height." + std::to_string(k), tiles, true, out,
+                 [&](auto& tile) { return k < tile.height.size() ? &tile.height[k] : nullptr; });
     add_page("water", tiles, false, out, [](auto& tile) { return &tile.water; });
     add_page("obstacle", tiles, false, out, [](auto& tile) { return &tile.obstacle; });
     return out;

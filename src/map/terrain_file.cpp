@@ -63,7 +63,8 @@ void write_terrain(const std::filesystem::path& file, const TerrainMap& terrain)
         set_tags(tiff.get(), terrain, page, p);
         for (std::size_t t = 0; good && t < page.tiles.size(); ++t) {
             std::string bytes = page.tiles[t];
-            good = TIFFWriteRawTile(tiff.get(), std::uint32_t(t), bytes.data(), tmsize_t(bytes.size())) == tmsize_t(bytes.size());
+            good = TIFFWriteRawTile(tiff.get(), std::uint32_t(t), bytes.data(), tmsize_t(bytes.size())) ==
+                   tmsize_t(bytes.size());
         }
         good = good && TIFFWriteDirectory(tiff.get()) == 1;
     }

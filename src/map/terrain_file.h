@@ -6,7 +6,8 @@
 
 namespace spawnfield {
 
-/// Multi-page TIFF of float32 tiles, deflated with predictor 3, one directory per page, its name as ImageDescription. Throws OutputError.
+/// Multi-page TIFF of float32 tiles, deflated with predictor 3, one directory per page, its name as ImageDescription.
+/// Throws OutputError.
 void write_terrain(const std::filesystem::path& file, const TerrainMap& terrain);
 
 /// Pages of such a file, without inflating them. Throws FileError.

@@ -25,19 +25,24 @@ std::string tiled_head(std::string_view magic, std::uint32_t version, const std:
     return out;
 }
 
-TiledFile open_tiled(const std::filesystem::path& file, std::string_view magic, std::uint32_t version, const std::string& head_sum)
+TiledFile open_tiled(const std::filesystem::path& file, std::string_view magic, std::uint32_t version,
+                     const std::string& head_sum)
 {
     const Bytes bytes = map_file(file);
     if (!bytes.view.starts_with(magic) || bytes.view.size() < fixed_size)
-        throw FileError(file.string(), "is not what map.yaml says (it does not start with " + std::string(magic) + "); bake the map again");
+        throw FileError(file.string(), "is not what map.yaml says (it does not start with " + std::string(magic) +
+                                           "); bake the map again");
     BinaryReader fixed(bytes.view.substr(magic.size()));
     if (const auto found = fixed.get<std::uint32_t>(); found != version)
-        throw FileError(file.string(), "has format version " + std::to_string(found) + ", this program reads " + std::to_string(version));
+        throw FileError(file.string(), "has format version " + std::to_string(found) + ", this program reads " +
+                                           std::to_string(version));
     fixed.get<std::uint32_t>();
     const auto size = fixed.get<std::uint64_t>();
-    if (size < fixed_size || size > bytes.view.size()) throw FileError(file.string(), "is cut short; bake the map again");
+    if (size < fixed_size || size > bytes.view.size())
+        throw FileError(file.string(), "is cut short; bake the map again");
     if (checksum(bytes.view.substr(0, size)) != head_sum)
-        throw FileError(file.string(), "is damaged (the checksum of its head differs from map.yaml's); bake the map again");
+        throw FileError(file.string(),
+                        "is damaged (the checksum of its head differs from map.yaml's); bake the map again");
     return {std::string(bytes.view.substr(fixed_size, size - fixed_size)), bytes.part(size, bytes.view.size() - size)};
 }
 

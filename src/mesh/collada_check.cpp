@@ -25,12 +25,15 @@ class NodeCheck {
 public:
     NodeCheck(const Xml& collada, const std::string& file) : file_(file)
     {
-        for (const Xml* library = collada.FirstChildElement("library_nodes"); library != nullptr; library = library->NextSiblingElement("library_nodes"))
-            for (const Xml* node = library->FirstChildElement("node"); node != nullptr; node = node->NextSiblingElement("node"))
+        for (const Xml* library = collada.FirstChildElement("library_nodes"); library != nullptr;
+             library = library->NextSiblingElement("library_nodes"))
+            for (const Xml* node = library->FirstChildElement("node"); node != nullptr;
+                 node = node->NextSiblingElement("node"))
                 library_[attribute_of(*node, "id")] = node;
         for (const Xml* library = collada.FirstChildElement("library_visual_scenes"); library != nullptr;
              library = library->NextSiblingElement("library_visual_scenes"))
-            for (const Xml* scene = library->FirstChildElement("visual_scene"); scene != nullptr; scene = scene->NextSiblingElement("visual_scene"))
+            for (const Xml* scene = library->FirstChildElement("visual_scene"); scene != nullptr;
+                 scene = scene->NextSiblingElement("visual_scene"))
                 scenes_["#" + attribute_of(*scene, "id")] = scene;
     }
 
@@ -52,15 +55,19 @@ private:
 
     FileError fault(const Xml& node, const std::string& what) const
     {
-        const std::string name = node.Attribute("name") != nullptr ? attribute_of(node, "name") : attribute_of(node, "id");
-        return FileError(file_, "line " + std::to_string(node.GetLineNum()) + ": <" + node.Name() + "> \"" + name + "\" " + what);
+        const std::string name = node.Attribute("name") != nullptr ? attribute_of(node, "name")
+                                                                   : attribute_of(node, "id");
+        return FileError(
+            file_, "line " + std::to_string(node.GetLineNum()) + ": <" + node.Name() + "> \"" + name + "\" " + what);
     }
 
     void add_names(const Xml& node)
     {
         for (const char* attribute : {"name", "id"})
             if (node.Attribute(attribute) != nullptr) named_.try_emplace(node.Attribute(attribute), &node);
-        for (const Xml* child = node.FirstChildElement("node"); child != nullptr; child = child->NextSiblingElement("node")) add_names(*child);
+        for (const Xml* child = node.FirstChildElement("node"); child != nullptr;
+             child = child->NextSiblingElement("node"))
+            add_names(*child);
     }
 
     /// As assimp looks for it: a library's node of that id, else the scene's first node of that id or name.
@@ -74,20 +81,25 @@ private:
 
     Size size_of(const Xml& node, int depth)
     {
-        if (depth > most_depth) throw fault(node, "is nested more than " + std::to_string(most_depth) + " deep, by <instance_node> too; merge nodes");
+        if (depth > most_depth)
+            throw fault(node, "is nested more than " + std::to_string(most_depth) +
+                                  " deep, by <instance_node> too; merge nodes");
         const auto [entry, is_new] = sizes_.try_emplace(&node);
         if (!is_new && entry->second.nodes == 0) throw fault(node, "holds itself: a circle of <instance_node>");
         if (!is_new && depth + entry->second.depth <= most_depth) return entry->second;
         Size size{1, 1};
         for (const Xml* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
             if (is_named(*child, "instance_geometry") || is_named(*child, "instance_controller")) ++size.nodes;
-            const Xml* const held = is_named(*child, "node") ? child : is_named(*child, "instance_node") ? target_of(*child) : nullptr;
+            const Xml* const held = is_named(*child, "node")            ? child
+                                    : is_named(*child, "instance_node") ? target_of(*child)
+                                                                        : nullptr;
             if (held == nullptr) continue;
             const Size of_held = size_of(*held, depth + 1);
             size.nodes += of_held.nodes;
             size.depth = std::max(size.depth, of_held.depth + 1);
             if (size.nodes > most_nodes)
-                throw fault(node, "comes to more than " + std::to_string(most_nodes) + " nodes by its <instance_node>s; merge nodes, or instance fewer");
+                throw fault(node, "comes to more than " + std::to_string(most_nodes) +
+                                      " nodes by its <instance_node>s; merge nodes, or instance fewer");
         }
         return sizes_[&node] = size;
     }
@@ -140,7 +152,8 @@ std::string check_collada(std::string_view bytes, const std::string& file)
     const tinyxml2::XMLError error = document.Parse(bytes.data(), bytes.size());
     const std::string line = "line " + std::to_string(document.ErrorLineNum()) + ": ";
     if (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED)
-        throw FileError(file, line + "elements are nested more than " + std::to_string(TINYXML2_MAX_ELEMENT_DEPTH) + " deep; merge nodes");
+        throw FileError(file, line + "elements are nested more than " + std::to_string(TINYXML2_MAX_ELEMENT_DEPTH) +
+                                  " deep; merge nodes");
     if (error != tinyxml2::XML_SUCCESS || bytes.find('\0') != std::string_view::npos) {
         std::string name = error == tinyxml2::XML_SUCCESS ? "it holds a byte 0" : lower_case(document.ErrorName());
         std::replace(name.begin(), name.end(), '_', ' ');

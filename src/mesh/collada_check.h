@@ -5,7 +5,8 @@
 
 namespace spawnfield {
 
-/// Whether assimp would read the file as COLLADA: by its ending (with dot, in lower case), or by its root element near the start.
+/// Whether assimp would read the file as COLLADA: by its ending (with dot, in lower case), or by its root element near
+/// the start.
 bool is_collada(std::string_view bytes, const std::string& extension);
 
 /// Refuses what assimp reads without looking and would crash, run on for ever, or make nonsense of. Throws FileError

@@ -55,14 +55,22 @@ public:
 private:
     void visit(const Xml& element)  // recursive: tinyxml2 has limited the depth
     {
-        if (is_named(element, "unit")) check_unit(element);
-        else if (is_named(element, "float_array")) check_array(element, true);
-        else if (is_named(element, "Name_array") || is_named(element, "IDREF_array")) check_array(element, false);
-        else if (is_named(element, "accessor")) accessors_.push_back(&element);
-        else if (is_named(element, "vertex_weights")) check_weights(element);
-        else if (const Shape* const shape = shape_of(element)) check_shape(element, *shape);
-        else if (is_named(element, "node")) check_transforms(element);
-        for (const Xml* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) visit(*child);
+        if (is_named(element, "unit"))
+            check_unit(element);
+        else if (is_named(element, "float_array"))
+            check_array(element, true);
+        else if (is_named(element, "Name_array") || is_named(element, "IDREF_array"))
+            check_array(element, false);
+        else if (is_named(element, "accessor"))
+            accessors_.push_back(&element);
+        else if (is_named(element, "vertex_weights"))
+            check_weights(element);
+        else if (const Shape* const shape = shape_of(element))
+            check_shape(element, *shape);
+        else if (is_named(element, "node"))
+            check_transforms(element);
+        for (const Xml* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
+            visit(*child);
     }
 
     struct Shape {
@@ -72,9 +80,15 @@ private:
     };
     static const Shape* shape_of(const Xml& element)
     {
-        static constexpr std::array<Shape, 7> shapes{{{"triangles", 3, 0}, {"polylist", 0, 0}, {"polygons", 0, 1}, {"trifans", 0, 3},
-                                                      {"tristrips", 0, 3}, {"lines", 0, 0}, {"linestrips", 0, 0}}};
-        const auto found = std::find_if(shapes.begin(), shapes.end(), [&](const Shape& shape) { return is_named(element, shape.name); });
+        static constexpr std::array<Shape, 7> shapes{{{"triangles", 3, 0},
+                                                      {"polylist", 0, 0},
+                                                      {"polygons", 0, 1},
+                                                      {"trifans", 0, 3},
+                                                      {"tristrips", 0, 3},
+                                                      {"lines", 0, 0},
+                                                      {"linestrips", 0, 0}}};
+        const auto found = std::find_if(shapes.begin(), shapes.end(),
+                                        [&](const Shape& shape) { return is_named(element, shape.name); });
         return found == shapes.end() ? nullptr : &*found;
     }
 
@@ -82,15 +96,20 @@ private:
     {
         return FileError(file_, "line " + std::to_string(element.GetLineNum()) + ": <" + element.Name() + "> " + what);
     }
-    static std::string quoted(std::string_view word) { return "\"" + std::string(word.substr(0, 40)) + (word.size() > 40 ? "…\"" : "\""); }
+    static std::string quoted(std::string_view word)
+    {
+        return "\"" + std::string(word.substr(0, 40)) + (word.size() > 40 ? "…\"" : "\"");
+    }
 
     /// The attribute as a whole number; `usual` where there is none.
-    std::uint64_t whole(const Xml& element, const char* attribute, std::uint64_t usual, std::uint64_t most = most_index) const
+    std::uint64_t whole(const Xml& element, const char* attribute, std::uint64_t usual,
+                        std::uint64_t most = most_index) const
     {
         const std::string text = attribute_of(element, attribute);
         std::uint64_t value = usual;
         if (element.Attribute(attribute) != nullptr && (!parse_index(trimmed(text), value) || value > most))
-            throw fault(element, std::string("has ") + attribute + " " + quoted(text) + ", needs a whole number of 0 .. " + std::to_string(most));
+            throw fault(element, std::string("has ") + attribute + " " + quoted(text) +
+                                     ", needs a whole number of 0 .. " + std::to_string(most));
         return value;
     }
 
@@ -104,8 +123,8 @@ private:
         for_each_word(element, [&](std::string_view word) {
             std::uint64_t value = 0;
             if (!parse_index(word, value) || value < least)
-                throw fault(element, "has " + quoted(word) + ", needs whole numbers of " + std::to_string(least) + " .. " + std::to_string(most_index) +
-                                         " with spaces between");
+                throw fault(element, "has " + quoted(word) + ", needs whole numbers of " + std::to_string(least) +
+                                         " .. " + std::to_string(most_index) + " with spaces between");
             ++found.count;
             found.sum += value;
         });
@@ -117,7 +136,8 @@ private:
         std::uint64_t count = 0;
         for_each_word(element, [&](std::string_view word) {
             double value = 0;
-            if (!parse_number(word, value)) throw fault(element, "has " + quoted(word) + ", needs numbers with spaces between");
+            if (!parse_number(word, value))
+                throw fault(element, "has " + quoted(word) + ", needs numbers with spaces between");
             ++count;
         });
         return count;
@@ -134,37 +154,47 @@ private:
     void check_array(const Xml& array, bool of_numbers)
     {
         std::uint64_t found = 0;
-        if (of_numbers) found = numbers(array);
-        else for_each_word(array, [&](std::string_view) { ++found; });
+        if (of_numbers)
+            found = numbers(array);
+        else
+            for_each_word(array, [&](std::string_view) { ++found; });
         if (const std::uint64_t count = whole(array, "count", 0); count != found)
-            throw fault(array, "has count " + std::to_string(count) + ", but holds " + std::to_string(found) + "; is the file damaged?");
+            throw fault(array, "has count " + std::to_string(count) + ", but holds " + std::to_string(found) +
+                                   "; is the file damaged?");
         sizes_[attribute_of(array, "id")] = found;
     }
 
     void check_accessor(const Xml& accessor) const
     {
-        const std::uint64_t count = whole(accessor, "count", 0), stride = whole(accessor, "stride", 1), offset = whole(accessor, "offset", 0);
+        const std::uint64_t count = whole(accessor, "count", 0), stride = whole(accessor, "stride", 1),
+                            offset = whole(accessor, "offset", 0);
         std::uint64_t params = 0;
-        for (const Xml* param = accessor.FirstChildElement("param"); param != nullptr; param = param->NextSiblingElement("param")) ++params;
+        for (const Xml* param = accessor.FirstChildElement("param"); param != nullptr;
+             param = param->NextSiblingElement("param"))
+            ++params;
         const std::string source = attribute_of(accessor, "source");
         const auto array = sizes_.find(source.empty() ? source : source.substr(1));
         if (array == sizes_.end() || count == 0) return;  // assimp looks for it, and says so if there is none
         const std::uint64_t needs = offset + (count - 1) * stride + std::max<std::uint64_t>(params, 1);
         if (needs > array->second)
-            throw fault(accessor, "takes " + std::to_string(needs) + " values (offset + (count - 1) stride + params) of " + quoted(source) +
+            throw fault(accessor, "takes " + std::to_string(needs) +
+                                      " values (offset + (count - 1) stride + params) of " + quoted(source) +
                                       ", which has " + std::to_string(array->second));
     }
 
     void check_weights(const Xml& weights) const
     {
         for (const char* name : {"vcount", "v"})
-            for (const Xml* child = weights.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name)) numbers(*child);
+            for (const Xml* child = weights.FirstChildElement(name); child != nullptr;
+                 child = child->NextSiblingElement(name))
+                numbers(*child);
     }
 
     void check_shape(const Xml& element, const Shape& shape) const
     {
         std::uint64_t stride = 1;
-        for (const Xml* input = element.FirstChildElement("input"); input != nullptr; input = input->NextSiblingElement("input"))
+        for (const Xml* input = element.FirstChildElement("input"); input != nullptr;
+             input = input->NextSiblingElement("input"))
             stride = std::max(stride, 1 + whole(*input, "offset", 0, 255));
         const std::uint64_t faces = whole(element, "count", 0);
         std::uint64_t wanted = faces * shape.corners * stride, found = 0;
@@ -179,8 +209,8 @@ private:
         check_corners(element, shape, stride, found);
         const bool counted = shape.corners > 0 || is_named(element, "polylist");
         if (counted && found != wanted)
-            throw fault(element, "has " + std::to_string(found) + " numbers in <p>, needs " + std::to_string(wanted) + " for its " + std::to_string(faces) +
-                                     " faces");
+            throw fault(element, "has " + std::to_string(found) + " numbers in <p>, needs " + std::to_string(wanted) +
+                                     " for its " + std::to_string(faces) + " faces");
     }
 
     /// All <p> and <h> in it, also those of <ph>.
@@ -191,8 +221,8 @@ private:
             if (is_named(*child, "p")) {
                 const std::uint64_t count = indices(*child).count;
                 if (count % stride != 0 || count / stride < shape.least)
-                    throw fault(*child, "has " + std::to_string(count) + " numbers, needs " + std::to_string(stride) + " for each corner and " +
-                                            std::to_string(shape.least) + " corners or more");
+                    throw fault(*child, "has " + std::to_string(count) + " numbers, needs " + std::to_string(stride) +
+                                            " for each corner and " + std::to_string(shape.least) + " corners or more");
                 found += count;
             } else {
                 check_corners(*child, shape, stride, found);
@@ -213,7 +243,7 @@ private:
 
     const std::string& file_;
     std::unordered_map<std::string, std::uint64_t> sizes_;  ///< of all arrays, by id
-    std::vector<const Xml*> accessors_;                      ///< an array may come after its accessor
+    std::vector<const Xml*> accessors_;                     ///< an array may come after its accessor
 };
 
 }  // namespace

@@ -20,7 +20,8 @@ using Json = nlohmann::json;
 constexpr std::size_t most_nested = 200, most_depth = 500;
 constexpr std::uint64_t most_used = 300000000;  // 100 million triangles
 
-/// What the text tells of them; nodes go by the names that others call them: their place in the list, or the key in glTF 1.0.
+/// What the text tells of them; nodes go by the names that others call them: their place in the list, or the key in
+/// glTF 1.0.
 struct Nodes {
     struct Node {
         std::string name;
@@ -29,7 +30,7 @@ struct Nodes {
     std::vector<Node> nodes;
     std::vector<std::vector<std::string>> scenes;  ///< the nodes that each of them begins with
     std::vector<std::uint64_t> counts;             ///< of accessors (glTF 2.0)
-    std::vector<std::uint64_t> used;               ///< accessors of vertices and corners, once for each primitive that names them
+    std::vector<std::uint64_t> used;  ///< accessors of vertices and corners, once for each primitive that names them
 };
 
 /// Takes nodes and scenes out of the text as it goes by; the rest, mostly data, is not kept.
@@ -43,7 +44,9 @@ public:
     bool number_integer(number_integer_t number) override { return value(std::to_string(number)); }
     bool number_unsigned(number_unsigned_t number) override
     {
-        const auto in = [&](std::size_t depth, const char* key) { return open_.size() == depth && !open_.back().array && open_.back().key == key; };
+        const auto in = [&](std::size_t depth, const char* key) {
+            return open_.size() == depth && !open_.back().array && open_.back().key == key;
+        };
         if (in(3, "count") && is_in("accessors")) found_.counts.back() = number;
         if ((in(5, "indices") || in(6, "POSITION")) && is_in("meshes")) found_.used.push_back(number);
         return value(std::to_string(number));
@@ -57,22 +60,26 @@ public:
     bool end_array() override { return close(); }
     bool key(string_t& name) override
     {
-        const auto again = [&](const char* list, bool& has) { return open_.size() == 1 && name == list && std::exchange(has, true); };
-        if (again("nodes", has_nodes_) || again("scenes", has_scenes_)) throw FileError(file_, "has \"" + name + "\" twice, needs it once");
+        const auto again = [&](const char* list, bool& has) {
+            return open_.size() == 1 && name == list && std::exchange(has, true);
+        };
+        if (again("nodes", has_nodes_) || again("scenes", has_scenes_))
+            throw FileError(file_, "has \"" + name + "\" twice, needs it once");
         open_.back().key = name;
         return true;
     }
     bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override
     {
         const std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: …"
-        throw FileError(file_, "cannot be read as a mesh: no valid JSON: " + what.substr(std::min(what.find("] ") + 2, what.size())));
+        throw FileError(file_, "cannot be read as a mesh: no valid JSON: " +
+                                   what.substr(std::min(what.find("] ") + 2, what.size())));
     }
 
 private:
     struct Open {
         bool array = false;
-        std::string key;         ///< of an object, the one that we are at
-        std::size_t index = 0;   ///< of an array, likewise
+        std::string key;        ///< of an object, the one that we are at
+        std::size_t index = 0;  ///< of an array, likewise
     };
 
     std::string name_in(const Open& list) const { return list.array ? std::to_string(list.index) : list.key; }
@@ -122,10 +129,12 @@ private:
 /// Each node has one parent at most, and is below one that has none.
 class TreeCheck {
 public:
-    TreeCheck(const Nodes& nodes, const std::string& file) : nodes_(nodes.nodes), file_(file), parents_(nodes_.size(), none)
+    TreeCheck(const Nodes& nodes, const std::string& file)
+        : nodes_(nodes.nodes), file_(file), parents_(nodes_.size(), none)
     {
         for (std::size_t n = 0; n < nodes_.size(); ++n)
-            if (!places_.try_emplace(nodes_[n].name, n).second) throw FileError(file, "nodes has \"" + nodes_[n].name + "\" twice");
+            if (!places_.try_emplace(nodes_[n].name, n).second)
+                throw FileError(file, "nodes has \"" + nodes_[n].name + "\" twice");
         for (std::size_t n = 0; n < nodes_.size(); ++n) add_children(n);
         for (std::size_t s = 0; s < nodes.scenes.size(); ++s) check_scene(s, nodes.scenes[s]);
         check_depth();
@@ -140,7 +149,8 @@ private:
     {
         const auto found = places_.find(name);
         if (found == places_.end())
-            throw FileError(file_, who + " has \"" + name.substr(0, 40) + "\", which is none of the " + std::to_string(nodes_.size()) + " nodes");
+            throw FileError(file_, who + " has \"" + name.substr(0, 40) + "\", which is none of the " +
+                                       std::to_string(nodes_.size()) + " nodes");
         return found->second;
     }
 
@@ -150,7 +160,8 @@ private:
         for (const std::string& name : nodes_[parent].children) {
             const std::size_t child = place(name, who + ".children");
             if (parents_[child] != none)
-                throw FileError(file_, called(name) + " is a child of " + called(nodes_[parents_[child]].name) + " and again of " + who +
+                throw FileError(file_, called(name) + " is a child of " + called(nodes_[parents_[child]].name) +
+                                           " and again of " + who +
                                            ", needs one parent; give each parent a node of its own");
             parents_[child] = parent;
         }
@@ -162,10 +173,11 @@ private:
         const std::string who = "scenes[" + std::to_string(scene) + "].nodes";
         for (const std::string& name : names) {
             const std::size_t node = place(name, who);
-            if (!seen.insert(node).second) throw FileError(file_, who + " has " + called(name) + " twice, needs it once");
+            if (!seen.insert(node).second)
+                throw FileError(file_, who + " has " + called(name) + " twice, needs it once");
             if (parents_[node] != none)
-                throw FileError(file_, who + " has " + called(name) + ", which is a child of " + called(nodes_[parents_[node]].name) +
-                                           ", needs nodes without a parent");
+                throw FileError(file_, who + " has " + called(name) + ", which is a child of " +
+                                           called(nodes_[parents_[node]].name) + ", needs nodes without a parent");
         }
     }
 
@@ -178,12 +190,15 @@ private:
         for (std::size_t depth = 1; !level.empty(); ++depth, level = std::exchange(next, {}))
             for (const std::size_t node : level) {
                 if (depth > most_depth)
-                    throw FileError(file_, called(nodes_[node].name) + " is nested more than " + std::to_string(most_depth) + " deep; merge nodes");
+                    throw FileError(file_, called(nodes_[node].name) + " is nested more than " +
+                                               std::to_string(most_depth) + " deep; merge nodes");
                 reached[node] = 1;
                 for (const std::string& child : nodes_[node].children) next.push_back(places_.at(child));
             }
         const auto lost = std::find(reached.begin(), reached.end(), 0);
-        if (lost != reached.end()) throw FileError(file_, called(nodes_[std::size_t(lost - reached.begin())].name) + " is below itself: a circle of children");
+        if (lost != reached.end())
+            throw FileError(file_, called(nodes_[std::size_t(lost - reached.begin())].name) +
+                                       " is below itself: a circle of children");
     }
 
     const std::vector<Nodes::Node>& nodes_;
@@ -192,15 +207,17 @@ private:
     std::vector<std::size_t> parents_;
 };
 
-/// assimp reads an accessor anew for each primitive that names it: few bytes of a file can come to any number of vertices.
+/// assimp reads an accessor anew for each primitive that names it: few bytes of a file can come to any number of
+/// vertices.
 void check_used(const Nodes& found, const std::string& file)
 {
     std::uint64_t left = most_used;
     for (const std::uint64_t accessor : found.used) {
         const std::uint64_t count = accessor < found.counts.size() ? found.counts[accessor] : 0;
         if (count > left)
-            throw FileError(file, "its primitives come to more than " + std::to_string(most_used) + " vertices and corners by their accessors, needs fewer; "
-                                  "instance meshes by nodes, or bake parts of it");
+            throw FileError(file, "its primitives come to more than " + std::to_string(most_used) +
+                                      " vertices and corners by their accessors, needs fewer; "
+                                      "instance meshes by nodes, or bake parts of it");
         left -= count;
     }
 }
@@ -214,7 +231,8 @@ std::string_view gltf_json(std::string_view bytes, const std::string& file)
     std::uint32_t size = 0;
     if (bytes.size() >= head) std::memcpy(&size, bytes.data() + 12, sizeof size);
     if (bytes.size() < head || size > bytes.size() - head)
-        throw FileError(file, "ends within its JSON (" + std::to_string(size) + " bytes of it are told, of the file there are " + std::to_string(bytes.size()) +
+        throw FileError(file, "ends within its JSON (" + std::to_string(size) +
+                                  " bytes of it are told, of the file there are " + std::to_string(bytes.size()) +
                                   "); is it cut short?");
     const std::string_view json = bytes.substr(head, size);
     return json.substr(0, json.find_last_not_of('\0') + 1);  // some fill up with zeros in place of spaces

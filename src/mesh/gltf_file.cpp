@@ -29,7 +29,9 @@ const json& at(const json& of, const char* key)
 const json& at(const json& of, const json& index)
 {
     static const json none;
-    return of.is_array() && index.is_number_unsigned() && index.get<std::size_t>() < of.size() ? of[index.get<std::size_t>()] : none;
+    return of.is_array() && index.is_number_unsigned() && index.get<std::size_t>() < of.size()
+               ? of[index.get<std::size_t>()]
+               : none;
 }
 
 std::string text_of(const json& value) { return value.is_string() ? value.get<std::string>() : ""; }
@@ -37,25 +39,31 @@ std::string text_of(const json& value) { return value.is_string() ? value.get<st
 /// Materials, textures, lights and metadata: whoever does not know them sees the same geometry.
 bool is_about_looks(const std::string& extension)
 {
-    static const std::array prefixes{"KHR_materials_", "KHR_texture_", "KHR_lights_", "KHR_xmp", "EXT_texture_", "EXT_lights_", "EXT_materials_", "MSFT_texture_",
-                                     "MSFT_packing_", "ADOBE_materials_", "KHR_techniques_webgl", "EXT_structural_metadata", "EXT_mesh_features",
-                                     "EXT_instance_features", "CESIUM_primitive_outline"};
-    return std::any_of(prefixes.begin(), prefixes.end(), [&](const char* prefix) { return extension.starts_with(prefix); });
+    static const std::array prefixes{"KHR_materials_",    "KHR_texture_",          "KHR_lights_",
+                                     "KHR_xmp",           "EXT_texture_",          "EXT_lights_",
+                                     "EXT_materials_",    "MSFT_texture_",         "MSFT_packing_",
+                                     "ADOBE_materials_",  "KHR_techniques_webgl",  "EXT_structural_metadata",
+                                     "EXT_mesh_features", "EXT_instance_features", "CESIUM_primitive_outline"};
+    return std::any_of(prefixes.begin(), prefixes.end(),
+                       [&](const char* prefix) { return extension.starts_with(prefix); });
 }
 
 /// What the user can do about an extension that is not read.
 std::string remedy(const std::string& extension)
 {
     if (extension == "KHR_mesh_quantization") return "gltf-transform dequantize, or gltfpack -noq, writes it without";
-    if (extension == "EXT_mesh_gpu_instancing") return "glTF Transform's uninstance, or the modeller by making its instances real, writes it without";
+    if (extension == "EXT_mesh_gpu_instancing")
+        return "glTF Transform's uninstance, or the modeller by making its instances real, writes it without";
     if (extension == "KHR_draco_mesh_compression") return "gltf-transform copy writes it without";
-    if (extension == "EXT_meshopt_compression") return "gltf-transform copy writes it without, or gltfpack without -c or -cc";
+    if (extension == "EXT_meshopt_compression")
+        return "gltf-transform copy writes it without, or gltfpack without -c or -cc";
     return "export it without";
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& place, const std::string& extension)
 {
-    throw FileError(file.string(), place + extension + ", which changes geometry and is not known here; " + remedy(extension) + " (or export it as OBJ or PLY)");
+    throw FileError(file.string(), place + extension + ", which changes geometry and is not known here; " +
+                                       remedy(extension) + " (or export it as OBJ or PLY)");
 }
 
 void check_required(const json& root, const std::filesystem::path& file)
@@ -65,10 +73,13 @@ void check_required(const json& root, const std::filesystem::path& file)
     for (const json& entry : required) {
         const std::string name = text_of(entry);
         if (is_about_looks(name)) continue;
-        const bool is_known = name == "KHR_mesh_quantization" || name == "EXT_mesh_gpu_instancing" || name.ends_with("_compression");
+        const bool is_known = name == "KHR_mesh_quantization" || name == "EXT_mesh_gpu_instancing" ||
+                              name.ends_with("_compression");
         if (is_known) refuse(file, "needs the glTF extension ", name);
-        throw FileError(file.string(), "needs the glTF extension " + name + " (extensionsRequired), which is not known here, so its geometry may be wrong; " +
-                                           remedy(name) + " (or export it as OBJ or PLY)");
+        throw FileError(file.string(),
+                        "needs the glTF extension " + name +
+                            " (extensionsRequired), which is not known here, so its geometry may be wrong; " +
+                            remedy(name) + " (or export it as OBJ or PLY)");
     }
 }
 
@@ -129,7 +140,8 @@ void check_positions(const json& attributes, const json& root, const std::filesy
 {
     constexpr int is_float = 5126;
     const json& type = at(at(at(root, "accessors"), at(attributes, "POSITION")), "componentType");
-    if (type.is_number() && type != is_float) refuse(file, "has positions that are no floats, by ", "KHR_mesh_quantization");
+    if (type.is_number() && type != is_float)
+        refuse(file, "has positions that are no floats, by ", "KHR_mesh_quantization");
 }
 
 /// assimp 5.2 ends the program where a skin has fewer matrices than joints. glTF lets them be left out, which few do.
@@ -138,7 +150,10 @@ void check_skin(const json& node, const json& root, const std::filesystem::path&
     const json& skin = at(at(root, "skins"), at(node, "skin"));
     const json& count = at(at(at(root, "accessors"), at(skin, "inverseBindMatrices")), "count");
     if (skin.is_null() || (count.is_number_unsigned() && count.get<std::size_t>() >= at(skin, "joints").size())) return;
-    throw FileError(file.string(), "skin " + at(node, "skin").dump() + ": has no inverseBindMatrices for all of its joints, and cannot be read so; export it without a skin");
+    throw FileError(
+        file.string(),
+        "skin " + at(node, "skin").dump() +
+            ": has no inverseBindMatrices for all of its joints, and cannot be read so; export it without a skin");
 }
 
 /// "node "crane" and 3 more".
@@ -165,7 +180,8 @@ GltfFacts examine_gltf(const std::filesystem::path& file)
         if (at(at(root, "meshes"), mesh).is_null()) continue;
         meshes.insert(mesh.get<std::size_t>());
         const std::string name = at(node, "name").is_string() ? text_of(at(node, "name")) : std::to_string(index);
-        if (!at(at(node, "extensions"), "EXT_mesh_gpu_instancing").is_null()) refuse(file, "node \"" + name + "\": has instances by ", "EXT_mesh_gpu_instancing");
+        if (!at(at(node, "extensions"), "EXT_mesh_gpu_instancing").is_null())
+            refuse(file, "node \"" + name + "\": has instances by ", "EXT_mesh_gpu_instancing");
         check_skin(node, root, file);
         if (!at(node, "skin").is_null()) skinned.push_back(name);
         if (!at(node, "weights").is_null()) posed.push_back(name);
@@ -177,10 +193,13 @@ GltfFacts examine_gltf(const std::filesystem::path& file)
             facts.triangles += triangles_of(primitive, at(root, "accessors"));
         }
     if (!skinned.empty())
-        facts.notices.push_back(file.string() + ": " + place_of(skinned) + ": the joints of a skin do not count, so it stands as it was modelled; apply the armature in the "
-                                                                           "modeller if it should stand otherwise");
+        facts.notices.push_back(
+            file.string() + ": " + place_of(skinned) +
+            ": the joints of a skin do not count, so it stands as it was modelled; apply the armature in the "
+            "modeller if it should stand otherwise");
     if (!posed.empty())
-        facts.notices.push_back(file.string() + ": " + place_of(posed) + ": a node's own weights of morph targets do not count, those of its mesh do");
+        facts.notices.push_back(file.string() + ": " + place_of(posed) +
+                                ": a node's own weights of morph targets do not count, those of its mesh do");
     return facts;
 }
 

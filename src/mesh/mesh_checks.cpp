@@ -18,12 +18,14 @@
 namespace spawnfield {
 namespace {
 
-constexpr unsigned most_corners = 32767;  // assimp's own limit (AI_MAX_FACE_INDICES); its polygon cutter takes the square of it
+constexpr unsigned most_corners =
+    32767;  // assimp's own limit (AI_MAX_FACE_INDICES); its polygon cutter takes the square of it
 
-constexpr unsigned most_depth = 1000;     // of nodes, which readers visit recursively
+constexpr unsigned most_depth = 1000;  // of nodes, which readers visit recursively
 constexpr std::uint64_t most_triangles = 100000000;
 
-constexpr aiImporterDesc ply_description{"spawnfield's reader of PLY", "", "", "", aiImporterFlags_SupportBinaryFlavour, 0, 0, 0, 0, "ply"};
+constexpr aiImporterDesc ply_description{
+    "spawnfield's reader of PLY", "", "", "", aiImporterFlags_SupportBinaryFlavour, 0, 0, 0, 0, "ply"};
 
 /// Gives assimp a mesh that is already read, so that polygons are cut into triangles like those of all other formats.
 class PlyImporter : public Assimp::BaseImporter {
@@ -37,16 +39,17 @@ protected:
     void InternReadFile(const std::string&, aiScene* scene, Assimp::IOSystem*) override
     {
         auto* const mesh = new aiMesh;  // the scene owns it, as all below
-        scene->mMeshes = new aiMesh*[1]{mesh};
+        scene->mMeshes = new aiMesh* [1] { mesh };
         scene->mNumMeshes = 1;
-        scene->mMaterials = new aiMaterial*[1]{new aiMaterial};
+        scene->mMaterials = new aiMaterial* [1] { new aiMaterial };
         scene->mNumMaterials = 1;
         scene->mRootNode = new aiNode;
         scene->mRootNode->mMeshes = new unsigned[1]{0};
         scene->mRootNode->mNumMeshes = 1;
         mesh->mVertices = new aiVector3D[mesh_.vertices.size()];
         mesh->mNumVertices = unsigned(mesh_.vertices.size());
-        for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) mesh->mVertices[v] = {mesh_.vertices[v][0], mesh_.vertices[v][1], mesh_.vertices[v][2]};
+        for (std::size_t v = 0; v < mesh_.vertices.size(); ++v)
+            mesh->mVertices[v] = {mesh_.vertices[v][0], mesh_.vertices[v][1], mesh_.vertices[v][2]};
         mesh->mFaces = new aiFace[mesh_.face_ends.size()];
         mesh->mNumFaces = unsigned(mesh_.face_ends.size());
         for (std::size_t f = 0, corner = 0; f < mesh_.face_ends.size(); corner = mesh_.face_ends[f++]) {
@@ -77,17 +80,21 @@ void take_ply(std::string_view bytes, const std::string& file, Assimp::Importer&
 std::uint64_t checked_triangles(const aiMesh& mesh, unsigned index, const std::string& file)
 {
     const auto fault = [&](unsigned face, const std::string& what) {
-        const std::string name = mesh.mName.length > 0 ? "mesh \"" + std::string(mesh.mName.C_Str()) + "\"" : "mesh " + std::to_string(index + 1);
-        return FileError(file, name + ": face " + std::to_string(face + 1) + " of " + std::to_string(mesh.mNumFaces) + " has " + what);
+        const std::string name = mesh.mName.length > 0 ? "mesh \"" + std::string(mesh.mName.C_Str()) + "\""
+                                                       : "mesh " + std::to_string(index + 1);
+        return FileError(file, name + ": face " + std::to_string(face + 1) + " of " + std::to_string(mesh.mNumFaces) +
+                                   " has " + what);
     };
     std::uint64_t triangles = 0;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
         const aiFace& face = mesh.mFaces[f];
         if (face.mNumIndices < 1 || face.mNumIndices > most_corners)
-            throw fault(f, std::to_string(face.mNumIndices) + " corners, needs 3 .. " + std::to_string(most_corners) + "; cut it into triangles");
+            throw fault(f, std::to_string(face.mNumIndices) + " corners, needs 3 .. " + std::to_string(most_corners) +
+                               "; cut it into triangles");
         for (unsigned c = 0; c < face.mNumIndices; ++c)
             if (face.mIndices[c] >= mesh.mNumVertices)
-                throw fault(f, "the corner " + std::to_string(face.mIndices[c]) + ", needs one of the " + std::to_string(mesh.mNumVertices) + " vertices");
+                throw fault(f, "the corner " + std::to_string(face.mIndices[c]) + ", needs one of the " +
+                                   std::to_string(mesh.mNumVertices) + " vertices");
         triangles += face.mNumIndices > 2 ? face.mNumIndices - 2 : 0;
     }
     return triangles;
@@ -107,10 +114,12 @@ void check_instances(const aiScene& scene, const std::vector<std::uint64_t>& tri
         const auto [node, depth] = open.back();
         open.pop_back();
         if (depth > most_depth)
-            throw FileError(file, "node \"" + std::string(node->mName.C_Str()) + "\" is nested more than " + std::to_string(most_depth) + " deep; merge nodes");
+            throw FileError(file, "node \"" + std::string(node->mName.C_Str()) + "\" is nested more than " +
+                                      std::to_string(most_depth) + " deep; merge nodes");
         for (unsigned m = 0; m < node->mNumMeshes; ++m) all += triangles.at(node->mMeshes[m]);
         if (all > std::max(most_triangles, in_file))
-            throw FileError(file, "its nodes repeat " + std::to_string(in_file) + " triangles to more than " + std::to_string(most_triangles) +
+            throw FileError(file, "its nodes repeat " + std::to_string(in_file) + " triangles to more than " +
+                                      std::to_string(most_triangles) +
                                       ", needs fewer; leave instances out, or bake parts of it");
         for (unsigned c = 0; c < node->mNumChildren; ++c) open.push_back({node->mChildren[c], depth + 1});
     }
@@ -124,10 +133,16 @@ std::string check_mesh_file(const std::filesystem::path& file, Assimp::Importer&
     const std::string extension = lower_case(file.extension().string());
     const std::size_t first = bytes.view.find_first_not_of(" \t\r\n");
     const bool is_json = first != std::string_view::npos && (bytes.view[first] == '{' || bytes.view[first] == '[');
-    if (is_json && !importer.IsExtensionSupported(extension))  // assimp would try its reader of glTF, as deep as the text goes
-        throw FileError(file.string(), "cannot be read as a mesh: is JSON, and \"" + extension + "\" is no ending of glTF (.gltf, .glb)");
-    if (extension == ".zae") throw FileError(file.string(), "is a packed COLLADA file, which is not looked into; unpack it (unzip) and give the .dae in it");
-    if (extension == ".gltf" || extension == ".glb") check_gltf(bytes.view, file.string());  // assimp goes by the ending, too
+    if (is_json &&
+        !importer.IsExtensionSupported(extension))  // assimp would try its reader of glTF, as deep as the text goes
+        throw FileError(file.string(), "cannot be read as a mesh: is JSON, and \"" + extension +
+                                           "\" is no ending of glTF (.gltf, .glb)");
+    if (extension == ".zae")
+        throw FileError(
+            file.string(),
+            "is a packed COLLADA file, which is not looked into; unpack it (unzip) and give the .dae in it");
+    if (extension == ".gltf" || extension == ".glb")
+        check_gltf(bytes.view, file.string());  // assimp goes by the ending, too
     if (extension == ".ply" || is_ply(bytes.view)) take_ply(bytes.view, file.string(), importer);
     return is_collada(bytes.view, extension) ? check_collada(bytes.view, file.string()) : "";
 }

@@ -97,8 +97,8 @@ Mat4 scaled(double factor)
     return out;
 }
 
-/// FBX tells its unit (cm for each, 1 where it tells none) and its up axis as metadata, which assimp 5.2 hands over as they are.
-/// Source: Autodesk, FBX SDK, FbxSystemUnit and FbxAxisSystem.
+/// FBX tells its unit (cm for each, 1 where it tells none) and its up axis as metadata, which assimp 5.2 hands over as
+/// they are. Source: Autodesk, FBX SDK, FbxSystemUnit and FbxAxisSystem.
 Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
 {
     float centimetres = 1;  // as assimp has it
@@ -114,7 +114,8 @@ Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
 /// 3DS, ASE and DXF are z up, and assimp 5.2 turns them to y up: (x, y, z) to (x, z, -y).
 bool is_turned_by_assimp(const std::string& extension)
 {
-    return extension == ".3ds" || extension == ".prj" || extension == ".ase" || extension == ".ask" || extension == ".dxf";
+    return extension == ".3ds" || extension == ".prj" || extension == ".ase" || extension == ".ask" ||
+           extension == ".dxf";
 }
 
 /// Turns it back, to the file's own axes.
@@ -156,8 +157,8 @@ private:
         if (is_new) {
             const Eigen::Vector4d point = transform_ * Eigen::Vector4d(v.x, v.y, v.z, 1);
             if (!point.allFinite())
-                throw FileError(file_, "node \"" + node_.name + "\": a vertex is (" + number(v.x) + ", " + number(v.y) + ", " +
-                                           number(v.z) + "), needs finite coordinates");
+                throw FileError(file_, "node \"" + node_.name + "\": a vertex is (" + number(v.x) + ", " + number(v.y) +
+                                           ", " + number(v.z) + "), needs finite coordinates");
             node_.vertices.push_back(point.head<3>());
         }
         return entry->second;
@@ -179,7 +180,8 @@ std::vector<aiVector3D> morphed(const aiMesh& mesh)
         const aiAnimMesh& target = *mesh.mAnimMeshes[k];
         if (target.mWeight == 0 || target.mVertices == nullptr || target.mNumVertices != mesh.mNumVertices) continue;
         if (out.empty()) out.assign(mesh.mVertices, mesh.mVertices + mesh.mNumVertices);
-        for (unsigned v = 0; v < mesh.mNumVertices; ++v) out[v] += target.mWeight * (target.mVertices[v] - mesh.mVertices[v]);
+        for (unsigned v = 0; v < mesh.mNumVertices; ++v)
+            out[v] += target.mWeight * (target.mVertices[v] - mesh.mVertices[v]);
     }
     return out;
 }
@@ -216,8 +218,9 @@ void check_triangles(const aiScene& scene, std::size_t expected, const std::stri
     for (unsigned m = 0; m < scene.mNumMeshes; ++m)
         if (scene.mMeshes[m]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) found += scene.mMeshes[m]->mNumFaces;
     if (found < expected)
-        throw FileError(file, std::to_string(expected - found) + " of its " + std::to_string(expected) +
-                                  " triangles have a vertex index beyond their vertices; the file is damaged: export it anew");
+        throw FileError(
+            file, std::to_string(expected - found) + " of its " + std::to_string(expected) +
+                      " triangles have a vertex index beyond their vertices; the file is damaged: export it anew");
 }
 
 }  // namespace
@@ -233,8 +236,10 @@ FileMesh read_mesh(const std::filesystem::path& file)
     if (extension == ".obj") text = std::move(obj.text);
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};
-    if (extension == ".obj" || !text.empty()) importer.SetIOHandler(new RespeltFile(file.string(), text));
-    else importer.SetIOHandler(new RegularFiles);  // the importer owns either
+    if (extension == ".obj" || !text.empty())
+        importer.SetIOHandler(new RespeltFile(file.string(), text));
+    else
+        importer.SetIOHandler(new RegularFiles);  // the importer owns either
     // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids
@@ -248,7 +253,8 @@ FileMesh read_mesh(const std::filesystem::path& file)
         throw FileError(file.string(), std::string("cannot be read as a mesh: ") + importer.GetErrorString());
 
     FileMesh mesh;
-    for (unsigned m = 0; m < scene->mNumMaterials; ++m) mesh.materials.push_back(scene->mMaterials[m]->GetName().C_Str());
+    for (unsigned m = 0; m < scene->mNumMaterials; ++m)
+        mesh.materials.push_back(scene->mMaterials[m]->GetName().C_Str());
     if (is_gltf) {
         check_triangles(*scene, gltf.triangles, file.string());
         mesh.up = 'y';
@@ -273,8 +279,10 @@ std::shared_ptr<const FileMesh> MeshFiles::read(const std::filesystem::path& fil
     Entry& entry = files_[file];
     if (!entry.mesh) entry.mesh = std::make_shared<const FileMesh>(read_mesh(file));
     std::shared_ptr<const FileMesh> mesh = entry.mesh;
-    if (entry.uses_left <= 1) entry.mesh.reset();
-    else --entry.uses_left;
+    if (entry.uses_left <= 1)
+        entry.mesh.reset();
+    else
+        --entry.uses_left;
     return mesh;
 }
 

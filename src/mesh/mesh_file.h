@@ -8,22 +8,24 @@
 
 namespace spawnfield {
 
-/// A mesh file as its nodes give it: one welded mesh per node, file axes and units of metres, before scale, up and pose.
+/// A mesh file as its nodes give it: one welded mesh per node, file axes and units of metres, before scale, up and
+/// pose.
 struct FileMesh {
     struct Node {
         std::string name;
-        std::vector<Vec3> vertices;           ///< transformed by the node and all its parents
-        std::vector<Triangle> triangles;      ///< counterclockwise from outside also where the node mirrors
-        std::vector<std::uint32_t> materials; ///< one for each triangle
+        std::vector<Vec3> vertices;            ///< transformed by the node and all its parents
+        std::vector<Triangle> triangles;       ///< counterclockwise from outside also where the node mirrors
+        std::vector<std::uint32_t> materials;  ///< one for each triangle
     };
     std::vector<Node> nodes;
     std::vector<std::string> materials;
-    char up = 'z';  ///< what the format says
+    char up = 'z';                     ///< what the format says
     std::vector<std::string> notices;  ///< of what the file holds and is not read; begin with the file
 };
 
-/// Any format assimp reads. Throws FileError for a file that is missing, malformed, without triangles, that has coordinates which are no
-/// finite numbers, or a glTF of which assimp would read less or other geometry than it has (mesh/gltf_file.h).
+/// Any format assimp reads. Throws FileError for a file that is missing, malformed, without triangles, that has
+/// coordinates which are no finite numbers, or a glTF of which assimp would read less or other geometry than it has
+/// (mesh/gltf_file.h).
 FileMesh read_mesh(const std::filesystem::path& file);
 
 /// Reads each file once for all parts that name it, and keeps it only until the last of them has it.

@@ -35,9 +35,13 @@ private:
     {
         if (!is_continued_) start = without_indent(start, end);
         const std::string_view whole = text_.substr(start, end - start);
-        const char kind = is_continued_ ? kind_ : whole.size() > 1 && (is_blank(whole[1]) || whole[0] == 'v') ? whole[0] : ' ';
-        if (kind == 'v') point_numbers(start, end);
-        else if (!is_continued_ && (kind == 'o' || kind == 'g')) name(start, end);
+        const char kind = is_continued_                                                 ? kind_
+                          : whole.size() > 1 && (is_blank(whole[1]) || whole[0] == 'v') ? whole[0]
+                                                                                        : ' ';
+        if (kind == 'v')
+            point_numbers(start, end);
+        else if (!is_continued_ && (kind == 'o' || kind == 'g'))
+            name(start, end);
         const std::size_t last = whole.find_last_not_of('\r');
         is_continued_ = last != std::string_view::npos && whole[last] == '\\';
         kind_ = kind;
@@ -57,7 +61,8 @@ private:
         if (found.empty() || found.back() == '\\') return;  // without a name assimp goes on as before
         if (names_.empty() || found != current_) names_.push_back(found);
         current_ = found;
-        replace(start + 2, end, std::string(own_name) + std::to_string(names_.size() - 1) + (text_[end - 1] == '\r' ? "\r" : ""));
+        replace(start + 2, end,
+                std::string(own_name) + std::to_string(names_.size() - 1) + (text_[end - 1] == '\r' ? "\r" : ""));
     }
 
     void point_numbers(std::size_t start, std::size_t end)
@@ -98,7 +103,8 @@ std::string obj_name(const ObjText& obj, const std::string& node)
     if (!node.starts_with(own_name)) return node;
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(node.data() + own_name.size(), node.data() + node.size(), index);
-    return error == std::errc{} && end == node.data() + node.size() && index < obj.names.size() ? obj.names[index] : node;
+    return error == std::errc{} && end == node.data() + node.size() && index < obj.names.size() ? obj.names[index]
+                                                                                                : node;
 }
 
 }  // namespace spawnfield

@@ -52,7 +52,8 @@ std::string quoted(std::string_view word)
 {
     constexpr std::size_t most = 40;
     std::string text(word.substr(0, most));
-    std::replace_if(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
     return "\"" + text + (word.size() > most ? "…\"" : "\"");
 }
 
@@ -60,7 +61,8 @@ std::vector<std::string_view> words_of(std::string_view line)
 {
     constexpr std::string_view space = " \t\r\n";
     std::vector<std::string_view> words;
-    for (std::size_t at = line.find_first_not_of(space); at != std::string_view::npos; at = line.find_first_not_of(space, at)) {
+    for (std::size_t at = line.find_first_not_of(space); at != std::string_view::npos;
+         at = line.find_first_not_of(space, at)) {
         const std::size_t end = std::min(line.find_first_of(space, at), line.size());
         words.push_back(line.substr(at, end - at));
         at = end;
@@ -88,7 +90,8 @@ public:
     {
         // Binary data may begin with any byte: only the first line tells how long the end of a line is.
         const std::size_t end = bytes.find_first_of(line_ends);
-        if (end != std::string_view::npos && bytes[end] == '\r' && (end + 1 == bytes.size() || bytes[end + 1] != '\n')) line_end_ = '\r';
+        if (end != std::string_view::npos && bytes[end] == '\r' && (end + 1 == bytes.size() || bytes[end + 1] != '\n'))
+            line_end_ = '\r';
     }
 
     Header read()
@@ -108,7 +111,9 @@ public:
             } else if (words[0] == "property") {
                 read_property(words);
             } else {
-                throw fault(quoted(words[0]) + " is no word of a PLY header; known: comment, obj_info, format, element, property, end_header");
+                throw fault(
+                    quoted(words[0]) +
+                    " is no word of a PLY header; known: comment, obj_info, format, element, property, end_header");
             }
         }
         if (!has_format) throw FileError(file_, "has no format in its header; is it a PLY file?");
@@ -121,7 +126,8 @@ private:
     std::string_view next_line()
     {
         const std::size_t end = bytes_.find(line_end_, at_);
-        if (end == std::string_view::npos) throw FileError(file_, "ends within its header, before end_header; is it cut short?");
+        if (end == std::string_view::npos)
+            throw FileError(file_, "ends within its header, before end_header; is it cut short?");
         const std::string_view line = bytes_.substr(at_, end - at_);
         at_ = end + 1;
         ++line_;
@@ -133,10 +139,15 @@ private:
     void read_format(const std::vector<std::string_view>& words)
     {
         const std::string_view name = words.size() == 3 && words[2] == "1.0" ? words[1] : "";
-        if (name == "ascii") header_.format = Format::Text;
-        else if (name == "binary_little_endian") header_.format = Format::LittleEndian;
-        else if (name == "binary_big_endian") header_.format = Format::BigEndian;
-        else throw fault("the format is none that is known; known: ascii 1.0, binary_little_endian 1.0, binary_big_endian 1.0");
+        if (name == "ascii")
+            header_.format = Format::Text;
+        else if (name == "binary_little_endian")
+            header_.format = Format::LittleEndian;
+        else if (name == "binary_big_endian")
+            header_.format = Format::BigEndian;
+        else
+            throw fault(
+                "the format is none that is known; known: ascii 1.0, binary_little_endian 1.0, binary_big_endian 1.0");
     }
 
     void read_element(const std::vector<std::string_view>& words)
@@ -145,7 +156,8 @@ private:
         Element element{std::string(words[1]), 0, line_, {}};
         double rows = 0;
         if (!parse_number(words[2], rows) || !(rows >= 0 && rows <= double(most_rows)) || rows != std::floor(rows))
-            throw fault("element " + quoted(words[1]) + " has the count " + quoted(words[2]) + ", needs a whole number of 0 .. " + std::to_string(most_rows));
+            throw fault("element " + quoted(words[1]) + " has the count " + quoted(words[2]) +
+                        ", needs a whole number of 0 .. " + std::to_string(most_rows));
         element.rows = std::uint64_t(rows);
         for (const Element& other : header_.elements)
             if (other.name == element.name) throw fault("a second element " + quoted(element.name));
@@ -160,13 +172,16 @@ private:
         const auto known = [&](std::string_view word) {
             const std::optional<Type> type = type_of(word);
             if (!type)
-                throw fault("the type " + quoted(word) + " is unknown; known: char, uchar, short, ushort, int, uint, float, double, int8, uint8, int16, "
-                                                         "uint16, int32, uint32, float32, float64");
+                throw fault(
+                    "the type " + quoted(word) +
+                    " is unknown; known: char, uchar, short, ushort, int, uint, float, double, int8, uint8, int16, "
+                    "uint16, int32, uint32, float32, float64");
             return *type;
         };
         Property property{std::string(words.back()), known(words[words.size() - 2]), {}};
         if (list) property.count = known(words[2]);
-        if (list && property.count->kind == Type::Kind::Float) throw fault("a list is counted in " + quoted(words[2]) + ", needs whole numbers");
+        if (list && property.count->kind == Type::Kind::Float)
+            throw fault("a list is counted in " + quoted(words[2]) + ", needs whole numbers");
         for (const Property& other : header_.elements.back().properties)
             if (other.name == property.name) throw fault("a second property " + quoted(property.name));
         header_.elements.back().properties.push_back(std::move(property));
@@ -187,10 +202,16 @@ std::string row_name(const Element& element, std::uint64_t row)
 /// Rows of numbers in lines of their own; blank lines between them are passed over.
 class TextRows {
 public:
-    TextRows(std::string_view bytes, const Header& header, const std::string& file) : bytes_(bytes), at_(header.size), line_(header.lines), file_(file) {}
+    TextRows(std::string_view bytes, const Header& header, const std::string& file)
+        : bytes_(bytes), at_(header.size), line_(header.lines), file_(file)
+    {
+    }
 
     /// The fewest bytes that so many rows take: a digit for each number, a byte between two.
-    static std::uint64_t least_bytes(const Element& element) { return 2 * element.rows * element.properties.size() - 1; }
+    static std::uint64_t least_bytes(const Element& element)
+    {
+        return 2 * element.rows * element.properties.size() - 1;
+    }
     std::uint64_t bytes_left() const { return bytes_.size() - at_; }
 
     void begin(const Element& element, std::uint64_t row)
@@ -198,7 +219,8 @@ public:
         name_ = &element;
         index_ = row;
         do {
-            if (at_ == bytes_.size()) throw FileError(file_, "ends before " + row_name(element, row) + "; is it cut short?");
+            if (at_ == bytes_.size())
+                throw FileError(file_, "ends before " + row_name(element, row) + "; is it cut short?");
             take_line();
         } while (skip_space() == row_.size());
     }
@@ -215,13 +237,17 @@ public:
     }
     void end()
     {
-        if (skip_space() != row_.size()) throw fault(quoted(row_.substr(skip_space())) + " stands after the row's last number; " + row_name(*name_, index_));
+        if (skip_space() != row_.size())
+            throw fault(quoted(row_.substr(skip_space())) + " stands after the row's last number; " +
+                        row_name(*name_, index_));
     }
     void finish()
     {
         while (at_ < bytes_.size()) {
             take_line();
-            if (skip_space() != row_.size()) throw fault("stands after the last row that the header tells of; are the counts of its elements right?");
+            if (skip_space() != row_.size())
+                throw fault(
+                    "stands after the last row that the header tells of; are the counts of its elements right?");
         }
     }
     FileError fault(const std::string& what) const { return line_fault(file_, line_, what); }
@@ -257,7 +283,8 @@ public:
     static std::uint64_t least_bytes(const Element& element)
     {
         std::uint64_t row = 0;
-        for (const Property& property : element.properties) row += property.count ? property.count->bytes : property.type.bytes;
+        for (const Property& property : element.properties)
+            row += property.count ? property.count->bytes : property.type.bytes;
         return row * element.rows;
     }
     std::uint64_t bytes_left() const { return bytes_.size() - at_; }
@@ -288,7 +315,9 @@ public:
     {
         const std::string_view rest = bytes_.substr(at_);
         if (rest.find_first_not_of(" \t\r\n") != std::string_view::npos)
-            throw FileError(file_, "has " + std::to_string(rest.size()) + " bytes after the last row that the header tells of; are the counts of its elements right?");
+            throw FileError(
+                file_, "has " + std::to_string(rest.size()) +
+                           " bytes after the last row that the header tells of; are the counts of its elements right?");
     }
     FileError fault(const std::string& what) const { return FileError(file_, row_name(*name_, index_) + ": " + what); }
 
@@ -315,29 +344,37 @@ Use use_of(const Element& element, const Property& property)
 
 const Element* find(const Header& header, std::string_view name)
 {
-    const auto found = std::find_if(header.elements.begin(), header.elements.end(), [&](const Element& e) { return e.name == name; });
+    const auto found = std::find_if(header.elements.begin(), header.elements.end(),
+                                    [&](const Element& e) { return e.name == name; });
     return found == header.elements.end() ? nullptr : &*found;
 }
 
 void check_uses(const Header& header, const std::string& file)
 {
     const auto has = [](const Element& element, Use use) {
-        return std::any_of(element.properties.begin(), element.properties.end(), [&](const Property& p) { return use_of(element, p) == use; });
+        return std::any_of(element.properties.begin(), element.properties.end(),
+                           [&](const Property& p) { return use_of(element, p) == use; });
     };
     const Element *vertex = find(header, "vertex"), *face = find(header, "face"), *strips = find(header, "tristrips");
     if (vertex == nullptr) throw FileError(file, "has no element vertex in its header");
     for (const auto& [use, name] : {std::pair{Use::X, "x"}, std::pair{Use::Y, "y"}, std::pair{Use::Z, "z"}})
-        if (!has(*vertex, use)) throw line_fault(file, vertex->line, std::string("element vertex has no property ") + name);
-    if (face == nullptr && strips == nullptr) throw FileError(file, "has no element face in its header: points alone are no surface, it needs triangles");
+        if (!has(*vertex, use))
+            throw line_fault(file, vertex->line, std::string("element vertex has no property ") + name);
+    if (face == nullptr && strips == nullptr)
+        throw FileError(file, "has no element face in its header: points alone are no surface, it needs triangles");
     for (const auto& [element, use] : {std::pair{face, Use::Face}, std::pair{strips, Use::Strip}})
         if (element != nullptr && element->rows > 0 && !has(*element, use))
-            throw line_fault(file, element->line, "element " + element->name + " has no property list … vertex_indices");
+            throw line_fault(file, element->line,
+                             "element " + element->name + " has no property list … vertex_indices");
 }
 
 template <class Rows>
 class BodyReader {
 public:
-    BodyReader(const Header& header, Rows rows, const std::string& file) : header_(header), rows_(std::move(rows)), file_(file) {}
+    BodyReader(const Header& header, Rows rows, const std::string& file)
+        : header_(header), rows_(std::move(rows)), file_(file)
+    {
+    }
 
     PlyMesh read()
     {
@@ -351,11 +388,14 @@ public:
 private:
     void read_element(const Element& element)
     {
-        if (element.properties.empty()) throw line_fault(file_, element.line, "element " + quoted(element.name) + " has no property");
+        if (element.properties.empty())
+            throw line_fault(file_, element.line, "element " + quoted(element.name) + " has no property");
         if (rows_.least_bytes(element) > rows_.bytes_left())
-            throw line_fault(file_, element.line, "element " + element.name + " has " + std::to_string(element.rows) + " rows, for which the file is too short (" +
-                                                      std::to_string(rows_.bytes_left()) + " bytes left, needs " + std::to_string(rows_.least_bytes(element)) +
-                                                      " or more); is it cut short?");
+            throw line_fault(file_, element.line,
+                             "element " + element.name + " has " + std::to_string(element.rows) +
+                                 " rows, for which the file is too short (" + std::to_string(rows_.bytes_left()) +
+                                 " bytes left, needs " + std::to_string(rows_.least_bytes(element)) +
+                                 " or more); is it cut short?");
         std::vector<Use> uses;
         for (const Property& property : element.properties) uses.push_back(use_of(element, property));
         if (element.name == "vertex") mesh_.vertices.reserve(element.rows);
@@ -382,14 +422,18 @@ private:
     {
         const double count = rows_.next(*property.count);
         if (!(count >= 0 && count <= double(most_rows)) || count != std::floor(count))
-            throw rows_.fault("the list " + property.name + " has the count " + number(count) + ", needs a whole number of 0 .. " + std::to_string(most_rows));
+            throw rows_.fault("the list " + property.name + " has the count " + number(count) +
+                              ", needs a whole number of 0 .. " + std::to_string(most_rows));
         if (use == Use::Face && count == 0) throw rows_.fault("a face has 0 corners, needs 3 or more");
         Strip strip;
         for (std::uint64_t i = 0; i < std::uint64_t(count); ++i) {
             const double value = rows_.next(property.type);
-            if (use == Use::Strip && value == -1) strip = {};
-            else if (use == Use::Strip) add_to_strip(strip, corner(value));
-            else if (use == Use::Face) mesh_.corners.push_back(corner(value));
+            if (use == Use::Strip && value == -1)
+                strip = {};
+            else if (use == Use::Strip)
+                add_to_strip(strip, corner(value));
+            else if (use == Use::Face)
+                mesh_.corners.push_back(corner(value));
         }
         if (use == Use::Face) mesh_.face_ends.push_back(mesh_.corners.size());
     }
@@ -397,7 +441,8 @@ private:
     std::uint32_t corner(double value) const
     {
         if (!(value >= 0 && value < double(vertices_)) || value != std::floor(value))
-            throw rows_.fault("a face has the corner " + number(value) + ", needs one of the " + std::to_string(vertices_) + " vertices, 0 .. " +
+            throw rows_.fault("a face has the corner " + number(value) + ", needs one of the " +
+                              std::to_string(vertices_) + " vertices, 0 .. " +
                               std::to_string(std::int64_t(vertices_) - 1));
         return std::uint32_t(value);
     }
@@ -411,7 +456,8 @@ private:
     {
         if (strip.length >= 2) {
             const bool turned = strip.length % 2 == 1;
-            mesh_.corners.insert(mesh_.corners.end(), {turned ? strip.last : strip.before, turned ? strip.before : strip.last, corner});
+            mesh_.corners.insert(mesh_.corners.end(),
+                                 {turned ? strip.last : strip.before, turned ? strip.before : strip.last, corner});
             mesh_.face_ends.push_back(mesh_.corners.size());
         }
         strip = {strip.length + 1, strip.last, corner};

@@ -32,7 +32,8 @@ std::string inflated(std::string_view packed, std::size_t most)
     std::string out(most, '\0');
     z_stream stream{};
     if (inflateInit2(&stream, raw) != Z_OK) return {};
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // zlib's old signature; it does not write there
+    stream.next_in = reinterpret_cast<Bytef*>(
+        const_cast<char*>(packed.data()));  // zlib's old signature; it does not write there
     stream.avail_in = uInt(packed.size());
     stream.next_out = reinterpret_cast<Bytef*>(out.data());
     stream.avail_out = uInt(out.size());
@@ -42,8 +43,9 @@ std::string inflated(std::string_view packed, std::size_t most)
     return out;
 }
 
-/// The first `most` bytes at most of a file in a ZIP archive; "" if there is none by this name (ASCII case does not count) or it is damaged.
-/// Source: PKWARE, APPNOTE.TXT 4.3 (local header, central directory, end of central directory).
+/// The first `most` bytes at most of a file in a ZIP archive; "" if there is none by this name (ASCII case does not
+/// count) or it is damaged. Source: PKWARE, APPNOTE.TXT 4.3 (local header, central directory, end of central
+/// directory).
 std::string file_in(std::string_view archive, const std::string& name, std::size_t most)
 {
     constexpr std::size_t end_size = 22, entry_size = 46, header_size = 30, stored = 0, deflated = 8;
@@ -51,14 +53,17 @@ std::string file_in(std::string_view archive, const std::string& name, std::size
     if (end == std::string_view::npos || archive.size() - end < end_size) return {};
     std::size_t entry = number_at(archive, end + 16, 4);
     for (std::size_t left = number_at(archive, end + 10, 2); left > 0; --left) {
-        if (entry > archive.size() || !archive.substr(entry).starts_with("PK\1\2") || archive.size() - entry < entry_size) return {};
+        if (entry > archive.size() || !archive.substr(entry).starts_with("PK\1\2") ||
+            archive.size() - entry < entry_size)
+            return {};
         const std::size_t name_size = number_at(archive, entry + 28, 2);
         if (lower_case(archive.substr(entry + entry_size, name_size)) != lower_case(name)) {
             entry += entry_size + name_size + number_at(archive, entry + 30, 2) + number_at(archive, entry + 32, 2);
             continue;
         }
         const std::size_t header = number_at(archive, entry + 42, 4), method = number_at(archive, entry + 10, 2);
-        const std::size_t start = header + header_size + number_at(archive, header + 26, 2) + number_at(archive, header + 28, 2);
+        const std::size_t start = header + header_size + number_at(archive, header + 26, 2) +
+                                  number_at(archive, header + 28, 2);
         if (start > archive.size()) return {};
         const std::string_view packed = archive.substr(start, number_at(archive, entry + 20, 4));
         if (method == stored) return std::string(packed.substr(0, most));
@@ -103,7 +108,8 @@ std::string unit_of(std::string_view name, std::string_view text)
 {
     for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
         const std::size_t end = at + name.size();
-        if (at == 0 || (text[at - 1] != '<' && text[at - 1] != ':') || end == text.size() || !is_space(text[end])) continue;
+        if (at == 0 || (text[at - 1] != '<' && text[at - 1] != ':') || end == text.size() || !is_space(text[end]))
+            continue;
         return attribute(text.substr(end, std::min(text.find('>', end), text.size()) - end), "unit");
     }
     return {};
@@ -132,14 +138,23 @@ double metres_per_unit_of_3mf(const std::filesystem::path& file)
     const std::string archive = read_file(file);
     const std::string name = model_name(file_in(archive, "_rels/.rels", all));
     const std::string text = name.empty() ? "" : file_in(archive, name, head);
-    if (text.empty()) throw FileError(file.string(), "has no 3D model where its _rels/.rels says, so its unit is not known; export it anew");
-    return metres_of(unit_of("model", text), {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2}, {"inch", 0.0254}, {"foot", 0.3048}, {"meter", 1}},
+    if (text.empty())
+        throw FileError(file.string(),
+                        "has no 3D model where its _rels/.rels says, so its unit is not known; export it anew");
+    return metres_of(unit_of("model", text),
+                     {{"micron", 1e-6},
+                      {"millimeter", 1e-3},
+                      {"centimeter", 1e-2},
+                      {"inch", 0.0254},
+                      {"foot", 0.3048},
+                      {"meter", 1}},
                      file.string());
 }
 
 double metres_per_unit_of_amf(const std::filesystem::path& file)
 {
-    return metres_of(unit_of("amf", read_file(file).substr(0, head)), {{"micron", 1e-6}, {"millimeter", 1e-3}, {"inch", 0.0254}, {"feet", 0.3048}, {"meter", 1}},
+    return metres_of(unit_of("amf", read_file(file).substr(0, head)),
+                     {{"micron", 1e-6}, {"millimeter", 1e-3}, {"inch", 0.0254}, {"feet", 0.3048}, {"meter", 1}},
                      file.string());
 }
 

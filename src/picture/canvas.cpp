@@ -54,8 +54,10 @@ std::string printable(const std::string& text)
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto byte = static_cast<unsigned char>(text[i]);
         const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
-        if (byte == 0xc3 && next >= 0x80 && next < 0xc0) result += latin[next - 0x80];
-        else if ((byte & 0xc0) != 0x80) result += byte >= ' ' && byte < 127 ? text[i] : '?';
+        if (byte == 0xc3 && next >= 0x80 && next < 0xc0)
+            result += latin[next - 0x80];
+        else if ((byte & 0xc0) != 0x80)
+            result += byte >= ' ' && byte < 127 ? text[i] : '?';
     }
     return result;
 }
@@ -79,7 +81,8 @@ Ramp ramp_through(const std::vector<Colour>& colours)
         const std::size_t from = std::min(static_cast<std::size_t>(at), colours.size() - 2);
         const double share = at - static_cast<double>(from);
         for (int c = 0; c < 3; ++c)
-            ramp[i][c] = static_cast<std::uint8_t>(cvRound(colours[from][c] * (1 - share) + colours[from + 1][c] * share));
+            ramp[i][c] = static_cast<std::uint8_t>(
+                cvRound(colours[from][c] * (1 - share) + colours[from + 1][c] * share));
     }
     return ramp;
 }
@@ -129,14 +132,12 @@ std::string cut_to(std::string text, double cap, double width)
 
 int whole(double pixels) { return std::max(1, cvRound(pixels)); }
 
-void fill(Image& image, const cv::Rect& area, Colour colour)
-{
-    image(area & cv::Rect({}, image.size())) = colour;
-}
+void fill(Image& image, const cv::Rect& area, Colour colour) { image(area & cv::Rect({}, image.size())) = colour; }
 
 std::array<cv::Rect, 4> sides_around(const cv::Rect& area, int thickness)
 {
-    const cv::Rect outer(area.x - thickness, area.y - thickness, area.width + 2 * thickness, area.height + 2 * thickness);
+    const cv::Rect outer(area.x - thickness, area.y - thickness, area.width + 2 * thickness,
+                         area.height + 2 * thickness);
     return {cv::Rect(outer.x, outer.y, outer.width, thickness), cv::Rect(outer.x, area.br().y, outer.width, thickness),
             cv::Rect(outer.x, outer.y, thickness, outer.height),
             cv::Rect(area.br().x, outer.y, thickness, outer.height)};

@@ -43,7 +43,8 @@ inline double halo_width(double cap) { return 0.5 * cap; }
 /// Places and lengths are in pixels from the upper left corner of the image, y down, a pixel's centre at .5; what lies
 /// beyond the image is left out.
 ///
-/// The font has ASCII only: of UTF-8 text, western letters lose their accents and other characters become question marks.
+/// The font has ASCII only: of UTF-8 text, western letters lose their accents and other characters become question
+/// marks.
 std::string printable(const std::string& text);  ///< UTF-8 text in the characters that the font has
 void draw_text(Image& image, const std::string& text, cv::Point2d baseline, const TextStyle& style);
 double text_width(const std::string& text, double cap);
@@ -54,7 +55,8 @@ void fill(Image& image, const cv::Rect& area, Colour colour);
 /// The four sides of a frame around the area, outside it.
 std::array<cv::Rect, 4> sides_around(const cv::Rect& area, int thickness);
 void fill_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour colour);
-void draw_outline(Image& image, const std::vector<cv::Point2d>& corners, Colour edge, double edge_width);  ///< a closed line
+void draw_outline(Image& image, const std::vector<cv::Point2d>& corners, Colour edge,
+                  double edge_width);  ///< a closed line
 void draw_dot(Image& image, cv::Point2d centre, double radius, Colour inside, Colour edge, double edge_width);
 
 /// Throws OutputError.

@@ -23,7 +23,7 @@ struct PolygonMark {
     std::vector<cv::Point2d> corners;
     std::optional<Colour> inside;  ///< none: the edge alone
     Colour edge;
-    double edge_width = 0;         ///< 0: no edge
+    double edge_width = 0;  ///< 0: no edge
 };
 struct DotMark {
     cv::Point2d centre;
@@ -57,9 +57,9 @@ void draw_outline(Figure& figure, std::vector<cv::Point2d> corners, Colour edge,
 void draw_dot(Figure& figure, cv::Point2d centre, double radius, Colour inside, Colour edge, double edge_width);
 void clip(Figure& figure, const cv::Rect& area);
 
-Image paint(const Figure& figure);            ///< on white
-std::string svg_of(const Figure& figure);     ///< a pixel is a unit of SVG. Scalable Vector Graphics 1.1, W3C, 2011
-std::string pdf_of(const Figure& figure);     ///< a pixel is 0.72 points, a hundredth of an inch
+Image paint(const Figure& figure);         ///< on white
+std::string svg_of(const Figure& figure);  ///< a pixel is a unit of SVG. Scalable Vector Graphics 1.1, W3C, 2011
+std::string pdf_of(const Figure& figure);  ///< a pixel is 0.72 points, a hundredth of an inch
 
 /// Same figure, same bytes. Throws OutputError.
 void write_figure(const Figure& figure, PictureFormat format, const std::filesystem::path& file);

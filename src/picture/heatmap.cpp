@@ -54,7 +54,8 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
     const RasterGrid& grid = raster.grid;
     if (options.pixels < 200 || options.pixels > 16000)
         throw ArgumentError("write_heatmap", "pixels", options.pixels, "200 .. 16000");
-    if (!(grid.step > 0) || !std::isfinite(grid.step)) throw ArgumentError("write_heatmap", "raster.grid.step", grid.step, "> 0 m");
+    if (!(grid.step > 0) || !std::isfinite(grid.step))
+        throw ArgumentError("write_heatmap", "raster.grid.step", grid.step, "> 0 m");
     if (grid.cols < 1) throw ArgumentError("write_heatmap", "raster.grid.cols", grid.cols, ">= 1");
     if (grid.rows < 1) throw ArgumentError("write_heatmap", "raster.grid.rows", grid.rows, ">= 1");
     if (options.headings < 1 || options.headings > 255)
@@ -144,9 +145,14 @@ std::string columns_heading(const RasterResult& raster, std::uint64_t columns)
 void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend& legend)
 {
     if (counts[no_pose] == 0) return;
-    const bool lower_layer = !raster.poses.empty() && std::all_of(raster.poses.begin(), raster.poses.end(),
-                                                                  [](const RasterPose& pose) { return pose.layer > 0; });
-    const std::string name = !raster.area.is_everywhere() ? "off the region, or no terrain" : raster.dims == 3 ? "no pose" : lower_layer ? "no such layer" : raster.z.is_unlimited() ? "no terrain" : "no terrain at these heights";
+    const bool lower_layer = !raster.poses.empty() &&
+                             std::all_of(raster.poses.begin(), raster.poses.end(),
+                                         [](const RasterPose& pose) { return pose.layer > 0; });
+    const std::string name = !raster.area.is_everywhere() ? "off the region, or no terrain"
+                             : raster.dims == 3           ? "no pose"
+                             : lower_layer                ? "no such layer"
+                             : raster.z.is_unlimited()    ? "no terrain"
+                                                          : "no terrain at these heights";
     legend.entries.push_back({colour_of(no_pose), name, counted(counts[no_pose], "column")});
 }
 
@@ -230,7 +236,8 @@ Image draw_columns(const Image& colours, const View& columns, const View& view, 
         const int from = cell_index((columns.y0 + columns.height - y) / columns.height * colours.rows, colours.rows);
         if (from < 0) continue;
         for (int col = 0; col < pixels.width; ++col)
-            if (const int column = across[static_cast<std::size_t>(col)]; column >= 0) plot(row, col) = colours(from, column);
+            if (const int column = across[static_cast<std::size_t>(col)]; column >= 0)
+                plot(row, col) = colours(from, column);
     }
     return plot;
 }
@@ -292,8 +299,8 @@ void append_spawns(const HeatmapOptions& options, const VisibleSpawns& visible, 
 {
     const std::size_t all = options.spawns.size(), seen = visible.numbers.size();
     if (all == 0) return;
-    const std::string text =
-        seen == all ? counted(all, "spawn") : with_commas(seen) + " of " + counted(all, "spawn") + " in view";
+    const std::string text = seen == all ? counted(all, "spawn")
+                                         : with_commas(seen) + " of " + counted(all, "spawn") + " in view";
     const auto later = [](Figure&, cv::Point2d) {};
     if (options.spawn_verdicts.empty()) {
         legend.symbols.push_back({text, later});
@@ -330,7 +337,8 @@ void draw_spawns(Figure& figure, const HeatmapOptions& options, const VisibleSpa
     const std::size_t written = write_names(figure, look, visible.places, names, layout.plot);
     if (written < names.size())
         legend.symbols.back().name = with_commas(written) + " of " + counted(names.size(), "name") + " shown: no room";
-    else legend.symbols.pop_back();
+    else
+        legend.symbols.pop_back();
 }
 
 }  // namespace

@@ -52,8 +52,8 @@ cv::Mat_<std::uint8_t> obstacle_mask(const Geometry& geometry, const GridFrame& 
             const Columns columns(geometry, grid);
             for (int j = 0; j < rows; ++j)
                 for (int i = 0; i < grid.cols; ++i)
-                    mask(frame.rows - 1 - first_row - j, first_col + i) =
-                        is_obstacle(columns.at(i, j), grid.x_of(first_col + i), grid.y_of(first_row + j), search);
+                    mask(frame.rows - 1 - first_row - j, first_col + i) = is_obstacle(
+                        columns.at(i, j), grid.x_of(first_col + i), grid.y_of(first_row + j), search);
         }
     });
     return mask;

@@ -76,8 +76,8 @@ public:
         bytes.reserve(3 * mark.pixels.total());
         for (const Colour& pixel : mark.pixels) bytes.insert(bytes.end(), {pixel[2], pixel[1], pixel[0]});
         const auto cols = static_cast<HPDF_UINT>(mark.pixels.cols), rows = static_cast<HPDF_UINT>(mark.pixels.rows);
-        const HPDF_Image image =
-            HPDF_LoadRawImageFromMem(document_.get(), bytes.data(), cols, rows, HPDF_CS_DEVICE_RGB, 8);
+        const HPDF_Image image = HPDF_LoadRawImageFromMem(document_.get(), bytes.data(), cols, rows, HPDF_CS_DEVICE_RGB,
+                                                          8);
         const cv::Point2d lower(mark.corner.x, mark.corner.y + mark.pixels.rows);
         HPDF_Page_DrawImage(page_, image, x_of(lower), y_of(lower), static_cast<float>(cols), static_cast<float>(rows));
     }
@@ -137,9 +137,12 @@ private:
     }
     void paint(bool is_filled, bool has_edge)
     {
-        if (is_filled && has_edge) HPDF_Page_FillStroke(page_);
-        else if (is_filled) HPDF_Page_Fill(page_);
-        else HPDF_Page_Stroke(page_);
+        if (is_filled && has_edge)
+            HPDF_Page_FillStroke(page_);
+        else if (is_filled)
+            HPDF_Page_Fill(page_);
+        else
+            HPDF_Page_Stroke(page_);
     }
     void write(const std::string& text, cv::Point2d baseline, float before, HPDF_TextRenderingMode mode)
     {

@@ -19,7 +19,7 @@ const Colour line = rgb(0x404040);
 // ---------------------------------------------------------------- legend
 
 struct Item {
-    double width, height;                             ///< pixels
+    double width, height;                            ///< pixels
     std::function<void(Figure&, cv::Point2d)> draw;  ///< at its upper left corner
 };
 
@@ -29,7 +29,8 @@ Item entry_item(const LegendEntry& entry, double unit)
     const bool two_lines = !entry.detail.empty();
     const double width = indent + std::max(text_width(entry.name, cap), text_width(entry.detail, small));
     return {width, (two_lines ? 42 : 27) * unit, [=](Figure& figure, cv::Point2d at) {
-                const cv::Rect swatch(cvRound(at.x), cvRound(at.y), whole(18 * unit), whole((two_lines ? 28 : 14) * unit));
+                const cv::Rect swatch(cvRound(at.x), cvRound(at.y), whole(18 * unit),
+                                      whole((two_lines ? 28 : 14) * unit));
                 fill(figure, swatch, entry.colour);
                 outline(figure, swatch, whole(0.8 * unit), muted);
                 const double first = two_lines ? at.y + cap : at.y + 7 * unit + cap / 2;
@@ -92,12 +93,12 @@ Item scale_item(const ColourScale& scale, double unit, double bar_height)
     double width = std::max(text_width(scale.heading, cap), text_width(scale.detail, small));
     for (const auto& [value, label] : bar_labels(scale, bar_height, unit))
         width = std::max(width, bar_width + (tick_length + gap) * unit + text_width(label, small));
-    return {width, head + bar_height + 18 * unit, [=](Figure& figure, cv::Point2d at) {
-                draw_text(figure, scale.heading, {at.x, at.y + cap}, {cap});
-                draw_text(figure, scale.detail, {at.x, at.y + cap + 17 * unit}, {small, muted});
-                draw_bar(figure, {cvRound(at.x), cvRound(at.y + head), whole(bar_width), whole(bar_height)}, scale,
-                         unit);
-            }};
+    return {
+        width, head + bar_height + 18 * unit, [=](Figure& figure, cv::Point2d at) {
+            draw_text(figure, scale.heading, {at.x, at.y + cap}, {cap});
+            draw_text(figure, scale.detail, {at.x, at.y + cap + 17 * unit}, {small, muted});
+            draw_bar(figure, {cvRound(at.x), cvRound(at.y + head), whole(bar_width), whole(bar_height)}, scale, unit);
+        }};
 }
 
 std::vector<Item> legend_items(const Legend& legend, double unit, double bar_height)
@@ -307,7 +308,8 @@ void draw_bearing(Figure& figure, cv::Point2d at, double scale, double unit)
     draw_text(figure, length_label(length), label, {small_cap * unit, ink, Align::Centre});
 
     const double half = 8 * unit, needle = 26 * unit;
-    const cv::Point2d tip(at.x + bearing_width * unit - half - unit, bottom - needle), notch(tip.x, tip.y + 0.75 * needle);
+    const cv::Point2d tip(at.x + bearing_width * unit - half - unit, bottom - needle),
+        notch(tip.x, tip.y + 0.75 * needle);
     draw_polygon(figure, {tip, {tip.x - half, bottom}, notch}, ink, ink, unit);
     draw_polygon(figure, {tip, {tip.x + half, bottom}, notch}, white, ink, unit);
     draw_text(figure, "N", {tip.x, tip.y - 6 * unit}, {text_cap * unit, ink, Align::Centre});
@@ -318,7 +320,8 @@ void draw_bearing(Figure& figure, cv::Point2d at, double scale, double unit)
 View with_room(View view)
 {
     constexpr double thinnest = 12;
-    const double height = std::max(view.height, view.width / thinnest), width = std::max(view.width, view.height / thinnest);
+    const double height = std::max(view.height, view.width / thinnest),
+                 width = std::max(view.width, view.height / thinnest);
     return {view.x0 - (width - view.width) / 2, view.y0 - (height - view.height) / 2, width, height};
 }
 
@@ -347,7 +350,8 @@ Layout lay_out(const Frame& frame)
     Layout layout = arrange(frame, margins, unit);
     const double scale = layout.plot.width / frame.view.width, cap = small_cap * unit;
     const Ticks x = x_ticks(frame.view, scale, unit), y = y_ticks(frame.view, scale, unit);
-    margins.left = cvCeil(std::max(widest_label(y, cap), text_width("y, m", cap)) + (margin + tick_length + gap) * unit);
+    margins.left = cvCeil(std::max(widest_label(y, cap), text_width("y, m", cap)) +
+                          (margin + tick_length + gap) * unit);
     margins.right = cvCeil(widest_label(x, cap) / 2 + gap * unit);
     layout = arrange(frame, margins, unit);
     layout.x_ticks = x;

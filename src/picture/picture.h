@@ -63,8 +63,8 @@ struct Frame {
 
 /// Where everything stands, in pixels.
 struct Layout {
-    double unit = 1;           ///< a thousandth of the longer side: what texts and lines are measured in
-    cv::Size size;             ///< of the picture
+    double unit = 1;  ///< a thousandth of the longer side: what texts and lines are measured in
+    cv::Size size;    ///< of the picture
     cv::Rect plot;
     cv::Point2d panel;         ///< upper left corner of the legend
     double column_height = 0;  ///< of the legend's columns

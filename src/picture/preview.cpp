@@ -134,15 +134,18 @@ struct Scenery {
     cv::Mat_<float> light;
 };
 
-/// Pixels that a picture is drawn at, two or three times as fine as its plot will be, then shrunk: smooth edges, and thin
-/// walls do not vanish.
+/// Pixels that a picture is drawn at, two or three times as fine as its plot will be, then shrunk: smooth edges, and
+/// thin walls do not vanish.
 cv::Size fine_pixels(const View& view, int pixels)
 {
     const double scale = 2.0 * pixels / std::max(view.width, view.height);
     return {std::max(1, cvRound(scale * view.width)), std::max(1, cvRound(scale * view.height))};
 }
 
-View view_of(const GridFrame& frame) { return with_room({frame.x0, frame.y0, frame.cols * frame.cell, frame.rows * frame.cell}); }
+View view_of(const GridFrame& frame)
+{
+    return with_room({frame.x0, frame.y0, frame.cols * frame.cell, frame.rows * frame.cell});
+}
 
 /// One page of the terrain is in memory at a time, or two where obstacles are added to it.
 Scenery from_above(const TerrainMap& terrain, int pixels)
@@ -172,9 +175,9 @@ Image picture_of(const Scenery& scenery, const std::string& title, int pixels)
 
 // ---------------------------------------------------------------- floors
 
-constexpr double cut_height = 2;          // m above a floor: what begins higher is not drawn, as in a floor plan
-constexpr double most_hidden = 0.25;      // of the ground under something, in a picture from above
-constexpr std::size_t most_floors = 16;   // drawn
+constexpr double cut_height = 2;         // m above a floor: what begins higher is not drawn, as in a floor plan
+constexpr double most_hidden = 0.25;     // of the ground under something, in a picture from above
+constexpr std::size_t most_floors = 16;  // drawn
 constexpr float no_height = std::numeric_limits<float>::quiet_NaN();
 
 /// Cells for a picture or an estimate, at most `most` along the longer side.
@@ -232,13 +235,16 @@ Scenery floor_plan(const Map& map, const Floor& floor, int pixels)
         const double ground = ground_of(column, floor, map), level = std::isnan(ground) ? floor.height : ground;
         terrain(row, col) = solid(row, col) = float(ground);
         // Where there is no ground, what rises through the floor's height is an obstacle: a wall, say.
-        if (const auto top = obstacle_above(column, {&level, 1}, {level, level + cut_height})) solid(row, col) = float(std::min(*top, level + cut_height));
+        if (const auto top = obstacle_above(column, {&level, 1}, {level, level + cut_height}))
+            solid(row, col) = float(std::min(*top, level + cut_height));
         const std::span<const double> surfaces = heights_within(column.water, {level, level + cut_height});
         if (!surfaces.empty()) water(row, col) = float(surfaces.front());
     });
     const View view = view_of(grid);
     const cv::Size fine = fine_pixels(view, pixels);
-    return {view, {samples(grid, terrain, view, fine), samples(grid, solid, view, fine), samples(grid, water, view, fine)}, relief(grid, solid, view, fine)};
+    return {view,
+            {samples(grid, terrain, view, fine), samples(grid, solid, view, fine), samples(grid, water, view, fine)},
+            relief(grid, solid, view, fine)};
 }
 
 /// A small picture for each floor, the lowest first, in rows.
@@ -252,7 +258,8 @@ Image floor_pictures(const Map& map, const std::vector<Floor>& floors)
     cv::Size largest;
     for (std::size_t k = 0; k < count; ++k) {
         std::string title = map.name + ", floor " + std::to_string(k) + " at " + number(floors[k].height) + " m";
-        if (k + 1 == count && count < floors.size()) title += " (" + std::to_string(floors.size() - count) + " more are not drawn)";
+        if (k + 1 == count && count < floors.size())
+            title += " (" + std::to_string(floors.size() - count) + " more are not drawn)";
         pictures.push_back(picture_of(floor_plan(map, floors[k], pixels), title, pixels));
         largest = {std::max(largest.width, pictures[k].cols), std::max(largest.height, pictures[k].rows)};
     }

@@ -37,7 +37,9 @@ Blocks blocks_in(const GridFrame& frame, const HeightImage& heights, const View&
     Blocks blocks;
     blocks.cells = std::max(1, static_cast<int>(std::min(pixel / frame.cell, 1e6)));
     const int border = 2 * blocks.cells;  // gradients at the view's edge look beyond it
-    const auto clipped = [](double cell, int n) { return static_cast<int>(std::clamp<double>(std::floor(cell), 0, n)); };
+    const auto clipped = [](double cell, int n) {
+        return static_cast<int>(std::clamp<double>(std::floor(cell), 0, n));
+    };
     const double top = frame.rows - (view.y0 + view.height - frame.y0) / frame.cell;
     const double left = (view.x0 - frame.x0) / frame.cell;
     const int row0 = clipped(top - border, frame.rows), col0 = clipped(left - border, frame.cols);
@@ -49,8 +51,8 @@ Blocks blocks_in(const GridFrame& frame, const HeightImage& heights, const View&
     blocks.heights.resize(count(row0, row1), count(col0, col1));
     for (int row = 0; row < blocks.heights.rows(); ++row)
         for (int col = 0; col < blocks.heights.cols(); ++col)
-            blocks.heights(row, col) =
-                mean_height(heights, row0 + row * blocks.cells, col0 + col * blocks.cells, blocks.cells);
+            blocks.heights(row, col) = mean_height(heights, row0 + row * blocks.cells, col0 + col * blocks.cells,
+                                                   blocks.cells);
     return blocks;
 }
 
@@ -131,7 +133,8 @@ cv::Mat_<float> relief(const GridFrame& frame, const HeightImage& heights, const
     const double cell = frame.cell * blocks.cells, steeper = exaggeration(blocks.heights, cell);
     cv::Mat_<float> lit(rows, cols);
     for (int row = 0; row < rows; ++row)
-        for (int col = 0; col < cols; ++col) lit(row, col) = light_on(steeper * gradient(blocks.heights, row, col, cell));
+        for (int col = 0; col < cols; ++col)
+            lit(row, col) = light_on(steeper * gradient(blocks.heights, row, col, cell));
 
     std::vector<Between> across;
     for (int col = 0; col < pixels.width; ++col) {
@@ -145,7 +148,8 @@ cv::Mat_<float> relief(const GridFrame& frame, const HeightImage& heights, const
         const float* under = lit[down.second];
         for (int col = 0; col < pixels.width; ++col) {
             const auto [a, b, share] = across[static_cast<std::size_t>(col)];
-            const float upper = above[a] + share * (above[b] - above[a]), lower = under[a] + share * (under[b] - under[a]);
+            const float upper = above[a] + share * (above[b] - above[a]),
+                        lower = under[a] + share * (under[b] - under[a]);
             light(row, col) = upper + down.share * (lower - upper);
         }
     }

@@ -6,7 +6,8 @@
 
 namespace spawnfield {
 
-/// Index of the cell of side 1 in a row of n that holds `distance` from its beginning, both ends included; -1 if none does.
+/// Index of the cell of side 1 in a row of n that holds `distance` from its beginning, both ends included; -1 if none
+/// does.
 int cell_index(double distance, int n);
 
 /// Change of height with x and with y at a cell; one-sided where a neighbour has no height, 0 where both have none. NaN

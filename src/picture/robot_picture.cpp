@@ -41,7 +41,8 @@ public:
     const std::vector<std::string>& names() const { return names_; }
     Colour of(const std::string& name) const
     {
-        constexpr std::array colours{0x56b4e9u, 0xe69f00u, 0x009e73u, 0xf0e442u, 0xcc79a7u, 0x999999u, 0xd55e00u, 0x0072b2u};
+        constexpr std::array colours{0x56b4e9u, 0xe69f00u, 0x009e73u, 0xf0e442u,
+                                     0xcc79a7u, 0x999999u, 0xd55e00u, 0x0072b2u};
         const Colour colour = rgb(colours[index_.at(name) % colours.size()]);
         const auto lighter = [&](int c) { return static_cast<std::uint8_t>(colour[c] + (255 - colour[c]) * 45 / 100); };
         return {lighter(0), lighter(1), lighter(2)};
@@ -55,9 +56,9 @@ private:
 /// A view on the paper.
 struct Pane {
     Axes axes;
-    cv::Rect area;            ///< pixels
-    double u0 = 0, v0 = 0;    ///< of its lower left corner, m
-    double scale = 1;         ///< pixels per metre
+    cv::Rect area;          ///< pixels
+    double u0 = 0, v0 = 0;  ///< of its lower left corner, m
+    double scale = 1;       ///< pixels per metre
 
     cv::Point2d at(double u, double v) const { return {area.x + (u - u0) * scale, area.br().y - (v - v0) * scale}; }
     cv::Point2d at(const Vec3& point) const { return at(axes.u.dot(point), axes.v.dot(point)); }
@@ -94,18 +95,24 @@ Sheet lay_out(const Bounds& bounds)
     constexpr double width = 1000, most_height = 1100;
     const Vec3 size = bounds.max - bounds.min;
     const double room = width - left - right - between;
-    double scale = std::min(room / (size.x() + size.y()), (most_height - top - bottom - between) / (size.y() + size.z()));
+    double scale = std::min(room / (size.x() + size.y()),
+                            (most_height - top - bottom - between) / (size.y() + size.z()));
     if (size.y() * scale < least_legend) scale = std::min(scale, (room - least_legend) / size.x());
     const auto pane = [&](const Axes& axes, double x, double y) {
         const double u = axes.u.dot(bounds.min), v = axes.v.dot(bounds.min);
-        return Pane{axes, {cvRound(x), cvRound(y), whole(axes.u.dot(size) * scale), whole(axes.v.dot(size) * scale)}, u, v, scale};
+        return Pane{axes,
+                    {cvRound(x), cvRound(y), whole(axes.u.dot(size) * scale), whole(axes.v.dot(size) * scale)},
+                    u,
+                    v,
+                    scale};
     };
     // The legend needs some height too, however flat the view from above is.
     const double first_row = std::max(size.y() * scale, 300.0);
     const double second = left + size.x() * scale + between, below = top + first_row + between;
     Sheet sheet;
     sheet.panes = {pane(from_above, left, top), pane(from_right, left, below), pane(from_front, second, below)};
-    sheet.legend = {cvRound(second), int(top), cvRound(std::max(width - right - second, least_legend)), whole(first_row)};
+    sheet.legend = {cvRound(second), int(top), cvRound(std::max(width - right - second, least_legend)),
+                    whole(first_row)};
     sheet.size = {int(width), cvRound(below + size.z() * scale + bottom)};
     return sheet;
 }
@@ -145,7 +152,8 @@ void draw_parts(Figure& figure, const Pane& pane, const Robot& robot, const Link
         const Bounds box = part.bounds();
         nearness.push_back(std::max(pane.axes.nearness.dot(box.min), pane.axes.nearness.dot(box.max)));
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return nearness[a] < nearness[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return nearness[a] < nearness[b]; });
     for (const auto& corners : outlines) draw_polygon(figure, corners, ink, ink, 5);
     for (const std::size_t k : order)
         draw_polygon(figure, outlines[k], colours.of(robot.parts[k].name), rgb(0x4d4d4d), 1);
@@ -245,7 +253,9 @@ void write_legend(Figure& figure, const Sheet& sheet, const Robot& robot, const 
     legend.scale_bar(sheet.panes[0].scale);
     legend.text(rounded(size.x()) + " x " + rounded(size.y()) + " x " + rounded(size.z()) + " m");
     const double low = bounds.min.z();
-    legend.text("lowest point " + (std::abs(low) < 5e-4 ? "at the height of the origin" : rounded(std::abs(low)) + (low < 0 ? " m below origin" : " m above origin")));
+    legend.text("lowest point " + (std::abs(low) < 5e-4
+                                       ? "at the height of the origin"
+                                       : rounded(std::abs(low)) + (low < 0 ? " m below origin" : " m above origin")));
     legend.text("turns within " + rounded(turning_radius(robot)) + " m of its origin");
     legend.gap();
     legend.thick_line("footprint");
@@ -255,7 +265,8 @@ void write_legend(Figure& figure, const Sheet& sheet, const Robot& robot, const 
     if (names.size() == 1 && names[0].empty()) return;
     const std::size_t room = std::size_t(std::max(legend.lines_left(), 3));
     const std::size_t listed = names.size() <= room ? names.size() : room - 1;
-    for (std::size_t k = 0; k < listed; ++k) legend.swatch(colours.of(names[k]), names[k].empty() ? "(no name)" : names[k]);
+    for (std::size_t k = 0; k < listed; ++k)
+        legend.swatch(colours.of(names[k]), names[k].empty() ? "(no name)" : names[k]);
     if (listed < names.size()) legend.text("and " + std::to_string(names.size() - listed) + " more", muted);
 }
 

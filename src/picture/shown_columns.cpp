@@ -63,10 +63,10 @@ Kinds column_kinds(const ShownPoses& shown, const RasterResult& raster, const He
     for (int row = 0; row < shown.rows; ++row)
         for (int col = 0; col < shown.cols; ++col) {
             const RasterPose* const pose = shown.at(row, col);
-            kinds(row, col) = !pose                                          ? without_pose
+            kinds(row, col) = !pose                                        ? without_pose
                               : shown.is_valid(row, col, options.headings) ? kind_of(Verdict::Valid)
-                              : shown.is_valid(row, col, 1)                  ? some_headings
-                                                                             : kind_of(pose->verdict);
+                              : shown.is_valid(row, col, 1)                ? some_headings
+                                                                           : kind_of(pose->verdict);
         }
     return kinds;
 }

@@ -146,8 +146,10 @@ SpawnLook spawn_look(const Robot* robot, const Layout& layout, double scale, std
 
 void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d at, double yaw, Colour colour)
 {
-    if (look.footprint.empty()) draw_arrow(figure, at, yaw, look, colour);
-    else draw_footprint(figure, look, {at, yaw, look.scale}, colour);
+    if (look.footprint.empty())
+        draw_arrow(figure, at, yaw, look, colour);
+    else
+        draw_footprint(figure, look, {at, yaw, look.scale}, colour);
 }
 
 void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre, Colour colour)

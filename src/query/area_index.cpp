@@ -27,7 +27,8 @@ void for_each_edge(const std::vector<Region>& regions, const Visit& visit)
     for (const Region& region : regions)
         for (const Region::Polygon& polygon : region.polygons) {
             for (const Region::Ring& ring : polygon)
-                for (std::size_t i = 0; i < ring.size(); ++i) visit(number, ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]);
+                for (std::size_t i = 0; i < ring.size(); ++i)
+                    visit(number, ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]);
             ++number;
         }
 }
@@ -52,7 +53,8 @@ PolygonIndex::PolygonIndex(const std::vector<Region>& regions)
         height_ = (end_ - y0_) / double(rows);
         entries = 0;
         for_each_edge(regions, [&](std::uint32_t, const Vec2& from, const Vec2& to) {
-            entries += row_of(std::max(from.y(), to.y()) + near_edge) - row_of(std::min(from.y(), to.y()) - near_edge) + 1;
+            entries += row_of(std::max(from.y(), to.y()) + near_edge) - row_of(std::min(from.y(), to.y()) - near_edge) +
+                       1;
         });
         if (rows < 2 || entries <= 16 * count + 65536) break;
     }
@@ -64,7 +66,8 @@ PolygonIndex::PolygonIndex(const std::vector<Region>& regions)
     all.reserve(entries);
     for_each_edge(regions, [&](std::uint32_t polygon, const Vec2& from, const Vec2& to) {
         const std::size_t last = row_of(std::max(from.y(), to.y()) + near_edge);
-        for (std::size_t row = row_of(std::min(from.y(), to.y()) - near_edge); row <= last; ++row) all.push_back({std::uint32_t(row), polygon, {from, to}});
+        for (std::size_t row = row_of(std::min(from.y(), to.y()) - near_edge); row <= last; ++row)
+            all.push_back({std::uint32_t(row), polygon, {from, to}});
     });
     std::stable_sort(all.begin(), all.end(), [](const Entry& a, const Entry& b) { return a.row < b.row; });
     starts_.assign(rows + 1, 0);
@@ -92,7 +95,8 @@ std::size_t PolygonIndex::row_of(double y) const
 
 bool PolygonIndex::holds(const Group& group, const Vec2& p) const
 {
-    if (p.x() < group.low_x - on_edge || p.x() > group.high_x + on_edge) return false;  // as many crossings on this side as none
+    if (p.x() < group.low_x - on_edge || p.x() > group.high_x + on_edge)
+        return false;  // as many crossings on this side as none
     bool inside = false;
     for (std::uint32_t i = group.first; i < group.last; ++i) {
         const Vec2 &a = edges_[i].from, &b = edges_[i].to;
@@ -115,15 +119,19 @@ bool PolygonIndex::contains(const Vec2& point) const
 
 bool PolygonIndex::meets(const Group& group, const Rect& rect) const
 {
-    const double low_x = rect.low_x - near_edge, high_x = rect.high_x + near_edge, low_y = rect.low_y - near_edge, high_y = rect.high_y + near_edge;
+    const double low_x = rect.low_x - near_edge, high_x = rect.high_x + near_edge, low_y = rect.low_y - near_edge,
+                 high_y = rect.high_y + near_edge;
     if (group.high_x < low_x || group.low_x > high_x) return false;
     for (std::uint32_t i = group.first; i < group.last; ++i) {
         const Vec2 &a = edges_[i].from, &b = edges_[i].to;
-        if (std::max(a.x(), b.x()) < low_x || std::min(a.x(), b.x()) > high_x || std::max(a.y(), b.y()) < low_y || std::min(a.y(), b.y()) > high_y) continue;
+        if (std::max(a.x(), b.x()) < low_x || std::min(a.x(), b.x()) > high_x || std::max(a.y(), b.y()) < low_y ||
+            std::min(a.y(), b.y()) > high_y)
+            continue;
         const Vec2 along = b - a;
         const double slack = near_edge * along.lpNorm<1>();
         const auto side = [&](double x, double y) { return cross(along, Vec2(x, y) - a); };
-        const auto [least, most] = std::minmax({side(low_x, low_y), side(high_x, low_y), side(low_x, high_y), side(high_x, high_y)});
+        const auto [least, most] = std::minmax(
+            {side(low_x, low_y), side(high_x, low_y), side(low_x, high_y), side(high_x, high_y)});
         if (least <= slack && most >= -slack) return true;
     }
     return false;
@@ -143,7 +151,8 @@ bool PolygonIndex::covers(const Rect& rect) const
 {
     if (starts_.empty() || rect.low_y < y0_ || rect.high_y > end_) return false;
     const Vec2 centre(rect.centre_x(), rect.centre_y());
-    const std::size_t first = row_of(rect.low_y - near_edge), last = row_of(rect.high_y + near_edge), middle = row_of(centre.y());
+    const std::size_t first = row_of(rect.low_y - near_edge), last = row_of(rect.high_y + near_edge),
+                      middle = row_of(centre.y());
     const auto is_whole = [&](std::uint32_t polygon) {
         for (std::size_t row = first; row <= last; ++row)
             for (std::uint32_t g = starts_[row]; g < starts_[row + 1]; ++g)
@@ -174,21 +183,28 @@ bool AreaIndex::contains(const Vec2& point) const
 {
     const auto has = [&](const Slab& slab) { return slab.polygons.contains(point); };
     return (within_.empty() || std::any_of(within_.begin(), within_.end(), has)) &&
-           std::none_of(keep_out_.begin(), keep_out_.end(), [&](const Slab& slab) { return slab.z.is_unlimited() && has(slab); });
+           std::none_of(keep_out_.begin(), keep_out_.end(),
+                        [&](const Slab& slab) { return slab.z.is_unlimited() && has(slab); });
 }
 
 bool AreaIndex::contains(const Vec2& point, double z) const
 {
-    const auto has = [&](const Slab& slab) { return slab.z.contains(z, touch_tolerance) && slab.polygons.contains(point); };
-    return (within_.empty() || std::any_of(within_.begin(), within_.end(), has)) && std::none_of(keep_out_.begin(), keep_out_.end(), has);
+    const auto has = [&](const Slab& slab) {
+        return slab.z.contains(z, touch_tolerance) && slab.polygons.contains(point);
+    };
+    return (within_.empty() || std::any_of(within_.begin(), within_.end(), has)) &&
+           std::none_of(keep_out_.begin(), keep_out_.end(), has);
 }
 
 bool AreaIndex::misses(const Rect& rect, const ZRange& z) const
 {
     const auto is_apart = [&](const Slab& slab) {
-        return slab.z.low > z.high + 2 * touch_tolerance || slab.z.high < z.low - 2 * touch_tolerance || slab.polygons.misses(rect);
+        return slab.z.low > z.high + 2 * touch_tolerance || slab.z.high < z.low - 2 * touch_tolerance ||
+               slab.polygons.misses(rect);
     };
-    const auto holds_all = [&](const Slab& slab) { return slab.z.low <= z.low && slab.z.high >= z.high && slab.polygons.covers(rect); };
+    const auto holds_all = [&](const Slab& slab) {
+        return slab.z.low <= z.low && slab.z.high >= z.high && slab.polygons.covers(rect);
+    };
     return (!within_.empty() && std::all_of(within_.begin(), within_.end(), is_apart)) ||
            std::any_of(keep_out_.begin(), keep_out_.end(), holds_all);
 }

@@ -9,7 +9,8 @@
 
 namespace spawnfield {
 
-/// Some polygons' edges in rows, so that a question meets only those beside it. The union of the polygons, as Region has it.
+/// Some polygons' edges in rows, so that a question meets only those beside it. The union of the polygons, as Region
+/// has it.
 class PolygonIndex {
 public:
     explicit PolygonIndex(const std::vector<Region>& regions);
@@ -48,8 +49,8 @@ public:
     bool contains(const Vec2& point) const;
     bool contains(const Vec2& point, double z) const;  ///< z to touch_tolerance
 
-    /// True only if no point of the closed rectangle is in the area at these heights. False where an edge of a region runs
-    /// through the rectangle, and where only several keep-outs together cover it.
+    /// True only if no point of the closed rectangle is in the area at these heights. False where an edge of a region
+    /// runs through the rectangle, and where only several keep-outs together cover it.
     bool misses(const Rect& rect, const ZRange& z = {}) const;
 
 private:

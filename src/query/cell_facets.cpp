@@ -25,7 +25,10 @@ bool is_sliver(const SmallPolygon& polygon)
 
 Vec2 outward_normal(const Vec2& p, const Vec2& q) { return normal_of(p, q).normalized(); }
 
-SmallPolygon corners_of(const Rect& r) { return {{r.low_x, r.low_y}, {r.high_x, r.low_y}, {r.high_x, r.high_y}, {r.low_x, r.high_y}}; }
+SmallPolygon corners_of(const Rect& r)
+{
+    return {{r.low_x, r.low_y}, {r.high_x, r.low_y}, {r.high_x, r.high_y}, {r.low_x, r.high_y}};
+}
 
 bool are_parted(const SmallPolygon& a, const SmallPolygon& b, double by)
 {
@@ -33,7 +36,8 @@ bool are_parted(const SmallPolygon& a, const SmallPolygon& b, double by)
         for (std::size_t k = 0; k < from.size(); ++k) {
             const Vec2 normal = outward_normal(from[k], from[k + 1 < from.size() ? k + 1 : 0]);
             const double rim = normal.dot(from[k]) - by;
-            if (std::all_of(other.begin(), other.end(), [&](const Vec2& p) { return normal.dot(p) >= rim; })) return true;
+            if (std::all_of(other.begin(), other.end(), [&](const Vec2& p) { return normal.dot(p) >= rim; }))
+                return true;
         }
         return false;
     };
@@ -61,23 +65,27 @@ void Remainder::take(const SmallPolygon& polygon)
 
 CellFacets::CellFacets(const Geometry& geometry, const Rect& cell) : cell_(cell), corners_(corners_of(cell))
 {
-    geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y, [&](const Tile& tile, std::uint32_t element) {
-        const ElementBox& box = tile.boxes[element];
-        if (tile.label(element) == Label::Terrain) {
-            terrain.bottom = std::min(terrain.bottom, double(box.min[2]));
-            terrain.top = std::max(terrain.top, double(box.max[2]));
-        }
-        has_too_many = has_too_many || all.size() >= most_facets;
-        if (has_too_many) return;
-        if (tile.is_triangle(element)) add_triangle(tile, element, false);
-        else add_primitive(tile, element);
-    });
+    geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y,
+                             [&](const Tile& tile, std::uint32_t element) {
+                                 const ElementBox& box = tile.boxes[element];
+                                 if (tile.label(element) == Label::Terrain) {
+                                     terrain.bottom = std::min(terrain.bottom, double(box.min[2]));
+                                     terrain.top = std::max(terrain.top, double(box.max[2]));
+                                 }
+                                 has_too_many = has_too_many || all.size() >= most_facets;
+                                 if (has_too_many) return;
+                                 if (tile.is_triangle(element))
+                                     add_triangle(tile, element, false);
+                                 else
+                                     add_primitive(tile, element);
+                             });
     if (has_too_many || !has_filled_terrain_) return;
     // Crossings of the same mesh that are no terrain count where inside and outside are told apart.
-    geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y, [&](const Tile& tile, std::uint32_t element) {
-        has_too_many = has_too_many || all.size() >= most_facets;
-        if (tile.is_triangle(element) && !has_too_many) add_triangle(tile, element, true);
-    });
+    geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y,
+                             [&](const Tile& tile, std::uint32_t element) {
+                                 has_too_many = has_too_many || all.size() >= most_facets;
+                                 if (tile.is_triangle(element) && !has_too_many) add_triangle(tile, element, true);
+                             });
 }
 
 void CellFacets::set_plane(const Vec3& a, const Vec3& normal, const Interval& limits, Facet& out) const
@@ -94,7 +102,8 @@ void CellFacets::set_plane(const Vec3& a, const Vec3& normal, const Interval& li
     high = high.cwiseMin(Vec2(cell_.high_x, cell_.high_y));
     const Vec2 middle = (low + high) / 2, half = ((high - low) / 2).cwiseMax(0.0);
     const double z = a.z() + out.slope.dot(middle - a.head<2>()), reach = out.slope.cwiseAbs().dot(half);
-    out.z = {std::clamp(z - reach, limits.bottom, limits.top) - proof_slack, std::clamp(z + reach, limits.bottom, limits.top) + proof_slack};
+    out.z = {std::clamp(z - reach, limits.bottom, limits.top) - proof_slack,
+             std::clamp(z + reach, limits.bottom, limits.top) + proof_slack};
 }
 
 void CellFacets::add_triangle(const Tile& tile, std::uint32_t element, bool other_filled)

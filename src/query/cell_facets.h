@@ -62,7 +62,7 @@ private:
 /// A flat piece of surface, or of what a primitive has above; its plane is height + slope * (x, y).
 struct Facet {
     SmallPolygon polygon;  ///< seen from above; empty: upright, or not known
-    Interval z;           ///< within the cell, m
+    Interval z;            ///< within the cell, m
     double height = 0;
     Vec2 slope = Vec2::Zero();
     bool has_plane = false;
@@ -79,7 +79,8 @@ struct Facet {
 struct CellFacets {
     std::vector<Facet> all;
     bool has_too_many = false;  ///< for planes: only `terrain` counts
-    Interval terrain{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};  ///< heights of all terrain
+    Interval terrain{std::numeric_limits<double>::infinity(),
+                     -std::numeric_limits<double>::infinity()};  ///< heights of all terrain
 
     CellFacets(const Geometry& geometry, const Rect& cell);
 

@@ -23,7 +23,9 @@ struct CellProofs::Prism {
 /// One cell under proof.
 class CellProofs::Cell {
 public:
-    Cell(const CellProofs& proofs, const Rect& rect) : proofs_(proofs), rect_(rect), facets_(proofs.map_.geometry, rect) {}
+    Cell(const CellProofs& proofs, const Rect& rect) : proofs_(proofs), rect_(rect), facets_(proofs.map_.geometry, rect)
+    {
+    }
 
     bool is_closed()
     {
@@ -31,8 +33,10 @@ public:
         find_bands();
         for (std::size_t b = 0; b < bands_.size(); ++b) {
             const Interval band = ground_in(bands_[b]);
-            if (band.bottom > band.top || proofs_.area_.misses(rect_, {band.bottom, band.top}) || is_left_out(b)) continue;
-            if (!is_covered(band) && !is_submerged(b) && !is_blocked(band) && !is_in_ground(band) && !is_in_solid(band)) return false;
+            if (band.bottom > band.top || proofs_.area_.misses(rect_, {band.bottom, band.top}) || is_left_out(b))
+                continue;
+            if (!is_covered(band) && !is_submerged(b) && !is_blocked(band) && !is_in_ground(band) && !is_in_solid(band))
+                return false;
         }
         return true;
     }
@@ -48,29 +52,35 @@ private:
         drop_lower_ends();
         for (const Facet& facet : facets_.all)
             if (facet.terrain) bands_.push_back(facet.z);
-        std::sort(bands_.begin(), bands_.end(), [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
+        std::sort(bands_.begin(), bands_.end(),
+                  [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
         std::size_t kept = 0;
         for (const Interval& next : bands_) {
-            if (kept > 0 && next.bottom <= bands_[kept - 1].top + 2 * layer_tolerance) bands_[kept - 1].top = std::max(bands_[kept - 1].top, next.top);
-            else bands_[kept++] = next;
+            if (kept > 0 && next.bottom <= bands_[kept - 1].top + 2 * layer_tolerance)
+                bands_[kept - 1].top = std::max(bands_[kept - 1].top, next.top);
+            else
+                bands_[kept++] = next;
         }
         bands_.resize(kept);
     }
 
-    /// Crossings of a filled mesh at which a line that goes down leaves it are no layers. Faces that overlap in height are
-    /// one cluster; between clusters all of the cell is inside, or outside, as its centre is.
+    /// Crossings of a filled mesh at which a line that goes down leaves it are no layers. Faces that overlap in height
+    /// are one cluster; between clusters all of the cell is inside, or outside, as its centre is.
     void drop_lower_ends()
     {
         std::vector<Facet*> filled;
         for (Facet& facet : facets_.all)
             if (facet.filled && !facet.water) filled.push_back(&facet);
-        std::sort(filled.begin(), filled.end(), [](const Facet* l, const Facet* r) { return l->piece != r->piece ? l->piece < r->piece : l->z.top > r->z.top; });
+        std::sort(filled.begin(), filled.end(), [](const Facet* l, const Facet* r) {
+            return l->piece != r->piece ? l->piece < r->piece : l->z.top > r->z.top;
+        });
         for (std::size_t i = 0; i < filled.size();) {
             const std::uint32_t piece = filled[i]->piece;
             std::size_t above = 0;  // crossings of the centre line
             while (i < filled.size() && filled[i]->piece == piece) {
                 std::vector<Facet*> cluster;
-                for (double bottom = filled[i]->z.bottom; i < filled.size() && filled[i]->piece == piece && filled[i]->z.top >= bottom; ++i) {
+                for (double bottom = filled[i]->z.bottom;
+                     i < filled.size() && filled[i]->piece == piece && filled[i]->z.top >= bottom; ++i) {
                     cluster.push_back(filled[i]);
                     bottom = std::min(bottom, filled[i]->z.bottom);
                 }
@@ -112,16 +122,18 @@ private:
     /// The part of a band whose layers are ground and whose poses are not outside.
     Interval ground_in(const Interval& band) const
     {
-        return {std::max(band.bottom, proofs_.ground_z_.low - slack), std::min(band.top, proofs_.ground_z_.high + slack)};
+        return {std::max(band.bottom, proofs_.ground_z_.low - slack),
+                std::min(band.top, proofs_.ground_z_.high + slack)};
     }
 
     /// Only the top layer is chosen, and there is one above that is ground.
     bool is_left_out(std::size_t b) const
     {
         const LayerChoice& layers = proofs_.options_.layers;
-        const bool only_top = layers.kind == LayerChoice::Kind::Top || (layers.kind == LayerChoice::Kind::Index && layers.index == 0);
+        const bool only_top = layers.kind == LayerChoice::Kind::Top ||
+                              (layers.kind == LayerChoice::Kind::Index && layers.index == 0);
         if (!only_top || facets_.has_too_many || b + 1 == bands_.size()) return false;
-        return covers(facets_.all, rect_, [&](const Facet& facet) { 
+        return covers(facets_.all, rect_, [&](const Facet& facet) {
             return facet.terrain && !facet.filled && facet.z.bottom > bands_[b].top + 2 * layer_tolerance &&
                    facet.z.bottom >= proofs_.layer_z_.low && facet.z.top <= proofs_.layer_z_.high;
         });
@@ -153,9 +165,11 @@ private:
         const SampleOptions& options = proofs_.options_;
         const Interval& band = bands_[b];
         const bool any_depth = std::isinf(options.max_water_depth);
-        // Whatever terrain is the ground of a pose must lie under the water: the layer, or one between that and the origin.
+        // Whatever terrain is the ground of a pose must lie under the water: the layer, or one between that and the
+        // origin.
         double highest = band.top;
-        for (std::size_t above = b + 1; above < bands_.size() && bands_[above].bottom <= band.top + proofs_.offset_ + slack; ++above)
+        for (std::size_t above = b + 1;
+             above < bands_.size() && bands_[above].bottom <= band.top + proofs_.offset_ + slack; ++above)
             highest = bands_[above].top;
         if (facets_.has_too_many || (!any_depth && proofs_.offset_ < 0)) return false;
         return covers(facets_.all, rect_, [&](const Facet& facet) {
@@ -166,7 +180,8 @@ private:
 
     bool is_blocked(const Interval& band) const
     {
-        const Pose pose{{rect_.centre_x(), rect_.centre_y(), (band.bottom + band.top) / 2 + proofs_.offset_}, Mat3::Identity()};
+        const Pose pose{{rect_.centre_x(), rect_.centre_y(), (band.bottom + band.top) / 2 + proofs_.offset_},
+                        Mat3::Identity()};
         for (const DrawnIn& drawn_in : proofs_.drawn_in_)  // from the largest robot on
             if ((band.top - band.bottom) / 2 <= drawn_in.half_height) return !drawn_in.checker.is_free(pose);
         return false;
@@ -178,33 +193,37 @@ private:
         return std::any_of(proofs_.prisms_.begin(), proofs_.prisms_.end(), [&](const Prism& prism) {
             const Vec2 shift = (prism.polygon[0] + prism.polygon[prism.polygon.size() / 2]) / 2;
             const double rise = proofs_.offset_ + (prism.bottom + prism.top) / 2;
-            return is_solid({rect_.low_x + shift.x(), rect_.low_y + shift.y(), rect_.high_x + shift.x(), rect_.high_y + shift.y()},
-                            {band.bottom + rise - slack, band.top + rise + slack});
+            return is_solid(
+                {rect_.low_x + shift.x(), rect_.low_y + shift.y(), rect_.high_x + shift.x(), rect_.high_y + shift.y()},
+                {band.bottom + rise - slack, band.top + rise + slack});
         });
     }
 
-    /// Convex shapes hold a block if they hold its corners; so does the inside of a mesh that has the centre in it, and no
-    /// surface where the block is.
+    /// Convex shapes hold a block if they hold its corners; so does the inside of a mesh that has the centre in it, and
+    /// no surface where the block is.
     bool is_solid(const Rect& rect, const Interval& z) const
     {
         const auto holds = [&](const Interval& span) { return span.bottom <= z.bottom && span.top >= z.top; };
         bool in_primitive = false, meets_other = false;
-        proofs_.map_.geometry.impl().visit_in(rect.low_x, rect.low_y, rect.high_x, rect.high_y, [&](const Tile& tile, std::uint32_t element) {
-            const ElementBox& box = tile.boxes[element];
-            const Label label = tile.label(element);
-            if (in_primitive || label == Label::Water || box.min[2] > z.top || box.max[2] < z.bottom) return;
-            meets_other = true;
-            if (tile.is_triangle(element)) return;
-            const Shape shape = tile.primitive(element).shape();
-            const SmallPolygon corners = corners_of(rect);
-            in_primitive = std::all_of(corners.begin(), corners.end(), [&](const Vec2& p) {
-                const auto span = vertical_interval(shape, p.x(), p.y());
-                return span && holds(*span);
+        proofs_.map_.geometry.impl().visit_in(
+            rect.low_x, rect.low_y, rect.high_x, rect.high_y, [&](const Tile& tile, std::uint32_t element) {
+                const ElementBox& box = tile.boxes[element];
+                const Label label = tile.label(element);
+                if (in_primitive || label == Label::Water || box.min[2] > z.top || box.max[2] < z.bottom) return;
+                meets_other = true;
+                if (tile.is_triangle(element)) return;
+                const Shape shape = tile.primitive(element).shape();
+                const SmallPolygon corners = corners_of(rect);
+                in_primitive = std::all_of(corners.begin(), corners.end(), [&](const Vec2& p) {
+                    const auto span = vertical_interval(shape, p.x(), p.y());
+                    return span && holds(*span);
+                });
             });
-        });
         if (in_primitive || meets_other) return in_primitive;
         const Column column = column_at(proofs_.map_.geometry, rect.centre_x(), rect.centre_y());
-        return std::any_of(column.spans.begin(), column.spans.end(), [&](const Span& span) { return span.sealed && holds({span.bottom, span.top}); });
+        return std::any_of(column.spans.begin(), column.spans.end(), [&](const Span& span) {
+            return span.sealed && holds({span.bottom, span.top});
+        });
     }
 
     /// Whether some point of the robot's inside meets a terrain surface above or below it, at every pose of the band.
@@ -227,15 +246,17 @@ private:
 
     bool meets_ground(const std::vector<const Facet*>& stands, const Vec2& shift, const Prism& prism) const
     {
-        const Rect there{rect_.low_x + shift.x(), rect_.low_y + shift.y(), rect_.high_x + shift.x(), rect_.high_y + shift.y()};
+        const Rect there{rect_.low_x + shift.x(), rect_.low_y + shift.y(), rect_.high_x + shift.x(),
+                         rect_.high_y + shift.y()};
         const CellFacets ground(proofs_.map_.geometry, there);
         if (ground.has_too_many) return false;
         const double low = proofs_.offset_ + prism.bottom + slack, high = proofs_.offset_ + prism.top - slack;
         return covers(ground.all, there, [&](const Facet& facet) {
-            return facet.terrain && facet.has_plane && std::all_of(stands.begin(), stands.end(), [&](const Facet* stand) {
-                const Interval rise = rise_between(*stand, facet, shift);
-                return rise.bottom >= low && rise.top <= high;
-            });
+            return facet.terrain && facet.has_plane &&
+                   std::all_of(stands.begin(), stands.end(), [&](const Facet* stand) {
+                       const Interval rise = rise_between(*stand, facet, shift);
+                       return rise.bottom >= low && rise.top <= high;
+                   });
         });
     }
 
@@ -267,15 +288,17 @@ private:
     std::vector<Interval> bands_;
 };
 
-CellProofs::CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const AreaIndex& area,
-                       const SpacedPoints& taken, const AvoidIndex& avoided)
+CellProofs::CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options,
+                       const AreaIndex& area, const SpacedPoints& taken, const AvoidIndex& avoided)
     : map_(map), options_(options), offset_(*options.offset),
-      ground_z_(overlap(overlap(map.z_limits, options.z), ZRange{map.z_limits.low - offset_, map.z_limits.high - offset_})),
+      ground_z_(
+          overlap(overlap(map.z_limits, options.z), ZRange{map.z_limits.low - offset_, map.z_limits.high - offset_})),
       layer_z_(overlap(map.z_limits, options.z)), area_(area), taken_(taken), avoided_(avoided)
 {
     if (checker.uses_occupancy()) return;  // not what the proofs see
-    const std::vector<Footprint> prints = options.random_yaw ? yaw_free_footprints(checker.robot())
-                                                             : footprints(checker.robot(), rotation_from_rpy(0, 0, options.yaw), true);
+    const std::vector<Footprint> prints = options.random_yaw
+                                              ? yaw_free_footprints(checker.robot())
+                                              : footprints(checker.robot(), rotation_from_rpy(0, 0, options.yaw), true);
     for (const Footprint& print : prints)
         if (!print.inner.polygon.empty()) prisms_.push_back({print.inner.polygon, print.inner.bottom, print.inner.top});
 }
@@ -302,7 +325,8 @@ Robot CellProofs::drawn_in(double half_x, double half_y, double half_height) con
         for (std::size_t k = 0; k < prism.polygon.size() && !left.empty(); ++k) {
             const Vec2 &p = prism.polygon[k], &q = prism.polygon[(k + 1) % prism.polygon.size()];
             const Vec2 normal = outward_normal(p, q);
-            left = cut(left, normal, normal.dot(p) - half_x * std::abs(normal.x()) - half_y * std::abs(normal.y()) - slack);
+            left = cut(left, normal,
+                       normal.dot(p) - half_x * std::abs(normal.x()) - half_y * std::abs(normal.y()) - slack);
         }
         const double bottom = prism.bottom + half_height, top = prism.top - half_height;
         constexpr double least = 1e-3;  // m; flatter or thinner bodies are not worth it

@@ -15,10 +15,10 @@ namespace spawnfield {
 ///
 /// A cell's layers lie between heights that the planes of its terrain give. At each such height, as far as layers are
 /// ground there, all poses must be off the area, outside, too close to one taken or avoided position, under water, or
-/// collide: the robot drawn in by half a cell does at its centre, or some point of the robot is inside the ground at every
-/// pose. Lines within 1e-9 m of an upright face are left aside. What is not proven stays open: cells half on an obstacle as
-/// flat as the offset, for one. A footing that is asked for (max_slope) only takes valid poses away, so what is closed
-/// without it is closed with it; cells where all is steep stay open.
+/// collide: the robot drawn in by half a cell does at its centre, or some point of the robot is inside the ground at
+/// every pose. Lines within 1e-9 m of an upright face are left aside. What is not proven stays open: cells half on an
+/// obstacle as flat as the offset, for one. A footing that is asked for (max_slope) only takes valid poses away, so
+/// what is closed without it is closed with it; cells where all is steep stay open.
 class CellProofs {
 public:
     /// options.offset is given. `taken` may grow between calls of is_closed, never during them.
@@ -33,8 +33,8 @@ public:
 private:
     struct Prism;
     class Cell;
-    /// The robot's inside, smaller by half a cell and by half a range of heights: where it collides, the robot does at every
-    /// pose of the cell.
+    /// The robot's inside, smaller by half a cell and by half a range of heights: where it collides, the robot does at
+    /// every pose of the cell.
     struct DrawnIn {
         double half_height;  ///< m
         CollisionChecker checker;
@@ -49,8 +49,8 @@ private:
     const AreaIndex& area_;
     const SpacedPoints& taken_;
     const AvoidIndex& avoided_;
-    std::vector<Prism> prisms_;        ///< within the robot at every yaw that is drawn, relative to its origin
-    std::vector<DrawnIn> drawn_in_;    ///< from the lowest range of heights on
+    std::vector<Prism> prisms_;      ///< within the robot at every yaw that is drawn, relative to its origin
+    std::vector<DrawnIn> drawn_in_;  ///< from the lowest range of heights on
 };
 
 }  // namespace spawnfield

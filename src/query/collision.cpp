@@ -21,7 +21,8 @@ namespace spawnfield {
 namespace {
 
 using Transform = fcl::Transform3<double>;
-using FclShape = std::variant<fcl::Box<double>, fcl::Sphere<double>, fcl::Cylinder<double>, fcl::Capsule<double>, fcl::Convex<double>>;
+using FclShape = std::variant<fcl::Box<double>, fcl::Sphere<double>, fcl::Cylinder<double>, fcl::Capsule<double>,
+                              fcl::Convex<double>>;
 
 FclShape fcl_shape(const Shape& shape)
 {
@@ -39,7 +40,8 @@ FclShape fcl_convex(const RobotPart& hull)
 {
     auto faces = std::make_shared<std::vector<int>>();
     for (const auto& face : hull.hull_faces) faces->insert(faces->end(), {3, face[0], face[1], face[2]});
-    return fcl::Convex<double>(std::make_shared<const std::vector<Vec3>>(hull.hull_vertices), int(hull.hull_faces.size()), faces);
+    return fcl::Convex<double>(std::make_shared<const std::vector<Vec3>>(hull.hull_vertices),
+                               int(hull.hull_faces.size()), faces);
 }
 
 const fcl::CollisionGeometry<double>* geometry_of(const FclShape& shape)
@@ -60,9 +62,9 @@ struct CheckedPart {
     FclShape shape;
     Pose robot_from_shape;
     Vec3 centre;
-    Shape bounds_shape;              ///< for bounds at a pose; unused by hulls
+    Shape bounds_shape;  ///< for bounds at a pose; unused by hulls
     std::vector<Vec3> hull_vertices;
-    Vec3 box_centre, box_half;       ///< of the box around it, along the shape's own axes
+    Vec3 box_centre, box_half;  ///< of the box around it, along the shape's own axes
 
     explicit CheckedPart(const RobotPart& part)
         : shape(part.shape.kind == ShapeKind::Hull ? fcl_convex(part) : fcl_shape(part.shape)),
@@ -91,8 +93,8 @@ struct CheckedPart {
 
 bool overlap(const ElementBox& a, const Bounds& b)
 {
-    return a.min[0] <= b.max[0] && a.max[0] >= b.min[0] && a.min[1] <= b.max[1] && a.max[1] >= b.min[1] && a.min[2] <= b.max[2] &&
-           a.max[2] >= b.min[2];
+    return a.min[0] <= b.max[0] && a.max[0] >= b.min[0] && a.min[1] <= b.max[1] && a.max[1] >= b.min[1] &&
+           a.min[2] <= b.max[2] && a.max[2] >= b.min[2];
 }
 
 /// A robot's part at one pose. Everything is told FCL relative to the robot's position, so that coordinates stay small
@@ -103,16 +105,18 @@ struct PlacedPart {
     Bounds bounds;               ///< in the scene's frame
 };
 
-/// Whether the box around a part lies beside a triangle or off its plane: most triangles near a robot, far sooner than FCL
-/// tells. By more than the margin within which FCL's answer depends on its own tolerance.
+/// Whether the box around a part lies beside a triangle or off its plane: most triangles near a robot, far sooner than
+/// FCL tells. By more than the margin within which FCL's answer depends on its own tolerance.
 bool is_apart(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
 {
     const Vec3& half = placed.part->box_half;
     std::array<Vec3, 3> seen;  // from the middle of the box, along its axes
     for (std::size_t k = 0; k < 3; ++k)
-        seen[k] = placed.robot_from_shape.linear().transpose() * (corners[k] - placed.robot_from_shape.translation()) - placed.part->box_centre;
+        seen[k] = placed.robot_from_shape.linear().transpose() * (corners[k] - placed.robot_from_shape.translation()) -
+                  placed.part->box_centre;
     const Vec3 low = seen[0].cwiseMin(seen[1]).cwiseMin(seen[2]), high = seen[0].cwiseMax(seen[1]).cwiseMax(seen[2]);
-    if (((low - half).array() > FreeSpace::margin).any() || ((-half - high).array() > FreeSpace::margin).any()) return true;
+    if (((low - half).array() > FreeSpace::margin).any() || ((-half - high).array() > FreeSpace::margin).any())
+        return true;
     const Vec3 normal = (seen[1] - seen[0]).cross(seen[2] - seen[0]);
     return std::abs(normal.dot(seen[0])) > normal.cwiseAbs().dot(half) + FreeSpace::margin * normal.norm();
 }
@@ -131,16 +135,19 @@ bool meets_triangle(const PlacedPart& placed, const std::array<Vec3, 3>& corners
     static const fcl::detail::GJKSolver_libccd<double> solver;
     const auto meets = [&](const auto& shape) {
         return solver.shapeTriangleIntersect(shape, placed.robot_from_shape, corners[0], corners[1], corners[2],
-                                             static_cast<Vec3*>(nullptr), static_cast<double*>(nullptr), static_cast<Vec3*>(nullptr));
+                                             static_cast<Vec3*>(nullptr), static_cast<double*>(nullptr),
+                                             static_cast<Vec3*>(nullptr));
     };
-    // FCL's own answer for spheres rests on the normal, and is wrong for slivers that are nowhere near; a capsule's does not.
-    if (const auto* sphere = std::get_if<fcl::Sphere<double>>(&placed.part->shape); sphere != nullptr && is_sliver(corners))
+    // FCL's own answer for spheres rests on the normal, and is wrong for slivers that are nowhere near; a capsule's
+    // does not.
+    if (const auto* sphere = std::get_if<fcl::Sphere<double>>(&placed.part->shape);
+        sphere != nullptr && is_sliver(corners))
         return meets(fcl::Capsule<double>(sphere->radius, 0));
     return std::visit(meets, placed.part->shape);
 }
 
-bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& at_a, const fcl::CollisionGeometry<double>* b,
-                 const Transform& at_b)
+bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& at_a,
+                 const fcl::CollisionGeometry<double>* b, const Transform& at_b)
 {
     fcl::CollisionRequest<double> request;
     request.gjk_solver_type = fcl::GST_LIBCCD;
@@ -162,11 +169,13 @@ struct CollisionChecker::Impl {
         std::vector<PlacedPart> placed;
         placed.reserve(parts.size());
         for (const CheckedPart& part : parts)
-            placed.push_back({&part, transform_of(Pose{Vec3::Zero(), pose.rotation} * part.robot_from_shape), part.bounds_at(pose)});
+            placed.push_back(
+                {&part, transform_of(Pose{Vec3::Zero(), pose.rotation} * part.robot_from_shape), part.bounds_at(pose)});
         return placed;
     }
 
-    static bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed, const Vec3& origin)
+    static bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
+                              const Vec3& origin)
     {
         for (const PlacedPart& part : placed) {
             if (!overlap(tile.boxes[element], part.bounds)) continue;
@@ -178,14 +187,15 @@ struct CollisionChecker::Impl {
                 const Shape shape = tile.primitive(element).shape();
                 const FclShape other = fcl_shape(shape);
                 const Transform at = transform_of({shape.pose.position - origin, shape.pose.rotation});
-                if (fcl_collide(geometry_of(part.part->shape), part.robot_from_shape, geometry_of(other), at)) return true;
+                if (fcl_collide(geometry_of(part.part->shape), part.robot_from_shape, geometry_of(other), at))
+                    return true;
             }
         }
         return false;
     }
 
-    /// The first part, below `best`, in whose filled meshes a part of the robot lies. Its surface is not touched, so one
-    /// point of each convex part tells for all of it.
+    /// The first part, below `best`, in whose filled meshes a part of the robot lies. Its surface is not touched, so
+    /// one point of each convex part tells for all of it.
     std::uint32_t first_around(const Pose& pose, std::uint32_t best) const
     {
         if (!geometry.impl().has_filled_meshes) return best;
@@ -222,7 +232,8 @@ struct CollisionChecker::Impl {
         Transform at = Transform::Identity();
         at.translation() = -origin;
         for (const PlacedPart& part : placed)
-            if (fcl_collide(octree.get(), at, geometry_of(part.part->shape), part.robot_from_shape)) return CollisionHit{};
+            if (fcl_collide(octree.get(), at, geometry_of(part.part->shape), part.robot_from_shape))
+                return CollisionHit{};
         return std::nullopt;
     }
 };

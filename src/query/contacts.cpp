@@ -11,7 +11,7 @@ namespace spawnfield {
 namespace {
 
 constexpr int circle_corners = 32;
-constexpr int capsule_balls = 17;  ///< along its straight part
+constexpr int capsule_balls = 17;      ///< along its straight part
 constexpr double least_spread = 1e-6;  // m
 
 void add_circle(const Vec3& centre, const Vec3& u, const Vec3& v, std::vector<Vec3>& out)
@@ -49,10 +49,12 @@ std::vector<Vec3> corners_of(const RobotPart& part, double z)
     case ShapeKind::Sphere: add_cap(pose.position, size[0], z, out); break;
     case ShapeKind::Cylinder:
         for (const double end : {-1.0, 1.0})
-            add_circle(pose.position + end * half_axis, size[0] * pose.rotation.col(0), size[0] * pose.rotation.col(1), out);
+            add_circle(pose.position + end * half_axis, size[0] * pose.rotation.col(0), size[0] * pose.rotation.col(1),
+                       out);
         break;
     case ShapeKind::Capsule:
-        for (int k = 0; k < capsule_balls; ++k) add_cap(pose.position + (2.0 * k / (capsule_balls - 1) - 1) * half_axis, size[0], z, out);
+        for (int k = 0; k < capsule_balls; ++k)
+            add_cap(pose.position + (2.0 * k / (capsule_balls - 1) - 1) * half_axis, size[0], z, out);
         break;
     }
     return out;
@@ -75,8 +77,8 @@ double distance_to_line(const Vec2& p, const Vec2& from, const Vec2& to)
     return length > 0 ? std::abs(cross(to - from, p - from)) / length : (p - from).norm();
 }
 
-/// Without the corners that lie on the line between others but for rounding: they would weigh on one side of a symmetric robot
-/// and not on the other. Goes round from the corner farthest out, which is none of those.
+/// Without the corners that lie on the line between others but for rounding: they would weigh on one side of a
+/// symmetric robot and not on the other. Goes round from the corner farthest out, which is none of those.
 Polygon2 without_flat_corners(const Polygon2& hull)
 {
     if (hull.size() < 4) return hull;

@@ -27,8 +27,10 @@ void join_solids(const Column& column, std::vector<Interval>& out)
     std::sort(out.begin(), out.end(), [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
     std::size_t kept = 0;
     for (const Interval& next : out) {
-        if (kept > 0 && next.bottom <= out[kept - 1].top + layer_tolerance) out[kept - 1].top = std::max(out[kept - 1].top, next.top);
-        else out[kept++] = next;
+        if (kept > 0 && next.bottom <= out[kept - 1].top + layer_tolerance)
+            out[kept - 1].top = std::max(out[kept - 1].top, next.top);
+        else
+            out[kept++] = next;
     }
     out.resize(kept);
 }
@@ -51,7 +53,8 @@ void check_max_slope(const char* function, const QueryOptions& options)
 }
 
 Footing::Footing(const Geometry& geometry, const Robot& robot, double max_slope)
-    : geometry_(&geometry), robot_(&robot), points_(contacts_of(robot)), lowest_(robot.bounds().min.z()), steepest_(std::tan(max_slope))
+    : geometry_(&geometry), robot_(&robot), points_(contacts_of(robot)), lowest_(robot.bounds().min.z()),
+      steepest_(std::tan(max_slope))
 {
 }
 
@@ -75,7 +78,8 @@ void Footing::face(const Mat3& rotation)
     const Eigen::Matrix2d inverse = scatter.inverse();
     for (const Vec3& point : turned) {
         const Vec2 shift = point.head<2>();
-        contacts_.push_back({shift, std::max(point.z(), lowest), shift.norm() * steepest_ + step, inverse * (shift - middle_), {}});
+        contacts_.push_back(
+            {shift, std::max(point.z(), lowest), shift.norm() * steepest_ + step, inverse * (shift - middle_), {}});
     }
 }
 
@@ -83,7 +87,8 @@ void Footing::look_at(double x, double y)
 {
     if (looked_at_ == Vec2(x, y)) return;
     looked_at_ = Vec2(x, y);
-    for (Contact& contact : contacts_) join_solids(column_at(*geometry_, x + contact.shift.x(), y + contact.shift.y()), contact.solids);
+    for (Contact& contact : contacts_)
+        join_solids(column_at(*geometry_, x + contact.shift.x(), y + contact.shift.y()), contact.solids);
 }
 
 Verdict Footing::at(const Vec3& position, double ground)

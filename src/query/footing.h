@@ -23,10 +23,10 @@ public:
 
 private:
     struct Contact {
-        Vec2 shift;    ///< from the origin, turned
-        double level;  ///< above the origin; what begins higher does not carry it
-        double reach;  ///< of its surface above or below the pose's ground
-        Vec2 weight;   ///< what 1 m there adds to the gradient of the plane
+        Vec2 shift;                    ///< from the origin, turned
+        double level;                  ///< above the origin; what begins higher does not carry it
+        double reach;                  ///< of its surface above or below the pose's ground
+        Vec2 weight;                   ///< what 1 m there adds to the gradient of the plane
         std::vector<Interval> solids;  ///< of the column at look_at, all that touches taken as one, from the bottom up
     };
     void look_at(double x, double y);

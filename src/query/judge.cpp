@@ -15,7 +15,8 @@ bool is_submerged(const ColumnView& column, double ground, double max_water_dept
 }
 
 /// The verdict table up to collisions; true if those are to decide.
-bool judge_ground(const Map& map, const ColumnView& column, const Vec3& position, const QueryOptions& options, Judgement& out)
+bool judge_ground(const Map& map, const ColumnView& column, const Vec3& position, const QueryOptions& options,
+                  Judgement& out)
 {
     out.ground = ground_below(column, position.z());
     out.verdict = Verdict::Outside;
@@ -38,8 +39,8 @@ void check_exactly(const CollisionChecker& checker, const Pose& pose, bool with_
 
 bool has_limit(const QueryOptions& options) { return options.max_slope != std::numeric_limits<double>::infinity(); }
 
-/// Numbers of poses, neighbours after each other, so that they find each other's tiles in the cache. Counting sort over a
-/// grid around them.
+/// Numbers of poses, neighbours after each other, so that they find each other's tiles in the cache. Counting sort over
+/// a grid around them.
 std::vector<std::uint32_t> in_neighbourhoods(const std::vector<Pose>& poses)
 {
     constexpr std::size_t side = 256;
@@ -99,8 +100,10 @@ void PoseJudge::face(const Mat3& rotation)
     rotation_ = rotation;
     if (footing_) footing_->face(rotation_);
     if (!mask_) return;
-    if (rotation(2, 2) == 1) mask_->face(std::atan2(rotation(1, 0), rotation(0, 0)));
-    else mask_->face(rotation);
+    if (rotation(2, 2) == 1)
+        mask_->face(std::atan2(rotation(1, 0), rotation(0, 0)));
+    else
+        mask_->face(rotation);
 }
 
 void PoseJudge::set_y(double y)
@@ -127,11 +130,16 @@ Judgement PoseJudge::collision(double x, double z, bool with_hit)
 void PoseJudge::decide(const ColumnView& column, double x, double z, bool with_hit, Judgement& out)
 {
     Proof proof = Proof::Candidate;
-    if (mask_ && mask_->is_pierced(column.spans, z)) proof = Proof::Blocked;
-    else if (mask_) proof = mask_->at(x, z);
-    if (proof == Proof::Free) out.verdict = Verdict::Valid;
-    else if (proof == Proof::Blocked && !with_hit) out.verdict = Verdict::Collision;
-    else decide_exactly({{x, y_, z}, rotation_}, with_hit, out);
+    if (mask_ && mask_->is_pierced(column.spans, z))
+        proof = Proof::Blocked;
+    else if (mask_)
+        proof = mask_->at(x, z);
+    if (proof == Proof::Free)
+        out.verdict = Verdict::Valid;
+    else if (proof == Proof::Blocked && !with_hit)
+        out.verdict = Verdict::Collision;
+    else
+        decide_exactly({{x, y_, z}, rotation_}, with_hit, out);
 }
 
 void PoseJudge::decide_exactly(const Pose& pose, bool with_hit, Judgement& out)

@@ -13,11 +13,12 @@ namespace spawnfield {
 /// Whether a pose with its origin there is not `outside`.
 inline bool is_within(const Map& map, const Vec3& position)
 {
-    return map.bounds.contains_xy(position.x(), position.y(), touch_tolerance) && map.z_limits.contains(position.z(), touch_tolerance);
+    return map.bounds.contains_xy(position.x(), position.y(), touch_tolerance) &&
+           map.z_limits.contains(position.z(), touch_tolerance);
 }
 
-/// Judges poses for one query: the mask first, the CollisionChecker where it cannot tell, then the footing of those that are
-/// free. Shared by all threads.
+/// Judges poses for one query: the mask first, the CollisionChecker where it cannot tell, then the footing of those
+/// that are free. Shared by all threads.
 class Judging {
 public:
     Judging(const Map& map, const CollisionChecker& checker, const QueryOptions& options);
@@ -49,12 +50,12 @@ public:
     PoseJudge& operator=(const PoseJudge&) = delete;
     ~PoseJudge();  ///< tells the time of its exact checks
 
-    void face(double yaw);          ///< upright; to be called before the first pose
+    void face(double yaw);  ///< upright; to be called before the first pose
     void face(const Mat3& rotation);
     void set_y(double y);
 
-    /// The verdict at (x, y of set_y, z) with its ground, as judge gives it. With `with_hit` also what a pose collides with,
-    /// which takes an exact check.
+    /// The verdict at (x, y of set_y, z) with its ground, as judge gives it. With `with_hit` also what a pose collides
+    /// with, which takes an exact check.
     Judgement at(const ColumnView& column, double x, double z, bool with_hit = false);
     /// Valid or Collision: of collisions alone, whatever the footing.
     Judgement collision(double x, double z, bool with_hit = false);

@@ -90,8 +90,9 @@ private:
                 fail("has columns " + name + " and " + name + "_deg, needs one of the two");
             return degrees >= 0 ? AngleColumn{name + "_deg", degrees, true} : AngleColumn{name, radians};
         };
-        PoseColumns c{find("x"),  find("y"),  find("z"),  find("qx"), find("qy"), find("qz"), find("qw"),
-                      {angle("roll"), angle("pitch"), angle("yaw")}, names.size()};
+        PoseColumns c{find("x"),   find("y"),  find("z"),  find("qx"),
+                      find("qy"),  find("qz"), find("qw"), {angle("roll"), angle("pitch"), angle("yaw")},
+                      names.size()};
         for (const auto& axis : {std::pair{c.x, "x"}, std::pair{c.y, "y"}, std::pair{c.z, "z"}})
             if (axis.first < 0) {
                 const auto other = std::find_if(names.begin(), names.end(),
@@ -101,8 +102,8 @@ private:
             }
         const int quaternions = (c.qx >= 0) + (c.qy >= 0) + (c.qz >= 0) + (c.qw >= 0);
         if (quaternions != 0 && quaternions != 4) fail("has some of the columns qx,qy,qz,qw, needs all four or none");
-        const bool has_angle =
-            std::any_of(c.angles.begin(), c.angles.end(), [](const AngleColumn& a) { return a.field >= 0; });
+        const bool has_angle = std::any_of(c.angles.begin(), c.angles.end(),
+                                           [](const AngleColumn& a) { return a.field >= 0; });
         if (quaternions == 4 && has_angle) fail("has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
         return c;
     }
@@ -130,8 +131,9 @@ private:
     {
         for (const AngleColumn& angle : columns.angles) {
             if (angle.beyond_turn == 0) continue;
-            const std::string more =
-                angle.beyond_turn == 1 ? "" : " (the first of " + std::to_string(angle.beyond_turn) + " rows)";
+            const std::string more = angle.beyond_turn == 1
+                                         ? ""
+                                         : " (the first of " + std::to_string(angle.beyond_turn) + " rows)";
             table.notices.push_back(file_ + ": " + angle.first + more +
                                     ", which is more than a turn of 2 pi rad; for degrees name the column " +
                                     angle.name + "_deg");

@@ -95,13 +95,15 @@ Json settings_json(const SpawnOptions& options, const Map& map, int axes)
 
 std::string finished(Json out, const std::optional<VerdictCounts>& counts, std::span<const RobotStart> robots)
 {
-    for (std::size_t verdict = 0; counts && verdict < verdict_count; ++verdict) out["counts"][to_string(Verdict(verdict))] = (*counts)[verdict];
+    for (std::size_t verdict = 0; counts && verdict < verdict_count; ++verdict)
+        out["counts"][to_string(Verdict(verdict))] = (*counts)[verdict];
     out["poses"] = Json::array();
     for (const RobotStart& robot : robots) out["poses"].push_back(pose_json(robot));
     return json_text(out, 2) + "\n";
 }
 
-void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& names, const std::vector<std::string>& name_spaces)
+void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& names,
+              const std::vector<std::string>& name_spaces)
 {
     for (std::size_t i = 0; i < names.size(); ++i) robots.at(i).name = names[i];
     for (std::size_t i = 0; i < name_spaces.size(); ++i) robots.at(i).name_space = name_spaces[i];
@@ -134,7 +136,8 @@ std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::
         std::size_t verdict = 0;
         while (verdict < verdict_count && text != to_string(Verdict(verdict))) ++verdict;
         if (verdict == verdict_count)
-            throw FileError(file.string(), "pose " + std::to_string(out.size() + 1) + ": column verdict is \"" + text + "\", needs a verdict's name, as valid or collision");
+            throw FileError(file.string(), "pose " + std::to_string(out.size() + 1) + ": column verdict is \"" + text +
+                                               "\", needs a verdict's name, as valid or collision");
         out.push_back(Verdict(verdict));
     }
     return out;
@@ -147,7 +150,8 @@ std::vector<std::string> replaced_columns(const PoseTable& table)
     return names;
 }
 
-std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const std::vector<Part>& parts)
+std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements,
+                         const std::vector<Part>& parts)
 {
     std::vector<std::uint8_t> replaced;
     for (const std::string& name : csv_fields(table.header)) replaced.push_back(is_verdict_column(name));
@@ -159,10 +163,14 @@ std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& j
         append_fields(text, table.rows[i], replaced);
         text += to_string(judged.verdict);
         text += ',';
-        if (judged.ground) append_numbers(text, {judged.ground->height, table.poses[i].position.z() - judged.ground->height});
-        else text += ',';
+        if (judged.ground)
+            append_numbers(text, {judged.ground->height, table.poses[i].position.z() - judged.ground->height});
+        else
+            text += ',';
         text += ',';
-        if (judged.hit) text += judged.hit->part == CollisionHit::occupancy ? "occupancy" : csv_quoted(parts[judged.hit->part].name);
+        if (judged.hit)
+            text += judged.hit->part == CollisionHit::occupancy ? "occupancy"
+                                                                : csv_quoted(parts[judged.hit->part].name);
         text += '\n';
     }
     return text;
@@ -181,7 +189,8 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
     sink(text);
 }
 
-std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names, const std::vector<std::string>& name_spaces)
+std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names,
+                                     const std::vector<std::string>& name_spaces)
 {
     std::vector<RobotStart> out;
     for (const Spawn& spawn : list.spawns) out.push_back({{}, {}, spawn.position, {0, 0, spawn.yaw}});
@@ -189,7 +198,8 @@ std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<st
     return out;
 }
 
-std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names, const std::vector<std::string>& name_spaces)
+std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names,
+                                     const std::vector<std::string>& name_spaces)
 {
     std::vector<RobotStart> out;
     for (const Pose& pose : table.poses) out.push_back({{}, {}, pose.position, rpy_from(pose.rotation)});
@@ -203,7 +213,8 @@ std::string robots_csv(std::span<const RobotStart> robots)
     std::string text = named ? "name,x,y,z,roll,pitch,yaw\n" : "x,y,z,roll,pitch,yaw\n";
     for (const RobotStart& robot : robots) {
         if (named) text += csv_quoted(robot.name) + ',';
-        append_numbers(text, {robot.position.x(), robot.position.y(), robot.position.z(), robot.rpy.roll, robot.rpy.pitch, robot.rpy.yaw});
+        append_numbers(text, {robot.position.x(), robot.position.y(), robot.position.z(), robot.rpy.roll,
+                              robot.rpy.pitch, robot.rpy.yaw});
         text += '\n';
     }
     return text;
@@ -219,7 +230,8 @@ std::string spawns_csv(const SpawnList& list)
     return text;
 }
 
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SampleOptions& options)
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+                        const SampleOptions& options)
 {
     Json settings = settings_json(options, map, 2);
     settings["offset"] = options.offset.value_or(auto_offset(robot));
@@ -231,7 +243,8 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
     return finished(std::move(out), list.counts, robots);
 }
 
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot, const SearchOptions& options)
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+                        const SearchOptions& options)
 {
     Json settings = settings_json(options, map, 3);
     settings["max_height"] = options.max_height;

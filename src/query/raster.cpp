@@ -16,7 +16,9 @@ namespace {
 int count_steps(double from, double to, double step, const char* axis)
 {
     const double count = std::floor((to - from) / step + 1e-9) + 1;
-    if (!(count <= 2147483647.0)) throw ArgumentError("raster", std::string("steps along ") + axis, count, "at most 2147483647; take a larger step");
+    if (!(count <= 2147483647.0))
+        throw ArgumentError("raster", std::string("steps along ") + axis, count,
+                            "at most 2147483647; take a larger step");
     return static_cast<int>(count);
 }
 
@@ -31,7 +33,8 @@ RasterGrid grid_of(const Bounds& bounds, const RasterOptions& options)
     grid.cols = count_steps(grid.x0, bounds.max.x(), grid.step, "x");
     grid.rows = count_steps(grid.y0, bounds.max.y(), grid.step, "y");
     if (double(grid.cols) * grid.rows > 2147483647.0)
-        throw ArgumentError("raster", "columns", double(grid.cols) * grid.rows, "at most 2147483647; take a larger step");
+        throw ArgumentError("raster", "columns", double(grid.cols) * grid.rows,
+                            "at most 2147483647; take a larger step");
     if (options.dims == 3) grid.heights = count_steps(grid.z0, bounds.max.z(), grid.step_z, "z");
     return grid;
 }
@@ -46,27 +49,35 @@ bool has_no_z_limits(const Area& area)
 void check(const RasterOptions& options)
 {
     if (options.dims != 2 && options.dims != 3) throw ArgumentError("raster", "dims", options.dims, "2 or 3");
-    if (!(options.step > 0) || !std::isfinite(options.step)) throw ArgumentError("raster", "step", options.step, "> 0 m");
-    if (!(options.step_z >= 0) || !std::isfinite(options.step_z)) throw ArgumentError("raster", "step_z", options.step_z, "> 0 m");
+    if (!(options.step > 0) || !std::isfinite(options.step))
+        throw ArgumentError("raster", "step", options.step, "> 0 m");
+    if (!(options.step_z >= 0) || !std::isfinite(options.step_z))
+        throw ArgumentError("raster", "step_z", options.step_z, "> 0 m");
     if (!(options.max_height >= 0)) throw ArgumentError("raster", "max_height", options.max_height, ">= 0 m");
-    if (!(options.max_water_depth >= 0)) throw ArgumentError("raster", "max_water_depth", options.max_water_depth, ">= 0 m");
+    if (!(options.max_water_depth >= 0))
+        throw ArgumentError("raster", "max_water_depth", options.max_water_depth, ">= 0 m");
     check_max_slope("raster", options);
     check_ground("raster", options.z, options.offset);
     if (!std::isfinite(options.yaw)) throw ArgumentError("raster", "yaw", options.yaw, "a finite number, rad");
     if (!options.height_check && options.dims != 3)
-        throw ArgumentError("raster", "without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
+        throw ArgumentError(
+            "raster", "without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
     if (options.dims == 3 && !has_no_z_limits(options.area))
-        throw ArgumentError("raster", "area has z limits, needs regions without any for dims 3: bounds has the heights");
+        throw ArgumentError("raster",
+                            "area has z limits, needs regions without any for dims 3: bounds has the heights");
     if (!options.snap) return;
-    if (options.dims != 3) throw ArgumentError("raster", "snap needs dims 3: a pose of a 2D raster stands on its layer by definition");
-    if (!options.height_check) throw ArgumentError("raster", "snap needs the height check: collisions alone know no layers");
+    if (options.dims != 3)
+        throw ArgumentError("raster", "snap needs dims 3: a pose of a 2D raster stands on its layer by definition");
+    if (!options.height_check)
+        throw ArgumentError("raster", "snap needs the height check: collisions alone know no layers");
 }
 
 double chosen_offset(const Robot& robot, const RasterOptions& options)
 {
     const double offset = options.offset.value_or(auto_offset(robot));
     if (options.snap && !(offset >= 0 && offset <= options.max_height))
-        throw ArgumentError("raster", "offset", offset, "0 .. max_height with snap: poses on their layers would be aerial");
+        throw ArgumentError("raster", "offset", offset,
+                            "0 .. max_height with snap: poses on their layers would be aerial");
     return offset;
 }
 
@@ -104,7 +115,8 @@ public:
 
     RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid,
                 double offset, double top)
-        : options_(options), grid_(grid), offset_(offset), top_(top), ground_z_(overlap(map.z_limits, options.dims == 2 ? options.z : ZRange{})),
+        : options_(options), grid_(grid), offset_(offset), top_(top),
+          ground_z_(overlap(map.z_limits, options.dims == 2 ? options.z : ZRange{})),
           judging_(map, checker, query_options(options)), area_(options.area)
     {
     }
@@ -116,10 +128,13 @@ public:
         judge.face(options_.yaw);
         for (int col = 0; col < grid_.cols; col += block) {
             const int cols = std::min(block, grid_.cols - col);
-            if (area_.misses({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1), grid_.y_of(first + int(out.size()) - 1)})) continue;
+            if (area_.misses({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
+                              grid_.y_of(first + int(out.size()) - 1)}))
+                continue;
             Columns columns;
             if (options_.height_check)
-                columns = Columns(judging_.map().geometry, {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
+                columns = Columns(judging_.map().geometry,
+                                  {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
             for (int j = 0; j < int(out.size()); ++j) {
                 judge.set_y(grid_.y_of(first + j));
                 for (int i = 0; i < cols; ++i) {
@@ -150,15 +165,20 @@ private:
         if (options_.snap) layers(judge, column, x, y, out);
         const std::size_t steps = out.poses.size();
         const Steps replaced = replaced_steps(grid_, offset_, std::span(out.poses).subspan(first));
-        if (options_.height_check && judging_.map().bounds.contains_xy(x, y, touch_tolerance)) heights(judge, column, replaced, x, y, out);
-        else all_heights(judge, replaced, x, y, out);
+        if (options_.height_check && judging_.map().bounds.contains_xy(x, y, touch_tolerance))
+            heights(judge, column, replaced, x, y, out);
+        else
+            all_heights(judge, replaced, x, y, out);
         if (steps > first)
-            std::inplace_merge(out.poses.begin() + std::ptrdiff_t(first), out.poses.begin() + std::ptrdiff_t(steps), out.poses.end(),
-                               [](const RasterPose& a, const RasterPose& b) { return a.z > b.z; });
+            std::inplace_merge(out.poses.begin() + std::ptrdiff_t(first), out.poses.begin() + std::ptrdiff_t(steps),
+                               out.poses.end(), [](const RasterPose& a, const RasterPose& b) { return a.z > b.z; });
     }
 
     /// Layers that are ground, from the top down: their numbers are those of the answer.
-    std::span<const double> ground_layers(const ColumnView& column) const { return heights_within(column.layers, ground_z_); }
+    std::span<const double> ground_layers(const ColumnView& column) const
+    {
+        return heights_within(column.layers, ground_z_);
+    }
 
     void layers(PoseJudge& judge, const ColumnView& column, double x, double y, Row& out) const
     {
@@ -176,8 +196,8 @@ private:
         }
     }
 
-    /// Heights at which the ground may be near enough, those beyond the map's z limits, and the replaced ones, from the top
-    /// down: the rest is aerial without a look.
+    /// Heights at which the ground may be near enough, those beyond the map's z limits, and the replaced ones, from the
+    /// top down: the rest is aerial without a look.
     const Steps& near_heights(const ColumnView& column, const Steps& replaced) const
     {
         thread_local Steps near;
@@ -212,8 +232,10 @@ private:
             }
             const Judgement judged = judge.at(column, x, z);
             out.exact_checks += judged.exact_check;
-            if (judged.verdict == Verdict::Aerial) out.aerial += every_layer;
-            else out.poses.push_back({x, y, z, layer_of(column, judged.ground), judged.verdict});
+            if (judged.verdict == Verdict::Aerial)
+                out.aerial += every_layer;
+            else
+                out.poses.push_back({x, y, z, layer_of(column, judged.ground), judged.verdict});
         }
     }
 
@@ -284,7 +306,8 @@ RasterResult raster(const Map& map, const CollisionChecker& checker, const Raste
     std::vector<Row> rows(std::size_t(out.grid.rows));
     // Without heights rows share nothing, and each takes long.
     const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
-    const std::size_t strip = std::clamp<std::size_t>(rows.size() / std::size_t(4 * thread_count(options.threads)), 1, most_rows);
+    const std::size_t strip = std::clamp<std::size_t>(rows.size() / std::size_t(4 * thread_count(options.threads)), 1,
+                                                      most_rows);
     parallel_for((rows.size() + strip - 1) / strip, options.threads, options.progress, [&](std::size_t s) {
         judge.judge_rows(int(s * strip), std::span(rows).subspan(s * strip, std::min(strip, rows.size() - s * strip)));
     });
@@ -315,13 +338,16 @@ void for_each_pose(const RasterResult& raster, bool aerial, const std::function<
         for (int i = 0; i < grid.cols; ++i) {
             const double x = grid.x_of(i), y = grid.y_of(j);
             if (!area.contains({x, y})) continue;
-            const auto end = std::find_if(next, raster.poses.end(), [&](const RasterPose& pose) { return pose.x != x || pose.y != y; });
+            const auto end = std::find_if(next, raster.poses.end(),
+                                          [&](const RasterPose& pose) { return pose.x != x || pose.y != y; });
             const Steps replaced = replaced_steps(grid, raster.offset, std::span(next, end));
             for (int k = grid.heights - 1; k >= 0; --k) {
                 const double z = grid.z_of(k);
                 while (next != end && next->z > z) visit(*next++);
-                if (next != end && next->z == z) visit(*next++);
-                else if (!contains(replaced, k)) visit({x, y, z, -1, Verdict::Aerial});
+                if (next != end && next->z == z)
+                    visit(*next++);
+                else if (!contains(replaced, k))
+                    visit({x, y, z, -1, Verdict::Aerial});
             }
             while (next != end) visit(*next++);
         }

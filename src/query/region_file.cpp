@@ -34,10 +34,13 @@ Ring without_repeats(Ring ring)
 Ring checked(Ring ring, const std::string& file, const std::string& place)
 {
     ring = without_repeats(std::move(ring));
-    if (ring.size() < 3) throw FileError(file, place + " has " + std::to_string(ring.size()) + " different corners, needs at least 3");
+    if (ring.size() < 3)
+        throw FileError(file, place + " has " + std::to_string(ring.size()) + " different corners, needs at least 3");
     const auto is_nearer = [&](const Vec2& a, const Vec2& b) { return (a - ring[0]).norm() < (b - ring[0]).norm(); };
     const Vec2 along = *std::max_element(ring.begin(), ring.end(), is_nearer) - ring[0];
-    const bool is_line = std::all_of(ring.begin(), ring.end(), [&](const Vec2& p) { return std::abs(cross(along, p - ring[0])) <= 1e-9 * along.norm(); });
+    const bool is_line = std::all_of(ring.begin(), ring.end(), [&](const Vec2& p) {
+        return std::abs(cross(along, p - ring[0])) <= 1e-9 * along.norm();
+    });
     if (is_line) throw FileError(file, place + " has no area: its corners lie on one line");
     return ring;
 }
@@ -55,26 +58,45 @@ public:
         if (!node.is_object()) fail(place, "is no object");
         refuse_degrees(node);
         const std::string type = text(node, "type");
-        if (type == "Polygon") polygon(member(node, "coordinates", place), place + ".coordinates");
-        else if (type == "MultiPolygon") each(node, "coordinates", place, [&](const Json& one, const std::string& at) { polygon(one, at); });
-        else if (type == "GeometryCollection") each(node, "geometries", place, [&](const Json& one, const std::string& at) { read(one, at); });
-        else if (type == "FeatureCollection") each(node, "features", place, [&](const Json& one, const std::string& at) { read(one, at); });
-        else if (type == "Feature") feature(node, place);
-        else if (type == "Point" || type == "MultiPoint" || type == "LineString" || type == "MultiLineString") ++without_area_;
-        else fail(place, "has type \"" + type + "\", needs Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection");
+        if (type == "Polygon")
+            polygon(member(node, "coordinates", place), place + ".coordinates");
+        else if (type == "MultiPolygon")
+            each(node, "coordinates", place, [&](const Json& one, const std::string& at) { polygon(one, at); });
+        else if (type == "GeometryCollection")
+            each(node, "geometries", place, [&](const Json& one, const std::string& at) { read(one, at); });
+        else if (type == "FeatureCollection")
+            each(node, "features", place, [&](const Json& one, const std::string& at) { read(one, at); });
+        else if (type == "Feature")
+            feature(node, place);
+        else if (type == "Point" || type == "MultiPoint" || type == "LineString" || type == "MultiLineString")
+            ++without_area_;
+        else
+            fail(place, "has type \"" + type +
+                            "\", needs Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection");
     }
 
     void finish()
     {
-        if (out_.polygons.empty()) throw FileError(file_, "has no polygon" + (without_area_ > 0 ? ", only " + left_out() : std::string()));
-        if (without_area_ > 0) out_.notices.push_back(file_ + ": " + left_out() + " left out: points and lines have no area");
+        if (out_.polygons.empty())
+            throw FileError(file_, "has no polygon" + (without_area_ > 0 ? ", only " + left_out() : std::string()));
+        if (without_area_ > 0)
+            out_.notices.push_back(file_ + ": " + left_out() + " left out: points and lines have no area");
     }
 
 private:
-    [[noreturn]] void fail(const std::string& place, const std::string& what) const { throw FileError(file_, place + " " + what); }
-    std::string left_out() const { return std::to_string(without_area_) + (without_area_ == 1 ? " point or line" : " points or lines"); }
+    [[noreturn]] void fail(const std::string& place, const std::string& what) const
+    {
+        throw FileError(file_, place + " " + what);
+    }
+    std::string left_out() const
+    {
+        return std::to_string(without_area_) + (without_area_ == 1 ? " point or line" : " points or lines");
+    }
 
-    static std::string text(const Json& node, const char* key) { return node.contains(key) && node[key].is_string() ? node[key].get<std::string>() : ""; }
+    static std::string text(const Json& node, const char* key)
+    {
+        return node.contains(key) && node[key].is_string() ? node[key].get<std::string>() : "";
+    }
 
     const Json& member(const Json& node, const char* key, const std::string& place) const
     {
@@ -86,7 +108,8 @@ private:
     void each(const Json& node, const char* key, const std::string& place, const Visit& visit)
     {
         std::size_t number = 0;
-        for (const Json& one : member(node, key, place)) visit(one, place + "." + key + "[" + std::to_string(number++) + "]");
+        for (const Json& one : member(node, key, place))
+            visit(one, place + "." + key + "[" + std::to_string(number++) + "]");
     }
 
     void feature(const Json& node, const std::string& place)
@@ -101,15 +124,20 @@ private:
         if (!node.contains("crs") || !node["crs"].is_object() || !node["crs"].contains("properties")) return;
         const std::string name = text(node["crs"]["properties"], "name");
         if (name.ends_with("CRS84") || name.ends_with(":4326") || name.ends_with("CRS83") || name.ends_with(":4269"))
-            throw FileError(file_, "has crs " + name + ", which is degrees; needs metres in the map's frame (ogr2ogr -t_srs projects it)");
-        if (!name.empty()) out_.notices.push_back(file_ + ": crs " + name + " is not looked at: coordinates are metres in the map's frame");
+            throw FileError(
+                file_,
+                "has crs " + name + ", which is degrees; needs metres in the map's frame (ogr2ogr -t_srs projects it)");
+        if (!name.empty())
+            out_.notices.push_back(file_ + ": crs " + name +
+                                   " is not looked at: coordinates are metres in the map's frame");
     }
 
     void polygon(const Json& rings, const std::string& place)
     {
         if (!rings.is_array() || rings.empty()) fail(place, "is no list of rings");
         Region::Polygon out;
-        for (std::size_t i = 0; i < rings.size(); ++i) out.push_back(ring(rings[i], place + "[" + std::to_string(i) + "]"));
+        for (std::size_t i = 0; i < rings.size(); ++i)
+            out.push_back(ring(rings[i], place + "[" + std::to_string(i) + "]"));
         out_.polygons.push_back(std::move(out));
     }
 
@@ -119,11 +147,14 @@ private:
         Ring out;
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const Json& p = corners[i];
-            if (!p.is_array() || p.size() < 2 || !p[0].is_number() || !p[1].is_number()) fail(place + "[" + std::to_string(i) + "]", "is no position [x, y]");
+            if (!p.is_array() || p.size() < 2 || !p[0].is_number() || !p[1].is_number())
+                fail(place + "[" + std::to_string(i) + "]", "is no position [x, y]");
             out.emplace_back(p[0].get<double>(), p[1].get<double>());
-            if (!std::isfinite(out.back().x()) || !std::isfinite(out.back().y())) fail(place + "[" + std::to_string(i) + "]", "is not finite");
+            if (!std::isfinite(out.back().x()) || !std::isfinite(out.back().y()))
+                fail(place + "[" + std::to_string(i) + "]", "is not finite");
         }
-        if (out.size() > 1 && out.front() != out.back()) fail(place, "is not closed: its last position differs from its first");
+        if (out.size() > 1 && out.front() != out.back())
+            fail(place, "is not closed: its last position differs from its first");
         return checked(std::move(out), file_, place);
     }
 
@@ -171,7 +202,8 @@ public:
         Vec2 p;
         for (std::size_t axis = 0; axis < 2; ++axis) {
             const std::string& field = fields[columns_[axis]];
-            if (!parse_number(field, p[Eigen::Index(axis)]) || !std::isfinite(p[Eigen::Index(axis)])) fail("\"" + field + "\" is no finite number");
+            if (!parse_number(field, p[Eigen::Index(axis)]) || !std::isfinite(p[Eigen::Index(axis)]))
+                fail("\"" + field + "\" is no finite number");
         }
         ring_.push_back(p);
     }
@@ -185,14 +217,20 @@ public:
 private:
     static constexpr std::size_t none = std::size_t(-1);
 
-    [[noreturn]] void fail(const std::string& what) const { throw FileError(file_, "line " + std::to_string(line_) + ": " + what); }
+    [[noreturn]] void fail(const std::string& what) const
+    {
+        throw FileError(file_, "line " + std::to_string(line_) + ": " + what);
+    }
 
     void header(const std::vector<std::string>& names)
     {
         first_ = false;
-        const auto find = [&](const char* name) { return std::size_t(std::find(names.begin(), names.end(), name) - names.begin()); };
+        const auto find = [&](const char* name) {
+            return std::size_t(std::find(names.begin(), names.end(), name) - names.begin());
+        };
         columns_ = {find("x"), find("y")};
-        if (std::max(columns_[0], columns_[1]) >= names.size()) fail("has neither numbers x,y nor the names of such columns");
+        if (std::max(columns_[0], columns_[1]) >= names.size())
+            fail("has neither numbers x,y nor the names of such columns");
         polygon_column_ = find("polygon");
         if (polygon_column_ >= names.size()) refuse_poses(names);
         if (polygon_column_ >= names.size()) polygon_column_ = none - 1;  // other columns are not looked at
@@ -215,7 +253,8 @@ private:
     void close()
     {
         if (ring_.empty()) return;
-        out_.polygons.push_back({checked(std::move(ring_), file_, "line " + std::to_string(ring_line_) + ": the polygon")});
+        out_.polygons.push_back(
+            {checked(std::move(ring_), file_, "line " + std::to_string(ring_line_) + ": the polygon")});
         ring_.clear();
     }
 
@@ -244,7 +283,8 @@ void read_csv(const std::string& text, const std::string& file, Region& out)
 /// Rings round the cells that are in, each with them on its left.
 class CellRings {
 public:
-    CellRings(const Nav2Map& map, Nav2Map::Cell wanted) : map_(map), wanted_(wanted), ways_(std::size_t(map.rows + 1) * std::size_t(map.cols + 1))
+    CellRings(const Nav2Map& map, Nav2Map::Cell wanted)
+        : map_(map), wanted_(wanted), ways_(std::size_t(map.rows + 1) * std::size_t(map.cols + 1))
     {
         for (int row = 0; row < map.rows; ++row)
             for (int col = 0; col < map.cols; ++col) {
@@ -268,8 +308,14 @@ public:
 private:
     enum Way { east, north, west, south };
 
-    bool is_in(int row, int col) const { return row >= 0 && col >= 0 && row < map_.rows && col < map_.cols && map_.at(row, col) == wanted_; }
-    std::uint8_t& at(int row, int col) { return ways_[std::size_t(row) * std::size_t(map_.cols + 1) + std::size_t(col)]; }
+    bool is_in(int row, int col) const
+    {
+        return row >= 0 && col >= 0 && row < map_.rows && col < map_.cols && map_.at(row, col) == wanted_;
+    }
+    std::uint8_t& at(int row, int col)
+    {
+        return ways_[std::size_t(row) * std::size_t(map_.cols + 1) + std::size_t(col)];
+    }
 
     Ring ring_from(int row, int col)
     {
@@ -300,10 +346,12 @@ private:
 
 void read_cells(const std::filesystem::path& file, MapCells cells, Region& out)
 {
-    if (!is_nav2_map(file)) throw FileError(file.string(), "is no 2D map of nav2 or ROS (keys image, resolution, origin, …)");
+    if (!is_nav2_map(file))
+        throw FileError(file.string(), "is no 2D map of nav2 or ROS (keys image, resolution, origin, …)");
     const Nav2Map map = read_nav2_map(file);
     out.notices = map.notices;
-    Region::Polygon rings = CellRings(map, cells == MapCells::Free ? Nav2Map::Cell::Free : Nav2Map::Cell::Occupied).rings();
+    Region::Polygon rings =
+        CellRings(map, cells == MapCells::Free ? Nav2Map::Cell::Free : Nav2Map::Cell::Occupied).rings();
     if (rings.empty())
         throw FileError(file.string(), std::string("has no ") + (cells == MapCells::Free ? "free" : "occupied") +
                                            " cell; are negate and the thresholds right?");
@@ -317,8 +365,10 @@ Region parse_region(const std::string& text, const std::string& name)
     Region out;
     out.name = name;
     const std::size_t first = text.find_first_not_of(" \t\r\n");
-    if (first != std::string::npos && text[first] == '{') read_geojson(text, name, out);
-    else read_csv(text, name, out);
+    if (first != std::string::npos && text[first] == '{')
+        read_geojson(text, name, out);
+    else
+        read_csv(text, name, out);
     return out;
 }
 
@@ -328,9 +378,12 @@ Region read_region(const std::filesystem::path& file, MapCells cells)
     Region out;
     out.name = file.filename().string();
     const std::string extension = lower_case(file.extension().string());
-    if (extension == ".yaml" || extension == ".yml") read_cells(file, cells, out);
-    else if (extension == ".json" || extension == ".geojson") read_geojson(read_file(file), file.string(), out);
-    else read_csv(read_file(file), file.string(), out);
+    if (extension == ".yaml" || extension == ".yml")
+        read_cells(file, cells, out);
+    else if (extension == ".json" || extension == ".geojson")
+        read_geojson(read_file(file), file.string(), out);
+    else
+        read_csv(read_file(file), file.string(), out);
     return out;
 }
 

@@ -23,8 +23,8 @@ constexpr std::size_t most_cells = 1 << 24;  // kept at a time
 /// Proofs made in all: some, half as many where next to nothing is left to decide, and more for each spawn found and
 /// each avoided point.
 constexpr std::size_t some_proofs = 1 << 19, proofs_per_point = 12;
-constexpr double next_to_nothing = 2e-5;                        // of the region
-constexpr double smallest_cell = 0.0001;                        // m
+constexpr double next_to_nothing = 2e-5;  // of the region
+constexpr double smallest_cell = 0.0001;  // m
 
 /// A region in equal cells, of which some are left. They are split all at once, so that to draw one of them, and then a
 /// point of it, is to draw by area.
@@ -34,7 +34,8 @@ public:
     {
         if (!(size_.minCoeff() >= 0)) return;  // no region at all
         const double area = std::max(size_.x() * size_.y(), smallest_cell * smallest_cell);
-        const double side = std::clamp(min_distance / std::numbers::sqrt2, std::sqrt(area / most_first_cells), std::sqrt(area / first_cells));
+        const double side = std::clamp(min_distance / std::numbers::sqrt2, std::sqrt(area / most_first_cells),
+                                       std::sqrt(area / first_cells));
         cols_ = count(size_.x(), side);
         rows_ = count(size_.y(), side);
         left_.reserve(std::size_t{cols_} * rows_);
@@ -83,7 +84,10 @@ private:
     struct Cell {
         std::uint32_t col, row;
     };
-    static std::uint32_t count(double length, double side) { return std::uint32_t(std::clamp(std::ceil(length / side), 1.0, most_first_cells)); }
+    static std::uint32_t count(double length, double side)
+    {
+        return std::uint32_t(std::clamp(std::ceil(length / side), 1.0, most_first_cells));
+    }
 
     const Bounds box_;
     const Vec2 size_;
@@ -103,8 +107,8 @@ Bounds within(const Bounds& box, Bounds limits)
 class Sampler {
 public:
     Sampler(const Map& map, const CollisionChecker& checker, const SampleOptions& options, std::size_t slots)
-        : map_(map), checker_(checker), options_(options), offset_(*options.offset), ground_z_(overlap(map.z_limits, options.z)),
-          judging_(map, checker, options), area_(options.area),
+        : map_(map), checker_(checker), options_(options), offset_(*options.offset),
+          ground_z_(overlap(map.z_limits, options.z)), judging_(map, checker, options), area_(options.area),
           box_(overlap(chosen_bounds("sample", options.bounds, map.bounds, 2), options.area.bounds())), slots_(slots),
           avoided_(options.avoid, box_), taken_(options.min_distance)
     {
@@ -121,33 +125,36 @@ public:
         draw(out, std::numeric_limits<std::uint64_t>::max(), point, [&](std::uint64_t draws, std::uint64_t failures) {
             if (failures >= blind_patience) return false;
             if (draws % blind_window != 0) return true;
-            return double(out.spawns.size() - std::exchange(before, out.spawns.size())) > least_share * double(blind_window);
+            return double(out.spawns.size() - std::exchange(before, out.spawns.size())) >
+                   least_share * double(blind_window);
         });
         if (!overfull_ && out.spawns.size() < options_.count) fill(out);
         return !overfull_;
     }
 
 private:
-    /// At most so many draws of points, until all are found or go_on(draws, failures in a row) says no. Returns how many
-    /// spawns they gave.
+    /// At most so many draws of points, until all are found or go_on(draws, failures in a row) says no. Returns how
+    /// many spawns they gave.
     template <class Point, class GoOn>
     std::size_t draw(SpawnList& out, std::uint64_t most, const Point& point, const GoOn& go_on)
     {
         const std::size_t before = out.spawns.size();
         std::uint64_t failures = 0, draws = 0;
         const auto batch_size = [&](std::uint64_t so_far) {
-            return std::size_t(std::min<std::uint64_t>(most - so_far, batch_for(options_.count, out.spawns.size(), out.draws)));
+            return std::size_t(
+                std::min<std::uint64_t>(most - so_far, batch_for(options_.count, out.spawns.size(), out.draws)));
         };
         const auto look_at = [&](std::uint64_t index, SpawnJudge& judge) { return look(index, point, judge); };
-        next_ = draw_in_order(next_, judging_, share_found(options_, out), taken_, batch_size, look_at, [&](const Candidate& candidate) {
-            ++out.draws;
-            ++draws;
-            ++failures;
-            if (overfull_) return false;
-            out.off_area += candidate.off_area;
-            if (candidate.on_ground && take(candidate, out)) failures = 0;
-            return out.spawns.size() < options_.count && draws < most && go_on(draws, failures);
-        });
+        next_ = draw_in_order(next_, judging_, share_found(options_, out), taken_, batch_size, look_at,
+                              [&](const Candidate& candidate) {
+                                  ++out.draws;
+                                  ++draws;
+                                  ++failures;
+                                  if (overfull_) return false;
+                                  out.off_area += candidate.off_area;
+                                  if (candidate.on_ground && take(candidate, out)) failures = 0;
+                                  return out.spawns.size() < options_.count && draws < most && go_on(draws, failures);
+                              });
         taken_.settle();
         return out.spawns.size() - before;
     }
@@ -173,11 +180,13 @@ private:
                 found = draw(out, round, point, [](std::uint64_t, std::uint64_t) { return true; });
             if (is_done(out)) return;
             const bool is_nearly_decided = cells.area() < next_to_nothing * cells.region_area();
-            const std::size_t affordable =
-                some_proofs / (is_nearly_decided ? 2 : 1) + proofs_per_point * (out.spawns.size() + avoided_.size());
+            const std::size_t affordable = some_proofs / (is_nearly_decided ? 2 : 1) +
+                                           proofs_per_point * (out.spawns.size() + avoided_.size());
             const bool is_smallest = std::max(cells.width(), cells.height()) < 2 * smallest_cell || !cells.can_split();
-            if (!is_smallest && 4 * cells.size() <= most_cells && proofs_made + 4 * cells.size() <= affordable) cells.split();
-            else is_last = double(found) < least_share * double(round) || proofs_made > affordable;
+            if (!is_smallest && 4 * cells.size() <= most_cells && proofs_made + 4 * cells.size() <= affordable)
+                cells.split();
+            else
+                is_last = double(found) < least_share * double(round) || proofs_made > affordable;
         }
         out.undecided_area = cells.area();
         out.is_full = cells.size() == 0;
@@ -190,12 +199,13 @@ private:
         constexpr std::size_t chunk = 64;
         proofs.set_half_cell(cells.width() / 2, cells.height() / 2);
         std::vector<std::uint8_t> flags(cells.size());
-        parallel_for((flags.size() + chunk - 1) / chunk, options_.threads, share_found(options_, out), [&](std::size_t c) {
-            for (std::size_t i = c * chunk; i < std::min(flags.size(), (c + 1) * chunk); ++i) {
-                const Rect cell = cells.at(i);
-                flags[i] = proofs.is_closed(cell);
-            }
-        });
+        parallel_for((flags.size() + chunk - 1) / chunk, options_.threads, share_found(options_, out),
+                     [&](std::size_t c) {
+                         for (std::size_t i = c * chunk; i < std::min(flags.size(), (c + 1) * chunk); ++i) {
+                             const Rect cell = cells.at(i);
+                             flags[i] = proofs.is_closed(cell);
+                         }
+                     });
         cells.drop(flags);
     }
 
@@ -206,7 +216,8 @@ private:
         const std::span<const double> heights = heights_within(column.layers, ground_z_);
         const int count = int(heights.size());
         for (int layer = 0; layer < count; ++layer)
-            if (options_.layers.includes(layer, count) && area_.contains(at, heights[std::size_t(layer)])) out.push_back(heights[std::size_t(layer)]);
+            if (options_.layers.includes(layer, count) && area_.contains(at, heights[std::size_t(layer)]))
+                out.push_back(heights[std::size_t(layer)]);
         return out;
     }
 

@@ -32,7 +32,8 @@ void check_spawn_options(const char* function, const SpawnOptions& options)
     if (!(options.min_distance >= 0) || !std::isfinite(options.min_distance))
         throw ArgumentError(function, "min_distance", options.min_distance, ">= 0 m");
     if (!(options.max_height >= 0)) throw ArgumentError(function, "max_height", options.max_height, ">= 0 m");
-    if (!(options.max_water_depth >= 0)) throw ArgumentError(function, "max_water_depth", options.max_water_depth, ">= 0 m");
+    if (!(options.max_water_depth >= 0))
+        throw ArgumentError(function, "max_water_depth", options.max_water_depth, ">= 0 m");
     for (const AvoidedPoints& group : options.avoid) check_avoided(function, group);
     check_max_slope(function, options);
     if (!std::isfinite(options.yaw)) throw ArgumentError(function, "yaw", options.yaw, "a finite number, rad");
@@ -47,7 +48,8 @@ void check_ground(const char* function, const ZRange& z, const std::optional<dou
 void check_offset(const char* function, double offset, const QueryOptions& options)
 {
     if (offset > options.max_height + touch_tolerance)
-        throw ArgumentError(function, "offset", offset, "at most max_height, " + number(options.max_height) + " m: such poses are aerial");
+        throw ArgumentError(function, "offset", offset,
+                            "at most max_height, " + number(options.max_height) + " m: such poses are aerial");
 }
 
 double auto_offset(const Robot& robot)
@@ -63,8 +65,8 @@ bool is_in_flat_ground(const Robot& robot, double offset)
 
 namespace {
 
-/// Poses that are so high above all that is solid that they are aerial whatever their column holds, by a coarse image of
-/// the highest solids.
+/// Poses that are so high above all that is solid that they are aerial whatever their column holds, by a coarse image
+/// of the highest solids.
 class FarAbove {
 public:
     /// Without a map, `holds()` is always false.
@@ -86,7 +88,9 @@ public:
         // Lines along a border between cells see what touches it from either side.
         const auto is_near_border = [](double in_cell) { return in_cell < 1e-6 || in_cell > 1 - 1e-6; };
         if (is_near_border(u - col) || is_near_border(v - row)) return false;
-        if (!(col >= 0 && row >= 0 && col < double(raster_->whole_cols(level_)) && row < double(raster_->whole_rows(level_)))) return false;
+        if (!(col >= 0 && row >= 0 && col < double(raster_->whole_cols(level_)) &&
+              row < double(raster_->whole_rows(level_))))
+            return false;
         const auto c = std::uint32_t(col), r = std::uint32_t(row);
         const BoundsTile tile = raster_->open(level_, c / BoundsTile::side, r / BoundsTile::side);
         if (tile.head == nullptr) return true;
@@ -129,8 +133,10 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
         if (out.near_avoided) return out;
         out.clear = checked.before().is_clear(p);
         if (!out.clear) return out;
-        if (far_above.holds(p)) out.verdict = Verdict::Aerial;
-        else out.set(judge.at(p.y(), out.spawn.yaw).at(column_at(map.geometry, p.x(), p.y()), p.x(), p.z()));
+        if (far_above.holds(p))
+            out.verdict = Verdict::Aerial;
+        else
+            out.set(judge.at(p.y(), out.spawn.yaw).at(column_at(map.geometry, p.x(), p.y()), p.x(), p.z()));
         return out;
     };
     SpawnList out;

@@ -8,9 +8,9 @@
 
 namespace spawnfield {
 
-/// Points in a hash grid with cells of the distance that is asked for, so that a look-up meets 27 cells: nine rows of three
-/// neighbouring table entries. Cells that share an entry share its list too: distances decide, so that does no harm.
-/// Source: Bridson, Fast Poisson Disk Sampling in Arbitrary Dimensions, 2007 (the background grid).
+/// Points in a hash grid with cells of the distance that is asked for, so that a look-up meets 27 cells: nine rows of
+/// three neighbouring table entries. Cells that share an entry share its list too: distances decide, so that does no
+/// harm. Source: Bridson, Fast Poisson Disk Sampling in Arbitrary Dimensions, 2007 (the background grid).
 class SpacedPoints {
 public:
     explicit SpacedPoints(double distance) : distance_(distance) {}
@@ -78,7 +78,8 @@ private:
         constexpr double farthest = 9e18;  // cells; what lies beyond shares the outermost
         Cell cell{};
         for (int axis = 0; axis < 3; ++axis)
-            cell[axis] = std::uint64_t(std::int64_t(std::clamp(std::floor(point[axis] / distance_), -farthest, farthest)));
+            cell[axis] = std::uint64_t(
+                std::int64_t(std::clamp(std::floor(point[axis] / distance_), -farthest, farthest)));
         return cell;
     }
 

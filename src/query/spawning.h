@@ -64,8 +64,8 @@ private:
     double yaw_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Positions that others keep their distance from, when draws are looked at in batches: what was added since the batch began
-/// is all that a draw which was clear then is still to be held against.
+/// Positions that others keep their distance from, when draws are looked at in batches: what was added since the batch
+/// began is all that a draw which was clear then is still to be held against.
 class TakenPoints {
 public:
     explicit TakenPoints(double distance) : before_(distance), since_(distance) {}
@@ -97,9 +97,10 @@ inline Progress share_found(const SpawnOptions& options, const SpawnList& found)
     return [&](double) { options.progress(double(found.spawns.size()) / double(options.count)); };
 }
 
-/// Draws first, first + 1, … in batches that all cores judge ahead: look(index, judge) gives a Candidate. `take` gets them one
-/// by one in their order, and stops the work by returning false. `batch_size(draws)` tells how many to judge after so many;
-/// how far ahead they are judged never shows in the result. `progress` hears of it meanwhile. Returns the next draw's number.
+/// Draws first, first + 1, … in batches that all cores judge ahead: look(index, judge) gives a Candidate. `take` gets
+/// them one by one in their order, and stops the work by returning false. `batch_size(draws)` tells how many to judge
+/// after so many; how far ahead they are judged never shows in the result. `progress` hears of it meanwhile. Returns
+/// the next draw's number.
 template <class BatchSize, class Look, class Take>
 std::uint64_t draw_in_order(std::uint64_t first, const Judging& judging, const Progress& progress, TakenPoints& taken,
                             const BatchSize& batch_size, const Look& look, const Take& take)
@@ -111,7 +112,8 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judging& judging, const P
         batch.resize(batch_size(next - first));
         parallel_for((batch.size() + chunk - 1) / chunk, judging.options().threads, progress, [&](std::size_t c) {
             SpawnJudge judge(judging);
-            for (std::size_t i = c * chunk; i < std::min(batch.size(), (c + 1) * chunk); ++i) batch[i] = look(next + i, judge);
+            for (std::size_t i = c * chunk; i < std::min(batch.size(), (c + 1) * chunk); ++i)
+                batch[i] = look(next + i, judge);
         });
         for (const Candidate& candidate : batch) {
             ++next;

@@ -61,13 +61,15 @@ ThesisClass thesis_class_of(Verdict verdict)
     return ThesisClass::Invalid;
 }
 
-ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air, const Progress& progress)
+ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air,
+                                    const Progress& progress)
 {
     std::array<std::optional<LocationFile>, thesis_class_count> files;
     for (std::size_t i = 0; i < thesis_class_count; ++i)
         if (air || ThesisClass(i) != ThesisClass::Aerial) files[i].emplace(folder / thesis_files[i]);
     constexpr std::uint64_t often = 1 << 16;  // poses
-    const std::uint64_t all = air ? std::accumulate(raster.counts.begin(), raster.counts.end(), std::uint64_t{0}) : raster.poses.size();
+    const std::uint64_t all = air ? std::accumulate(raster.counts.begin(), raster.counts.end(), std::uint64_t{0})
+                                  : raster.poses.size();
     std::uint64_t done = 0;
     for_each_pose(raster, air, [&](const RasterPose& pose) {
         if (++done % often == 0 && progress) progress(double(done) / double(all));
@@ -82,7 +84,8 @@ ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const R
 
 ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const SpawnList& list)
 {
-    LocationFile valid(folder / thesis_files[std::size_t(ThesisClass::Valid)]), invalid(folder / thesis_files[std::size_t(ThesisClass::Invalid)]);
+    LocationFile valid(folder / thesis_files[std::size_t(ThesisClass::Valid)]),
+        invalid(folder / thesis_files[std::size_t(ThesisClass::Invalid)]);
     for (const Spawn& spawn : list.spawns) valid.add(spawn.position);
     ThesisCounts written{};
     written[std::size_t(ThesisClass::Valid)] = valid.finish();
@@ -104,8 +107,10 @@ std::string thesis_stats(const std::vector<std::pair<std::string, std::string>>&
     for (const auto& [name, value] : settings) line(name, value);
     line("Judged", std::to_string(poses));
     for (std::size_t i = 0; i < thesis_class_count; ++i) line(class_names[i], std::to_string(classes[i]));
-    for (std::size_t v = verdict_count; v-- > 0;) line(std::string("Verdict ") + to_string(Verdict(v)), std::to_string(counts[v]));
-    for (std::size_t i = 0; i < thesis_class_count; ++i) line(std::string("Lines of ") + thesis_files[i], std::to_string(written[i]));
+    for (std::size_t v = verdict_count; v-- > 0;)
+        line(std::string("Verdict ") + to_string(Verdict(v)), std::to_string(counts[v]));
+    for (std::size_t i = 0; i < thesis_class_count; ++i)
+        line(std::string("Lines of ") + thesis_files[i], std::to_string(written[i]));
     return text;
 }
 

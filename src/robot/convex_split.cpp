@@ -16,7 +16,8 @@ namespace {
 
 constexpr int even_cuts = 15;           // per axis, at equal distances
 constexpr std::size_t vertex_cuts = 8;  // per axis, beside vertices on either side
-constexpr double least_gain = 1e-3;     // of the first hull's volume: what a cut and those that it makes possible must save
+constexpr double least_gain =
+    1e-3;  // of the first hull's volume: what a cut and those that it makes possible must save
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -63,7 +64,11 @@ bool is_inside(const std::vector<SurfacePiece>& pieces, const Vec3& point)
     const std::array<Vec3, 3> directions{Vec3(0.8, 0.53, 0.27), Vec3(-0.36, 0.41, 0.87), Vec3(0.29, -0.93, 0.19)};
     for (const SurfacePiece& piece : pieces)
         for (const Vec3& direction : directions)
-            if (std::count_if(piece.begin(), piece.end(), [&](const Corners& t) { return is_met(t, point, direction); }) % 2 == 1) return true;
+            if (std::count_if(piece.begin(), piece.end(),
+                              [&](const Corners& t) { return is_met(t, point, direction); }) %
+                    2 ==
+                1)
+                return true;
     return false;
 }
 
@@ -105,7 +110,8 @@ std::vector<Vec3> inner_corners(const std::vector<SurfacePiece>& pieces, const B
 }
 
 /// Both sides of a block; nothing if one of them has no volume.
-std::optional<std::array<Block, 2>> sides_of(const Block& block, const Plane& plane, const std::vector<SurfacePiece>& pieces)
+std::optional<std::array<Block, 2>> sides_of(const Block& block, const Plane& plane,
+                                             const std::vector<SurfacePiece>& pieces)
 {
     std::array<Block, 2> sides;
     const std::vector<Vec3> on_plane = inner_corners(pieces, block.box, plane);
@@ -127,8 +133,8 @@ std::optional<std::array<Block, 2>> sides_of(const Block& block, const Plane& pl
     return sides;
 }
 
-/// Planes at equal distances, and just beside vertices, where walls often are. None goes through a vertex, nor do three meet
-/// in a face but by a rare chance: there rounding would tell what is inside.
+/// Planes at equal distances, and just beside vertices, where walls often are. None goes through a vertex, nor do three
+/// meet in a face but by a rare chance: there rounding would tell what is inside.
 std::vector<Plane> planes_through(const Block& block)
 {
     std::vector<Plane> out;
@@ -143,12 +149,14 @@ std::vector<Plane> planes_through(const Block& block)
         std::vector<double> places;
         for (const Corners& triangle : block.triangles)
             for (const Vec3& corner : triangle)
-                if (corner[axis] > low + 1e-5 * length && corner[axis] < low + (1 - 1e-5) * length) places.push_back(corner[axis]);
+                if (corner[axis] > low + 1e-5 * length && corner[axis] < low + (1 - 1e-5) * length)
+                    places.push_back(corner[axis]);
         std::sort(places.begin(), places.end());
         places.erase(std::unique(places.begin(), places.end()), places.end());
         const std::size_t count = std::min(vertex_cuts, places.size());
         for (std::size_t k = 0; k < count; ++k)
-            for (const double side : {-1.0, 1.0}) out.push_back({axis, places[k * places.size() / count] + side * aside(length)});
+            for (const double side : {-1.0, 1.0})
+                out.push_back({axis, places[k * places.size() / count] + side * aside(length)});
     }
     return out;
 }
@@ -176,7 +184,8 @@ public:
     Splitter(const std::vector<SurfacePiece>& pieces, int most) : pieces_(pieces), most_(most)
     {
         Block whole;
-        for (const SurfacePiece& piece : pieces) whole.triangles.insert(whole.triangles.end(), piece.begin(), piece.end());
+        for (const SurfacePiece& piece : pieces)
+            whole.triangles.insert(whole.triangles.end(), piece.begin(), piece.end());
         add_hull(whole);
         blocks_.push_back(std::move(whole));
     }
@@ -202,7 +211,10 @@ public:
     }
 
 private:
-    static double saved(const Block& block, const std::array<Block, 2>& sides) { return block.volume - sides[0].volume - sides[1].volume; }
+    static double saved(const Block& block, const std::array<Block, 2>& sides)
+    {
+        return block.volume - sides[0].volume - sides[1].volume;
+    }
 
     /// The leaf whose cut saves most; where none saves anything, the largest one. -1: no leaf can be cut.
     int next_block(const std::vector<std::optional<std::array<Block, 2>>>& cuts) const
@@ -232,7 +244,8 @@ private:
                 ++leaves;
                 continue;
             }
-            const Block &left = blocks_[std::size_t(blocks_[k].children[0])], &right = blocks_[std::size_t(blocks_[k].children[1])];
+            const Block &left = blocks_[std::size_t(blocks_[k].children[0])],
+                        &right = blocks_[std::size_t(blocks_[k].children[1])];
             if (!left.is_leaf() || !right.is_leaf()) continue;
             const double gain = blocks_[k].volume - left.volume - right.volume;
             if (worst >= 0 && gain >= least) continue;
@@ -252,7 +265,8 @@ private:
     void collect(int block, std::vector<RobotPart>& out) const
     {
         const Block& here = blocks_[std::size_t(block)];
-        if (here.is_leaf()) out.push_back(here.hull);
+        if (here.is_leaf())
+            out.push_back(here.hull);
         else
             for (const int child : here.children) collect(child, out);
     }
@@ -265,7 +279,10 @@ private:
 
 }  // namespace
 
-std::vector<RobotPart> convex_split(const std::vector<SurfacePiece>& pieces, int most) { return Splitter(pieces, most).split(); }
+std::vector<RobotPart> convex_split(const std::vector<SurfacePiece>& pieces, int most)
+{
+    return Splitter(pieces, most).split();
+}
 
 double hull_volume(const RobotPart& hull)
 {

@@ -24,7 +24,8 @@ public:
         for (const Vec3& p : points) coordinates_.insert(coordinates_.end(), p.data(), p.data() + 3);
         qh_zero(&qh_, sink_.get());
         char options[] = "qhull Qt Pp";  // Qt: triangulated facets
-        failed_ = qh_new_qhull(&qh_, 3, int(points.size()), coordinates_.data(), False, options, nullptr, sink_.get()) != 0;
+        failed_ = qh_new_qhull(&qh_, 3, int(points.size()), coordinates_.data(), False, options, nullptr,
+                               sink_.get()) != 0;
     }
     Quickhull(const Quickhull&) = delete;
     Quickhull& operator=(const Quickhull&) = delete;
@@ -96,7 +97,8 @@ RobotPart grown(const RobotPart& part, double margin)
         std::vector<Vec3> corners;
         for (const Vec3& vertex : part.hull_vertices)
             for (int corner = 0; corner < 8; ++corner)
-                corners.push_back(vertex + margin * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+                corners.push_back(vertex +
+                                  margin * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
         return convex_hull(corners);
     }
     }

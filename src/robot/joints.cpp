@@ -14,7 +14,10 @@ namespace {
 
 const char* unit_of(const Joint& joint) { return joint.motion == Joint::Motion::Sliding ? "m" : "rad"; }
 
-std::string limits_of(const Joint& joint) { return number(joint.lower) + " to " + number(joint.upper) + " " + unit_of(joint); }
+std::string limits_of(const Joint& joint)
+{
+    return number(joint.lower) + " to " + number(joint.upper) + " " + unit_of(joint);
+}
 
 bool is_within(const Joint& joint, double value)
 {
@@ -37,8 +40,9 @@ public:
             if (joint.motion != Joint::Motion::Turning && joint.motion != Joint::Motion::Sliding) continue;
             const double value = out[joint.name] = value_of(joint, 0);
             if (is_within(joint, value)) continue;
-            notices.push_back(file_ + ": joint \"" + joint.name + "\" stands at " + number(value) + " " + unit_of(joint) +
-                              (joint.mimic ? ", as \"" + joint.mimic->joint + "\" has it" : "") + ", though its limits are " + limits_of(joint));
+            notices.push_back(file_ + ": joint \"" + joint.name + "\" stands at " + number(value) + " " +
+                              unit_of(joint) + (joint.mimic ? ", as \"" + joint.mimic->joint + "\" has it" : "") +
+                              ", though its limits are " + limits_of(joint));
         }
         return out;
     }
@@ -50,7 +54,8 @@ private:
         const Joint* const joint = find(position.joint);
         if (joint == nullptr) refuse(place + "is not in " + file_ + "; " + movable());
         if (joint->motion == Joint::Motion::None) refuse(place + "is fixed in " + file_ + "; " + movable());
-        if (joint->motion == Joint::Motion::Other) refuse(place + "is of type " + joint->type + ", which cannot be moved by one number; " + movable());
+        if (joint->motion == Joint::Motion::Other)
+            refuse(place + "is of type " + joint->type + ", which cannot be moved by one number; " + movable());
         if (joint->mimic) refuse(place + "follows joint \"" + joint->mimic->joint + "\"; give that one");
         if (!std::isfinite(position.value)) refuse(place + "is " + number(position.value) + ", needs a finite number");
         if (!is_within(*joint, position.value))
@@ -65,14 +70,17 @@ private:
             return entry == given_.end() ? 0 : entry->second;
         }
         const Joint* const leader = find(joint.mimic->joint);
-        if (leader == nullptr) throw FileError(file_, "joint \"" + joint.name + "\" mimics \"" + joint.mimic->joint + "\", which is no joint");
+        if (leader == nullptr)
+            throw FileError(file_,
+                            "joint \"" + joint.name + "\" mimics \"" + joint.mimic->joint + "\", which is no joint");
         if (depth > joints_.size()) throw FileError(file_, "joint \"" + joint.name + "\" mimics itself");
         return joint.mimic->multiplier * value_of(*leader, depth + 1) + joint.mimic->offset;
     }
 
     const Joint* find(const std::string& name) const
     {
-        const auto found = std::find_if(joints_.begin(), joints_.end(), [&](const Joint& joint) { return joint.name == name; });
+        const auto found = std::find_if(joints_.begin(), joints_.end(),
+                                        [&](const Joint& joint) { return joint.name == name; });
         return found == joints_.end() ? nullptr : &*found;
     }
 
@@ -95,7 +103,8 @@ private:
 
 }  // namespace
 
-std::map<std::string, double> joint_positions(const std::string& file, const std::vector<Joint>& joints, const std::vector<JointPosition>& given,
+std::map<std::string, double> joint_positions(const std::string& file, const std::vector<Joint>& joints,
+                                              const std::vector<JointPosition>& given,
                                               std::vector<std::string>& notices)
 {
     return Positions(file, joints, given).all(notices);

@@ -21,10 +21,11 @@ struct Joint {
     std::optional<Mimic> mimic;
 };
 
-/// Where every joint that can move stands: as given, as those that it mimics, or at 0. What is out of its limits without
-/// being given gets a notice. Throws ArgumentError (joints) for given ones that are no joints of the file, fixed, mimics or
-/// out of limits, FileError for mimics of nothing or of themselves.
-std::map<std::string, double> joint_positions(const std::string& file, const std::vector<Joint>& joints, const std::vector<JointPosition>& given,
+/// Where every joint that can move stands: as given, as those that it mimics, or at 0. What is out of its limits
+/// without being given gets a notice. Throws ArgumentError (joints) for given ones that are no joints of the file,
+/// fixed, mimics or out of limits, FileError for mimics of nothing or of themselves.
+std::map<std::string, double> joint_positions(const std::string& file, const std::vector<Joint>& joints,
+                                              const std::vector<JointPosition>& given,
                                               std::vector<std::string>& notices);
 
 /// The joint's frame moved along or about its axis (of length 1, in that frame) by value.

@@ -54,7 +54,8 @@ std::optional<std::vector<Piece3>> closed_pieces(const FileMesh::Node& node)
 std::vector<FileMesh::Node> placed(std::vector<FileMesh::Node> nodes, const Vec3& scale, const Pose& robot_from_mesh)
 {
     for (FileMesh::Node& node : nodes)
-        for (Vec3& vertex : node.vertices) vertex = robot_from_mesh.rotation * vertex.cwiseProduct(scale) + robot_from_mesh.position;
+        for (Vec3& vertex : node.vertices)
+            vertex = robot_from_mesh.rotation * vertex.cwiseProduct(scale) + robot_from_mesh.position;
     return nodes;
 }
 
@@ -89,7 +90,8 @@ void append_mesh(Robot& robot, const CollisionMesh& mesh, int most)
         pieces.resize(first + found.open_edges.size());
         for (std::size_t face = 0; face < node.triangles.size(); ++face) {
             const Triangle& t = node.triangles[face];
-            pieces[first + found.of_face[face]].push_back({node.vertices[t[0]], node.vertices[t[1]], node.vertices[t[2]]});
+            pieces[first + found.of_face[face]].push_back(
+                {node.vertices[t[0]], node.vertices[t[1]], node.vertices[t[2]]});
         }
     }
     MeshFit fit{mesh.name, mesh.file.filename().string(), 0, 0, enclosed_volume(mesh.nodes)};
@@ -109,9 +111,16 @@ std::vector<std::string> growth_notices(const Robot& robot)
     for (const MeshFit& fit : robot.meshes) {
         if (fit.growth() && *fit.growth() < noteworthy) continue;
         char text[160];
-        const std::string what = fit.parts == 1 ? "its convex hull" : "its " + std::to_string(fit.parts) + " convex parts";
-        if (fit.growth()) std::snprintf(text, sizeof text, "%s, %.3g m3, %.0f %% more than the mesh", what.c_str(), fit.volume, 100 * *fit.growth());
-        else std::snprintf(text, sizeof text, "%s, %.3g m3; how much more than the mesh is not known, as that is not watertight or overlaps itself", what.c_str(), fit.volume);
+        const std::string what = fit.parts == 1 ? "its convex hull"
+                                                : "its " + std::to_string(fit.parts) + " convex parts";
+        if (fit.growth())
+            std::snprintf(text, sizeof text, "%s, %.3g m3, %.0f %% more than the mesh", what.c_str(), fit.volume,
+                          100 * *fit.growth());
+        else
+            std::snprintf(
+                text, sizeof text,
+                "%s, %.3g m3; how much more than the mesh is not known, as that is not watertight or overlaps itself",
+                what.c_str(), fit.volume);
         out.push_back((fit.name.empty() ? "" : "\"" + fit.name + "\": ") + fit.file + " counts as " + text);
     }
     return out;

@@ -19,7 +19,8 @@ namespace spawnfield {
 Vec3 RobotPart::centre() const
 {
     if (shape.kind != ShapeKind::Hull) return shape.pose.position;
-    return std::accumulate(hull_vertices.begin(), hull_vertices.end(), Vec3(Vec3::Zero())) / double(hull_vertices.size());
+    return std::accumulate(hull_vertices.begin(), hull_vertices.end(), Vec3(Vec3::Zero())) /
+           double(hull_vertices.size());
 }
 
 Bounds RobotPart::bounds() const
@@ -50,7 +51,8 @@ std::vector<double> split_numbers(const std::string& text, const std::string& ar
         const std::size_t comma = std::min(text.find(',', start), text.size());
         double value = 0;
         if (!parse_number(std::string_view(text).substr(start, comma - start), value) || !std::isfinite(value))
-            throw ArgumentError("robot \"" + argument + "\": \"" + text.substr(start, comma - start) + "\" is no finite number");
+            throw ArgumentError("robot \"" + argument + "\": \"" + text.substr(start, comma - start) +
+                                "\" is no finite number");
         out.push_back(value);
         start = comma + 1;
     }
@@ -64,16 +66,19 @@ Robot box_robot(const std::string& argument)
     const std::size_t at = spec.find('@');
     const auto size = split_numbers(spec.substr(0, at), argument);
     if (size.size() != 3)
-        throw ArgumentError("robot \"" + argument + "\": has " + std::to_string(size.size()) + " side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])");
+        throw ArgumentError("robot \"" + argument + "\": has " + std::to_string(size.size()) +
+                            " side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])");
     for (const double side : size)
-        if (!(side > 0)) throw ArgumentError("robot \"" + argument + "\": side length is " + number(side) + ", needs > 0 m");
+        if (!(side > 0))
+            throw ArgumentError("robot \"" + argument + "\": side length is " + number(side) + ", needs > 0 m");
     RobotPart part;
     part.shape.size = {size[0], size[1], size[2]};
     part.shape.pose.position = {0, 0, size[2] / 2};
     if (at != std::string::npos) {
         const auto centre = split_numbers(spec.substr(at + 1), argument);
         if (centre.size() != 3)
-            throw ArgumentError("robot \"" + argument + "\": has " + std::to_string(centre.size()) + " coordinates after @, needs 3");
+            throw ArgumentError("robot \"" + argument + "\": has " + std::to_string(centre.size()) +
+                                " coordinates after @, needs 3");
         part.shape.pose.position = {centre[0], centre[1], centre[2]};
     }
     return {argument, {part}, {}, {}};
@@ -90,7 +95,8 @@ void append_mesh_part(Robot& robot, const YamlMap& map, const std::filesystem::p
         for (FileMesh::Node& node : mesh.nodes)
             for (Vec3& vertex : node.vertices) vertex = turned_up(vertex.cwiseProduct(scale), up);
         robot.notices.insert(robot.notices.end(), mesh.notices.begin(), mesh.notices.end());
-        append_mesh(robot, {map.text("name", ""), file, placed(std::move(mesh.nodes), Vec3::Ones(), map.pose())}, mesh_parts);
+        append_mesh(robot, {map.text("name", ""), file, placed(std::move(mesh.nodes), Vec3::Ones(), map.pose())},
+                    mesh_parts);
     } catch (const std::domain_error& error) {
         map.fail("mesh", "cannot be used: " + file.string() + ": its convex hull has no volume: " + error.what());
     } catch (const FileError& error) {
@@ -100,7 +106,8 @@ void append_mesh_part(Robot& robot, const YamlMap& map, const std::filesystem::p
 
 void append_part(Robot& robot, const YamlMap& map, const std::filesystem::path& folder, int mesh_parts)
 {
-    const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "mesh"}, {"name", "xyz", "rpy", "rpy_deg", "scale", "up"});
+    const std::string kind = only_key(map, {"box", "sphere", "cylinder", "capsule", "mesh"},
+                                      {"name", "xyz", "rpy", "rpy_deg", "scale", "up"});
     if (kind == "mesh") {
         map.only({"name", "mesh", "xyz", "rpy", "rpy_deg", "scale", "up"});
         append_mesh_part(robot, map, folder, mesh_parts);
@@ -141,9 +148,11 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
     refuse_foreign_robot(file);
     if (extension == ".urdf") return read_urdf(file, options);
     if (extension == ".sdf" || extension == ".world") return read_sdf_robot(file, options);
-    if (extension != ".yaml" && extension != ".yml") throw FileError(robot, std::string("is no known robot format, needs ") + known_kinds);
+    if (extension != ".yaml" && extension != ".yml")
+        throw FileError(robot, std::string("is no known robot format, needs ") + known_kinds);
     if (!options.joints.empty())
-        throw ArgumentError("load_robot", "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
+        throw ArgumentError("load_robot",
+                            "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
     return read_robot_yaml(file, options.mesh_parts);
 }
 
@@ -188,7 +197,8 @@ Robot load_robot(const std::string& robot, const RobotOptions& options)
         throw ArgumentError("load_robot", "mesh_parts", options.mesh_parts, "1 .. " + std::to_string(most_parts));
     if (robot.starts_with("box:")) {
         if (!options.joints.empty())
-            throw ArgumentError("load_robot", "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
+            throw ArgumentError("load_robot",
+                                "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
         Robot box = box_robot(robot);
         check_reach(box, robot);
         box.notices = size_notices(box, robot);

@@ -89,13 +89,17 @@ CollisionGeometry geometry_of(const urdf::Geometry& geometry, const std::filesys
 
 class UrdfReader {
 public:
-    UrdfReader(std::filesystem::path file, const std::vector<JointPosition>& joints) : file_(std::move(file)), joints_(joints) {}
+    UrdfReader(std::filesystem::path file, const std::vector<JointPosition>& joints)
+        : file_(std::move(file)), joints_(joints)
+    {
+    }
 
     UrdfModel read()
     {
         const std::string text = read_file(file_);
         if (text.find("<xacro:") != std::string::npos)
-            throw FileError(file_.string(), "holds xacro macros; expand them first: xacro " + file_.filename().string() + " > robot.urdf");
+            throw FileError(file_.string(), "holds xacro macros; expand them first: xacro " +
+                                                file_.filename().string() + " > robot.urdf");
         check_xml();
         UrdfdomErrors errors;
         const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
@@ -107,7 +111,8 @@ public:
         for (const auto& entry : model->joints_) joints.push_back(joint_of(*entry.second));
         positions_ = joint_positions(file_.string(), joints, joints_, out_.notices);
         add_links(*model->getRoot());
-        if (out_.bodies.empty()) throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
+        if (out_.bodies.empty())
+            throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
         return std::move(out_);
     }
 
@@ -118,13 +123,19 @@ private:
         const auto document = read_xml(file_, "a <robot> element");
         for_each_element(*document->RootElement(), [&](const Xml& element) {
             const std::string name = element.Name();
-            const auto refuse = [&](const std::string& what) { throw FileError(file_.string(), line_of(element) + what); };
+            const auto refuse = [&](const std::string& what) {
+                throw FileError(file_.string(), line_of(element) + what);
+            };
             if (name == "origin" && element.Attribute("quat_xyzw") != nullptr && element.Attribute("rpy") == nullptr)
                 refuse("<origin quat_xyzw> is not read, and a part would stand unturned; write it as rpy");
-            if (name != "geometry" || element.Parent() == nullptr || std::string(element.Parent()->Value()) != "collision") return;
+            if (name != "geometry" || element.Parent() == nullptr ||
+                std::string(element.Parent()->Value()) != "collision")
+                return;
             std::size_t shapes = 0;
             for_each_child(element, nullptr, [&](const Xml&) { ++shapes; });
-            if (shapes > 1) refuse("<geometry> holds " + std::to_string(shapes) + " shapes, needs one; give each a <collision> of its own");
+            if (shapes > 1)
+                refuse("<geometry> holds " + std::to_string(shapes) +
+                       " shapes, needs one; give each a <collision> of its own");
         });
     }
 
@@ -139,7 +150,9 @@ private:
             for (auto joint = link->child_joints.rbegin(); joint != link->child_joints.rend(); ++joint)
                 for (const auto& child : link->child_links)
                     if (child->name == (*joint)->child_link_name)
-                        left.emplace_back(child.get(), robot_from_link * pose_of((*joint)->parent_to_joint_origin_transform) * motion_of(*link, **joint));
+                        left.emplace_back(child.get(), robot_from_link *
+                                                           pose_of((*joint)->parent_to_joint_origin_transform) *
+                                                           motion_of(*link, **joint));
         }
     }
 
@@ -148,7 +161,8 @@ private:
         for (const auto& collision : link.collision_array) {
             if (!collision || !collision->geometry) fail(link, "has a <collision> without geometry");
             require_positive(link, *collision->geometry);
-            out_.bodies.push_back({{out_.name, link.name, collision->name}, robot_from_link * pose_of(collision->origin),
+            out_.bodies.push_back({{out_.name, link.name, collision->name},
+                                   robot_from_link * pose_of(collision->origin),
                                    geometry_of(*collision->geometry, file_.parent_path())});
         }
     }
@@ -166,9 +180,12 @@ private:
     {
         const CollisionGeometry found = geometry_of(geometry, {});
         if (found.kind == CollisionGeometry::Kind::Mesh) return;
-        const char* const what = found.kind == CollisionGeometry::Kind::Box ? "<box size>" : found.kind == CollisionGeometry::Kind::Sphere ? "<sphere radius>" : "<cylinder>";
+        const char* const what = found.kind == CollisionGeometry::Kind::Box      ? "<box size>"
+                                 : found.kind == CollisionGeometry::Kind::Sphere ? "<sphere radius>"
+                                                                                 : "<cylinder>";
         for (const double side : found.size)
-            if (!(side > 0) || !std::isfinite(side)) fail(link, std::string(what) + " is " + number(side) + ", needs > 0");
+            if (!(side > 0) || !std::isfinite(side))
+                fail(link, std::string(what) + " is " + number(side) + ", needs > 0");
     }
 
     [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const
@@ -184,7 +201,10 @@ private:
 
 }  // namespace
 
-UrdfModel read_urdf_model(const std::filesystem::path& file, const std::vector<JointPosition>& joints) { return UrdfReader(file, joints).read(); }
+UrdfModel read_urdf_model(const std::filesystem::path& file, const std::vector<JointPosition>& joints)
+{
+    return UrdfReader(file, joints).read();
+}
 
 Robot read_urdf(const std::filesystem::path& file, const RobotOptions& options)
 {

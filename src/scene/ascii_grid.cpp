@@ -15,11 +15,15 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::array header_words{"ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value"};
+constexpr std::array header_words{"ncols",     "nrows",    "xllcorner", "xllcenter", "yllcorner",
+                                  "yllcenter", "cellsize", "dx",        "dy",        "nodata_value"};
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-bool is_header_word(const std::string& word) { return std::find(header_words.begin(), header_words.end(), word) != header_words.end(); }
+bool is_header_word(const std::string& word)
+{
+    return std::find(header_words.begin(), header_words.end(), word) != header_words.end();
+}
 
 /// Words between white space, with the lines that they stand in.
 class Words {
@@ -54,14 +58,16 @@ FileError fault(const std::string& file, const Words& words, const std::string& 
 std::string quoted(std::string_view word)
 {
     constexpr std::size_t most = 40;
-    return word.empty() ? "the file's end" : "\"" + std::string(word.substr(0, most)) + (word.size() > most ? "…\"" : "\"");
+    return word.empty() ? "the file's end"
+                        : "\"" + std::string(word.substr(0, most)) + (word.size() > most ? "…\"" : "\"");
 }
 
 double next_number(Words& words, const std::string& file, const std::string& key)
 {
     const std::string_view word = words.next();
     double value = 0;
-    if (!parse_number(word, value) || !std::isfinite(value)) throw fault(file, words, key + " is " + quoted(word) + ", needs a finite number");
+    if (!parse_number(word, value) || !std::isfinite(value))
+        throw fault(file, words, key + " is " + quoted(word) + ", needs a finite number");
     return value;
 }
 
@@ -75,8 +81,11 @@ Header read_header(Words& words, const std::string& file)
         const std::string key = lower_case(word);
         if (!is_header_word(key)) {
             if (word.empty() || parse_number(word, value)) return header;
-            throw fault(file, words, quoted(word) + " is neither a number nor a word of an ESRI ASCII grid's header; known: ncols, nrows, xllcorner or "
-                                                    "xllcenter, yllcorner or yllcenter, cellsize or dx and dy, NODATA_value");
+            throw fault(
+                file, words,
+                quoted(word) +
+                    " is neither a number nor a word of an ESRI ASCII grid's header; known: ncols, nrows, xllcorner or "
+                    "xllcenter, yllcorner or yllcenter, cellsize or dx and dy, NODATA_value");
         }
         words.next();
         if (header.contains(key)) throw fault(file, words, key + " is given twice");
@@ -90,9 +99,11 @@ Header read_header(Words& words, const std::string& file)
 }
 
 /// The one of the words that the header has.
-std::pair<std::string, double> one_of(const Header& header, const std::string& file, const std::string& first, const std::string& second)
+std::pair<std::string, double> one_of(const Header& header, const std::string& file, const std::string& first,
+                                      const std::string& second)
 {
-    if (header.contains(first) && header.contains(second)) throw FileError(file, "has " + first + " and " + second + ", needs one of them");
+    if (header.contains(first) && header.contains(second))
+        throw FileError(file, "has " + first + " and " + second + ", needs one of them");
     for (const std::string& key : {first, second})
         if (const auto found = header.find(key); found != header.end()) return *found;
     throw FileError(file, "has neither " + first + " nor " + second + " in its header, needs one of them");
@@ -110,7 +121,8 @@ std::uint64_t count(const Header& header, const std::string& file, const std::st
     if (found == header.end()) throw FileError(file, "has no " + key + " in its header");
     const double value = found->second;
     constexpr double most = 2147483647;
-    if (!(value >= 1) || value > most || value != std::floor(value)) throw FileError(file, key + " is " + number(value) + ", needs a whole number of 1 or more");
+    if (!(value >= 1) || value > most || value != std::floor(value))
+        throw FileError(file, key + " is " + number(value) + ", needs a whole number of 1 or more");
     return std::uint64_t(value);
 }
 
@@ -121,8 +133,10 @@ std::pair<double, double> cell_of(const Header& header, const std::string& file)
         const double side = positive(header.at("cellsize"), file, "cellsize");
         return {side, side};
     }
-    if (header.contains("cellsize")) throw FileError(file, "has cellsize and dx or dy, needs cellsize or both of dx, dy");
-    if (!header.contains("dx") || !header.contains("dy")) throw FileError(file, "has one of dx, dy in its header, needs both or cellsize");
+    if (header.contains("cellsize"))
+        throw FileError(file, "has cellsize and dx or dy, needs cellsize or both of dx, dy");
+    if (!header.contains("dx") || !header.contains("dy"))
+        throw FileError(file, "has one of dx, dy in its header, needs both or cellsize");
     return {positive(header.at("dx"), file, "dx"), positive(header.at("dy"), file, "dy")};
 }
 
@@ -133,15 +147,18 @@ double first_centre(const Header& header, const std::string& file, const std::st
     return key.ends_with("corner") ? value + cell / 2 : value;
 }
 
-/// The first line of which the number of values is not that of a row; empty if all are or rows do not stand in lines of their own.
+/// The first line of which the number of values is not that of a row; empty if all are or rows do not stand in lines of
+/// their own.
 std::string odd_line(Words words, const GreyImage& image)
 {
     std::size_t line = 0, in_line = 0, full = 0;
     std::string odd;
     const auto close = [&] {
-        if (in_line == std::size_t(image.cols)) ++full;
+        if (in_line == std::size_t(image.cols))
+            ++full;
         else if (in_line > 0 && odd.empty())
-            odd = "line " + std::to_string(line) + " has " + std::to_string(in_line) + " values, needs " + std::to_string(image.cols) + " (ncols)";
+            odd = "line " + std::to_string(line) + " has " + std::to_string(in_line) + " values, needs " +
+                  std::to_string(image.cols) + " (ncols)";
         in_line = 0;
     };
     for (;;) {
@@ -159,8 +176,9 @@ void read_values(Words words, const std::string& file, GreyImage& image)
     const std::uint64_t wanted = std::uint64_t(image.rows) * std::uint64_t(image.cols);
     const auto wrong_count = [&](const std::string& found) {
         const std::string line = odd_line(start, image);
-        return FileError(file, (line.empty() ? "" : line + ": ") + "it has " + found + " values, needs " + std::to_string(wanted) + " (" +
-                                   std::to_string(image.cols) + " x " + std::to_string(image.rows) + ")");
+        return FileError(file, (line.empty() ? "" : line + ": ") + "it has " + found + " values, needs " +
+                                   std::to_string(wanted) + " (" + std::to_string(image.cols) + " x " +
+                                   std::to_string(image.rows) + ")");
     };
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
         double value = 0;
@@ -185,7 +203,8 @@ AsciiGrid parse_ascii_grid(std::string_view text, const std::string& file, std::
     const Header header = read_header(words, file);
     const std::uint64_t cols = count(header, file, "ncols"), rows = count(header, file, "nrows");
     if (rows > most / cols)
-        throw FileError(file, "has " + std::to_string(cols) + " x " + std::to_string(rows) + " cells, needs at most " + std::to_string(most) +
+        throw FileError(file, "has " + std::to_string(cols) + " x " + std::to_string(rows) + " cells, needs at most " +
+                                  std::to_string(most) +
                                   "; gdalwarp -tr makes it coarser, gdal_translate -projwin cuts a part out");
     const auto [dx, dy] = cell_of(header, file);
     AsciiGrid grid;

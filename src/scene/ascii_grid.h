@@ -18,8 +18,8 @@ bool is_ascii_grid(std::string_view start);  ///< its first word is one of a gri
 
 /// ESRI's ASCII grid: header words in any case and order, then rows from the north, values between white space.
 ///
-/// xllcorner is the edge of the outermost cell, xllcenter its centre; dx and dy may stand for cellsize. Throws FileError with line numbers;
-/// for more than `most` cells before anything of them is read.
+/// xllcorner is the edge of the outermost cell, xllcenter its centre; dx and dy may stand for cellsize. Throws
+/// FileError with line numbers; for more than `most` cells before anything of them is read.
 AsciiGrid parse_ascii_grid(std::string_view text, const std::string& file, std::uint64_t most);
 
 }  // namespace spawnfield

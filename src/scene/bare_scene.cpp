@@ -21,16 +21,21 @@ namespace fs = std::filesystem;
 
 bool is_elevation_model(const fs::path& file, const std::string& extension, const SceneOptions& options)
 {
-    if (!options.heightmap.empty() || extension == ".asc" || extension == ".tif" || extension == ".tiff" || extension == ".png") return true;
+    if (!options.heightmap.empty() || extension == ".asc" || extension == ".tif" || extension == ".tiff" ||
+        extension == ".png")
+        return true;
     if (extension == ".raw" && read_file(file).find('\0') != std::string::npos)  // else text: a mesh that assimp reads
-        throw FileError(file.string(), "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
+        throw FileError(
+            file.string(),
+            "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
     return false;
 }
 
 Scene read_elevation_model(const fs::path& file, const SceneOptions& options)
 {
     if (options.up != 0 || options.scale != 1.0)
-        throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() + " is an elevation model, in metres and z up");
+        throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() +
+                                              " is an elevation model, in metres and z up");
     Scene scene;
     scene.name = file.stem().string();
     const Label label = label_by_name(scene.name, options.labels, Label::Terrain);
@@ -49,7 +54,8 @@ bool is_octomap(const std::string& extension) { return extension == ".bt" || ext
 Scene read_octomap_scene(const fs::path& file, Scene scene, Label fallback, const SceneOptions& options)
 {
     if (options.up != 0 || options.scale != 1.0)
-        throw ArgumentError("load_scene", "up and scale are for a mesh; " + file.string() + " is an OctoMap, in metres and z up");
+        throw ArgumentError("load_scene",
+                            "up and scale are for a mesh; " + file.string() + " is an OctoMap, in metres and z up");
     const Label label = label_by_name(scene.name, options.labels, fallback);
     const std::uint32_t part = add_part(scene, scene.name, "octomap", label);
     const bool has_rule = std::any_of(options.labels.begin(), options.labels.end(),
@@ -78,20 +84,26 @@ Scene read_mesh_scene(const fs::path& file, Scene scene, Label fallback, const S
 Scene read_nav2_scene(const fs::path& file, const SceneOptions& options)
 {
     if (options.up != 0 || options.scale != 1.0 || !options.heightmap.empty())
-        throw ArgumentError("load_scene", "up and scale are for a mesh, --heightmap for an elevation model; " + file.string() + " is a 2D map");
+        throw ArgumentError("load_scene", "up and scale are for a mesh, --heightmap for an elevation model; " +
+                                              file.string() + " is a 2D map");
     if (options.auto_slope)
         throw ArgumentError("load_scene", "auto_slope is for meshes, OctoMaps and worlds; " + file.string() +
                                               " is a 2D map, with a floor and walls");
-    if (!(options.wall_height >= 0) || !std::isfinite(options.wall_height)) throw ArgumentError("load_scene", "wall_height", options.wall_height, "> 0 m");
+    if (!(options.wall_height >= 0) || !std::isfinite(options.wall_height))
+        throw ArgumentError("load_scene", "wall_height", options.wall_height, "> 0 m");
     constexpr double usual_height = 2;
     const Nav2Map map = read_nav2_map(file);
     if (std::find(map.cells.begin(), map.cells.end(), Nav2Map::Cell::Free) == map.cells.end())
-        throw FileError(file.string(), "has no free cell (" + std::to_string(map.cols) + " x " + std::to_string(map.rows) + "); are negate and the thresholds right?");
+        throw FileError(file.string(), "has no free cell (" + std::to_string(map.cols) + " x " +
+                                           std::to_string(map.rows) + "); are negate and the thresholds right?");
     Scene scene;
     scene.name = file.stem().string();
     scene.notices = map.notices;
-    if (options.wall_height == 0) scene.notices.push_back(file.string() + ": walls are " + number(usual_height) + " m high (--wall-height sets it)");
-    append_nav2_map(scene, map, label_by_name("floor", options.labels, Label::Terrain), label_by_name("walls", options.labels, Label::Obstacle),
+    if (options.wall_height == 0)
+        scene.notices.push_back(file.string() + ": walls are " + number(usual_height) +
+                                " m high (--wall-height sets it)");
+    append_nav2_map(scene, map, label_by_name("floor", options.labels, Label::Terrain),
+                    label_by_name("walls", options.labels, Label::Obstacle),
                     options.wall_height > 0 ? options.wall_height : usual_height);
     tell_idle_rules(file, options.labels, {"floor", "walls"}, scene);
     return scene;

@@ -24,9 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = CollisionGeometry::Kind;
 
-constexpr std::array kind_names{"box", "sphere", "cylinder", "capsule", "ellipsoid", "plane", "mesh", "heightmap", "polyline", "unknown"};
+constexpr std::array kind_names{"box",   "sphere", "cylinder",  "capsule",  "ellipsoid",
+                                "plane", "mesh",   "heightmap", "polyline", "unknown"};
 constexpr double around_the_rest = 10;  // m
-constexpr double beyond_bounds = 50;  // m that planes go on, for what hangs over the map's rim: more than any robot's reach
+constexpr double beyond_bounds =
+    50;  // m that planes go on, for what hangs over the map's rim: more than any robot's reach
 
 /// A closed mesh around the ellipsoid of these half axes.
 FileMesh ellipsoid_mesh(const SphereMesh& sphere, const Vec3& radii)
@@ -41,7 +43,8 @@ FileMesh ellipsoid_mesh(const SphereMesh& sphere, const Vec3& radii)
     return mesh;
 }
 
-/// The part of the infinite plane z = 0 of `pose` that lies in the box: a convex polygon's corners, none if they do not meet.
+/// The part of the infinite plane z = 0 of `pose` that lies in the box: a convex polygon's corners, none if they do not
+/// meet.
 std::vector<Vec3> plane_in_box(const Pose& pose, const Bounds& box)
 {
     const double reach = (box.max - box.min).norm();
@@ -97,7 +100,8 @@ public:
     {
         for (const auto& [uri, lost] : lost_)
             missing_.push_back(file_.string() + ": " + lost.first + ": " + uri + " is not found" +
-                               (lost.second > 1 ? " (" + std::to_string(lost.second) + " collisions)" : "") + ": it is left out");
+                               (lost.second > 1 ? " (" + std::to_string(lost.second) + " collisions)" : "") +
+                               ": it is left out");
         return std::move(missing_);
     }
 
@@ -106,7 +110,8 @@ private:
     {
         std::map<std::string, int> seen;
         for (CollisionBody& body : bodies)
-            if (const int before = seen[scoped_name(body)]++; before > 0) body.names.back() += "_" + std::to_string(before + 1);
+            if (const int before = seen[scoped_name(body)]++; before > 0)
+                body.names.back() += "_" + std::to_string(before + 1);
     }
 
     /// Files of meshes and heightmaps; what is not found becomes Unknown and is told.
@@ -123,7 +128,10 @@ private:
                 if (geometry.kind == Kind::Mesh) meshes_.expect(found);
                 continue;
             }
-            ++lost_.try_emplace(geometry.uri.empty() ? "a mesh without <uri>" : geometry.uri, "\"" + scoped_name(body) + "\"", std::size_t{0}).first->second.second;
+            ++lost_
+                  .try_emplace(geometry.uri.empty() ? "a mesh without <uri>" : geometry.uri,
+                               "\"" + scoped_name(body) + "\"", std::size_t{0})
+                  .first->second.second;
             geometry.kind = Kind::Unknown;
             geometry.element.clear();
             is_incomplete_ = true;
@@ -137,7 +145,8 @@ private:
         for (const CollisionBody& body : bodies) {
             const bool counts = body.geometry.kind != Kind::Unknown;
             unknown += !counts;
-            const auto told = std::find_if(options_.labels.begin(), options_.labels.end(), [&](const LabelRule& rule) { return matches_body(rule.pattern, body); });
+            const auto told = std::find_if(options_.labels.begin(), options_.labels.end(),
+                                           [&](const LabelRule& rule) { return matches_body(rule.pattern, body); });
             const std::optional<Label> label = !counts                         ? Label::Ignore
                                                : told != options_.labels.end() ? told->label
                                                                                : rules.label_of(body);
@@ -147,13 +156,15 @@ private:
         const bool is_unlabelled = !rules.has_ground() && options_.labels.empty() && !options_.auto_slope;
         if (is_unlabelled && !is_incomplete_) {
             everything_is_terrain_ = true;
-            scene_.rules.push_back({"all: nothing is a plane, a heightmap or named as ground", Label::Terrain, bodies.size() - unknown});
+            scene_.rules.push_back(
+                {"all: nothing is a plane, a heightmap or named as ground", Label::Terrain, bodies.size() - unknown});
             std::replace(labels_.begin(), labels_.end(), Label::Obstacle, Label::Terrain);
             return;
         }
         if (is_unlabelled)
-            scene_.notices.push_back(file_.string() + ": nothing in it is a plane, a heightmap or named as ground. As "
-                                                      "parts of it are missing, nothing is made terrain");
+            scene_.notices.push_back(file_.string() +
+                                     ": nothing in it is a plane, a heightmap or named as ground. As "
+                                     "parts of it are missing, nothing is made terrain");
         scene_.rules = rules.take();
     }
 
@@ -193,15 +204,19 @@ private:
                 if (label == Label::Ignore) return;
                 const Heightmap found = gazebo_heights(files_.at(&body), geometry);
                 append_heightmap(scene_, part, found, middle, true);
-                for (const std::string& text : found.notices) scene_.notices.push_back(files_.at(&body).string() + ": " + text);
+                for (const std::string& text : found.notices)
+                    scene_.notices.push_back(files_.at(&body).string() + ": " + text);
             } else if (geometry.kind == Kind::Polyline) {
                 append_mesh_body(body, part, extruded(geometry.outlines, geometry.size[0]), Vec3::Ones(), auto_slope);
             } else if (geometry.kind == Kind::Ellipsoid) {
                 append_ellipsoid(body, part, auto_slope);
             } else {
                 const auto mesh = meshes_.read(files_.at(&body));
-                if (!has_submesh(*mesh, geometry)) return leave_out_part(body, "<submesh> \"" + geometry.submesh + "\" is no node of " + files_.at(&body).string());
-                if (geometry.submesh.empty()) append_mesh_body(body, part, *mesh, geometry.size, auto_slope);
+                if (!has_submesh(*mesh, geometry))
+                    return leave_out_part(
+                        body, "<submesh> \"" + geometry.submesh + "\" is no node of " + files_.at(&body).string());
+                if (geometry.submesh.empty())
+                    append_mesh_body(body, part, *mesh, geometry.size, auto_slope);
                 else
                     append_mesh_body(body, part, submesh_of(*mesh, geometry, files_.at(&body).string()), geometry.size,
                                      auto_slope);
@@ -244,14 +259,17 @@ private:
         const SphereMesh sphere = mesh_around_unit_sphere(rounds);
         append_mesh_body(body, part, ellipsoid_mesh(sphere, body.geometry.size), Vec3::Ones(), auto_slope);
         ++ellipsoids_;
-        ellipsoid_growth_ = std::max(ellipsoid_growth_, (sphere.vertices[0].norm() - 1) * body.geometry.size.maxCoeff());
+        ellipsoid_growth_ = std::max(ellipsoid_growth_,
+                                     (sphere.vertices[0].norm() - 1) * body.geometry.size.maxCoeff());
     }
 
     void tell_ellipsoids()
     {
         if (ellipsoids_ > 0)
-            scene_.notices.push_back(file_.string() + ": " + std::to_string(ellipsoids_) + (ellipsoids_ == 1 ? " ellipsoid is" : " ellipsoids are") +
-                                     " a mesh around it, at most " + number(std::ceil(ellipsoid_growth_ * 1e4) / 1e4) + " m larger");
+            scene_.notices.push_back(file_.string() + ": " + std::to_string(ellipsoids_) +
+                                     (ellipsoids_ == 1 ? " ellipsoid is" : " ellipsoids are") +
+                                     " a mesh around it, at most " + number(std::ceil(ellipsoid_growth_ * 1e4) / 1e4) +
+                                     " m larger");
     }
 
     /// Those of the options; else all but the planes, and these as far as they are drawn. Planes that are drawn no
@@ -326,9 +344,12 @@ private:
         const Names mesh_names = options_.labels.empty() ? Names() : names_of(scene_.face_groups);
         for (const LabelRule& rule : options_.labels) {
             const bool is_used = matches_one(rule.pattern, mesh_names) ||
-                                 std::any_of(bodies.begin(), bodies.end(), [&](const CollisionBody& body) { return matches_body(rule.pattern, body); });
+                                 std::any_of(bodies.begin(), bodies.end(), [&](const CollisionBody& body) {
+                                     return matches_body(rule.pattern, body);
+                                 });
             if (!is_used)
-                scene_.notices.push_back(file_.string() + ": label \"" + rule.pattern + "\" matches no model, link, collision, node or material");
+                scene_.notices.push_back(file_.string() + ": label \"" + rule.pattern +
+                                         "\" matches no model, link, collision, node or material");
         }
     }
 
@@ -350,13 +371,15 @@ private:
 
 }  // namespace
 
-void append_bodies(Scene& scene, const fs::path& file, std::vector<CollisionBody> bodies, ModelPaths& paths, const SceneOptions& options,
-                   std::vector<std::string> missing)
+void append_bodies(Scene& scene, const fs::path& file, std::vector<CollisionBody> bodies, ModelPaths& paths,
+                   const SceneOptions& options, std::vector<std::string> missing)
 {
     BodyAppender appender(scene, file, paths, options, !missing.empty());
     appender.append(bodies);
     for (std::string& line : appender.take_missing()) missing.push_back(std::move(line));
-    if (options.strict && !missing.empty()) throw FileError(missing[0], std::to_string(missing.size()) + " in all are missing, and --strict does not allow it");
+    if (options.strict && !missing.empty())
+        throw FileError(missing[0],
+                        std::to_string(missing.size()) + " in all are missing, and --strict does not allow it");
     scene.notices.insert(scene.notices.end(), missing.begin(), missing.end());
 }
 

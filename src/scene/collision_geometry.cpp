@@ -24,7 +24,10 @@ std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pos
     case Kind::Sphere: return Shape{ShapeKind::Sphere, Vec3(size[0], 0, 0), pose};
     case Kind::Cylinder: return Shape{ShapeKind::Cylinder, Vec3(size[0], size[1], 0), pose};
     case Kind::Capsule: return Shape{ShapeKind::Capsule, Vec3(size[0], size[1], 0), pose};
-    case Kind::Ellipsoid: return size[0] == size[1] && size[1] == size[2] ? std::optional(Shape{ShapeKind::Sphere, Vec3(size[0], 0, 0), pose}) : std::nullopt;
+    case Kind::Ellipsoid:
+        return size[0] == size[1] && size[1] == size[2]
+                   ? std::optional(Shape{ShapeKind::Sphere, Vec3(size[0], 0, 0), pose})
+                   : std::nullopt;
     default: return {};
     }
 }
@@ -32,7 +35,8 @@ std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pos
 bool has_submesh(const FileMesh& mesh, const CollisionGeometry& geometry)
 {
     return geometry.submesh.empty() ||
-           std::any_of(mesh.nodes.begin(), mesh.nodes.end(), [&](const FileMesh::Node& node) { return node.name == geometry.submesh; });
+           std::any_of(mesh.nodes.begin(), mesh.nodes.end(),
+                       [&](const FileMesh::Node& node) { return node.name == geometry.submesh; });
 }
 
 FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, const std::string& file)

@@ -15,16 +15,16 @@ struct CollisionGeometry {
     /// collision's own <size> means nothing); mesh: scale; heightmap: sides and the height of its brightest pixel;
     /// polyline: height, -, -.
     Vec3 size = Vec3::Ones();
-    Vec3 normal = Vec3::UnitZ();                ///< plane; not of unit length necessarily
-    std::string uri;                            ///< mesh, heightmap: as the file has it
-    std::filesystem::path folder;               ///< of the file in which it stands
-    std::string submesh;                        ///< mesh: the only node that counts; empty: all
-    bool is_centred = false;                    ///< mesh: the submesh's middle becomes its origin
-    Vec3 position = Vec3::Zero();               ///< heightmap: of its middle
-    unsigned sampling = 1;                      ///< heightmap: samples for each pixel, between them interpolated
+    Vec3 normal = Vec3::UnitZ();   ///< plane; not of unit length necessarily
+    std::string uri;               ///< mesh, heightmap: as the file has it
+    std::filesystem::path folder;  ///< of the file in which it stands
+    std::string submesh;           ///< mesh: the only node that counts; empty: all
+    bool is_centred = false;       ///< mesh: the submesh's middle becomes its origin
+    Vec3 position = Vec3::Zero();  ///< heightmap: of its middle
+    unsigned sampling = 1;         ///< heightmap: samples for each pixel, between them interpolated
     std::vector<std::vector<std::array<double, 2>>> outlines;  ///< polyline: even-odd
-    std::string element;                        ///< Unknown: what stands there
-    std::optional<int> line;                    ///< of its file, where that is known
+    std::string element;                                       ///< Unknown: what stands there
+    std::optional<int> line;                                   ///< of its file, where that is known
 };
 
 /// A <collision> with its place.
@@ -43,8 +43,8 @@ std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pos
 /// Whether the mesh has the node that the geometry names, or the geometry names none.
 bool has_submesh(const FileMesh& mesh, const CollisionGeometry& geometry);
 
-/// What of its file a mesh geometry means: all, or the nodes of its submesh, with the middle of their box moved to the origin if
-/// it is to be centred. Throws FileError.
+/// What of its file a mesh geometry means: all, or the nodes of its submesh, with the middle of their box moved to the
+/// origin if it is to be centred. Throws FileError.
 FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, const std::string& file);
 
 }  // namespace spawnfield

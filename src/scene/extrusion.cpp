@@ -21,11 +21,14 @@ Ring cleaned(const Outline& outline, std::size_t number_of)
     Ring ring;
     for (const auto& [x, y] : outline) {
         const Vec2 point(x, y);
-        if (!point.allFinite()) throw std::domain_error("outline " + std::to_string(number_of) + " has a point that is not finite");
+        if (!point.allFinite())
+            throw std::domain_error("outline " + std::to_string(number_of) + " has a point that is not finite");
         if (ring.empty() || point != ring.back()) ring.push_back(point);
     }
     while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-    if (ring.size() < 3) throw std::domain_error("outline " + std::to_string(number_of) + " has " + std::to_string(ring.size()) + " points, needs 3 or more");
+    if (ring.size() < 3)
+        throw std::domain_error("outline " + std::to_string(number_of) + " has " + std::to_string(ring.size()) +
+                                " points, needs 3 or more");
     if (area_of(ring) == 0) throw std::domain_error("outline " + std::to_string(number_of) + " encloses no area");
     if (area_of(ring) < 0) std::reverse(ring.begin(), ring.end());
     return ring;
@@ -35,7 +38,9 @@ Ring cleaned(const Outline& outline, std::size_t number_of)
 bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
 {
     const double c_side = turn(a, b, c), d_side = turn(a, b, d), a_side = turn(c, d, a), b_side = turn(c, d, b);
-    if (((c_side > 0 && d_side < 0) || (c_side < 0 && d_side > 0)) && ((a_side > 0 && b_side < 0) || (a_side < 0 && b_side > 0))) return true;
+    if (((c_side > 0 && d_side < 0) || (c_side < 0 && d_side > 0)) &&
+        ((a_side > 0 && b_side < 0) || (a_side < 0 && b_side > 0)))
+        return true;
     const auto within = [](const Vec2& from, const Vec2& to, const Vec2& point, double side) {
         return side == 0 && point != from && point != to && (point - from).dot(point - to) < 0;
     };
@@ -50,7 +55,8 @@ void require_simple(const std::vector<Ring>& rings)
                 for (std::size_t j = r == s ? i + 1 : 0; j < rings[s].size(); ++j) {
                     const Vec2 &a = rings[r][i], &b = at(rings[r], i + 1), &c = rings[s][j], &d = at(rings[s], j + 1);
                     if (cross_each_other(a, b, c, d))
-                        throw std::domain_error("its outline crosses itself near (" + number(a.x()) + ", " + number(a.y()) + ")");
+                        throw std::domain_error("its outline crosses itself near (" + number(a.x()) + ", " +
+                                                number(a.y()) + ")");
                 }
 }
 
@@ -88,7 +94,8 @@ void join_hole(Ring& outer, const Ring& hole, const std::vector<Ring>& holes)
     const auto found = std::find_if(bridges.begin(), bridges.end(), is_free);
     if (found == bridges.end()) throw std::domain_error("a hole cannot be joined to its outline");
     Ring joined(outer.begin(), outer.begin() + std::ptrdiff_t(found->from) + 1);
-    for (std::size_t k = 0; k <= hole.size(); ++k) joined.push_back(at(hole, found->to + hole.size() - k % hole.size()));  // against the outline
+    for (std::size_t k = 0; k <= hole.size(); ++k)
+        joined.push_back(at(hole, found->to + hole.size() - k % hole.size()));  // against the outline
     joined.insert(joined.end(), outer.begin() + std::ptrdiff_t(found->from), outer.end());
     outer = std::move(joined);
 }
@@ -107,7 +114,8 @@ std::vector<std::array<std::size_t, 3>> ears(const Ring& polygon)
         if (flat ? area != 0 : !(area > 0)) return false;
         return std::none_of(left.begin(), left.end(), [&](std::size_t i) {
             const Vec2& p = polygon[i];
-            return !flat && p != a && p != b && p != c && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+            return !flat && p != a && p != b && p != c && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 &&
+                   turn(c, a, p) >= 0;
         });
     };
     while (left.size() > 3) {
@@ -151,7 +159,8 @@ public:
 private:
     std::uint32_t corner(const Vec2& point, bool is_top)
     {
-        const auto [entry, is_new] = index_.try_emplace({point.x(), point.y(), is_top}, std::uint32_t(node_.vertices.size()));
+        const auto [entry, is_new] = index_.try_emplace({point.x(), point.y(), is_top},
+                                                        std::uint32_t(node_.vertices.size()));
         if (is_new) node_.vertices.emplace_back(point.x(), point.y(), is_top ? height_ : 0);
         return entry->second;
     }
@@ -189,7 +198,8 @@ FileMesh extruded(const std::vector<Outline>& outlines, double height)
         if (parents[outer].size() % 2 == 1) continue;
         std::vector<Ring> holes;
         for (std::size_t hole = 0; hole < rings.size(); ++hole)
-            if (parents[hole].size() == parents[outer].size() + 1 && std::count(parents[hole].begin(), parents[hole].end(), outer) == 1)
+            if (parents[hole].size() == parents[outer].size() + 1 &&
+                std::count(parents[hole].begin(), parents[hole].end(), outer) == 1)
                 holes.push_back(rings[hole]);
         PrismMaker maker(height);
         maker.add_walls(rings[outer], false);

@@ -18,10 +18,13 @@ std::string size_of(const GreyImage& image) { return std::to_string(image.cols) 
 
 void check(const GreyImage& image, int sampling, const std::string& file)
 {
-    if (image.rows < 2 || image.cols < 2) throw FileError(file, "has " + size_of(image) + " pixels, needs at least 2 x 2");
-    const std::uint64_t wanted = (std::uint64_t(image.rows - 1) * sampling + 1) * (std::uint64_t(image.cols - 1) * sampling + 1);
+    if (image.rows < 2 || image.cols < 2)
+        throw FileError(file, "has " + size_of(image) + " pixels, needs at least 2 x 2");
+    const std::uint64_t wanted = (std::uint64_t(image.rows - 1) * sampling + 1) *
+                                 (std::uint64_t(image.cols - 1) * sampling + 1);
     if (wanted > max_heights)
-        throw FileError(file, "has " + std::to_string(wanted) + " samples with <sampling> " + std::to_string(sampling) + ", needs at most " + std::to_string(max_heights));
+        throw FileError(file, "has " + std::to_string(wanted) + " samples with <sampling> " + std::to_string(sampling) +
+                                  ", needs at most " + std::to_string(max_heights));
 }
 
 void scale_image(GreyImage& image, double height)
@@ -45,10 +48,16 @@ void scale_elevations(GreyImage& image, const std::optional<double>& no_data, do
 std::vector<std::string> doubts_about(const GreyImage& image, bool is_image)
 {
     const bool is_square = image.rows == image.cols;
-    if (is_image) return is_square ? std::vector<std::string>{} : std::vector{"is " + size_of(image) + " pixels large; Gazebo takes square images only"};
-    std::vector<std::string> out{"is taken as an elevation model, as by Gazebo from Harmonic on: its lowest place keeps its height, its highest lies <size> z above that"};
+    if (is_image)
+        return is_square ? std::vector<std::string>{}
+                         : std::vector{"is " + size_of(image) + " pixels large; Gazebo takes square images only"};
+    std::vector<std::string> out{
+        "is taken as an elevation model, as by Gazebo from Harmonic on: its lowest place keeps its height, its highest "
+        "lies <size> z above that"};
     if (!is_square || !std::has_single_bit(unsigned(image.rows - 1)))
-        out.push_back("is " + size_of(image) + " pixels large; Gazebo draws it anew to a square of 2^n + 1, so that heights differ a little from those here");
+        out.push_back("is " + size_of(image) +
+                      " pixels large; Gazebo draws it anew to a square of 2^n + 1, so that heights differ a little "
+                      "from those here");
     return out;
 }
 
@@ -66,15 +75,19 @@ Heightmap gazebo_heights(const fs::path& path, const CollisionGeometry& geometry
     GreyImage& image = from.image;
     const int s = int(geometry.sampling);
     check(image, s, file);
-    if (is_image) scale_image(image, geometry.size.z());
-    else scale_elevations(image, from.no_data, geometry.size.z(), file);
+    if (is_image)
+        scale_image(image, geometry.size.z());
+    else
+        scale_elevations(image, from.no_data, geometry.size.z(), file);
     Heightmap map;
     map.size = {geometry.size.x(), geometry.size.y()};
     map.rows = (image.rows - 1) * s + 1;
     map.cols = (image.cols - 1) * s + 1;
     map.notices = doubts_about(image, is_image);
     map.heights.reserve(std::size_t(map.rows) * std::size_t(map.cols));
-    const auto pixel = [&](int row, int col) { return image.pixels[std::size_t(std::min(row, image.rows - 1)) * image.cols + std::min(col, image.cols - 1)]; };
+    const auto pixel = [&](int row, int col) {
+        return image.pixels[std::size_t(std::min(row, image.rows - 1)) * image.cols + std::min(col, image.cols - 1)];
+    };
     for (int row = 0; row < map.rows; ++row)
         for (int col = 0; col < map.cols; ++col) {
             const double v = double(row % s) / s, u = double(col % s) / s;

@@ -62,7 +62,8 @@ NameSays look_at(const CollisionBody& body)
 bool matches_body(const std::string& glob, const CollisionBody& body)
 {
     return matches(glob, scoped_name(body)) ||
-           std::any_of(body.names.begin(), body.names.end(), [&](const std::string& name) { return matches(glob, name); });
+           std::any_of(body.names.begin(), body.names.end(),
+                       [&](const std::string& name) { return matches(glob, name); });
 }
 
 std::string ground_word(const std::string& name)

@@ -27,7 +27,8 @@ void refuse_likely_degrees(const HeightFile& found, const std::string& file)
     const double north = frame.y, south = frame.y - (found.image.rows - 1) * frame.dy;
     if (!(std::max(frame.dx, frame.dy) < 0.01 && west >= -360 && east <= 360 && south >= -90 && north <= 90)) return;
     const int zone = int(std::floor((west + east) / 2 / 6)) + 31;
-    const std::string code = zone >= 1 && zone <= 60 ? std::to_string((south + north < 0 ? 32700 : 32600) + zone) : "CODE";
+    const std::string code = zone >= 1 && zone <= 60 ? std::to_string((south + north < 0 ? 32700 : 32600) + zone)
+                                                     : "CODE";
     throw FileError(file, "has cells of " + number(frame.dx) + " at x " + number(frame.x) + ", y " + number(frame.y) +
                               ", which look like degrees, needs metres; reproject it (gdalwarp -t_srs EPSG:" + code +
                               " IN OUT.tif), or tell its spacing in metres with the key cell");
@@ -48,7 +49,9 @@ HeightFile read_geotiff(const std::filesystem::path& file, bool wants_frame, std
     out.no_data = no_data_value(tags, file.string());
     out.height_unit = height_unit(tags, file.string(), notices);
     if (out.image.zero_is_white && !is_georeferenced(tags)) turn_round(out);
-    if (tags.has_mask) notices.push_back(file.string() + ": has a mask, which is not looked at; gdal_translate -a_nodata makes it a no-data value");
+    if (tags.has_mask)
+        notices.push_back(file.string() +
+                          ": has a mask, which is not looked at; gdal_translate -a_nodata makes it a no-data value");
     if (!wants_frame || !is_georeferenced(tags)) return out;
     out.frame = geo_frame(tags, file.string(), notices);
     if (!out.frame->is_projected) refuse_likely_degrees(out, file.string());
@@ -64,13 +67,16 @@ std::optional<CoordinateSystem> system_beside(const std::filesystem::path& file,
         if (!std::filesystem::is_regular_file(prj)) continue;
         std::optional<CoordinateSystem> found;
         if (std::filesystem::file_size(prj) <= most) found = coordinate_system(read_file(prj));
-        if (!found) notices.push_back(prj.string() + ": is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres");
+        if (!found)
+            notices.push_back(prj.string() +
+                              ": is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres");
         return found;
     }
     return std::nullopt;
 }
 
-void use_system(HeightFile& found, const CoordinateSystem& system, bool wants_frame, const std::string& file, std::vector<std::string>& notices)
+void use_system(HeightFile& found, const CoordinateSystem& system, bool wants_frame, const std::string& file,
+                std::vector<std::string>& notices)
 {
     using Place = CoordinateSystem::Place;
     if (system.height_unit) {
@@ -78,7 +84,8 @@ void use_system(HeightFile& found, const CoordinateSystem& system, bool wants_fr
         tell_height_unit(file, found.height_unit, system.name, notices);
     }
     if (!wants_frame) return;
-    if (system.place == Place::Degrees || system.place == Place::Globe) refuse_globe(file, system.place == Place::Globe, system.name);
+    if (system.place == Place::Degrees || system.place == Place::Globe)
+        refuse_globe(file, system.place == Place::Globe, system.name);
     found.frame->is_projected = system.place == Place::Plane;
     found.frame->unit = system.unit;
     found.frame->crs = system.name;
@@ -120,20 +127,32 @@ std::size_t bytes_of(RawLayout::Type type)
 
 HeightFile read_raw(const std::filesystem::path& file, const RawLayout& raw)
 {
-    const std::uint64_t pixels = std::uint64_t(raw.rows) * std::uint64_t(raw.cols), wanted = pixels * bytes_of(raw.type);
+    const std::uint64_t pixels = std::uint64_t(raw.rows) * std::uint64_t(raw.cols),
+                        wanted = pixels * bytes_of(raw.type);
     const std::string shape = std::to_string(raw.cols) + " x " + std::to_string(raw.rows);
-    if (pixels > max_heights) throw FileError(file.string(), "has " + shape + " pixels, needs at most " + std::to_string(max_heights));
+    if (pixels > max_heights)
+        throw FileError(file.string(), "has " + shape + " pixels, needs at most " + std::to_string(max_heights));
     if (const std::uint64_t size = std::filesystem::file_size(file); size != wanted)
-        throw FileError(file.string(), "has " + std::to_string(size) + " bytes, needs " + std::to_string(wanted) + " (" + shape + " pixels of " +
-                                           std::to_string(bytes_of(raw.type)) + " bytes)");
+        throw FileError(file.string(), "has " + std::to_string(size) + " bytes, needs " + std::to_string(wanted) +
+                                           " (" + shape + " pixels of " + std::to_string(bytes_of(raw.type)) +
+                                           " bytes)");
     const std::string bytes = read_file(file);
     HeightFile out;
     out.image = {raw.rows, raw.cols, 0, {}};
     switch (raw.type) {
-    case RawLayout::Type::Uint8: out.image.largest = 255; out.image.pixels = pixels_of<std::uint8_t>(bytes); break;
-    case RawLayout::Type::Uint16: out.image.largest = 65535; out.image.pixels = pixels_of<std::uint16_t>(bytes); break;
+    case RawLayout::Type::Uint8:
+        out.image.largest = 255;
+        out.image.pixels = pixels_of<std::uint8_t>(bytes);
+        break;
+    case RawLayout::Type::Uint16:
+        out.image.largest = 65535;
+        out.image.pixels = pixels_of<std::uint16_t>(bytes);
+        break;
     case RawLayout::Type::Int16: out.image.pixels = pixels_of<std::int16_t>(bytes); break;
-    case RawLayout::Type::Float32: out.image.is_float32 = true; out.image.pixels = pixels_of<float>(bytes); break;
+    case RawLayout::Type::Float32:
+        out.image.is_float32 = true;
+        out.image.pixels = pixels_of<float>(bytes);
+        break;
     case RawLayout::Type::Float64: out.image.pixels = pixels_of<double>(bytes); break;
     }
     return out;
@@ -150,8 +169,11 @@ HeightFile read_height_file(const std::filesystem::path& file, const std::option
     if (is_tiff(start)) return read_geotiff(file, wants_frame, notices);
     if (is_ascii_grid(start)) return read_ascii_grid(file, wants_frame, notices);
     if (is_png(start)) return {read_grey_png(file, max_heights), {}, {}, 1};
-    if (file.extension() == ".asc") parse_ascii_grid(start, file.string(), max_heights);  // says what is wrong with its header
-    throw FileError(file.string(), "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout told with the key raw");
+    if (file.extension() == ".asc")
+        parse_ascii_grid(start, file.string(), max_heights);  // says what is wrong with its header
+    throw FileError(file.string(),
+                    "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout "
+                    "told with the key raw");
 }
 
 }  // namespace spawnfield

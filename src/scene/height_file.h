@@ -25,11 +25,12 @@ struct HeightFile {
     double height_unit = 1;         ///< m; < 0: the pixels are depths
 };
 
-/// A bake takes about bake_bytes of memory for each height, so that more than max_heights fit into nobody's; from many_heights on it is told.
+/// A bake takes about bake_bytes of memory for each height, so that more than max_heights fit into nobody's; from
+/// many_heights on it is told.
 inline constexpr std::uint64_t max_heights = 1 << 26, many_heights = 1 << 23, bake_bytes = 650;
 
-/// PNG (grey, 8 or 16 bits), TIFF and GeoTIFF, ESRI ASCII grid, or what `raw` tells. Without `wants_frame` nobody looks at where it lies, so
-/// that degrees and the like do no harm. Adds to notices what is assumed. Throws FileError.
+/// PNG (grey, 8 or 16 bits), TIFF and GeoTIFF, ESRI ASCII grid, or what `raw` tells. Without `wants_frame` nobody looks
+/// at where it lies, so that degrees and the like do no harm. Adds to notices what is assumed. Throws FileError.
 HeightFile read_height_file(const std::filesystem::path& file, const std::optional<RawLayout>& raw, bool wants_frame,
                             std::vector<std::string>& notices);
 

@@ -77,8 +77,10 @@ Names options_for_ground(const Names& names)
             known->second = std::none_of(names.begin(), names.end(), [&](const std::string& other) {
                 return matches(glob, other) && ground_word(other).empty();
             });
-        if (!known->second) out.push_back(option_for(name));
-        else if (is_new) out.push_back("--label '" + glob + "=terrain'");
+        if (!known->second)
+            out.push_back(option_for(name));
+        else if (is_new)
+            out.push_back("--label '" + glob + "=terrain'");
     }
     return out;
 }
@@ -91,18 +93,21 @@ std::string labelling_advice(const Scene& scene)
     const Names all = options_for_ground(names_of(scene.face_groups));
     std::string options;
     for (std::size_t i = 0; i < std::min(most, all.size()); ++i) options += " " + all[i];
-    const std::string by_slope = "--auto-label slope=30 makes terrain of what looks up and is less steep than 30 "
-                                 "degrees, and obstacles of the rest";
+    const std::string by_slope =
+        "--auto-label slope=30 makes terrain of what looks up and is less steep than 30 "
+        "degrees, and obstacles of the rest";
     if (all.empty()) return by_slope + ". --label 'GLOB=terrain' labels by name; `info` lists the names";
     return by_slope + ". These names look like ground:" + options +
            (all.size() > most ? " and " + std::to_string(all.size() - most) + " more" : "");
 }
 
-void tell_idle_rules(const std::filesystem::path& file, const std::vector<LabelRule>& rules, const Names& names, Scene& scene)
+void tell_idle_rules(const std::filesystem::path& file, const std::vector<LabelRule>& rules, const Names& names,
+                     Scene& scene)
 {
     for (const LabelRule& rule : rules)
         if (!matches_one(rule.pattern, names))
-            scene.notices.push_back(file.string() + ": label \"" + rule.pattern + "\" matches no node, material or part; there are " + first_of(names, 8));
+            scene.notices.push_back(file.string() + ": label \"" + rule.pattern +
+                                    "\" matches no node, material or part; there are " + first_of(names, 8));
 }
 
 }  // namespace spawnfield

@@ -18,7 +18,8 @@ bool matches_one(const std::string& pattern, const Names& names);
 void add_names(const Names& more, Names& names);
 
 /// A rule that matches nothing is most often a slip of the pen: told, with names that are there.
-void tell_idle_rules(const std::filesystem::path& file, const std::vector<LabelRule>& rules, const Names& names, Scene& scene);
+void tell_idle_rules(const std::filesystem::path& file, const std::vector<LabelRule>& rules, const Names& names,
+                     Scene& scene);
 
 /// Names of nodes and materials, each once.
 Names names_of(std::span<const FaceGroup> groups);

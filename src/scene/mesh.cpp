@@ -181,7 +181,8 @@ std::span<const FaceGroup> append_mesh(Scene& scene, std::uint32_t part, const F
     ShellAreas areas;
     for (const FileMesh::Node& node : mesh.nodes) append_node(scene, part, mesh, node, options, areas);
     for (const std::string& notice : mesh.notices)
-        if (std::find(scene.notices.begin(), scene.notices.end(), notice) == scene.notices.end()) scene.notices.push_back(notice);
+        if (std::find(scene.notices.begin(), scene.notices.end(), notice) == scene.notices.end())
+            scene.notices.push_back(notice);
     if (areas.up == 0 && areas.down > 0)
         scene.notices.push_back("\"" + scene.parts[part].name + "\": no face of its shells looks up and " +
                                 number(std::round(areas.down * 1000) / 1000) +
@@ -192,7 +193,8 @@ std::span<const FaceGroup> append_mesh(Scene& scene, std::uint32_t part, const F
 void append_plane(Scene& scene, std::uint32_t part, double size_x, double size_y, const Pose& pose, bool sides_up)
 {
     std::vector<Vec3> corners;
-    for (const auto& [sx, sy] : {std::pair{-0.5, -0.5}, std::pair{0.5, -0.5}, std::pair{0.5, 0.5}, std::pair{-0.5, 0.5}})
+    for (const auto& [sx, sy] :
+         {std::pair{-0.5, -0.5}, std::pair{0.5, -0.5}, std::pair{0.5, 0.5}, std::pair{-0.5, 0.5}})
         corners.push_back(pose.rotation * Vec3(sx * size_x, sy * size_y, 0) + pose.position);
     append_sheet(scene, part, corners, {{0, 1, 2}, {0, 2, 3}}, sides_up);
 }

@@ -31,7 +31,7 @@ struct MeshOptions {
     bool sides_up = false;
     std::vector<FaceRule> rules;
     std::optional<double>
-        auto_slope; ///< rad; what no rule matches is terrain where it looks up and is less steep, else obstacle
+        auto_slope;  ///< rad; what no rule matches is terrain where it looks up and is less steep, else obstacle
 };
 
 /// Appends the mesh's faces to the scene as pieces of `part`, its face groups, and its notices that the scene has not

@@ -63,7 +63,8 @@ fs::path found_in_fuel_cache(const std::string& uri)
 
 ModelPaths::ModelPaths(const std::vector<Path>& given, const Path& file) : named_(given)
 {
-    for (const char* const variable : {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH"}) add_variable(variable, named_);
+    for (const char* const variable : {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH"})
+        add_variable(variable, named_);
     const Path absolute = fs::absolute(file).lexically_normal();
     for (Path folder = absolute.parent_path(); folder != folder.root_path(); folder = folder.parent_path()) {
         above_.push_back(folder);
@@ -124,8 +125,9 @@ fs::path sdf_file_of(const fs::path& folder)
         if (entry.path().extension() == ".sdf") files.push_back(entry.path());
     if (files.size() == 1) return files[0];
     if (fs::is_regular_file(folder / "model.sdf")) return folder / "model.sdf";
-    throw FileError(folder.string(), files.empty() ? "is a folder without model.config and .sdf file, needs to be a model's"
-                                                   : "has no model.config that names one of its .sdf files; name the file itself");
+    throw FileError(folder.string(),
+                    files.empty() ? "is a folder without model.config and .sdf file, needs to be a model's"
+                                  : "has no model.config that names one of its .sdf files; name the file itself");
 }
 
 }  // namespace spawnfield

@@ -34,7 +34,8 @@ private:
     std::set<std::string> built_in_;
 };
 
-/// The SDF file of a model folder: what its model.config names with the highest version, or else its only .sdf. Throws FileError.
+/// The SDF file of a model folder: what its model.config names with the highest version, or else its only .sdf. Throws
+/// FileError.
 std::filesystem::path sdf_file_of(const std::filesystem::path& folder);
 
 }  // namespace spawnfield

@@ -30,14 +30,15 @@ struct Reading {
 struct Pixels {
     int rows = 0, cols = 0;
     double largest = 255;
-    std::vector<float> mean;     ///< of the colours, 0 .. largest
-    std::vector<float> alpha;    ///< 0 .. largest; empty: all are opaque
+    std::vector<float> mean;   ///< of the colours, 0 .. largest
+    std::vector<float> alpha;  ///< 0 .. largest; empty: all are opaque
 };
 
 Pixels pixels_of(const ColourImage& image)
 {
     const bool has_alpha = image.channels % 2 == 0;
-    const std::size_t colours = std::size_t(image.channels) - has_alpha, count = std::size_t(image.rows) * std::size_t(image.cols);
+    const std::size_t colours = std::size_t(image.channels) - has_alpha,
+                      count = std::size_t(image.rows) * std::size_t(image.cols);
     Pixels out{image.rows, image.cols, double(image.largest), {}, {}};
     out.mean.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -54,7 +55,8 @@ Pixels read_pixels(const std::filesystem::path& file)
 {
     const std::string start = read_start(file, 8);
     if (is_png(start)) return pixels_of(read_colour_png(file, max_heights));
-    if (!is_pgm(start)) throw FileError(file.string(), "is neither PGM (P2, P5) nor PNG; a map's image needs to be one of them");
+    if (!is_pgm(start))
+        throw FileError(file.string(), "is neither PGM (P2, P5) nor PNG; a map's image needs to be one of them");
     const GreyImage image = read_pgm(file, max_heights);
     return {image.rows, image.cols, image.largest, {image.pixels.begin(), image.pixels.end()}, {}};
 }
@@ -107,31 +109,39 @@ Reading read_reading(const YamlMap& map, std::vector<std::string>& notices)
     out.occupied_thresh = read_threshold(map, "occupied_thresh", out.occupied_thresh, notices);
     out.free_thresh = read_threshold(map, "free_thresh", out.free_thresh, notices);
     if (out.free_thresh > out.occupied_thresh)
-        map.fail("free_thresh", "is " + number(out.free_thresh) + ", needs at most occupied_thresh (" + number(out.occupied_thresh) + ")");
-    if (out.mode == "raw" && out.negate) notices.push_back(map.file() + ": negate has no effect in mode raw, as in nav2");
+        map.fail("free_thresh", "is " + number(out.free_thresh) + ", needs at most occupied_thresh (" +
+                                    number(out.occupied_thresh) + ")");
+    if (out.mode == "raw" && out.negate)
+        notices.push_back(map.file() + ": negate has no effect in mode raw, as in nav2");
     return out;
 }
 
 void tell_unknown_keys(const YamlMap& map, std::vector<std::string>& notices)
 {
-    const std::vector<std::string> known = {"image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode"};
+    const std::vector<std::string> known = {"image",           "resolution",  "origin", "negate",
+                                            "occupied_thresh", "free_thresh", "mode"};
     for (const std::string& key : map.keys())
-        if (std::find(known.begin(), known.end(), key) == known.end()) notices.push_back(map.file() + ": the key " + key + " is not looked at");
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            notices.push_back(map.file() + ": the key " + key + " is not looked at");
 }
 
-/// Map savers write 205 for what is unknown; with free_thresh 0.25, as nav2's writes it too, it reads as free. So it does where alpha counts.
+/// Map savers write 205 for what is unknown; with free_thresh 0.25, as nav2's writes it too, it reads as free. So it
+/// does where alpha counts.
 void tell_grey(const Pixels& pixels, const Reading& reading, Nav2Map& map, const std::string& file)
 {
     if (reading.mode != "trinary" || pixels.largest != 255) return;
     constexpr double unknown = 205;
     std::size_t grey = 0;
-    for (std::size_t i = 0; i < map.cells.size(); ++i) grey += pixels.mean[i] == unknown && map.cells[i] == Nav2Map::Cell::Free;
+    for (std::size_t i = 0; i < map.cells.size(); ++i)
+        grey += pixels.mean[i] == unknown && map.cells[i] == Nav2Map::Cell::Free;
     if (grey == 0) return;
     const double occupancy = (reading.negate ? unknown : pixels.largest - unknown) / pixels.largest;
     const bool by_threshold = cell_of(occupancy, reading) == Nav2Map::Cell::Free;
-    map.notices.push_back(file + ": " + std::to_string(grey) + " pixels of 205, which map savers write for unknown, are free" +
-                          (by_threshold ? " by free_thresh " + number(reading.free_thresh) + " (below 0.196 they are unknown)"
-                                        : ", as mode trinary counts alpha as a fourth colour (as nav2 does; without the alpha channel they are not)"));
+    map.notices.push_back(
+        file + ": " + std::to_string(grey) + " pixels of 205, which map savers write for unknown, are free" +
+        (by_threshold ? " by free_thresh " + number(reading.free_thresh) + " (below 0.196 they are unknown)"
+                      : ", as mode trinary counts alpha as a fourth colour (as nav2 does; without the alpha channel "
+                        "they are not)"));
 }
 
 }  // namespace
@@ -195,7 +205,8 @@ void append_floor(Scene& scene, std::uint32_t part, const Nav2Map& map)
         if (is_new) vertices.push_back(map.corner(row, col));
         return found->second;
     };
-    for (const CellBlock& b : blocks_of(map.rows, map.cols, [&](int row, int col) { return map.at(row, col) != Nav2Map::Cell::Unknown; })) {
+    for (const CellBlock& b :
+         blocks_of(map.rows, map.cols, [&](int row, int col) { return map.at(row, col) != Nav2Map::Cell::Unknown; })) {
         const std::uint32_t low = vertex(b.last_row, b.first_col), right = vertex(b.last_row, b.last_col);
         const std::uint32_t high = vertex(b.first_row, b.last_col), left = vertex(b.first_row, b.first_col);
         triangles.push_back({low, right, high});
@@ -206,11 +217,14 @@ void append_floor(Scene& scene, std::uint32_t part, const Nav2Map& map)
 
 void append_walls(Scene& scene, std::uint32_t part, const Nav2Map& map, double height)
 {
-    for (const CellBlock& b : blocks_of(map.rows, map.cols, [&](int row, int col) { return map.at(row, col) == Nav2Map::Cell::Occupied; })) {
+    for (const CellBlock& b :
+         blocks_of(map.rows, map.cols, [&](int row, int col) { return map.at(row, col) == Nav2Map::Cell::Occupied; })) {
         Primitive wall;
         wall.shape.kind = ShapeKind::Box;
-        wall.shape.size = Vec3((b.last_col - b.first_col) * map.resolution, (b.last_row - b.first_row) * map.resolution, height);
-        wall.shape.pose.position = (map.corner(b.first_row, b.first_col) + map.corner(b.last_row, b.last_col)) / 2 + Vec3(0, 0, height / 2);
+        wall.shape.size = Vec3((b.last_col - b.first_col) * map.resolution, (b.last_row - b.first_row) * map.resolution,
+                               height);
+        wall.shape.pose.position = (map.corner(b.first_row, b.first_col) + map.corner(b.last_row, b.last_col)) / 2 +
+                                   Vec3(0, 0, height / 2);
         wall.shape.pose.rotation = rotation_from_rpy(0, 0, map.yaw);
         wall.part = part;
         wall.label = scene.parts[part].label;
@@ -223,7 +237,8 @@ void append_walls(Scene& scene, std::uint32_t part, const Nav2Map& map, double h
 
 void append_nav2_map(Scene& scene, const Nav2Map& map, Label floor, Label walls, double wall_height)
 {
-    const std::uint32_t floor_part = add_part(scene, "floor", "map", floor), wall_part = add_part(scene, "walls", "map", walls);
+    const std::uint32_t floor_part = add_part(scene, "floor", "map", floor),
+                        wall_part = add_part(scene, "walls", "map", walls);
     if (floor != Label::Ignore) append_floor(scene, floor_part, map);
     if (walls != Label::Ignore) append_walls(scene, wall_part, map, wall_height);
 }

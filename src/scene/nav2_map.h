@@ -26,14 +26,14 @@ bool is_nav2_map(const std::filesystem::path& file);
 
 /// Keys image (PGM, or PNG with 1 to 4 channels), resolution, origin, negate, occupied_thresh, free_thresh, mode.
 ///
-/// p = (255 - value) / 255, or value / 255 with negate, of the mean of the colours (and alpha, in mode trinary). p > occupied_thresh is
-/// occupied, p < free_thresh free, all else unknown. Mode scale: what is not opaque is unknown, else the same; raw: values are per cent of
-/// p, over 100 unknown, and negate does not count. Throws FileError.
-/// Source: nav2_map_server (map_io.cpp) and ROS wiki's map_server, "Value Interpretation".
+/// p = (255 - value) / 255, or value / 255 with negate, of the mean of the colours (and alpha, in mode trinary). p >
+/// occupied_thresh is occupied, p < free_thresh free, all else unknown. Mode scale: what is not opaque is unknown, else
+/// the same; raw: values are per cent of p, over 100 unknown, and negate does not count. Throws FileError. Source:
+/// nav2_map_server (map_io.cpp) and ROS wiki's map_server, "Value Interpretation".
 Nav2Map read_nav2_map(const std::filesystem::path& file);
 
-/// Appends part "floor", terrain at z = 0 under all cells that are not unknown, and part "walls", boxes from there up to wall_height (m)
-/// that fill exactly the occupied cells. The labels given are those of the parts.
+/// Appends part "floor", terrain at z = 0 under all cells that are not unknown, and part "walls", boxes from there up
+/// to wall_height (m) that fill exactly the occupied cells. The labels given are those of the parts.
 void append_nav2_map(Scene& scene, const Nav2Map& map, Label floor, Label walls, double wall_height);
 
 }  // namespace spawnfield

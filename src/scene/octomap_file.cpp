@@ -20,7 +20,8 @@ struct Header {
     std::size_t data = 0;  ///< where the nodes start
 };
 
-Header read_header(const std::filesystem::path& file, const std::string& bytes, const std::string& kind, const std::string& magic)
+Header read_header(const std::filesystem::path& file, const std::string& bytes, const std::string& kind,
+                   const std::string& magic)
 {
     const auto refuse = [&](const std::string& what) { throw FileError(file.string(), "is no " + kind + ": " + what); };
     if (!bytes.starts_with(magic)) refuse("its first line is not \"" + magic + "\"");
@@ -37,7 +38,8 @@ Header read_header(const std::filesystem::path& file, const std::string& bytes, 
         if (key == "size" && parse_number(value, number)) header.nodes = number;
         if (key == "res" && parse_number(value, number)) header.resolution = number;
     }
-    if (!(header.resolution > 0) || !std::isfinite(header.resolution)) refuse("its header has no line `res` with a number > 0");
+    if (!(header.resolution > 0) || !std::isfinite(header.resolution))
+        refuse("its header has no line `res` with a number > 0");
     return header;
 }
 
@@ -47,7 +49,8 @@ constexpr const char* known_types = "OcTree, ColorOcTree or OcTreeStamped";
 void check_type(const std::filesystem::path& file, const Header& header)
 {
     if (header.id == "OcTree" || header.id == "ColorOcTree" || header.id == "OcTreeStamped") return;
-    throw FileError(file.string(), "is an OctoMap of type " + (header.id.empty() ? "\"\"" : header.id) + ", needs " + known_types);
+    throw FileError(file.string(),
+                    "is an OctoMap of type " + (header.id.empty() ? "\"\"" : header.id) + ", needs " + known_types);
 }
 
 /// Nodes of the tree, two bits for each of eight children; 0 if it is deeper than a tree can be or the bytes end in it.
@@ -55,7 +58,8 @@ void check_type(const std::filesystem::path& file, const Header& header)
 std::size_t count_nodes(std::string_view data, int depth, std::size_t& at)
 {
     if (depth >= max_depth || at + 2 > data.size()) return 0;
-    const unsigned bits = static_cast<unsigned char>(data[at]) | unsigned(static_cast<unsigned char>(data[at + 1])) << 8;
+    const unsigned bits = static_cast<unsigned char>(data[at]) | unsigned(static_cast<unsigned char>(data[at + 1]))
+                                                                     << 8;
     at += 2;
     std::size_t count = 1;
     for (unsigned child = 0; child < 8; ++child) {
@@ -86,8 +90,8 @@ std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
     return tree;
 }
 
-/// Copies a whole tree without what its nodes have beside their log-odds; false if the bytes end in it. Of each node a float,
-/// `extra` bytes, a mask of its children, then these (octomap/OcTreeBaseImpl.hxx).
+/// Copies a whole tree without what its nodes have beside their log-odds; false if the bytes end in it. Of each node a
+/// float, `extra` bytes, a mask of its children, then these (octomap/OcTreeBaseImpl.hxx).
 bool copy_plain(std::string_view data, std::size_t extra, int depth, std::size_t& at, std::string& out)
 {
     constexpr std::size_t value_size = sizeof(float);

@@ -12,15 +12,15 @@
 namespace spawnfield {
 namespace {
 
-constexpr int reach = 3;         // columns to each side
-constexpr int least_tops = 16;   // (reach + 1)^2: the corner of a level floor
+constexpr int reach = 3;        // columns to each side
+constexpr int least_tops = 16;  // (reach + 1)^2: the corner of a level floor
 constexpr std::size_t most_tops = 100000000;
 
 /// The open upper side of an occupied voxel.
 struct Top {
     std::uint16_t x, y;  ///< voxels from the tree's lowest corner
     std::int32_t z;
-    std::size_t leaf;    ///< number of its leaf among the occupied ones
+    std::size_t leaf;  ///< number of its leaf among the occupied ones
 };
 
 class OpenTops {
@@ -70,18 +70,17 @@ private:
         const int above = low[2] + side;
         for (int x = low[0]; x < low[0] + side; ++x)
             for (int y = low[1]; y < low[1] + side; ++y) {
-                const octomap::OcTreeNode* const over = above > 0xffff
-                                                            ? nullptr
-                                                            : tree.search(octomap::OcTreeKey(std::uint16_t(x),
-                                                                                             std::uint16_t(y),
-                                                                                             std::uint16_t(above)));
+                const octomap::OcTreeNode* const over =
+                    above > 0xffff
+                        ? nullptr
+                        : tree.search(octomap::OcTreeKey(std::uint16_t(x), std::uint16_t(y), std::uint16_t(above)));
                 const bool is_open = over == nullptr ? !knows_free_ : !tree.isNodeOccupied(over);
                 if (is_open) tops_.push_back({std::uint16_t(x), std::uint16_t(y), above, leaves_});
             }
     }
 
     bool knows_free_ = false;
-    std::vector<Top> tops_;  ///< by column, from below
+    std::vector<Top> tops_;                                   ///< by column, from below
     std::unordered_map<std::uint64_t, std::size_t> columns_;  ///< number of the column's first top
     std::size_t leaves_ = 0;
 };

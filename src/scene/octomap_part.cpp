@@ -24,7 +24,8 @@ void append_box(Scene& scene, std::uint32_t part, const Vec3& centre, const Vec3
     ++scene.parts[part].solid_pieces;
 }
 
-void append_unknown(Scene& scene, const std::string& name, const octomap::OcTree& tree, const VoxelBox& extent, const Pose& pose)
+void append_unknown(Scene& scene, const std::string& name, const octomap::OcTree& tree, const VoxelBox& extent,
+                    const Pose& pose)
 {
     Part unknown;
     unknown.name = name + ":unknown";
@@ -43,8 +44,10 @@ std::string unknown_words(const octomap::OcTree& tree, const VoxelBox& extent, U
     const double voxel = tree.getResolution() * tree.getResolution() * tree.getResolution();
     const double all = extent.volume(), share = 1 - known_volume(tree) / all;
     char text[160];
-    std::snprintf(text, sizeof text, "%.6g m3 of its %.6g m3 are unknown (%.1f %%) and ", share * all * voxel, all * voxel, 100 * share);
-    return text + std::string(unknown == Unknown::Blocked ? "count as solid" : "count as free (--unknown blocked makes them solid)");
+    std::snprintf(text, sizeof text, "%.6g m3 of its %.6g m3 are unknown (%.1f %%) and ", share * all * voxel,
+                  all * voxel, 100 * share);
+    return text + std::string(unknown == Unknown::Blocked ? "count as solid"
+                                                          : "count as free (--unknown blocked makes them solid)");
 }
 
 }  // namespace

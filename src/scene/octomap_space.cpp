@@ -25,13 +25,16 @@ VoxelBox child_of(const VoxelBox& box, unsigned child)
 
 /// Calls known(box) for each leaf and missing(box) for each child that a node lacks.
 template <class Known, class Missing>
-void visit(const octomap::OcTree& tree, const octomap::OcTreeNode& node, const VoxelBox& box, const Known& known, const Missing& missing)
+void visit(const octomap::OcTree& tree, const octomap::OcTreeNode& node, const VoxelBox& box, const Known& known,
+           const Missing& missing)
 {
     if (!tree.nodeHasChildren(&node)) return known(box);
     for (unsigned child = 0; child < 8; ++child) {
         const VoxelBox inner = child_of(box, child);
-        if (tree.nodeChildExists(&node, child)) visit(tree, *tree.getNodeChild(&node, child), inner, known, missing);
-        else missing(inner);
+        if (tree.nodeChildExists(&node, child))
+            visit(tree, *tree.getNodeChild(&node, child), inner, known, missing);
+        else
+            missing(inner);
     }
 }
 
@@ -39,8 +42,10 @@ template <class Known, class Missing>
 void visit(const octomap::OcTree& tree, const Known& known, const Missing& missing)
 {
     const VoxelBox all = cube({0, 0, 0}, all_voxels);
-    if (tree.getRoot() == nullptr) missing(all);
-    else visit(tree, *tree.getRoot(), all, known, missing);
+    if (tree.getRoot() == nullptr)
+        missing(all);
+    else
+        visit(tree, *tree.getRoot(), all, known, missing);
 }
 
 /// Joins boxes that lie against each other along an axis with the same sides; true if there were any.
@@ -53,8 +58,10 @@ bool join(std::vector<VoxelBox>& boxes, std::size_t axis)
     });
     std::vector<VoxelBox> out;
     for (const VoxelBox& box : boxes) {
-        if (!out.empty() && row(out.back()) == row(box) && out.back().hi[axis] == box.lo[axis]) out.back().hi[axis] = box.hi[axis];
-        else out.push_back(box);
+        if (!out.empty() && row(out.back()) == row(box) && out.back().hi[axis] == box.lo[axis])
+            out.back().hi[axis] = box.hi[axis];
+        else
+            out.push_back(box);
     }
     const bool any = out.size() < boxes.size();
     boxes = std::move(out);
@@ -88,7 +95,8 @@ std::vector<VoxelBox> unknown_boxes(const octomap::OcTree& tree, const VoxelBox&
         }
         out.push_back(box);
     };
-    visit(tree, [](const VoxelBox&) {}, missing);
+    visit(
+        tree, [](const VoxelBox&) {}, missing);
     for (bool joined = true; joined;) {
         joined = false;
         for (std::size_t axis = 0; axis < 3; ++axis) joined |= join(out, axis);
@@ -99,7 +107,8 @@ std::vector<VoxelBox> unknown_boxes(const octomap::OcTree& tree, const VoxelBox&
 double known_volume(const octomap::OcTree& tree)
 {
     double voxels = 0;
-    visit(tree, [&](const VoxelBox& box) { voxels += box.volume(); }, [](const VoxelBox&) {});
+    visit(
+        tree, [&](const VoxelBox& box) { voxels += box.volume(); }, [](const VoxelBox&) {});
     return voxels;
 }
 

@@ -19,8 +19,8 @@ struct VoxelBox {
 /// Smallest box around all that the tree knows, free or occupied; empty without any.
 VoxelBox known_extent(const octomap::OcTree& tree);
 
-/// What of the box the tree does not know, as few boxes that share no volume: the children that its nodes lack, joined where
-/// they share a whole side. O(nodes log nodes).
+/// What of the box the tree does not know, as few boxes that share no volume: the children that its nodes lack, joined
+/// where they share a whole side. O(nodes log nodes).
 std::vector<VoxelBox> unknown_boxes(const octomap::OcTree& tree, const VoxelBox& within);
 
 /// What the tree knows, free or occupied, in voxels.

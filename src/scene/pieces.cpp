@@ -70,8 +70,8 @@ std::uint32_t add_part(Scene& scene, const std::string& name, const std::string&
     return static_cast<std::uint32_t>(scene.parts.size() - 1);
 }
 
-void append_sheet(Scene& scene, std::uint32_t part, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-                  bool sides_up)
+void append_sheet(Scene& scene, std::uint32_t part, const std::vector<Vec3>& vertices,
+                  const std::vector<Triangle>& triangles, bool sides_up)
 {
     if (triangles.empty()) return;
     Piece piece;

@@ -11,7 +11,10 @@
 namespace spawnfield {
 namespace {
 
-std::string metres(double value) { return value < 10 ? number(std::round(value * 1000) / 1000) : std::to_string(std::llround(value)); }
+std::string metres(double value)
+{
+    return value < 10 ? number(std::round(value * 1000) / 1000) : std::to_string(std::llround(value));
+}
 
 struct Look {
     Vec3 areas = Vec3::Zero();  ///< of all faces as seen along x, y and z, m2
@@ -45,20 +48,22 @@ std::vector<std::string> doubts_about(const Scene& scene, const std::string& fil
     const double across = size.head<2>().maxCoeff();
     if (across > large || across < small) {
         const bool is_large = across > large;
-        out.push_back(file + ": is " + metres(size.x()) + " x " + metres(size.y()) + " x " + metres(size.z()) + " m, which is " +
-                      (is_large ? "large: is it in millimetres? " : "small: is it in other units than metres? ") + remedies.scale +
-                      (is_large ? " 0.001 makes it metres" : " 1000 makes it a thousand times larger"));
+        out.push_back(
+            file + ": is " + metres(size.x()) + " x " + metres(size.y()) + " x " + metres(size.z()) + " m, which is " +
+            (is_large ? "large: is it in millimetres? " : "small: is it in other units than metres? ") +
+            remedies.scale + (is_large ? " 0.001 makes it metres" : " 1000 makes it a thousand times larger"));
     }
     const Look look = look_at(scene);
     if (across <= large && look.wall >= high)
-        out.push_back(file + ": is " + metres(size.x()) + " x " + metres(size.y()) + " x " + metres(size.z()) + " m and has a wall of " + metres(look.wall) +
-                      " m height: is it in millimetres? " + remedies.scale + " 0.001 makes it metres");
+        out.push_back(file + ": is " + metres(size.x()) + " x " + metres(size.y()) + " x " + metres(size.z()) +
+                      " m and has a wall of " + metres(look.wall) + " m height: is it in millimetres? " +
+                      remedies.scale + " 0.001 makes it metres");
     const Vec3& seen = look.areas;
     const double sideways = seen.head<2>().maxCoeff(), other = seen.head<2>().minCoeff();
     // Towers show as much along x as along y; what lies on its side shows most along one of them.
     if (sideways > 2 * seen.z() && sideways > 2 * other)
-        out.push_back(file + ": most of its faces look along " + (seen.y() > seen.x() ? "y" : "x") + ", few up: does it lie on its side? " + remedies.up +
-                      " says which axis is up");
+        out.push_back(file + ": most of its faces look along " + (seen.y() > seen.x() ? "y" : "x") +
+                      ", few up: does it lie on its side? " + remedies.up + " says which axis is up");
     return out;
 }
 

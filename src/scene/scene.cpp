@@ -54,7 +54,10 @@ namespace {
 constexpr double farthest = 1e7;  // m
 
 /// False for what is no number, too.
-bool is_near(const Bounds& box) { return (box.min.array().abs() <= farthest).all() && (box.max.array().abs() <= farthest).all(); }
+bool is_near(const Bounds& box)
+{
+    return (box.min.array().abs() <= farthest).all() && (box.max.array().abs() <= farthest).all();
+}
 
 /// Why there is nothing, where the notices tell.
 std::string first_reasons(const Scene& scene)
@@ -69,7 +72,8 @@ void check_extent(const Scene& scene, const std::string& file)
     for (std::uint32_t e = 0; e < element_count(scene); ++e) {
         const Bounds box = element_bounds(scene, e);
         if (is_near(box)) continue;
-        throw FileError(file, "part \"" + scene.parts[element_part(scene, e)].name + "\" reaches from " + to_string(box, 3) + ", needs to lie within " + number(farthest) +
+        throw FileError(file, "part \"" + scene.parts[element_part(scene, e)].name + "\" reaches from " +
+                                  to_string(box, 3) + ", needs to lie within " + number(farthest) +
                                   " m of 0, 0, 0; are its units, its place or its scale wrong?");
     }
 }
@@ -87,22 +91,28 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     if (!(options.scale > 0) || !std::isfinite(options.scale))
         throw ArgumentError("load_scene", "scale", options.scale, "> 0 m per unit");
     if (!options.bounds.is_empty() && !is_near(options.bounds))
-        throw ArgumentError("load_scene", "bounds are " + to_string(options.bounds, 3) + ", need to lie within " + number(farthest) + " m of 0, 0, 0");
+        throw ArgumentError("load_scene", "bounds are " + to_string(options.bounds, 3) + ", need to lie within " +
+                                              number(farthest) + " m of 0, 0, 0");
     if (options.auto_slope && !(*options.auto_slope > 0 && *options.auto_slope < std::numbers::pi / 2))
         throw ArgumentError("load_scene", "auto_slope", *options.auto_slope, "> 0 and < pi/2 rad");
     const fs::path file = scene_file_of(scene_path);
     require_file(file);
     refuse_foreign_scene(file);
     const std::string extension = lower_case(file.extension().string());
-    const bool is_yaml = extension == ".yaml" || extension == ".yml", nav2 = is_yaml && is_nav2_map(file), yaml = is_yaml && !nav2;
-    if (!nav2 && options.wall_height != 0) throw ArgumentError("load_scene", "wall_height is for a 2D map; " + file.string() + " is none");
+    const bool is_yaml = extension == ".yaml" || extension == ".yml", nav2 = is_yaml && is_nav2_map(file),
+               yaml = is_yaml && !nav2;
+    if (!nav2 && options.wall_height != 0)
+        throw ArgumentError("load_scene", "wall_height is for a 2D map; " + file.string() + " is none");
     const bool sdf = extension == ".sdf" || extension == ".world", urdf = extension == ".urdf";
     const bool gazebo = sdf || urdf;
     if ((yaml || gazebo) && (options.up != 0 || options.scale != 1.0))
         throw ArgumentError("load_scene", "up and scale are for a bare mesh; " +
-                                              (gazebo ? "Gazebo takes a world as it is" : "give them in " + file.string() + " (keys up, scale)"));
+                                              (gazebo ? "Gazebo takes a world as it is"
+                                                      : "give them in " + file.string() + " (keys up, scale)"));
     if ((yaml || gazebo) && !options.heightmap.empty())
-        throw ArgumentError("load_scene", "--heightmap is for an elevation model by itself" + (yaml ? "; give the keys in " + file.string() + " (heightmap)" : std::string()));
+        throw ArgumentError("load_scene",
+                            "--heightmap is for an elevation model by itself" +
+                                (yaml ? "; give the keys in " + file.string() + " (heightmap)" : std::string()));
     Scene scene = nav2   ? read_nav2_scene(file, options)
                   : yaml ? read_scene_yaml(file, options)
                   : sdf  ? read_sdf_scene(file, options)
@@ -112,12 +122,17 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     const auto is_octomap_part = [](const Part& part) { return part.kind == "octomap"; };
     if (options.unknown && std::none_of(scene.parts.begin(), scene.parts.end(), is_octomap_part))
         scene.notices.push_back(file.string() + ": has no OctoMap, so --unknown has no effect");
-    if (element_count(scene) == 0) throw FileError(file.string(), "has no geometry: all of it is ignored" + std::string(gazebo ? ", missing or without collision" : "") + first_reasons(scene));
+    if (element_count(scene) == 0)
+        throw FileError(file.string(), "has no geometry: all of it is ignored" +
+                                           std::string(gazebo ? ", missing or without collision" : "") +
+                                           first_reasons(scene));
     check_extent(scene, file.string());
     const Remedies remedies = yaml     ? Remedies{"scale of its part:", "up of its part"}
-                              : gazebo ? Remedies{"<scale> of its mesh:", "Gazebo takes a mesh's own axes, so the model's <pose>"}
+                              : gazebo ? Remedies{"<scale> of its mesh:",
+                                                  "Gazebo takes a mesh's own axes, so the model's <pose>"}
                                        : Remedies{"--scale", "--up y or z"};
-    if (std::none_of(scene.parts.begin(), scene.parts.end(), is_mesh_part)) return scene;  // nothing else is scaled or turned by the user
+    if (std::none_of(scene.parts.begin(), scene.parts.end(), is_mesh_part))
+        return scene;  // nothing else is scaled or turned by the user
     for (std::string& doubt : doubts_about(scene, file.string(), remedies)) scene.notices.push_back(std::move(doubt));
     return scene;
 }

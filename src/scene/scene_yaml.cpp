@@ -81,7 +81,9 @@ MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
     mesh.scale = part.scale();
     mesh.up = part.has("up") ? part.one_of("up", {"y", "z"}, "z")[0] : char{0};
     const std::string solid = part.one_of("solid", {"auto", "true", "false"}, "auto");
-    mesh.solid = solid == "auto" ? MeshOptions::Solid::Auto : solid == "true" ? MeshOptions::Solid::Yes : MeshOptions::Solid::No;
+    mesh.solid = solid == "auto"   ? MeshOptions::Solid::Auto
+                 : solid == "true" ? MeshOptions::Solid::Yes
+                                   : MeshOptions::Solid::No;
     mesh.sides_up = part.one_of("sides", {"both", "up"}, "both") == "up";
     mesh.auto_slope = read_auto_slope(part, options);
     mesh.rules = face_rules(options.labels);
@@ -112,11 +114,14 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
     if (kind == "mesh")
         map.only({"name", "label", "xyz", "rpy", "rpy_deg", "mesh", "up", "scale", "solid", "sides", "labels",
                   "auto_label"});
-    else if (kind == "plane") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "plane", "sides"});
-    else if (kind == "heightmap") map.only({"name", "label", "xyz", "rpy", "rpy_deg", "heightmap", "sides"});
+    else if (kind == "plane")
+        map.only({"name", "label", "xyz", "rpy", "rpy_deg", "plane", "sides"});
+    else if (kind == "heightmap")
+        map.only({"name", "label", "xyz", "rpy", "rpy_deg", "heightmap", "sides"});
     else if (kind == "octomap")
         map.only({"name", "label", "xyz", "rpy", "rpy_deg", "octomap", "auto_label", "unknown"});
-    else map.only({"name", "label", "xyz", "rpy", "rpy_deg", kind.c_str()});
+    else
+        map.only({"name", "label", "xyz", "rpy", "rpy_deg", kind.c_str()});
 
     Label label = read_label(map, "obstacle");
     const std::string name = map.text("name");
@@ -151,7 +156,8 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
             place_scene(scene, found, map.pose(), map.file() + ": " + map.place());
         });
     } else if (kind == "octomap") {
-        const Unknown given = map.one_of("unknown", {"free", "blocked"}, "free") == "blocked" ? Unknown::Blocked : Unknown::Free;
+        const Unknown given = map.one_of("unknown", {"free", "blocked"}, "free") == "blocked" ? Unknown::Blocked
+                                                                                              : Unknown::Free;
         in_part(map, "octomap", [&](const auto& path) {
             append_octomap(scene, part, file.folder / path, map.pose(), file.options.unknown.value_or(given),
                            by_name ? std::nullopt : read_auto_slope(map, file.options));
@@ -173,7 +179,8 @@ Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
     std::set<std::string> part_names;
     SceneFile common{file.parent_path(), options, {}, {}};
     for (const YAML::Node& node : root.list("parts"))
-        if (node.IsMap() && node["mesh"] && node["mesh"].IsScalar()) common.meshes.expect(common.folder / node["mesh"].Scalar());
+        if (node.IsMap() && node["mesh"] && node["mesh"].IsScalar())
+            common.meshes.expect(common.folder / node["mesh"].Scalar());
     std::size_t number = 0;
     for (const YAML::Node& node : root.list("parts")) {
         ++number;
@@ -183,7 +190,8 @@ Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
         if (!part_names.insert(name).second) map.fail("name", "is given to an earlier part too, needs to be unique");
         read_part(map, common, scene);
         if (scene.parts.back().name != name && !part_names.insert(scene.parts.back().name).second)
-            map.fail("octomap", "has unknown space, but its part's name \"" + scene.parts.back().name + "\" is given to another part");
+            map.fail("octomap", "has unknown space, but its part's name \"" + scene.parts.back().name +
+                                    "\" is given to another part");
     }
     if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
     tell_idle_rules(file, options.labels, common.names, scene);

@@ -38,15 +38,18 @@ public:
             if (again != stack_.end()) {
                 std::string chain;
                 for (auto link = again; link != stack_.end(); ++link) chain += link->string() + " includes ";
-                throw FileError(place + "<include> <uri> " + uri, "leads back to itself: " + chain + canonical.string());
+                throw FileError(place + "<include> <uri> " + uri,
+                                "leads back to itself: " + chain + canonical.string());
             }
             const auto known = counts_.find(canonical);
-            const std::size_t within = known != counts_.end()          ? known->second
+            const std::size_t within = known != counts_.end()         ? known->second
                                        : found.extension() == ".urdf" ? 0
                                                                       : visit(found, *read_sdf_xml(found));
             counts_[canonical] = within;
             count += 1 + within;
-            if (count > most) throw FileError(place + "<include> <uri> " + uri, "is the one with which all includes come to more than " + std::to_string(most));
+            if (count > most)
+                throw FileError(place + "<include> <uri> " + uri,
+                                "is the one with which all includes come to more than " + std::to_string(most));
         });
         stack_.pop_back();
         return count;
@@ -74,7 +77,8 @@ std::unique_ptr<tinyxml2::XMLDocument> read_sdf_xml(const fs::path& file)
     const char* const version = root.Attribute("version");
     if (version == nullptr) refuse("<" + name + "> has no version, needs such as version=\"1.6\"");
     double value = 0;
-    if (!parse_number(version, value) || !(value >= 1 && value < 3)) refuse("<" + name + "> has version \"" + version + "\", needs such as version=\"1.6\"");
+    if (!parse_number(version, value) || !(value >= 1 && value < 3))
+        refuse("<" + name + "> has version \"" + version + "\", needs such as version=\"1.6\"");
     return document;
 }
 

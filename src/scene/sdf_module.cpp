@@ -8,8 +8,8 @@ namespace {
 
 const sdf_module::Functions& functions()
 {
-    static const auto* const loaded =
-        static_cast<const sdf_module::Functions*>(module_symbol(SPAWNFIELD_SDF_MODULE, sdf_module::symbol, "SDF cannot be read"));
+    static const auto* const loaded = static_cast<const sdf_module::Functions*>(
+        module_symbol(SPAWNFIELD_SDF_MODULE, sdf_module::symbol, "SDF cannot be read"));
     return *loaded;
 }
 
@@ -20,6 +20,9 @@ SdfContent read_sdf_file(const std::filesystem::path& file, ModelPaths& paths, c
     return functions().file(file, paths, text);
 }
 
-Robot read_sdf_robot(const std::filesystem::path& file_or_folder, const RobotOptions& options) { return functions().robot(file_or_folder, options); }
+Robot read_sdf_robot(const std::filesystem::path& file_or_folder, const RobotOptions& options)
+{
+    return functions().robot(file_or_folder, options);
+}
 
 }  // namespace spawnfield

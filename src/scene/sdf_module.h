@@ -4,8 +4,8 @@
 
 #include <spawnfield/robot.h>
 
-/// What asks libsdformat is a module of its own (src/sdf), loaded when the first SDF file is read: libsdformat compiles a
-/// regular expression in each of its files when it is loaded, 50 ms that every start of a program would pay.
+/// What asks libsdformat is a module of its own (src/sdf), loaded when the first SDF file is read: libsdformat compiles
+/// a regular expression in each of its files when it is loaded, 50 ms that every start of a program would pay.
 namespace spawnfield::sdf_module {
 
 SdfContent read_file(const std::filesystem::path& file, ModelPaths& paths, const std::optional<std::string>& text);

@@ -40,14 +40,17 @@ constexpr std::array<ShapeNumbers, 14> shape_numbers{{{"box", "size", 3},
 void check_element(const fs::path& file, const Xml& element, std::size_t count)
 {
     const std::string text = element.GetText() != nullptr ? element.GetText() : "";
-    const std::string place = file.string() + ": " + line_of(element) + "<" + element.Parent()->ToElement()->Name() + "> <" + element.Name() + ">";
+    const std::string place = file.string() + ": " + line_of(element) + "<" + element.Parent()->ToElement()->Name() +
+                              "> <" + element.Name() + ">";
     std::istringstream words(text);
     std::size_t found = 0;
     for (std::string word; words >> word; ++found) {
         double value = 0;
-        if (!parse_number(word, value) || !std::isfinite(value)) throw FileError(place, "\"" + word + "\" is no finite number");
+        if (!parse_number(word, value) || !std::isfinite(value))
+            throw FileError(place, "\"" + word + "\" is no finite number");
     }
-    if (found != count) throw FileError(place, "has " + std::to_string(found) + " numbers, needs " + std::to_string(count));
+    if (found != count)
+        throw FileError(place, "has " + std::to_string(found) + " numbers, needs " + std::to_string(count));
 }
 
 bool is_empty(const Xml& element) { return element.NoChildren(); }
@@ -73,8 +76,10 @@ void check_numbers(const fs::path& file, const Xml& root)
             for (const ShapeNumbers& numbers : shape_numbers)
                 for_each_child(geometry, numbers.shape, [&](const Xml& shape) {
                     if (numbers.is_needed && shape.FirstChildElement(numbers.element) == nullptr)
-                        throw FileError(file.string() + ": " + line_of(shape) + "<" + numbers.shape + ">", "has no <" + std::string(numbers.element) + ">");
-                    for_each_child(shape, numbers.element, [&](const Xml& child) { check_element(file, child, numbers.count); });
+                        throw FileError(file.string() + ": " + line_of(shape) + "<" + numbers.shape + ">",
+                                        "has no <" + std::string(numbers.element) + ">");
+                    for_each_child(shape, numbers.element,
+                                   [&](const Xml& child) { check_element(file, child, numbers.count); });
                 });
         });
     });

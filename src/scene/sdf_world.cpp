@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 /// x y z roll pitch yaw. Nothing where the pose is none of six plain numbers, or hangs on something.
 std::optional<Pose> plain_pose(const Xml& pose)
 {
-    for (const tinyxml2::XMLAttribute* attribute = pose.FirstAttribute(); attribute != nullptr; attribute = attribute->Next())
+    for (const tinyxml2::XMLAttribute* attribute = pose.FirstAttribute(); attribute != nullptr;
+         attribute = attribute->Next())
         if (*attribute->Value() != '\0') return {};
     std::istringstream words(pose.GetText() != nullptr ? pose.GetText() : "");
     std::vector<double> values;
@@ -38,7 +39,8 @@ bool is_plain(const Xml& include)
     bool plain = true;
     for_each_child(include, nullptr, [&](const Xml& child) {
         const std::string name = child.Name();
-        plain = plain && (name == "uri" || name == "name" || name == "static" || name == "plugin" || (name == "pose" && plain_pose(child)));
+        plain = plain && (name == "uri" || name == "name" || name == "static" || name == "plugin" ||
+                          (name == "pose" && plain_pose(child)));
     });
     return plain;
 }
@@ -77,7 +79,8 @@ public:
             refuse_population(*world);
             tell_state(*world);
             if (const Xml* const model = document->RootElement()->FirstChildElement("model"))
-                out_.missing.push_back(file_.string() + ": " + line_of(*model) + "<model> stands beside <world>: it is left out; it belongs into it");
+                out_.missing.push_back(file_.string() + ": " + line_of(*model) +
+                                       "<model> stands beside <world>: it is left out; it belongs into it");
             for_each_child(*world, "actor", [&](const Xml&) { ++out_.actor_count; });
             for_each_child(*world, "road", [&](const Xml&) { ++out_.road_count; });
             const std::vector<const Xml*> includes = plain_includes(*world);
@@ -93,8 +96,9 @@ private:
         const SdfContent content = read_sdf_file(file_, paths_);
         if (content.is_plain_model) return append_placed(content, content.pose, content.name);
         // What a placement frame or relative_to says is told by a world that includes it.
-        append(read_sdf_file(file_, paths_, "<sdf version='1.9'><world name='" + content.name + "'><include><uri>" +
-                                                fs::absolute(file_).string() + "</uri></include></world></sdf>"));
+        append(read_sdf_file(file_, paths_,
+                             "<sdf version='1.9'><world name='" + content.name + "'><include><uri>" +
+                                 fs::absolute(file_).string() + "</uri></include></world></sdf>"));
     }
 
     /// Includes at places of their own, of models that are plain too.
@@ -120,12 +124,14 @@ private:
     }
 
     /// The document's text without the includes, and without what has no say in where things stand.
-    std::string text_for_libsdformat(const tinyxml2::XMLDocument& document, const Xml& world, const std::vector<const Xml*>& includes) const
+    std::string text_for_libsdformat(const tinyxml2::XMLDocument& document, const Xml& world,
+                                     const std::vector<const Xml*>& includes) const
     {
         std::set<const Xml*> gone(includes.begin(), includes.end());
         for_each_child(world, nullptr, [&](const Xml& child) {
             const std::string name = child.Name();
-            const bool idle = name == "actor" || name == "road" || name == "state" || name == "gui" || name == "plugin" || name == "light";
+            const bool idle = name == "actor" || name == "road" || name == "state" || name == "gui" ||
+                              name == "plugin" || name == "light";
             const bool lost = name == "include" && missing_.contains(text_of(child, "uri"));
             if (idle || lost) gone.insert(&child);
         });
@@ -137,7 +143,8 @@ private:
         const SdfContent& model = model_in(included_file(text_of(include, "uri"), file_.parent_path(), paths_));
         const Xml* const pose = include.FirstChildElement("pose");
         const std::string name = text_of(include, "name");
-        append_placed(model, pose != nullptr ? *plain_pose(*pose) : model.pose, name.empty() ? model.name : name, include.GetLineNum());
+        append_placed(model, pose != nullptr ? *plain_pose(*pose) : model.pose, name.empty() ? model.name : name,
+                      include.GetLineNum());
     }
 
     void append_placed(const SdfContent& model, const Pose& world_from_model, const std::string& name, int line = 0)
@@ -145,7 +152,8 @@ private:
         if (out_.name.empty()) out_.name = name;
         ++out_.model_count;
         if (!names_.insert(name).second) {
-            out_.missing.push_back(file_.string() + ": line " + std::to_string(line) + ": <include> is a second model of the name \"" + name +
+            out_.missing.push_back(file_.string() + ": line " + std::to_string(line) +
+                                   ": <include> is a second model of the name \"" + name +
                                    "\": it is left out, as libsdformat does; give it a <name> of its own");
             return;
         }
@@ -190,7 +198,8 @@ private:
         if (population == nullptr) return;
         const char* const name = population->Attribute("name");
         throw FileError(file_.string(), line_of(*population) + "<population> \"" + (name != nullptr ? name : "") +
-                                            "\" is not expanded here: Gazebo places its models anew at each start; write them out as <include>s, or take it away");
+                                            "\" is not expanded here: Gazebo places its models anew at each start; "
+                                            "write them out as <include>s, or take it away");
     }
 
     /// Gazebo classic starts from <state>; libsdformat and new Gazebo do not.
@@ -207,15 +216,19 @@ private:
             for_each_child(world, "model", [&](const Xml& model) {
                 const Xml* const here = model.FirstChildElement("pose");
                 const std::optional<Pose> now = here != nullptr ? plain_pose(*here) : Pose{};
-                const bool is_same = model.Attribute("name") == nullptr || model.Attribute("name") != name || !then || !now;
+                const bool is_same = model.Attribute("name") == nullptr || model.Attribute("name") != name || !then ||
+                                     !now;
                 if (is_same || (then->position - now->position).norm() < 1e-3) return;
                 if (count++ == 0)
-                    first = "\"" + name + "\" would be at " + number(then->position.x()) + ", " + number(then->position.y()) + ", " + number(then->position.z());
+                    first = "\"" + name + "\" would be at " + number(then->position.x()) + ", " +
+                            number(then->position.y()) + ", " + number(then->position.z());
             });
         });
         if (count > 0)
-            out_.notices.push_back(file_.string() + ": " + line_of(*state) + "<state> is left aside, as new Gazebo does: in it " + first +
-                                   (count > 1 ? ", and " + std::to_string(count - 1) + " more models elsewhere" : "") + " (Gazebo classic starts from it)");
+            out_.notices.push_back(file_.string() + ": " + line_of(*state) +
+                                   "<state> is left aside, as new Gazebo does: in it " + first +
+                                   (count > 1 ? ", and " + std::to_string(count - 1) + " more models elsewhere" : "") +
+                                   " (Gazebo classic starts from it)");
     }
 
     const fs::path file_;

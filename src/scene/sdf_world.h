@@ -11,7 +11,7 @@ struct SdfWorld {
     std::vector<std::string> bare_models;  ///< models that have no collision
     std::size_t model_count = 0, actor_count = 0, road_count = 0;
     std::size_t hollow = 0, untouchable = 0;  ///< as SdfContent
-    std::vector<std::string> missing;      ///< includes that are not found and what libsdformat leaves out, a line each
+    std::vector<std::string> missing;  ///< includes that are not found and what libsdformat leaves out, a line each
     std::vector<std::string> notices;
 };
 

@@ -51,7 +51,8 @@ std::vector<std::string> YamlMap::keys() const
 std::string YamlMap::text(const std::string& key) const
 {
     if (!has(key)) fail(key, "is missing");
-    if (!node_[key].IsScalar() || node_[key].Scalar().empty()) fail(key, "is " + scalar_of(node_[key]) + ", needs a text");
+    if (!node_[key].IsScalar() || node_[key].Scalar().empty())
+        fail(key, "is " + scalar_of(node_[key]) + ", needs a text");
     return node_[key].Scalar();
 }
 
@@ -207,7 +208,8 @@ YamlMap read_yaml(const std::filesystem::path& file, const std::string& format)
     return map;
 }
 
-std::string only_key(const YamlMap& map, std::initializer_list<const char*> keys, std::initializer_list<const char*> others)
+std::string only_key(const YamlMap& map, std::initializer_list<const char*> keys,
+                     std::initializer_list<const char*> others)
 {
     std::string found, names;
     for (const char* key : keys) {

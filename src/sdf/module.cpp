@@ -1,4 +1,5 @@
 #include "scene/sdf_module.h"
 
 extern "C" const spawnfield::sdf_module::Functions spawnfield_sdf_functions;
-const spawnfield::sdf_module::Functions spawnfield_sdf_functions{&spawnfield::sdf_module::read_file, &spawnfield::sdf_module::read_robot};
+const spawnfield::sdf_module::Functions spawnfield_sdf_functions{&spawnfield::sdf_module::read_file,
+                                                                 &spawnfield::sdf_module::read_robot};

@@ -41,17 +41,21 @@ public:
     SdfContent read(const std::optional<std::string>& text)
     {
         sdf::Root root;
-        sdf::Errors errors = text ? root.LoadSdfString(*text, session_.config()) : root.Load(path_for_libsdformat(file_), session_.config());
+        sdf::Errors errors = text ? root.LoadSdfString(*text, session_.config())
+                                  : root.Load(path_for_libsdformat(file_), session_.config());
         if (root.WorldCount() == 0 && root.Model() == nullptr) {
             if (root.Light() != nullptr) return {};  // such as Gazebo's "sun"; what includes it is left to libsdformat
             if (!errors.empty()) throw FileError(words_of(errors[0], file_.string()), "cannot be read as SDF");
             throw FileError(file_.string(), "has no <world> and no <model>, needs one of them");
         }
         if (root.WorldCount() > 1)
-            throw FileError(file_.string(), "has " + std::to_string(root.WorldCount()) + " worlds, needs one: a simulator runs one at a time");
+            throw FileError(file_.string(), "has " + std::to_string(root.WorldCount()) +
+                                                " worlds, needs one: a simulator runs one at a time");
         sort(errors);
-        if (root.WorldCount() == 1) add_world(*root.WorldByIndex(0));
-        else add_lone_model(*root.Model());
+        if (root.WorldCount() == 1)
+            add_world(*root.WorldByIndex(0));
+        else
+            add_lone_model(*root.Model());
         return std::move(content_);
     }
 
@@ -64,16 +68,22 @@ private:
             const SdfErrorKind kind = kind_of(error);
             const std::string words = words_of(error, file_.string());
             if (kind == SdfErrorKind::Frames) throw FileError(words, "no pose can be told");
-            if (error.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) ++inertias;
-            else if (kind == SdfErrorKind::Duplicate) content_.lost.push_back(words);
-            else if (kind == SdfErrorKind::Unknown && ++unknown > most_unknown) continue;
-            else if (kind != SdfErrorKind::Repeated) content_.complaints.push_back(words);
+            if (error.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID)
+                ++inertias;
+            else if (kind == SdfErrorKind::Duplicate)
+                content_.lost.push_back(words);
+            else if (kind == SdfErrorKind::Unknown && ++unknown > most_unknown)
+                continue;
+            else if (kind != SdfErrorKind::Repeated)
+                content_.complaints.push_back(words);
         }
         if (unknown > most_unknown)
-            content_.complaints.push_back(file_.string() + ": " + std::to_string(unknown - most_unknown) + " more elements that SDF does not have");
+            content_.complaints.push_back(file_.string() + ": " + std::to_string(unknown - most_unknown) +
+                                          " more elements that SDF does not have");
         if (inertias > 0)
-            content_.complaints.push_back(file_.string() + ": " + std::to_string(inertias) + (inertias == 1 ? " link has" : " links have") +
-                                          " an invalid <inertia>: it counts for nothing here, but Gazebo may refuse it");
+            content_.complaints.push_back(
+                file_.string() + ": " + std::to_string(inertias) + (inertias == 1 ? " link has" : " links have") +
+                " an invalid <inertia>: it counts for nothing here, but Gazebo may refuse it");
     }
 
     void add_world(const sdf::World& world)
@@ -129,7 +139,8 @@ private:
                 continue;
             }
             names_.push_back(collision.Name());
-            content_.bodies.push_back({names_, pose * resolved(collision.SemanticPose()), geometry_of(*collision.Geom(), place_of(collision))});
+            content_.bodies.push_back({names_, pose * resolved(collision.SemanticPose()),
+                                       geometry_of(*collision.Geom(), place_of(collision))});
             CollisionGeometry& geometry = content_.bodies.back().geometry;
             if (geometry.kind == CollisionGeometry::Kind::Plane) geometry.size = drawn_size(link);
             names_.pop_back();
@@ -138,15 +149,18 @@ private:
 
     SdfPlace place_of(const sdf::Collision& collision) const
     {
-        const std::string from = collision.Element()->FilePath();  // that of the include that it stands in; of a text, a name in brackets
-        return {from.empty() || from.front() == '<' ? file_ : fs::path(from), scoped_name({names_, {}, {}}), collision.Element()->LineNumber()};
+        const std::string from =
+            collision.Element()->FilePath();  // that of the include that it stands in; of a text, a name in brackets
+        return {from.empty() || from.front() == '<' ? file_ : fs::path(from), scoped_name({names_, {}, {}}),
+                collision.Element()->LineNumber()};
     }
 
     Pose resolved(const sdf::SemanticPose& semantic) const
     {
         ignition::math::Pose3d pose;
         const sdf::Errors errors = semantic.Resolve(pose);
-        if (!errors.empty()) throw FileError(file_.string(), place() + ": its pose cannot be told: " + errors[0].Message());
+        if (!errors.empty())
+            throw FileError(file_.string(), place() + ": its pose cannot be told: " + errors[0].Message());
         if (!pose.IsFinite()) throw FileError(file_.string(), place() + ": its pose has numbers that are not finite");
         return pose_of(pose);
     }

@@ -32,19 +32,26 @@ public:
         check_count(from.Element());
         switch (from.Type()) {
         case sdf::GeometryType::BOX: set(out, Kind::Box, "<box> <size>", vector_of(from.BoxShape()->Size())); break;
-        case sdf::GeometryType::SPHERE: set(out, Kind::Sphere, "<sphere> <radius>", Vec3(from.SphereShape()->Radius(), 1, 1)); break;
+        case sdf::GeometryType::SPHERE:
+            set(out, Kind::Sphere, "<sphere> <radius>", Vec3(from.SphereShape()->Radius(), 1, 1));
+            break;
         case sdf::GeometryType::CYLINDER:
-            set(out, Kind::Cylinder, "<cylinder> <radius>, <length>", Vec3(from.CylinderShape()->Radius(), from.CylinderShape()->Length(), 1));
+            set(out, Kind::Cylinder, "<cylinder> <radius>, <length>",
+                Vec3(from.CylinderShape()->Radius(), from.CylinderShape()->Length(), 1));
             break;
         case sdf::GeometryType::CAPSULE:
-            set(out, Kind::Capsule, "<capsule> <radius>, <length>", Vec3(from.CapsuleShape()->Radius(), from.CapsuleShape()->Length(), 1));
+            set(out, Kind::Capsule, "<capsule> <radius>, <length>",
+                Vec3(from.CapsuleShape()->Radius(), from.CapsuleShape()->Length(), 1));
             break;
-        case sdf::GeometryType::ELLIPSOID: set(out, Kind::Ellipsoid, "<ellipsoid> <radii>", vector_of(from.EllipsoidShape()->Radii())); break;
+        case sdf::GeometryType::ELLIPSOID:
+            set(out, Kind::Ellipsoid, "<ellipsoid> <radii>", vector_of(from.EllipsoidShape()->Radii()));
+            break;
         case sdf::GeometryType::PLANE:
             out.kind = Kind::Plane;
             out.size = Vec3::Zero();
             out.normal = vector_of(from.PlaneShape()->Normal());
-            if (!(out.normal.norm() > 0) || !out.normal.allFinite()) fail("<plane> <normal> is (" + list(out.normal) + "), needs a direction");
+            if (!(out.normal.norm() > 0) || !out.normal.allFinite())
+                fail("<plane> <normal> is (" + list(out.normal) + "), needs a direction");
             break;
         case sdf::GeometryType::MESH: set_mesh(out, *from.MeshShape()); break;
         case sdf::GeometryType::HEIGHTMAP: set_heightmap(out, *from.HeightmapShape()); break;
@@ -57,9 +64,12 @@ private:
     void check_count(const sdf::ElementPtr& geometry) const
     {
         std::string shapes;
-        for (sdf::ElementPtr shape = geometry ? geometry->GetFirstElement() : nullptr; shape; shape = shape->GetNextElement(""))
-            if (const std::string name = "<" + shape->GetName() + ">"; shapes.find(name) == std::string::npos) shapes += (shapes.empty() ? "" : ", ") + name;
-        if (shapes.find(',') != std::string::npos) fail("<geometry> holds " + shapes + ", needs one shape; give each a <collision> of its own");
+        for (sdf::ElementPtr shape = geometry ? geometry->GetFirstElement() : nullptr; shape;
+             shape = shape->GetNextElement(""))
+            if (const std::string name = "<" + shape->GetName() + ">"; shapes.find(name) == std::string::npos)
+                shapes += (shapes.empty() ? "" : ", ") + name;
+        if (shapes.find(',') != std::string::npos)
+            fail("<geometry> holds " + shapes + ", needs one shape; give each a <collision> of its own");
     }
 
     void set(CollisionGeometry& out, Kind kind, const std::string& what, const Vec3& size) const
@@ -79,7 +89,8 @@ private:
         out.size = vector_of(mesh.Scale());
         out.submesh = mesh.Submesh();
         out.is_centred = mesh.CenterSubmesh();
-        if (!out.size.allFinite() || out.size.cwiseAbs().minCoeff() == 0) fail("<mesh> <scale> is (" + list(out.size) + "), needs three numbers that are not 0");
+        if (!out.size.allFinite() || out.size.cwiseAbs().minCoeff() == 0)
+            fail("<mesh> <scale> is (" + list(out.size) + "), needs three numbers that are not 0");
     }
 
     void set_heightmap(CollisionGeometry& out, const sdf::Heightmap& map) const
@@ -89,7 +100,8 @@ private:
         out.folder = folder_of(map.FilePath());
         out.position = vector_of(map.Position());
         out.sampling = map.Sampling();
-        if (out.sampling < 1 || out.sampling > 16) fail("<heightmap> <sampling> is " + std::to_string(out.sampling) + ", needs 1 to 16");
+        if (out.sampling < 1 || out.sampling > 16)
+            fail("<heightmap> <sampling> is " + std::to_string(out.sampling) + ", needs 1 to 16");
     }
 
     /// What libsdformat 12 has no class for.
@@ -104,7 +116,8 @@ private:
         for (sdf::ElementPtr line = element->GetElement("polyline"); line; line = line->GetNextElement("polyline")) {
             if (height == 0) height = line->Get<double>("height");  // of the first, as Gazebo has it
             auto& outline = out.outlines.emplace_back();
-            for (sdf::ElementPtr point = line->HasElement("point") ? line->GetElement("point") : nullptr; point; point = point->GetNextElement("point")) {
+            for (sdf::ElementPtr point = line->HasElement("point") ? line->GetElement("point") : nullptr; point;
+                 point = point->GetNextElement("point")) {
                 const auto at = point->Get<ignition::math::Vector2d>();
                 outline.push_back({at.X(), at.Y()});
             }
@@ -115,12 +128,14 @@ private:
     /// A file's text that was given has a name in brackets.
     fs::path folder_of(const std::string& named) const
     {
-        return named.empty() || named.front() == '<' || !fs::exists(named) ? place_.file.parent_path() : fs::path(named).parent_path();
+        return named.empty() || named.front() == '<' || !fs::exists(named) ? place_.file.parent_path()
+                                                                           : fs::path(named).parent_path();
     }
 
     [[noreturn]] void fail(const std::string& what) const
     {
-        throw FileError(place_.file.string(), "\"" + place_.name + "\": " + what + (place_.line ? " (line " + std::to_string(*place_.line) + ")" : ""));
+        throw FileError(place_.file.string(), "\"" + place_.name + "\": " + what +
+                                                  (place_.line ? " (line " + std::to_string(*place_.line) + ")" : ""));
     }
 
     const SdfPlace& place_;
@@ -128,7 +143,8 @@ private:
 
 }  // namespace
 
-SdfSession::SdfSession(ModelPaths& paths, const fs::path& folder) : lock_(one_at_a_time()), log_level_(console_bridge::getLogLevel())
+SdfSession::SdfSession(ModelPaths& paths, const fs::path& folder)
+    : lock_(one_at_a_time()), log_level_(console_bridge::getLogLevel())
 {
     const auto find = [&paths, folder](const std::string& uri) { return paths.find(uri, folder).string(); };
     config_.SetFindCallback(find);
@@ -163,7 +179,8 @@ SdfErrorKind kind_of(const sdf::Error& error)
     }
     const std::string words = error.Message();
     if (words.find("not defined in SDF") != std::string::npos) return SdfErrorKind::Unknown;
-    return words == "Failed to load a world." || words == "Failed to load a model." ? SdfErrorKind::Repeated : SdfErrorKind::Other;
+    return words == "Failed to load a world." || words == "Failed to load a model." ? SdfErrorKind::Repeated
+                                                                                    : SdfErrorKind::Other;
 }
 
 std::string path_for_libsdformat(const fs::path& file) { return fs::absolute(file).string(); }
@@ -171,14 +188,17 @@ std::string path_for_libsdformat(const fs::path& file) { return fs::absolute(fil
 std::string words_of(const sdf::Error& error, const std::string& file)
 {
     std::string out = error.FilePath().value_or(file);
-    if (out.empty() || out.front() == '<' || out == path_for_libsdformat(file)) out = file;  // text that was given has a name in brackets
+    if (out.empty() || out.front() == '<' || out == path_for_libsdformat(file))
+        out = file;  // text that was given has a name in brackets
     if (error.LineNumber()) out += ": line " + std::to_string(*error.LineNumber());
     if (error.XmlPath()) out += ": " + *error.XmlPath();
     const SdfErrorKind kind = kind_of(error);
-    if (kind == SdfErrorKind::Unknown) return out + ": is no element that SDF has at this place: it counts for nothing; is it misspelt?";
+    if (kind == SdfErrorKind::Unknown)
+        return out + ": is no element that SDF has at this place: it counts for nothing; is it misspelt?";
     out += ": " + trimmed(error.Message());
     if (kind == SdfErrorKind::Duplicate) out += " It is left out: give it a name of its own";
-    if (error.Code() == sdf::ErrorCode::URI_LOOKUP) out += "; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell where models are";
+    if (error.Code() == sdf::ErrorCode::URI_LOOKUP)
+        out += "; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell where models are";
     return out;
 }
 
@@ -199,7 +219,8 @@ bool touches_nothing(const sdf::Collision& collision)
     const sdf::Surface* const surface = collision.Surface();
     if (surface == nullptr || surface->Contact() == nullptr) return false;
     const sdf::ElementPtr contact = surface->Contact()->Element();
-    const bool without = contact && contact->HasElement("collide_without_contact") && contact->Get<bool>("collide_without_contact");
+    const bool without = contact && contact->HasElement("collide_without_contact") &&
+                         contact->Get<bool>("collide_without_contact");
     return without || surface->Contact()->CollideBitmask() == 0;
 }
 
@@ -210,6 +231,9 @@ bool is_empty(const sdf::Geometry& geometry)
     return !shape || shape->GetName() == "empty";
 }
 
-CollisionGeometry geometry_of(const sdf::Geometry& geometry, const SdfPlace& place) { return GeometryReader(place).read(geometry); }
+CollisionGeometry geometry_of(const sdf::Geometry& geometry, const SdfPlace& place)
+{
+    return GeometryReader(place).read(geometry);
+}
 
 }  // namespace spawnfield

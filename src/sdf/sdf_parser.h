@@ -13,8 +13,9 @@
 
 namespace spawnfield {
 
-/// libsdformat finds files through a global callback (nested includes ask that one alone) and prints on its own, as does the URDF
-/// parser that it tries on what it does not understand: all of it is held while this lives. One at a time.
+/// libsdformat finds files through a global callback (nested includes ask that one alone) and prints on its own, as
+/// does the URDF parser that it tries on what it does not understand: all of it is held while this lives. One at a
+/// time.
 class SdfSession {
 public:
     SdfSession(ModelPaths& paths, const std::filesystem::path& folder);
@@ -54,11 +55,14 @@ auto without_foreign_exceptions(const std::filesystem::path& file, const Read& r
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
-        throw FileError(file.string(), std::string("cannot be read as SDF: a number in it, or in what it includes, is none (") + error.what() + ")");
+        throw FileError(file.string(),
+                        std::string("cannot be read as SDF: a number in it, or in what it includes, is none (") +
+                            error.what() + ")");
     }
 }
 
-/// A relative "model.sdf" or "world.sdf" it would take for the file of that name in its own folder, the description of <model>.
+/// A relative "model.sdf" or "world.sdf" it would take for the file of that name in its own folder, the description of
+/// <model>.
 std::string path_for_libsdformat(const std::filesystem::path& file);
 
 /// File, line, element and words of an error, without what it has not.
@@ -76,7 +80,7 @@ bool is_empty(const sdf::Geometry& geometry);
 /// Where a collision stands, for complaints.
 struct SdfPlace {
     std::filesystem::path file;
-    std::string name;         ///< scoped
+    std::string name;  ///< scoped
     std::optional<int> line;
 };
 

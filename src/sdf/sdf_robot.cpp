@@ -40,15 +40,18 @@ public:
         sdf::Root root;
         check(root.Load(path_for_libsdformat(file_), session.config()));
         if (root.Model() == nullptr)
-            throw FileError(file_.string(), root.WorldCount() > 0 ? "holds a <world>, needs a <model> to be a robot" : "has no <model>");
+            throw FileError(file_.string(), root.WorldCount() > 0 ? "holds a <world>, needs a <model> to be a robot"
+                                                                  : "has no <model>");
         const sdf::Model& model = *root.Model();
         robot_.name = model.Name();
         if (model.RawPose() != ignition::math::Pose3d::Zero)
-            robot_.notices.push_back(file_.string() + ": the <pose> of model \"" + model.Name() + "\" does not count: poses are those of its own frame");
+            robot_.notices.push_back(file_.string() + ": the <pose> of model \"" + model.Name() +
+                                     "\" does not count: poses are those of its own frame");
         collect(model, {}, "");
         move_links(model);
         for (const Link& link : links_) add_link(link);
-        if (robot_.parts.empty()) throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
+        if (robot_.parts.empty())
+            throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
         return std::move(robot_);
     }
 
@@ -90,7 +93,8 @@ private:
             const sdf::Link& link = *model.LinkByIndex(k);
             links_.push_back({prefix + link.Name(), &link, robot_from_model * resolved(link.SemanticPose())});
         }
-        for (std::uint64_t k = 0; k < model.JointCount(); ++k) hinges_.push_back(hinge_of(*model.JointByIndex(k), robot_from_model, prefix));
+        for (std::uint64_t k = 0; k < model.JointCount(); ++k)
+            hinges_.push_back(hinge_of(*model.JointByIndex(k), robot_from_model, prefix));
         for (std::uint64_t k = 0; k < model.ModelCount(); ++k) {
             const sdf::Model& inner = *model.ModelByIndex(k);
             collect(inner, robot_from_model * resolved(inner.SemanticPose()), prefix + inner.Name() + "::");
@@ -124,7 +128,8 @@ private:
         constexpr double unlimited = 1e15;  // libsdformat's default limits are 1e16
         if (axis->Lower() > -unlimited) hinge.joint.lower = axis->Lower();
         if (axis->Upper() < unlimited) hinge.joint.upper = axis->Upper();
-        if (joint.Type() == sdf::JointType::CONTINUOUS) hinge.joint.upper = -(hinge.joint.lower = -std::numeric_limits<double>::infinity());
+        if (joint.Type() == sdf::JointType::CONTINUOUS)
+            hinge.joint.upper = -(hinge.joint.lower = -std::numeric_limits<double>::infinity());
         return hinge;
     }
 
@@ -134,7 +139,8 @@ private:
         std::vector<Joint> joints;
         for (const Hinge& hinge : hinges_) joints.push_back(hinge.joint);
         positions_ = joint_positions(file_.string(), joints, options_.joints, robot_.notices);
-        const bool moved = std::any_of(positions_.begin(), positions_.end(), [](const auto& entry) { return entry.second != 0; });
+        const bool moved = std::any_of(positions_.begin(), positions_.end(),
+                                       [](const auto& entry) { return entry.second != 0; });
         if (!moved) return;
         const Pose canonical = motion_of_link(model.CanonicalLinkAndRelativeName().second, 0);
         const Mat3 back = canonical.rotation.transpose();
@@ -148,13 +154,15 @@ private:
         for (const Hinge& hinge : hinges_) {
             if (hinge.child != link) continue;
             if (above != nullptr || depth > hinges_.size())
-                throw FileError(file_.string(), "joints cannot be given: link \"" + link + "\" hangs on several joints, a closed chain");
+                throw FileError(file_.string(), "joints cannot be given: link \"" + link +
+                                                    "\" hangs on several joints, a closed chain");
             above = &hinge;
         }
         if (above == nullptr) return {};
         const auto value = positions_.find(above->joint.name);
         const Pose to_axis{above->origin, Mat3::Identity()}, from_axis{-above->origin, Mat3::Identity()};
-        const Pose turned = value == positions_.end() ? Pose() : joint_motion(above->joint.motion, above->axis, value->second);
+        const Pose turned = value == positions_.end() ? Pose()
+                                                      : joint_motion(above->joint.motion, above->axis, value->second);
         return motion_of_link(above->parent, depth + 1) * to_axis * turned * from_axis;
     }
 
@@ -163,12 +171,15 @@ private:
         for (std::uint64_t k = 0; k < link.link->CollisionCount(); ++k) {
             const sdf::Collision& collision = *link.link->CollisionByIndex(k);
             if (touches_nothing(collision)) {
-                robot_.notices.push_back(file_.string() + ": \"" + link.name + "::" + collision.Name() + "\" is left out: its <surface> says that it touches nothing");
+                robot_.notices.push_back(file_.string() + ": \"" + link.name + "::" + collision.Name() +
+                                         "\" is left out: its <surface> says that it touches nothing");
                 continue;
             }
             // A resolved pose of a collision is in its link's frame.
-            const CollisionBody body{{robot_.name, link.name, collision.Name()}, link.robot_from_link * resolved(collision.SemanticPose(), ""),
-                                     geometry_of(*collision.Geom(), {file_, link.name + "::" + collision.Name(), collision.Element()->LineNumber()})};
+            const CollisionBody body{{robot_.name, link.name, collision.Name()},
+                                     link.robot_from_link * resolved(collision.SemanticPose(), ""),
+                                     geometry_of(*collision.Geom(), {file_, link.name + "::" + collision.Name(),
+                                                                     collision.Element()->LineNumber()})};
             append_body(robot_, body, paths_, file_.string(), options_.mesh_parts);
         }
     }
@@ -184,7 +195,7 @@ private:
 
 }  // namespace
 
-Robot sdf_module::read_robot(const fs::path& file_or_folder, const RobotOptions& options) 
+Robot sdf_module::read_robot(const fs::path& file_or_folder, const RobotOptions& options)
 {
     return without_foreign_exceptions(file_or_folder, [&] { return SdfReader(file_or_folder, options).read(); });
 }

@@ -21,20 +21,30 @@ struct BenchArgs {
 
 void add_options(CLI::App& app, BenchArgs& args)
 {
-    app.add_option("--rounds", args.rounds, "Timed rounds after an untimed one (default 5)")->check(CLI::Range(1, 1000));
-    app.add_option("--threads", args.threads, "Numbers of threads (default: 1 and all cores)")->delimiter(',')->check(CLI::Range(1, 1024));
+    app.add_option("--rounds", args.rounds, "Timed rounds after an untimed one (default 5)")
+        ->check(CLI::Range(1, 1000));
+    app.add_option("--threads", args.threads, "Numbers of threads (default: 1 and all cores)")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 1024));
     app.add_option("--only", args.only, "Stages whose \"scene stage\" has this in it, as \"hills raster2d\"");
-    app.add_option("--csv", args.csv, "Write scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks to this file; ms is the minimum");
+    app.add_option(
+        "--csv", args.csv,
+        "Write scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks to this file; ms is the minimum");
     app.add_option("--write-maps", args.maps, "Bake the scenes into this folder instead; writes map,seconds,bytes")
-        ->excludes(app.add_flag("--targets", args.targets, "The table of speed and memory to reach: whole programs, then stages and rivals"));
+        ->excludes(app.add_flag("--targets", args.targets,
+                                "The table of speed and memory to reach: whole programs, then stages and rivals"));
     app.add_option("--scene", args.scene, "With --write-maps: this scene alone, as hills or hills-4x");
-    auto* quick = app.add_flag("--quick", args.quick, "Small scenes, one round, 1 and 2 threads: does it all work and compute the same?");
-    app.add_flag("--full", args.full, "hills with cells of 0.1 m and rasters of 0.5 m; with --targets, also 16 times its area")->excludes(quick);
-    app.footer("Example:\n"
-               "  spawnfield_bench --targets --csv targets.csv\n"
-               "  spawnfield_bench --only \"hills sample\" --threads 1,2\n"
-               "  spawnfield_bench --write-maps /tmp/maps && spawnfield heatmap /tmp/maps/hills -o /tmp/hills.png \\\n"
-               "      --robot maps/robots/husky.yaml --offset 0.3");
+    auto* quick = app.add_flag("--quick", args.quick,
+                               "Small scenes, one round, 1 and 2 threads: does it all work and compute the same?");
+    app.add_flag("--full", args.full,
+                 "hills with cells of 0.1 m and rasters of 0.5 m; with --targets, also 16 times its area")
+        ->excludes(quick);
+    app.footer(
+        "Example:\n"
+        "  spawnfield_bench --targets --csv targets.csv\n"
+        "  spawnfield_bench --only \"hills sample\" --threads 1,2\n"
+        "  spawnfield_bench --write-maps /tmp/maps && spawnfield heatmap /tmp/maps/hills -o /tmp/hills.png \\\n"
+        "      --robot maps/robots/husky.yaml --offset 0.3");
 }
 
 Extent extent_of(const BenchArgs& args)
@@ -55,7 +65,8 @@ std::string ratios(const std::vector<Row>& rows)
 {
     std::string text;
     for (std::size_t i = 1; i < rows.size(); ++i)
-        text += formatted("          %s takes %.2f times as long for each item\n", rows[i].stage.c_str(), times_slower(rows[i], rows[0]));
+        text += formatted("          %s takes %.2f times as long for each item\n", rows[i].stage.c_str(),
+                          times_slower(rows[i], rows[0]));
     return text;
 }
 
@@ -126,7 +137,9 @@ void measure(const BenchArgs& args)
 
 int main(int argc, char** argv)
 {
-    CLI::App app{"Times every stage of spawnfield on its benchmark scenes, and checks that it computes the same at any number of threads."};
+    CLI::App app{
+        "Times every stage of spawnfield on its benchmark scenes, and checks that it computes the same at any number "
+        "of threads."};
     BenchArgs args;
     add_options(app, args);
     try {
@@ -135,9 +148,12 @@ int main(int argc, char** argv)
         return app.exit(error) == 0 ? 0 : 2;
     }
     try {
-        if (args.targets) reach_targets(args);
-        else if (args.maps.empty()) measure(args);
-        else write_maps(args);
+        if (args.targets)
+            reach_targets(args);
+        else if (args.maps.empty())
+            measure(args);
+        else
+            write_maps(args);
     } catch (const std::exception& error) {
         std::cerr << "spawnfield_bench: " << error.what() << "\n";
         return 1;

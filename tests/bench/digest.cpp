@@ -10,9 +10,17 @@ std::uint64_t digest_of(const Scene& scene)
 {
     Digest digest;
     for (const Part& part : scene.parts) digest.add(part.name).add(part.kind).add(part.label);
-    digest.add_all(scene.vertices).add_all(scene.triangles).add_all(scene.triangle_labels).add_all(scene.triangle_pieces);
+    digest.add_all(scene.vertices)
+        .add_all(scene.triangles)
+        .add_all(scene.triangle_labels)
+        .add_all(scene.triangle_pieces);
     for (const Piece& piece : scene.pieces)
-        digest.add(piece.part).add(piece.first_triangle).add(piece.triangle_count).add(piece.solid).add(piece.sides_up).add(piece.bottom);
+        digest.add(piece.part)
+            .add(piece.first_triangle)
+            .add(piece.triangle_count)
+            .add(piece.solid)
+            .add(piece.sides_up)
+            .add(piece.bottom);
     for (const Primitive& primitive : scene.primitives) {
         const Shape& shape = primitive.shape;
         digest.add(primitive.part).add(primitive.label).add(shape.kind).add(shape.size).add(shape.pose.position);
@@ -21,7 +29,10 @@ std::uint64_t digest_of(const Scene& scene)
     return digest.value();
 }
 
-std::uint64_t digest_of(const Geometry& geometry) { return Digest().add(std::string(geometry.impl().bytes.view)).value(); }
+std::uint64_t digest_of(const Geometry& geometry)
+{
+    return Digest().add(std::string(geometry.impl().bytes.view)).value();
+}
 
 std::uint64_t digest_of(const TerrainMap& terrain)
 {
@@ -38,7 +49,8 @@ std::uint64_t digest_of(const std::vector<Judgement>& judgements)
     Digest digest;
     for (const Judgement& judgement : judgements) {
         digest.add(judgement.verdict);
-        if (judgement.ground) digest.add(judgement.ground->height).add(judgement.ground->terrain).add(judgement.ground->part);
+        if (judgement.ground)
+            digest.add(judgement.ground->height).add(judgement.ground->terrain).add(judgement.ground->part);
         if (judgement.hit) digest.add(judgement.hit->part);
     }
     return digest.value();
@@ -47,7 +59,8 @@ std::uint64_t digest_of(const std::vector<Judgement>& judgements)
 std::uint64_t digest_of(const RasterResult& raster)
 {
     Digest digest;
-    for (const RasterPose& pose : raster.poses) digest.add(pose.x).add(pose.y).add(pose.z).add(pose.layer).add(pose.verdict);
+    for (const RasterPose& pose : raster.poses)
+        digest.add(pose.x).add(pose.y).add(pose.z).add(pose.layer).add(pose.verdict);
     for (const std::uint64_t count : raster.counts) digest.add(count);
     return digest.value();
 }

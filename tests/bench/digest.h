@@ -22,12 +22,14 @@ public:
         return *this;
     }
     template <class T>
-        requires(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>)
-    Digest& add(const T& value)
+    requires(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>) Digest& add(const T& value)
     {
         return add(std::string_view(reinterpret_cast<const char*>(&value), sizeof value));
     }
-    Digest& add(const spawnfield::Vec3& v) { return add(std::string_view(reinterpret_cast<const char*>(v.data()), sizeof v)); }
+    Digest& add(const spawnfield::Vec3& v)
+    {
+        return add(std::string_view(reinterpret_cast<const char*>(v.data()), sizeof v));
+    }
     template <class T>
     Digest& add_all(const std::vector<T>& values)
     {

@@ -19,7 +19,9 @@ constexpr double shaft_x0 = 30, shaft_x1 = 39.8, shaft_y0 = 0.2, shaft_y1 = 2.2;
 void add_slab(Scene& scene, int level)
 {
     const double top = level * storey;
-    const BlockGrid grid = {{0, shaft_x0, shaft_x1 - 1.5, length}, {0, shaft_y0, shaft_y1, width}, {top - slab, top},
+    const BlockGrid grid = {{0, shaft_x0, shaft_x1 - 1.5, length},
+                            {0, shaft_y0, shaft_y1, width},
+                            {top - slab, top},
                             [level](int i, int j, int) { return level == 0 || !(i == 1 && j == 1); }};
     hand::add_mesh(scene, Label::Terrain, blocks(grid));
     scene.parts.back().name = "slab-" + std::to_string(level);
@@ -29,7 +31,8 @@ void add_slab(Scene& scene, int level)
 void add_ramp(Scene& scene, int level)
 {
     const double from = shaft_x0 + 0.3, to = shaft_x1 - 1.5, bottom = level * storey, top = bottom + storey;
-    const hand::Mesh side = hand::extruded({{from, bottom}, {from + 0.6, bottom}, {to, top - slab}, {to, top}}, -shaft_y1, -shaft_y0);
+    const hand::Mesh side = hand::extruded({{from, bottom}, {from + 0.6, bottom}, {to, top - slab}, {to, top}},
+                                           -shaft_y1, -shaft_y0);
     Mat3 upright;  // (x, y, z) to (x, -z, y)
     upright << 1, 0, 0, 0, 0, -1, 0, 1, 0;
     hand::add_mesh(scene, Label::Terrain, hand::moved(side, {Vec3::Zero(), upright}));
@@ -89,7 +92,8 @@ void add_walls(Scene& scene, Random& random, int level)
 {
     const double floor = level * storey;
     const Openings openings(random, level == 0);
-    const BlockGrid grid = {wall_lines(rooms_x, length), wall_lines(rooms_y, width),
+    const BlockGrid grid = {wall_lines(rooms_x, length),
+                            wall_lines(rooms_y, width),
                             {floor, floor + 0.9, floor + 2.1, floor + storey - slab},
                             [&](int i, int j, int k) { return openings.filled(i, j, k); }};
     hand::add_mesh(scene, Label::Obstacle, blocks(grid));
@@ -107,22 +111,27 @@ void add_box(Scene& scene, const Vec3& size, const Vec3& bottom, double yaw)
 /// A table on four legs with chairs, or a cupboard, or nothing.
 void furnish(Scene& scene, Random& random, const Vec3& corner)
 {
-    const double x = random.between(1.2, room - 1.2), y = random.between(1.2, room - 1.2), yaw = random.between(-1.57, 1.57);
+    const double x = random.between(1.2, room - 1.2), y = random.between(1.2, room - 1.2),
+                 yaw = random.between(-1.57, 1.57);
     const Vec3 place = corner + Vec3(x, y, 0);
     if (random.chance(0.3)) return;
     if (random.chance(0.3)) return add_box(scene, {1.2, 0.45, 1.9}, place, yaw);
     const Mat3 turn = rotation_from_rpy(0, 0, yaw);
     add_box(scene, {1.6, 0.8, 0.04}, place + Vec3(0, 0, 0.71), yaw);
     for (const double side_x : {-0.72, 0.72})
-        for (const double side_y : {-0.34, 0.34}) add_box(scene, {0.06, 0.06, 0.71}, place + turn * Vec3(side_x, side_y, 0), yaw);
-    for (const double side : {-0.75, 0.75}) add_box(scene, {0.45, 0.45, 0.45}, place + turn * Vec3(0, side, 0), yaw + random.between(-0.4, 0.4));
+        for (const double side_y : {-0.34, 0.34})
+            add_box(scene, {0.06, 0.06, 0.71}, place + turn * Vec3(side_x, side_y, 0), yaw);
+    for (const double side : {-0.75, 0.75})
+        add_box(scene, {0.45, 0.45, 0.45}, place + turn * Vec3(0, side, 0), yaw + random.between(-0.4, 0.4));
 }
 
 void add_parapet(Scene& scene)
 {
     const double roof = storeys * storey;
-    const BlockGrid grid = {{0, wall, length - wall, length}, {0, wall, width - wall, width}, {roof, roof + 1},
-                            [](int i, int j, int) { return i != 1 || j != 1; }};
+    const BlockGrid grid = {
+        {0, wall, length - wall, length}, {0, wall, width - wall, width}, {roof, roof + 1}, [](int i, int j, int) {
+            return i != 1 || j != 1;
+        }};
     hand::add_mesh(scene, Label::Obstacle, blocks(grid));
     scene.parts.back().name = "parapet";
 }

@@ -106,7 +106,8 @@ void Land::add_hill(Random& random, double height, double spread)
     const auto distance = [this](int i, int j) { return std::min(wrapped(i - j), wrapped(j - i)) / double(cells_); };
     for (int row = 0; row < cells_; ++row)
         for (int col = 0; col < cells_; ++col)
-            at(row, col) += height * std::exp(-0.5 * (Vec2(distance(row, top_row), distance(col, top_col)) / spread).squaredNorm());
+            at(row, col) +=
+                height * std::exp(-0.5 * (Vec2(distance(row, top_row), distance(col, top_col)) / spread).squaredNorm());
 }
 
 void Land::move_lowest_to(int row, int col)
@@ -151,7 +152,8 @@ double Land::height(const Vec2& p) const
     const double x = p.x() / side_ * cells_, y = p.y() / side_ * cells_;
     const int col = int(std::floor(x)), row = int(std::floor(y));
     const double u = x - col, v = y - row;
-    return (1 - v) * ((1 - u) * at(row, col) + u * at(row, col + 1)) + v * ((1 - u) * at(row + 1, col) + u * at(row + 1, col + 1));
+    return (1 - v) * ((1 - u) * at(row, col) + u * at(row, col + 1)) +
+           v * ((1 - u) * at(row + 1, col) + u * at(row + 1, col + 1));
 }
 
 Vec3 Land::normal(const Vec2& p) const
@@ -232,7 +234,9 @@ Vec2 Settler::anywhere(double margin)
 Vec2 Settler::gentlest_of(int count)
 {
     Vec2 best = anywhere(40);
-    const auto rating = [&](const Vec2& p) { return land_.slope(p) + (land_.is_dry(p) ? 0 : 1) + (is_clear({p, 60}) ? 0 : 0.5); };
+    const auto rating = [&](const Vec2& p) {
+        return land_.slope(p) + (land_.is_dry(p) ? 0 : 1) + (is_clear({p, 60}) ? 0 : 0.5);
+    };
     for (int i = 1; i < count; ++i) {
         const Vec2 other = anywhere(40);
         if (rating(other) < rating(best)) best = other;
@@ -342,7 +346,8 @@ void Settler::add_field_fence(int longest)
 
 bool Settler::add_panel(const Vec2& from, const Vec2& to)
 {
-    const bool inside = from.minCoeff() > 2 && to.minCoeff() > 2 && from.maxCoeff() < land_.side() - 2 && to.maxCoeff() < land_.side() - 2;
+    const bool inside = from.minCoeff() > 2 && to.minCoeff() > 2 && from.maxCoeff() < land_.side() - 2 &&
+                        to.maxCoeff() < land_.side() - 2;
     if (fences_left_ == 0 || !inside || !land_.is_dry(from) || !land_.is_dry(to)) return false;
     --fences_left_;
     add("fence", fence_panel(random_, on_ground(from), on_ground(to)), {});
@@ -368,7 +373,8 @@ Scene landscape(std::uint64_t seed, int tiles, const Amounts& amounts)
     const double size = tiles * amounts.side;
     const auto height = [&](double x, double y) { return land.height({x + size / 2, y + size / 2}); };
     const Pose pose = {{size / 2, size / 2, 0}, Mat3::Identity()};
-    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::relief(tiles * amounts.cells, size, height), pose), {.kind = "heightmap"});
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::relief(tiles * amounts.cells, size, height), pose),
+                   {.kind = "heightmap"});
     scene.parts.back().name = "terrain";
     for (int row = 0; row < tiles; ++row)
         for (int col = 0; col < tiles; ++col) {

@@ -72,10 +72,12 @@ void Soup::add_water(const Scene& scene)
     std::vector<Bounds> around(scene.parts.size());
     for (std::size_t t = 0; t < scene.triangles.size(); ++t)
         if (scene.triangle_labels[t] == Label::Water)
-            for (const std::uint32_t v : scene.triangles[t]) around[scene.pieces[scene.triangle_pieces[t]].part].extend(scene.vertices[v]);
+            for (const std::uint32_t v : scene.triangles[t])
+                around[scene.pieces[scene.triangle_pieces[t]].part].extend(scene.vertices[v]);
     for (const Bounds& b : around)
         if (!b.is_empty())
-            water.push_back({float(b.min.x()), -1000, float(-b.max.y()), float(b.max.x()), float(b.max.z()), float(-b.min.y())});
+            water.push_back(
+                {float(b.min.x()), -1000, float(-b.max.y()), float(b.max.x()), float(b.max.z()), float(-b.min.y())});
 }
 
 std::array<float, 6> Soup::bounds() const
@@ -126,7 +128,8 @@ rcConfig config_of(const Walker& walker, const std::array<float, 6>& bounds)
 
 class TileBuilder {
 public:
-    TileBuilder(const Soup& soup, const Walker& walker) : soup_(soup), walker_(walker), bounds_(soup.bounds()), config_(config_of(walker, bounds_))
+    TileBuilder(const Soup& soup, const Walker& walker)
+        : soup_(soup), walker_(walker), bounds_(soup.bounds()), config_(config_of(walker, bounds_))
     {
         cols_ = std::max(1, int(std::ceil((bounds_[3] - bounds_[0]) / side())));
         rows_ = std::max(1, int(std::ceil((bounds_[5] - bounds_[2]) / side())));
@@ -146,7 +149,8 @@ private:
     void bin();
     void rasterize(const std::vector<std::uint32_t>& triangles, const rcConfig& config, rcHeightfield& solid);
     void erode(const rcConfig& config, rcCompactHeightfield& open);
-    std::pair<unsigned char*, int> pack(int col, int row, const rcConfig& config, rcPolyMesh& mesh, const rcPolyMeshDetail& detail);
+    std::pair<unsigned char*, int> pack(int col, int row, const rcConfig& config, rcPolyMesh& mesh,
+                                        const rcPolyMeshDetail& detail);
 
     const Soup& soup_;
     const Walker walker_;
@@ -183,10 +187,12 @@ void TileBuilder::rasterize(const std::vector<std::uint32_t>& triangles, const r
     for (int i = 0; i < int(vertices.size() / 3); ++i) indices.push_back(i);
     const int count = int(triangles.size());
     std::vector<unsigned char> areas(triangles.size(), RC_NULL_AREA);
-    rcMarkWalkableTriangles(&context_, config.walkableSlopeAngle, vertices.data(), 3 * count, indices.data(), count, areas.data());
+    rcMarkWalkableTriangles(&context_, config.walkableSlopeAngle, vertices.data(), 3 * count, indices.data(), count,
+                            areas.data());
     for (std::size_t i = 0; i < triangles.size(); ++i)
         if (!soup_.terrain[triangles[i]]) areas[i] = RC_NULL_AREA;
-    require(rcRasterizeTriangles(&context_, vertices.data(), 3 * count, indices.data(), areas.data(), count, solid, config.walkableClimb),
+    require(rcRasterizeTriangles(&context_, vertices.data(), 3 * count, indices.data(), areas.data(), count, solid,
+                                 config.walkableClimb),
             "rcRasterizeTriangles");
     rcFilterLedgeSpans(&context_, config.walkableHeight, config.walkableClimb, solid);
     rcFilterWalkableLowHeightSpans(&context_, config.walkableHeight, solid);
@@ -197,7 +203,8 @@ void TileBuilder::erode(const rcConfig& config, rcCompactHeightfield& open)
     require(rcErodeWalkableArea(&context_, config.walkableRadius, open), "rcErodeWalkableArea");
     for (const auto& box : soup_.water) rcMarkBoxArea(&context_, box.data(), box.data() + 3, RC_NULL_AREA, open);
     require(rcBuildDistanceField(&context_, open), "rcBuildDistanceField");
-    require(rcBuildRegions(&context_, open, config.borderSize, config.minRegionArea, config.mergeRegionArea), "rcBuildRegions");
+    require(rcBuildRegions(&context_, open, config.borderSize, config.minRegionArea, config.mergeRegionArea),
+            "rcBuildRegions");
 }
 
 std::pair<unsigned char*, int> TileBuilder::build(int col, int row)
@@ -212,25 +219,30 @@ std::pair<unsigned char*, int> TileBuilder::build(int col, int row)
     config.bmax[2] = config.bmin[2] + side() + 2 * border;
 
     const Owned<rcHeightfield> solid(rcAllocHeightfield(), rcFreeHeightField);
-    require(rcCreateHeightfield(&context_, *solid, config.width, config.height, config.bmin, config.bmax, config.cs, config.ch),
+    require(rcCreateHeightfield(&context_, *solid, config.width, config.height, config.bmin, config.bmax, config.cs,
+                                config.ch),
             "rcCreateHeightfield");
     rasterize(triangles, config, *solid);
     const Owned<rcCompactHeightfield> open(rcAllocCompactHeightfield(), rcFreeCompactHeightfield);
-    require(rcBuildCompactHeightfield(&context_, config.walkableHeight, config.walkableClimb, *solid, *open), "rcBuildCompactHeightfield");
+    require(rcBuildCompactHeightfield(&context_, config.walkableHeight, config.walkableClimb, *solid, *open),
+            "rcBuildCompactHeightfield");
     erode(config, *open);
     const Owned<rcContourSet> contours(rcAllocContourSet(), rcFreeContourSet);
-    require(rcBuildContours(&context_, *open, config.maxSimplificationError, config.maxEdgeLen, *contours), "rcBuildContours");
+    require(rcBuildContours(&context_, *open, config.maxSimplificationError, config.maxEdgeLen, *contours),
+            "rcBuildContours");
     if (contours->nconts == 0) return {nullptr, 0};
     const Owned<rcPolyMesh> mesh(rcAllocPolyMesh(), rcFreePolyMesh);
     require(rcBuildPolyMesh(&context_, *contours, config.maxVertsPerPoly, *mesh), "rcBuildPolyMesh");
     if (mesh->npolys == 0) return {nullptr, 0};
     const Owned<rcPolyMeshDetail> detail(rcAllocPolyMeshDetail(), rcFreePolyMeshDetail);
-    require(rcBuildPolyMeshDetail(&context_, *mesh, *open, config.detailSampleDist, config.detailSampleMaxError, *detail),
-            "rcBuildPolyMeshDetail");
+    require(
+        rcBuildPolyMeshDetail(&context_, *mesh, *open, config.detailSampleDist, config.detailSampleMaxError, *detail),
+        "rcBuildPolyMeshDetail");
     return pack(col, row, config, *mesh, *detail);
 }
 
-std::pair<unsigned char*, int> TileBuilder::pack(int col, int row, const rcConfig& config, rcPolyMesh& mesh, const rcPolyMeshDetail& detail)
+std::pair<unsigned char*, int> TileBuilder::pack(int col, int row, const rcConfig& config, rcPolyMesh& mesh,
+                                                 const rcPolyMeshDetail& detail)
 {
     std::fill_n(mesh.flags, mesh.npolys, static_cast<unsigned short>(1));
     dtNavMeshCreateParams params{};
@@ -291,7 +303,8 @@ NavMesh::NavMesh(const Scene& scene, const Walker& walker) : impl_(std::make_uni
             const auto [data, size] = builder.build(col, row);
             if (data == nullptr) continue;
             dtTileRef tile = 0;
-            require(dtStatusSucceed(impl_->mesh->addTile(data, size, DT_TILE_FREE_DATA, 0, &tile)), "dtNavMesh::addTile");
+            require(dtStatusSucceed(impl_->mesh->addTile(data, size, DT_TILE_FREE_DATA, 0, &tile)),
+                    "dtNavMesh::addTile");
             ++impl_->tiles;
             impl_->polygons += std::as_const(*impl_->mesh).getTileByRef(tile)->header->polyCount;
         }
@@ -308,7 +321,8 @@ std::vector<Vec3> NavMesh::draw(std::size_t count, std::uint64_t seed) const
     for (std::size_t tries = 0; out.size() < count && tries < 10 * count; ++tries) {
         dtPolyRef polygon = 0;
         float p[3] = {};  // now and then no height is found for a point on a polygon's edge
-        if (dtStatusSucceed(impl_->query->findRandomPoint(&filter, detour_unit, &polygon, p))) out.emplace_back(p[0], -p[2], p[1]);
+        if (dtStatusSucceed(impl_->query->findRandomPoint(&filter, detour_unit, &polygon, p)))
+            out.emplace_back(p[0], -p[2], p[1]);
     }
     return out;
 }

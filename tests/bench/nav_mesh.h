@@ -10,9 +10,9 @@ namespace bench {
 struct Walker {
     double radius = 0.6;
     double height = 0.4;
-    double climb = 0.1;      ///< of a step
+    double climb = 0.1;  ///< of a step
     double slope = 0.165;
-    double cell = 0.2;       ///< of its voxels, seen from above
+    double cell = 0.2;  ///< of its voxels, seen from above
     double cell_height = 0.05;
 };
 

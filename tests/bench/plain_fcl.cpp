@@ -136,12 +136,15 @@ Geometry hull_of(const RobotPart& part)
 Geometry bvh_of(const Scene& scene, const std::vector<std::uint32_t>& triangles)
 {
     std::vector<std::uint32_t> used;
-    for (const std::uint32_t t : triangles) used.insert(used.end(), scene.triangles[t].begin(), scene.triangles[t].end());
+    for (const std::uint32_t t : triangles)
+        used.insert(used.end(), scene.triangles[t].begin(), scene.triangles[t].end());
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
     std::vector<Vec3> vertices;
     for (const std::uint32_t v : used) vertices.push_back(scene.vertices[v]);
-    const auto place = [&](std::uint32_t v) { return std::size_t(std::lower_bound(used.begin(), used.end(), v) - used.begin()); };
+    const auto place = [&](std::uint32_t v) {
+        return std::size_t(std::lower_bound(used.begin(), used.end(), v) - used.begin());
+    };
     std::vector<fcl::Triangle> faces;
     for (const std::uint32_t t : triangles) {
         const Triangle& corners = scene.triangles[t];
@@ -217,18 +220,21 @@ struct PlainFcl::Impl {
     void add_primitives(const Scene& scene)
     {
         for (const Primitive& primitive : scene.primitives) {
-            if (primitive.shape.kind == ShapeKind::Box) add_box(primitive.shape, rays_of(primitive.label));
-            else if (primitive.label == Label::Terrain) throw std::invalid_argument("plain FCL: terrain that is no box or mesh");
+            if (primitive.shape.kind == ShapeKind::Box)
+                add_box(primitive.shape, rays_of(primitive.label));
+            else if (primitive.label == Label::Terrain)
+                throw std::invalid_argument("plain FCL: terrain that is no box or mesh");
             if (primitive.label != Label::Water) add_object(geometry_of(primitive.shape), primitive.shape.pose);
         }
     }
 
-    /// The robot, to be put at one pose after the other by one thread. Shapes of its own, as FCL's objects write to theirs
-    /// when they are made (local bounds).
+    /// The robot, to be put at one pose after the other by one thread. Shapes of its own, as FCL's objects write to
+    /// theirs when they are made (local bounds).
     std::vector<Object> own_robot() const
     {
         std::vector<Object> own;
-        for (const RobotPart& part : robot.parts) own.emplace_back(part.shape.kind == ShapeKind::Hull ? hull_of(part) : geometry_of(part.shape));
+        for (const RobotPart& part : robot.parts)
+            own.emplace_back(part.shape.kind == ShapeKind::Hull ? hull_of(part) : geometry_of(part.shape));
         return own;
     }
 
@@ -269,9 +275,12 @@ struct PlainFcl::Impl {
         if (!ground) return std::nullopt;
         TopPose out{*ground + offset, Verdict::Valid};
         const Vec3 origin(x, y, out.z);
-        if (top_below(obstacles, origin, offset)) out.verdict = Verdict::OffTerrain;
-        else if (is_wet(x, y, *ground)) out.verdict = Verdict::Submerged;
-        else if (collides(own, {origin, Mat3::Identity()})) out.verdict = Verdict::Collision;
+        if (top_below(obstacles, origin, offset))
+            out.verdict = Verdict::OffTerrain;
+        else if (is_wet(x, y, *ground))
+            out.verdict = Verdict::Submerged;
+        else if (collides(own, {origin, Mat3::Identity()}))
+            out.verdict = Verdict::Collision;
         return out;
     }
 
@@ -293,8 +302,10 @@ struct PlainFcl::Impl {
         for (int i = 0; i < grid.cols; ++i)
             for (int k = grid.heights - 1; k >= 0; --k) {
                 const Pose pose{{grid.x_of(i), grid.y_of(row), grid.z_of(k)}, Mat3::Identity()};
-                if (height_check) ++counts[std::size_t(judge(own, pose, max_height))];
-                else ++counts[std::size_t(collides(own, pose) ? Verdict::Collision : Verdict::Valid)];
+                if (height_check)
+                    ++counts[std::size_t(judge(own, pose, max_height))];
+                else
+                    ++counts[std::size_t(collides(own, pose) ? Verdict::Collision : Verdict::Valid)];
             }
         return counts;
     }
@@ -320,13 +331,15 @@ PlainFcl::PlainFcl(const Scene& scene, const Robot& robot)
 
 PlainFcl::~PlainFcl() = default;
 
-std::vector<std::optional<PlainFcl::TopPose>> PlainFcl::raster_top(const RasterGrid& grid, double offset, int threads) const
+std::vector<std::optional<PlainFcl::TopPose>> PlainFcl::raster_top(const RasterGrid& grid, double offset,
+                                                                   int threads) const
 {
     std::vector<std::optional<TopPose>> out(std::size_t(grid.rows) * std::size_t(grid.cols));
     parallel_for(std::size_t(grid.rows), threads, {}, [&](std::size_t row) {
         std::vector<Object> own = impl_->own_robot();
         for (int i = 0; i < grid.cols; ++i)
-            out[row * std::size_t(grid.cols) + std::size_t(i)] = impl_->judge_top(own, grid.x_of(i), grid.y_of(int(row)), offset);
+            out[row * std::size_t(grid.cols) + std::size_t(i)] = impl_->judge_top(own, grid.x_of(i),
+                                                                                  grid.y_of(int(row)), offset);
     });
     return out;
 }
@@ -334,7 +347,8 @@ std::vector<std::optional<PlainFcl::TopPose>> PlainFcl::raster_top(const RasterG
 VerdictCounts PlainFcl::raster_3d(const RasterGrid& grid, double max_height, bool height_check, int threads) const
 {
     std::vector<VerdictCounts> rows(std::size_t(grid.rows));
-    parallel_for(rows.size(), threads, {}, [&](std::size_t j) { rows[j] = impl_->judge_row(grid, int(j), max_height, height_check); });
+    parallel_for(rows.size(), threads, {},
+                 [&](std::size_t j) { rows[j] = impl_->judge_row(grid, int(j), max_height, height_check); });
     VerdictCounts counts{};
     for (const VerdictCounts& row : rows)
         for (std::size_t v = 0; v < verdict_count; ++v) counts[v] += row[v];

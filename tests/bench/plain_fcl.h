@@ -9,9 +9,9 @@ namespace bench {
 
 /// What a good engineer would write by hand: alternative (b).
 ///
-/// A fcl::BVHModel<OBB> for each part of the scene (primitives as FCL's shapes) in a DynamicAABBTreeCollisionManager, and
-/// vertical Embree rays for the heights of ground and water. Meshes are surfaces: a robot wholly inside one is free.
-/// Single floats in Embree: heights are right to about 1e-5 m. Const calls may run at the same time.
+/// A fcl::BVHModel<OBB> for each part of the scene (primitives as FCL's shapes) in a DynamicAABBTreeCollisionManager,
+/// and vertical Embree rays for the heights of ground and water. Meshes are surfaces: a robot wholly inside one is
+/// free. Single floats in Embree: heights are right to about 1e-5 m. Const calls may run at the same time.
 class PlainFcl {
 public:
     static bool is_available();  ///< whether the benchmark was built with Embree
@@ -26,13 +26,16 @@ public:
         spawnfield::Verdict verdict{};
     };
     /// Row by row as RasterResult, one for each column; nothing where there is no terrain. Yaw is 0.
-    std::vector<std::optional<TopPose>> raster_top(const spawnfield::RasterGrid& grid, double offset, int threads) const;
+    std::vector<std::optional<TopPose>> raster_top(const spawnfield::RasterGrid& grid, double offset,
+                                                   int threads) const;
 
     /// One pose after the other, each with its own ray unless `height_check` is false. Yaw is 0.
-    spawnfield::VerdictCounts raster_3d(const spawnfield::RasterGrid& grid, double max_height, bool height_check, int threads) const;
+    spawnfield::VerdictCounts raster_3d(const spawnfield::RasterGrid& grid, double max_height, bool height_check,
+                                        int threads) const;
 
     /// As check_poses, without reasons; all poses within the map.
-    std::vector<spawnfield::Verdict> check(const std::vector<spawnfield::Pose>& poses, double max_height, int threads) const;
+    std::vector<spawnfield::Verdict> check(const std::vector<spawnfield::Pose>& poses, double max_height,
+                                           int threads) const;
 
     /// Whether any closed mesh winds around the point: where FCL's surfaces see nothing, but the place is solid.
     bool is_inside(const spawnfield::Vec3& point) const;

@@ -11,8 +11,8 @@ std::string hex(std::uint64_t hash) { return formatted("%016llx", static_cast<un
 
 [[noreturn]] void fail_differing(const Row& row, std::uint64_t other, const std::string& when)
 {
-    throw std::runtime_error(row.scene + " " + row.stage + " at " + std::to_string(row.threads) + " threads gave " + hex(row.hash) +
-                             ", but " + hex(other) + " " + when);
+    throw std::runtime_error(row.scene + " " + row.stage + " at " + std::to_string(row.threads) + " threads gave " +
+                             hex(row.hash) + ", but " + hex(other) + " " + when);
 }
 
 }  // namespace
@@ -43,15 +43,16 @@ void check_same(const std::vector<Row>& rows)
 
 std::string table_head()
 {
-    return formatted("%-9s %-26s %7s %11s %10s %10s %10s %17s %7s %8s\n", "scene", "stage", "threads", "items", "ms", "median ms",
-                     "items/s", "hash", "exact %", "peak MB");
+    return formatted("%-9s %-26s %7s %11s %10s %10s %10s %17s %7s %8s\n", "scene", "stage", "threads", "items", "ms",
+                     "median ms", "items/s", "hash", "exact %", "peak MB");
 }
 
 std::string table_line(const Row& row)
 {
-    return formatted("%-9s %-26s %7d %11llu %10.2f %10.2f %10.4g %17s %7.2f %8.0f\n", row.scene.c_str(), row.stage.c_str(), row.threads,
-                     static_cast<unsigned long long>(row.items), row.least * 1e3, row.median * 1e3, row.per_second(),
-                     hex(row.hash).c_str(), 100 * double(row.exact_checks) / double(row.items), double(row.peak_memory) / 1e6);
+    return formatted("%-9s %-26s %7d %11llu %10.2f %10.2f %10.4g %17s %7.2f %8.0f\n", row.scene.c_str(),
+                     row.stage.c_str(), row.threads, static_cast<unsigned long long>(row.items), row.least * 1e3,
+                     row.median * 1e3, row.per_second(), hex(row.hash).c_str(),
+                     100 * double(row.exact_checks) / double(row.items), double(row.peak_memory) / 1e6);
 }
 
 std::string csv(const std::vector<Row>& rows)
@@ -59,8 +60,8 @@ std::string csv(const std::vector<Row>& rows)
     std::string out = "scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks\n";
     for (const Row& row : rows)
         out += formatted("%s,%s,%d,%llu,%.4f,%.6g,%s,%.4f,%llu\n", row.scene.c_str(), row.stage.c_str(), row.threads,
-                         static_cast<unsigned long long>(row.items), row.least * 1e3, row.per_second(), hex(row.hash).c_str(),
-                         row.median * 1e3, static_cast<unsigned long long>(row.exact_checks));
+                         static_cast<unsigned long long>(row.items), row.least * 1e3, row.per_second(),
+                         hex(row.hash).c_str(), row.median * 1e3, static_cast<unsigned long long>(row.exact_checks));
     return out;
 }
 

@@ -16,7 +16,7 @@ using tools::machine;
 struct Measurement {
     std::uint64_t items = 0;  ///< cells, poses, draws, …
     double seconds = 0;
-    std::uint64_t hash = 0;   ///< of the result's bytes
+    std::uint64_t hash = 0;          ///< of the result's bytes
     std::uint64_t exact_checks = 0;  ///< items that FCL decided
 };
 
@@ -25,9 +25,9 @@ struct Row {
     std::string scene, stage;
     int threads = 1;
     std::uint64_t items = 0, hash = 0, exact_checks = 0;
-    double least = 0, median = 0;       ///< s
-    std::uint64_t peak_memory = 0;      ///< bytes of the whole process during these rounds
-    std::uint64_t own_memory = 0;       ///< bytes that the first run took on top of what was there; 0 where it is unknown
+    double least = 0, median = 0;   ///< s
+    std::uint64_t peak_memory = 0;  ///< bytes of the whole process during these rounds
+    std::uint64_t own_memory = 0;   ///< bytes that the first run took on top of what was there; 0 where it is unknown
 
     double per_second() const { return double(items) / least; }
     double seconds_per_item() const { return median / double(items); }
@@ -37,7 +37,10 @@ struct Row {
 Row row_of(const std::string& scene, const std::string& stage, int threads, const std::vector<Measurement>& rounds);
 
 /// How many times the time of `row` another takes for an item; medians.
-inline double times_slower(const Row& other, const Row& row) { return other.seconds_per_item() / row.seconds_per_item(); }
+inline double times_slower(const Row& other, const Row& row)
+{
+    return other.seconds_per_item() / row.seconds_per_item();
+}
 
 /// Throws std::runtime_error if a stage gave something else at one number of threads than at another.
 void check_same(const std::vector<Row>& rows);

@@ -47,7 +47,10 @@ Setting hills(Extent extent)
     out.one_layer = true;
     out.step_3d = step;
     out.thinning = extent == Extent::Full ? 20 : 10;
-    out.rasters = {{"raster2d@0.1", step, 0.1}, {"raster2d@0.3", step, 0.3}, {"raster2d@1.0", step, 1.0}, {"raster2d-1m@0.5", 1, 0.5}};
+    out.rasters = {{"raster2d@0.1", step, 0.1},
+                   {"raster2d@0.3", step, 0.3},
+                   {"raster2d@1.0", step, 1.0},
+                   {"raster2d-1m@0.5", 1, 0.5}};
     if (extent == Extent::Full) {
         out.cell = 0.1;
         out.poses = 1000000;
@@ -66,7 +69,10 @@ Setting town(Extent extent)
     out.cell = extent == Extent::Full ? 0.2 : 1;
     out.step_3d = 2;
     out.thinning = 10;
-    out.rasters = {{"raster2d@0.1", 2, 0.1}, {"raster2d@1.0", 2, 1.0}, {"raster2d-top@0.1", 2, 0.1, top()}, {"raster2d-top@1.0", 2, 1.0, top()}};
+    out.rasters = {{"raster2d@0.1", 2, 0.1},
+                   {"raster2d@1.0", 2, 1.0},
+                   {"raster2d-top@0.1", 2, 0.1, top()},
+                   {"raster2d-top@1.0", 2, 1.0, top()}};
     if (extent == Extent::Quick) {
         out.make = [] { return small_town_scene(); };
         make_quick(out);
@@ -144,7 +150,8 @@ std::vector<Setting> tiled_settings(Extent extent)
 
 std::vector<Setting> settings(Extent extent)
 {
-    return {training(extent), hills(extent), town(extent), floors(extent), grid(false, extent), grid(true, extent), empty(extent)};
+    return {training(extent),    hills(extent),      town(extent), floors(extent),
+            grid(false, extent), grid(true, extent), empty(extent)};
 }
 
 }  // namespace bench

@@ -26,16 +26,28 @@ double median(std::vector<double> values)
 /// A stage of a workbench with what it has to reach.
 struct Target {
     const char *scene, *stage, *work;
-    int threads = 0;             ///< at which the target holds; 0: all cores
-    double seconds = any;        ///< at most
-    double ms_per_1000 = any;    ///< at most
-    double over_fcl = 0;         ///< at least
+    int threads = 0;           ///< at which the target holds; 0: all cores
+    double seconds = any;      ///< at most
+    double ms_per_1000 = any;  ///< at most
+    double over_fcl = 0;       ///< at least
 };
 
 constexpr Target in_process[] = {
-    {.scene = "hills", .stage = "raster2d@1.0", .work = "2D raster, step 0.5 m, offset 1.0 m", .seconds = 0.5, .over_fcl = 20},
-    {.scene = "hills", .stage = "raster2d@0.1", .work = "2D raster, step 0.5 m, offset 0.1 m", .seconds = 1.5, .over_fcl = 5},
-    {.scene = "hills", .stage = "raster2d-1m@0.5", .work = "2D raster, step 1 m, offset 0.5 m", .threads = 1, .ms_per_1000 = 0.15},
+    {.scene = "hills",
+     .stage = "raster2d@1.0",
+     .work = "2D raster, step 0.5 m, offset 1.0 m",
+     .seconds = 0.5,
+     .over_fcl = 20},
+    {.scene = "hills",
+     .stage = "raster2d@0.1",
+     .work = "2D raster, step 0.5 m, offset 0.1 m",
+     .seconds = 1.5,
+     .over_fcl = 5},
+    {.scene = "hills",
+     .stage = "raster2d-1m@0.5",
+     .work = "2D raster, step 1 m, offset 0.5 m",
+     .threads = 1,
+     .ms_per_1000 = 0.15},
     {.scene = "hills", .stage = "raster3d", .work = "3D raster, steps of 0.5 m", .seconds = 2},
     {.scene = "hills", .stage = "check", .work = "check of 1,000,000 poses near the ground", .seconds = 2},
     {.scene = "hills", .stage = "sample", .work = "2,000 samples 2.5 m apart, in process"},
@@ -46,7 +58,10 @@ constexpr Target in_process[] = {
     {.scene = "floors", .stage = "raster2d@0.1", .work = "2D raster, step 0.1 m, offset 0.1 m, all layers"},
     {.scene = "floors", .stage = "raster2d-top@0.1", .work = "2D raster, step 0.1 m, offset 0.1 m, top layer"},
     {.scene = "grid-box", .stage = "raster3d", .work = "50,000 collisions, box robot", .ms_per_1000 = 0.25},
-    {.scene = "grid-hull", .stage = "raster3d", .work = "50,000 collisions, hull robot, convex meshes", .ms_per_1000 = 0.25},
+    {.scene = "grid-hull",
+     .stage = "raster3d",
+     .work = "50,000 collisions, hull robot, convex meshes",
+     .ms_per_1000 = 0.25},
     {.scene = "empty", .stage = "raster3d", .work = "1,000,000 aerial poses", .ms_per_1000 = 0.01},
 };
 
@@ -103,7 +118,8 @@ void measure_stages(const TargetOptions& options, const Tell& tell)
                     const bool judged = threads == (target.threads == 0 ? options.threads.back() : target.threads);
                     tell(measure(target, stage, threads, judged, options.rounds));
                 }
-                for (const std::string& line : workbench.comparisons(setting.name + " " + stage.name)) options.remark(line);
+                for (const std::string& line : workbench.comparisons(setting.name + " " + stage.name))
+                    options.remark(line);
             }
     }
 }
@@ -119,13 +135,14 @@ void measure_stages(const TargetOptions& options, const Tell& tell)
 BakedMap baked_map_of(const std::string& line)
 {
     const std::size_t bytes = line.rfind(','), seconds = line.rfind(',', bytes - 1);
-    return {line.substr(0, seconds), std::strtod(line.c_str() + seconds + 1, nullptr), std::strtoull(line.c_str() + bytes + 1, nullptr, 10)};
+    return {line.substr(0, seconds), std::strtod(line.c_str() + seconds + 1, nullptr),
+            std::strtoull(line.c_str() + bytes + 1, nullptr, 10)};
 }
 
 struct Bake {
     BakedMap map;
-    double seconds = 0;       ///< median
-    double peak_memory = 0;   ///< bytes, the scene and its making included
+    double seconds = 0;      ///< median
+    double peak_memory = 0;  ///< bytes, the scene and its making included
 };
 
 /// A scene baked by a process of its own, so that its memory is its own.
@@ -155,7 +172,8 @@ struct Query {
 Query query_by_process(std::vector<std::string> args, const TempFolder& folder, int rounds)
 {
     const std::filesystem::path program = spawnfield_program(), summary = folder / "summary.json";
-    args.insert(args.end(), {"--robot", "box:0.99,0.67,0.39", "-o", "/dev/null", "--quiet", "--summary", summary.string()});
+    args.insert(args.end(),
+                {"--robot", "box:0.99,0.67,0.39", "-o", "/dev/null", "--quiet", "--summary", summary.string()});
     Query out;
     std::vector<double> seconds, query;
     for (int round = -1; round < rounds; ++round) {
@@ -201,8 +219,10 @@ void measure_bake_and_sample(const TargetOptions& options, const TempFolder& fol
     tell(at_most(250, row("hills", "bake at 0.1 m, on disk", double(bake.map.bytes) / mega, "MB", 0)));
     if (spawnfield_program().empty()) return;
     const Query sample = query_by_process(sample_args(bake.map.folder, options.quick), folder, options.rounds);
-    tell(at_most(100, row("hills", "2,000 samples 2.5 m apart, whole process", sample.seconds * 1e3, "ms", sample.peak_memory)));
-    tell(at_most(10, row("hills", "2,000 samples 2.5 m apart, query alone", sample.query * 1e3, "ms", sample.peak_memory)));
+    tell(at_most(
+        100, row("hills", "2,000 samples 2.5 m apart, whole process", sample.seconds * 1e3, "ms", sample.peak_memory)));
+    tell(at_most(10,
+                 row("hills", "2,000 samples 2.5 m apart, query alone", sample.query * 1e3, "ms", sample.peak_memory)));
 }
 
 /// What a tiled landscape costs.
@@ -216,7 +236,8 @@ AreaCost measure_area(int area, const TargetOptions& options, const TempFolder& 
 {
     AreaCost out{area, bake_by_process("hills-" + std::to_string(area) + "x", folder, options), {}, {}};
     const std::filesystem::path& map = out.bake.map.folder;
-    out.raster = query_by_process({"raster", map.string(), "--dims", "2", "--step", "1", "--offset", "0.5"}, folder, options.rounds);
+    out.raster = query_by_process({"raster", map.string(), "--dims", "2", "--step", "1", "--offset", "0.5"}, folder,
+                                  options.rounds);
     out.sample = query_by_process(sample_args(map, options.quick), folder, options.rounds);
     std::filesystem::remove_all(map);
     return out;
@@ -227,10 +248,14 @@ void tell_growth(const AreaCost& one, const AreaCost& many, const Tell& tell)
 {
     const std::string scene = "hills-" + std::to_string(many.area) + "x";
     const auto growth = [&](double of_many, double of_one) { return of_many / many.area / of_one; };
-    const auto tell_times = [&](const char* work, double times, double memory) { tell(at_most(1.15, row(scene, work, times, "times", memory))); };
+    const auto tell_times = [&](const char* work, double times, double memory) {
+        tell(at_most(1.15, row(scene, work, times, "times", memory)));
+    };
     tell_times("bake at 0.5 m, time for each tile", growth(many.bake.seconds, one.bake.seconds), many.bake.peak_memory);
-    tell_times("2D raster, step 1 m, query for each tile", growth(many.raster.query, one.raster.query), many.raster.peak_memory);
-    tell_times("2,000 samples, memory of the process", many.sample.peak_memory / one.sample.peak_memory, many.sample.peak_memory);
+    tell_times("2D raster, step 1 m, query for each tile", growth(many.raster.query, one.raster.query),
+               many.raster.peak_memory);
+    tell_times("2,000 samples, memory of the process", many.sample.peak_memory / one.sample.peak_memory,
+               many.sample.peak_memory);
     tell(row(scene, "2,000 samples, whole process", many.sample.seconds * 1e3, "ms", many.sample.peak_memory));
 }
 
@@ -283,8 +308,8 @@ std::vector<TargetRow> measure_targets(const TargetOptions& options)
 
 std::string target_head()
 {
-    return formatted("%-9s %-46s %7s %-24s %10s %-12s %7s %7s %-8s %8s %8s\n", "scene", "work", "threads", "target", "measured", "", "/ (a)",
-                     "/ (b)", "reached", "MB", "exact %");
+    return formatted("%-9s %-46s %7s %-24s %10s %-12s %7s %7s %-8s %8s %8s\n", "scene", "work", "threads", "target",
+                     "measured", "", "/ (a)", "/ (b)", "reached", "MB", "exact %");
 }
 
 std::string target_line(const TargetRow& row)
@@ -292,20 +317,30 @@ std::string target_line(const TargetRow& row)
     const std::string threads = row.threads == 0 ? "" : std::to_string(row.threads);
     const std::string memory = row.memory > 0 ? formatted("%.0f", row.memory / mega) : "-";
     const std::string share = row.exact_share ? formatted("%.2f", 100 * *row.exact_share) : "-";
-    return formatted("%-9s %-46s %7s %-24s %10.4g %-12s %7s %7s %-8s %8s %8s\n", row.scene.c_str(), row.work.c_str(), threads.c_str(),
-                     row.target.c_str(), row.measured, row.unit.c_str(), ratio(row.over_exhaustive).c_str(), ratio(row.over_fcl).c_str(),
-                     !row.reached ? "" : *row.reached ? "yes" : "NO", memory.c_str(), share.c_str());
+    return formatted("%-9s %-46s %7s %-24s %10.4g %-12s %7s %7s %-8s %8s %8s\n", row.scene.c_str(), row.work.c_str(),
+                     threads.c_str(), row.target.c_str(), row.measured, row.unit.c_str(),
+                     ratio(row.over_exhaustive).c_str(), ratio(row.over_fcl).c_str(),
+                     !row.reached   ? ""
+                     : *row.reached ? "yes"
+                                    : "NO",
+                     memory.c_str(), share.c_str());
 }
 
 std::string target_csv(const std::vector<TargetRow>& rows)
 {
-    std::string out = "scene,work,threads,target,measured,unit,times_exhaustive,times_fcl,reached,memory_mb,exact_share\n";
-    const auto number = [](const std::optional<double>& value) { return value ? formatted("%.6g", *value) : std::string(); };
+    std::string out =
+        "scene,work,threads,target,measured,unit,times_exhaustive,times_fcl,reached,memory_mb,exact_share\n";
+    const auto number = [](const std::optional<double>& value) {
+        return value ? formatted("%.6g", *value) : std::string();
+    };
     for (const TargetRow& row : rows)
-        out += formatted("%s,\"%s\",%d,\"%s\",%.6g,\"%s\",%s,%s,%s,%.1f,%s\n", row.scene.c_str(), row.work.c_str(), row.threads,
-                         row.target.c_str(), row.measured, row.unit.c_str(), number(row.over_exhaustive).c_str(),
-                         number(row.over_fcl).c_str(), !row.reached ? "" : *row.reached ? "yes" : "no", row.memory / mega,
-                         number(row.exact_share).c_str());
+        out += formatted("%s,\"%s\",%d,\"%s\",%.6g,\"%s\",%s,%s,%s,%.1f,%s\n", row.scene.c_str(), row.work.c_str(),
+                         row.threads, row.target.c_str(), row.measured, row.unit.c_str(),
+                         number(row.over_exhaustive).c_str(), number(row.over_fcl).c_str(),
+                         !row.reached   ? ""
+                         : *row.reached ? "yes"
+                                        : "no",
+                         row.memory / mega, number(row.exact_share).c_str());
     return out;
 }
 

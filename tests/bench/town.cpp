@@ -25,7 +25,10 @@ constexpr double block = 80, street = 12, pavement = 2.5, kerb = 0.15, ground = 
 
 class Town {
 public:
-    Town(std::uint64_t seed, const Extents& extents) : random_(seed), side_(extents.side), cells_(extents.cells) { scene_.name = "town"; }
+    Town(std::uint64_t seed, const Extents& extents) : random_(seed), side_(extents.side), cells_(extents.cells)
+    {
+        scene_.name = "town";
+    }
 
     Scene build();
 
@@ -66,22 +69,28 @@ void Town::add_ground()
 {
     const Vec3 middle(side_ / 2, side_ / 2, 0);
     const auto relief = [&](double x, double y) { return height(x + middle.x(), y + middle.y()); };
-    hand::add_mesh(scene_, Label::Terrain, hand::moved(hand::relief(cells_, side_, relief), {middle, Mat3::Identity()}), {.kind = "heightmap"});
+    hand::add_mesh(scene_, Label::Terrain, hand::moved(hand::relief(cells_, side_, relief), {middle, Mat3::Identity()}),
+                   {.kind = "heightmap"});
     scene_.parts.back().name = "ground";
-    hand::add_mesh(scene_, Label::Water, hand::moved(hand::rectangle(side_, side_), {middle, Mat3::Identity()}), {.kind = "plane"});
+    hand::add_mesh(scene_, Label::Water, hand::moved(hand::rectangle(side_, side_), {middle, Mat3::Identity()}),
+                   {.kind = "plane"});
     scene_.parts.back().name = "sea";
 }
 
 /// From the coast out over the water: ramps up to a deck on piers, with railings.
 void Town::add_bridge()
 {
-    const double y = side_ / 2, from = shore(y) - 60, to = std::min(side_ - 20, shore(y) + 0.3 * side_), deck = 7, half = 5;
-    const std::vector<Vec2> profile = {{from, height(from, y) - 1}, {from + 50, deck - 0.8}, {to, deck - 0.8}, {to, deck},
-                                       {from + 50, deck},           {from, height(from, y)}};
+    const double y = side_ / 2, from = shore(y) - 60, to = std::min(side_ - 20, shore(y) + 0.3 * side_), deck = 7,
+                 half = 5;
+    const std::vector<Vec2> profile = {
+        {from, height(from, y) - 1}, {from + 50, deck - 0.8}, {to, deck - 0.8}, {to, deck},
+        {from + 50, deck},           {from, height(from, y)}};
     // Seen from its first corner all of the profile lies in view only in two halves.
-    add_thing(scene_, "bridge", Label::Terrain, {profile_along_y({profile[0], profile[1], profile[4], profile[5]}, y - half, y + half)}, {});
+    add_thing(scene_, "bridge", Label::Terrain,
+              {profile_along_y({profile[0], profile[1], profile[4], profile[5]}, y - half, y + half)}, {});
     hand::add_piece(scene_, profile_along_y({profile[1], profile[2], profile[3], profile[4]}, y - half, y + half));
-    const std::vector<Vec2> railing = {{from + 50, deck - 0.1}, {to, deck - 0.1}, {to, deck + 1}, {from + 50, deck + 1}};
+    const std::vector<Vec2> railing = {
+        {from + 50, deck - 0.1}, {to, deck - 0.1}, {to, deck + 1}, {from + 50, deck + 1}};
     for (const double edge : {y - half + 0.2, y + half - 0.4})
         add_thing(scene_, "railing", Label::Obstacle, {profile_along_y(railing, edge, edge + 0.2)}, {});
     for (double x = from + 55; x < to; x += 25)
@@ -96,7 +105,9 @@ void Town::add_pavement(const Vec2& corner)
 {
     const double x0 = corner.x() + street / 2, x1 = corner.x() + block - street / 2;
     const double y0 = corner.y() + street / 2, y1 = corner.y() + block - street / 2;
-    const BlockGrid ring = {{x0, x0 + pavement, x1 - pavement, x1}, {y0, y0 + pavement, y1 - pavement, y1}, {ground - 1, ground + kerb},
+    const BlockGrid ring = {{x0, x0 + pavement, x1 - pavement, x1},
+                            {y0, y0 + pavement, y1 - pavement, y1},
+                            {ground - 1, ground + kerb},
                             [](int i, int j, int) { return i != 1 || j != 1; }};
     add_thing(scene_, "pavement", Label::Terrain, {blocks(ring)}, {});
 }
@@ -104,8 +115,10 @@ void Town::add_pavement(const Vec2& corner)
 void Town::add_house(const Vec2& centre, double turn)
 {
     const Pose pose = {{centre.x(), centre.y(), ground}, rotation_from_rpy(0, 0, turn)};
-    if (random_.chance(0.35)) add_thing(scene_, "house", Label::Obstacle, house(random_, 1), pose);
-    else add_thing(scene_, "house", Label::Obstacle, {recessed_house(random_)}, pose);
+    if (random_.chance(0.35))
+        add_thing(scene_, "house", Label::Obstacle, house(random_, 1), pose);
+    else
+        add_thing(scene_, "house", Label::Obstacle, {recessed_house(random_)}, pose);
 }
 
 /// A fence with gaps around the yard within the block, and trees in it.
@@ -116,7 +129,8 @@ void Town::add_garden(const Vec2& centre)
     for (std::size_t i = 0; i < 4; ++i)
         for (int k = 0; k < 7; ++k) {
             if (random_.chance(0.15)) continue;
-            const Vec2 along = (corners[(i + 1) % 4] - corners[i]) / 7, from = centre + corners[i] + k * along, to = from + along;
+            const Vec2 along = (corners[(i + 1) % 4] - corners[i]) / 7, from = centre + corners[i] + k * along,
+                       to = from + along;
             const Pieces panel = fence_panel(random_, {from.x(), from.y(), ground}, {to.x(), to.y(), ground});
             add_thing(scene_, "fence", Label::Obstacle, panel, {});
         }
@@ -139,7 +153,8 @@ void Town::add_street_things(const Vec2& corner)
     }
     for (double at = street; at < block - street; at += 14) {
         const Vec2 place = corner + Vec2(at, street / 2 + 0.7);
-        add_thing(scene_, "tree", Label::Obstacle, tree(random_), {{place.x(), place.y(), ground + kerb}, Mat3::Identity()});
+        add_thing(scene_, "tree", Label::Obstacle, tree(random_),
+                  {{place.x(), place.y(), ground + kerb}, Mat3::Identity()});
     }
 }
 
@@ -151,7 +166,9 @@ void Town::add_block(const Vec2& corner)
     for (int side = 0; side < 4; ++side) {
         const double turn = side * std::numbers::pi / 2;
         for (const double along : {-17.0, 0.0, 17.0})
-            add_house(centre + Eigen::Rotation2Dd(turn) * Vec2(along + (along > 0 ? -1 : 1) * random_.between(0, 1), -ring), turn);
+            add_house(
+                centre + Eigen::Rotation2Dd(turn) * Vec2(along + (along > 0 ? -1 : 1) * random_.between(0, 1), -ring),
+                turn);
     }
     add_garden(centre);
     add_street_things(corner);
@@ -165,7 +182,8 @@ Scene Town::build()
         for (int col = 0; (col + 1) * block <= side_; ++col) {
             const Vec2 corner(col * block, row * block);
             const double coast = std::min(shore(corner.y()), shore(corner.y() + block));
-            const bool under_bridge = std::abs(corner.y() + block / 2 - side_ / 2) < block && corner.x() + block > coast - 70;
+            const bool under_bridge = std::abs(corner.y() + block / 2 - side_ / 2) < block &&
+                                      corner.x() + block > coast - 70;
             if (corner.x() + block < coast - 15 && !under_bridge) add_block(corner);
         }
     return std::move(scene_);

@@ -5,8 +5,8 @@
 namespace bench {
 
 /// A town of 1.28 x 1.28 km from the origin to +x and +y, about a million triangles, on a coast that leaves half of it
-/// under water: streets with raised pavements, closed houses with recesses, cars, fences, trees, and a bridge whose deck
-/// is terrain on piers that are obstacles.
+/// under water: streets with raised pavements, closed houses with recesses, cars, fences, trees, and a bridge whose
+/// deck is terrain on piers that are obstacles.
 ///
 /// Same seed, same scene.
 spawnfield::Scene town_scene(std::uint64_t seed = 1);

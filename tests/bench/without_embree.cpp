@@ -15,7 +15,10 @@ struct PlainFcl::Impl {};
 bool PlainFcl::is_available() { return false; }
 PlainFcl::PlainFcl(const spawnfield::Scene&, const spawnfield::Robot&) { fail(); }
 PlainFcl::~PlainFcl() = default;
-std::vector<std::optional<PlainFcl::TopPose>> PlainFcl::raster_top(const spawnfield::RasterGrid&, double, int) const { fail(); }
+std::vector<std::optional<PlainFcl::TopPose>> PlainFcl::raster_top(const spawnfield::RasterGrid&, double, int) const
+{
+    fail();
+}
 spawnfield::VerdictCounts PlainFcl::raster_3d(const spawnfield::RasterGrid&, double, bool, int) const { fail(); }
 std::vector<spawnfield::Verdict> PlainFcl::check(const std::vector<spawnfield::Pose>&, double, int) const { fail(); }
 bool PlainFcl::is_inside(const spawnfield::Vec3&) const { fail(); }

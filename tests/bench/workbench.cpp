@@ -36,7 +36,10 @@ std::uint64_t elements(const Scene& scene) { return scene.triangles.size() + sce
 
 std::uint64_t cells(const GridFrame& frame) { return std::uint64_t(frame.rows) * std::uint64_t(frame.cols); }
 
-std::uint64_t total(const VerdictCounts& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
+std::uint64_t total(const VerdictCounts& counts)
+{
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
 
 /// Alternative (a): every pose decided by FCL, none by the mask.
 template <class Options>
@@ -59,7 +62,8 @@ std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
     Random random(17);
     std::vector<Pose> poses;
     while (poses.size() < count) {
-        const double x = random.between(map.bounds.min.x(), map.bounds.max.x()), y = random.between(map.bounds.min.y(), map.bounds.max.y());
+        const double x = random.between(map.bounds.min.x(), map.bounds.max.x()),
+                     y = random.between(map.bounds.min.y(), map.bounds.max.y());
         const std::vector<double> layers = column_at(map.geometry, x, y).layers;
         if (layers.empty()) continue;
         const double z = layers[random.below(int(layers.size()))] + random.between(0, 1);
@@ -71,7 +75,9 @@ std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
 /// The raster that the library makes of bounds with these steps.
 RasterGrid grid_of(const Bounds& bounds, const RasterOptions& options)
 {
-    const auto count = [](double from, double to, double step) { return int(std::floor((to - from) / step + 1e-9)) + 1; };
+    const auto count = [](double from, double to, double step) {
+        return int(std::floor((to - from) / step + 1e-9)) + 1;
+    };
     RasterGrid grid;
     grid.x0 = bounds.min.x();
     grid.y0 = bounds.min.y();
@@ -94,7 +100,8 @@ RasterOptions thinned(RasterOptions options, int thinning)
 
 /// How two lists of verdicts differ.
 struct Differences {
-    std::size_t poses = 0, wrong = 0, inside = 0, missed = 0;  ///< missed: a ray that passes by on an edge of the ground
+    std::size_t poses = 0, wrong = 0, inside = 0,
+                missed = 0;  ///< missed: a ray that passes by on an edge of the ground
 
     void add(const PlainFcl& fcl, const Vec3& centre, Verdict ours, Verdict theirs)
     {
@@ -108,8 +115,10 @@ struct Differences {
     {
         std::string out = formatted("%zu poses, %zu verdicts of plain FCL differ", poses, wrong);
         for (const auto& [pair, count] : pairs) out += formatted(", %zu %s", count, pair.c_str());
-        return out + formatted("; %zu more where the robot is wholly inside closed meshes, %zu where Embree's ray misses an edge of the ground",
-                               inside, missed);
+        return out + formatted(
+                         "; %zu more where the robot is wholly inside closed meshes, %zu where Embree's ray misses an "
+                         "edge of the ground",
+                         inside, missed);
     }
     std::map<std::string, std::size_t> pairs;  ///< "<ours> but <theirs>", and how many
 };
@@ -156,12 +165,15 @@ void Workbench::add_rasters(std::vector<Stage>& out)
 {
     const auto stage = [this](const std::string& name, const RasterOptions& options) {
         Stage made{name, true, [this, options](int threads) { return raster(with_threads(options, threads)); }};
-        made.rivals.push_back({"exhaustive", [this, options](int threads) { return raster(exhaustive(with_threads(options, threads))); }, true});
+        made.rivals.push_back(
+            {"exhaustive", [this, options](int threads) { return raster(exhaustive(with_threads(options, threads))); },
+             true});
         return made;
     };
     for (const RasterWork& work : setting_.rasters) {
         out.push_back(stage(work.name, options_2d(work)));
-        if (has_plain_fcl() && is_top_raster(work)) out.back().rivals.push_back({"fcl", [this, work](int threads) { return fcl_raster_2d(work, threads); }});
+        if (has_plain_fcl() && is_top_raster(work))
+            out.back().rivals.push_back({"fcl", [this, work](int threads) { return fcl_raster_2d(work, threads); }});
     }
     out.push_back(stage("raster3d", options_3d()));
     if (has_plain_fcl()) out.back().rivals.push_back({"fcl", [this](int threads) { return fcl_raster_3d(threads); }});
@@ -170,13 +182,17 @@ void Workbench::add_rasters(std::vector<Stage>& out)
 void Workbench::add_spawns(std::vector<Stage>& out)
 {
     out.push_back({"check", true, [this](int threads) { return check(with_threads(QueryOptions{}, threads)); }});
-    out.back().rivals.push_back({"exhaustive", [this](int threads) { return check(exhaustive(with_threads(QueryOptions{}, threads))); }, true});
+    out.back().rivals.push_back(
+        {"exhaustive", [this](int threads) { return check(exhaustive(with_threads(QueryOptions{}, threads))); }, true});
     if (has_plain_fcl()) out.back().rivals.push_back({"fcl", [this](int threads) { return fcl_check(threads); }});
     out.push_back({"sample", true, [this](int threads) { return sample(with_threads(sample_options(), threads)); }});
-    out.back().rivals.push_back({"exhaustive", [this](int threads) { return sample(exhaustive(with_threads(sample_options(), threads))); }});
+    out.back().rivals.push_back(
+        {"exhaustive", [this](int threads) { return sample(exhaustive(with_threads(sample_options(), threads))); }});
     if (has_nav_mesh()) out.back().rivals.push_back({"recast", [this](int) { return nav_draw(); }});
     out.push_back({"search", true, [this](int threads) { return search(with_threads(search_options(), threads)); }});
-    out.back().rivals.push_back({"exhaustive", [this](int threads) { return search(exhaustive(with_threads(search_options(), threads))); }, true});
+    out.back().rivals.push_back(
+        {"exhaustive", [this](int threads) { return search(exhaustive(with_threads(search_options(), threads))); },
+         true});
 }
 
 /// What the alternatives take before their first answer.
@@ -184,14 +200,17 @@ void Workbench::add_set_ups(std::vector<Stage>& out)
 {
     if (has_plain_fcl() && elements(scene()) > 0)
         out.push_back({"fcl set-up", false, [this](int) {
-                           const auto made = timed([&] { return std::make_unique<PlainFcl>(scene(), setting_.robot()); });
+                           const auto made = timed(
+                               [&] { return std::make_unique<PlainFcl>(scene(), setting_.robot()); });
                            return Measurement{elements(scene()), made.seconds, 0};
                        }});
     if (has_nav_mesh())
-        out.push_back({"recast set-up", false, [this](int) {
-                           const auto made = timed([&] { return std::make_unique<NavMesh>(scene(), walker_of(setting_.robot(), 0.1)); });
-                           return Measurement{elements(scene()), made.seconds, Digest().add(made.result->polygons()).value()};
-                       }});
+        out.push_back(
+            {"recast set-up", false, [this](int) {
+                 const auto made = timed(
+                     [&] { return std::make_unique<NavMesh>(scene(), walker_of(setting_.robot(), 0.1)); });
+                 return Measurement{elements(scene()), made.seconds, Digest().add(made.result->polygons()).value()};
+             }});
 }
 
 namespace {
@@ -305,9 +324,11 @@ Measurement Workbench::terrain(int threads)
 Measurement Workbench::occupancy(int threads)
 {
     const double voxel = 2.5 * setting_.cell;
-    const auto tree = timed([&, &ready = map()] { return build_occupancy(ready.geometry, ready.bounds, voxel, threads); });
+    const auto tree = timed(
+        [&, &ready = map()] { return build_occupancy(ready.geometry, ready.bounds, voxel, threads); });
     tree.result.write(folder_ / "occupancy.bt");
-    return {cells(frame_around(map().bounds, voxel)), tree.seconds, Digest().add(bytes_of(folder_ / "occupancy.bt")).value()};
+    return {cells(frame_around(map().bounds, voxel)), tree.seconds,
+            Digest().add(bytes_of(folder_ / "occupancy.bt")).value()};
 }
 
 Measurement Workbench::bake(int threads)
@@ -372,7 +393,8 @@ Measurement Workbench::check(const QueryOptions& options)
     const CollisionChecker& ready = checker();
     const std::vector<Pose>& asked = poses();
     const auto judged = timed([&] { return check_poses(map(), ready, asked, options); });
-    const auto exact = std::count_if(judged.result.begin(), judged.result.end(), [](const Judgement& j) { return j.exact_check; });
+    const auto exact = std::count_if(judged.result.begin(), judged.result.end(),
+                                     [](const Judgement& j) { return j.exact_check; });
     return {asked.size(), judged.seconds, digest_of(judged.result), std::uint64_t(exact)};
 }
 
@@ -437,7 +459,9 @@ Measurement Workbench::nav_draw()
 std::vector<std::string> Workbench::comparisons(const std::string& only)
 {
     std::vector<std::string> out;
-    const auto wanted = [&](const std::string& stage) { return (setting_.name + " " + stage).find(only) != std::string::npos; };
+    const auto wanted = [&](const std::string& stage) {
+        return (setting_.name + " " + stage).find(only) != std::string::npos;
+    };
     if (has_plain_fcl()) {
         for (const RasterWork& work : setting_.rasters)
             if (is_top_raster(work) && wanted(work.name)) out.push_back(compare_2d(work));
@@ -458,7 +482,8 @@ std::string Workbench::compare_2d(const RasterWork& work)
     Differences differences;
     std::size_t extra = theirs.size() - std::size_t(std::count(theirs.begin(), theirs.end(), std::nullopt));
     for (const RasterPose& pose : ours.poses) {
-        const int row = int(std::lround((pose.y - ours.grid.y0) / ours.grid.step)), col = int(std::lround((pose.x - ours.grid.x0) / ours.grid.step));
+        const int row = int(std::lround((pose.y - ours.grid.y0) / ours.grid.step)),
+                  col = int(std::lround((pose.x - ours.grid.x0) / ours.grid.step));
         const auto& other = theirs[std::size_t(row) * std::size_t(ours.grid.cols) + std::size_t(col)];
         if (other) --extra;
         if (!other || std::abs(other->z - pose.z) > 1e-3) {
@@ -475,10 +500,12 @@ std::string Workbench::compare_3d()
 {
     const RasterResult ours = spawnfield::raster(map(), checker(), thinned(options_3d(), setting_.thinning));
     const VerdictCounts theirs = plain_fcl().raster_3d(ours.grid, 1.0, setting_.height_check, 0);
-    std::string text = setting_.name + formatted(" raster3d: of %llu poses", static_cast<unsigned long long>(total(ours.counts)));
+    std::string text = setting_.name +
+                       formatted(" raster3d: of %llu poses", static_cast<unsigned long long>(total(ours.counts)));
     for (std::size_t v = 0; v < verdict_count; ++v)
         if (ours.counts[v] + theirs[v] > 0)
-            text += formatted(", %s %llu (plain FCL %llu)", to_string(Verdict(v)), static_cast<unsigned long long>(ours.counts[v]),
+            text += formatted(", %s %llu (plain FCL %llu)", to_string(Verdict(v)),
+                              static_cast<unsigned long long>(ours.counts[v]),
                               static_cast<unsigned long long>(theirs[v]));
     return text;
 }
@@ -509,8 +536,9 @@ std::string Workbench::compare_nav_mesh()
         const double ground = layers.empty() ? point.z() : *std::min_element(layers.begin(), layers.end(), nearer);
         snapped.push_back({{point.x(), point.y(), ground + 0.1}, rotation});
     }
-    return setting_.name + formatted(" recast: %d tiles, %d polygons, %zu points, %.3g/s: ", mesh.tiles(), mesh.polygons(), drawn.size(),
-                                     double(drawn.size()) / points.seconds) +
+    return setting_.name +
+           formatted(" recast: %d tiles, %d polygons, %zu points, %.3g/s: ", mesh.tiles(), mesh.polygons(),
+                     drawn.size(), double(drawn.size()) / points.seconds) +
            shares(drawn) + " as drawn; " + shares(snapped) + " at 0.1 m above the true ground; " + coverage();
 }
 
@@ -518,8 +546,10 @@ std::string Workbench::compare_nav_mesh()
 std::string Workbench::coverage()
 {
     const SpawnList ours = spawnfield::sample(map(), checker(), sample_options());
-    const auto covered = std::count_if(ours.spawns.begin(), ours.spawns.end(), [&](const Spawn& s) { return nav_mesh().covers(s.position); });
-    return formatted("its mesh covers %.1f %% of our %zu samples", 100.0 * double(covered) / double(ours.spawns.size()), ours.spawns.size());
+    const auto covered = std::count_if(ours.spawns.begin(), ours.spawns.end(),
+                                       [&](const Spawn& s) { return nav_mesh().covers(s.position); });
+    return formatted("its mesh covers %.1f %% of our %zu samples", 100.0 * double(covered) / double(ours.spawns.size()),
+                     ours.spawns.size());
 }
 
 /// "4.7 % collide (4.0 % wholly inside closed meshes), 94.8 % valid".
@@ -535,8 +565,11 @@ std::string Workbench::shares(const std::vector<Pose>& asked)
         if (has_plain_fcl()) inside += plain_fcl().is_inside(asked[i].rotation * centre + asked[i].position);
     }
     const double percent = 100.0 / double(asked.size());
-    const std::string hidden = has_plain_fcl() ? formatted(" (%.2f %% with their centre inside closed meshes)", percent * double(inside)) : "";
-    return formatted("%.2f %% collide", percent * double(collide)) + hidden + formatted(", %.2f %% valid", percent * double(valid));
+    const std::string hidden = has_plain_fcl() ? formatted(" (%.2f %% with their centre inside closed meshes)",
+                                                           percent * double(inside))
+                                               : "";
+    return formatted("%.2f %% collide", percent * double(collide)) + hidden +
+           formatted(", %.2f %% valid", percent * double(valid));
 }
 
 }  // namespace bench

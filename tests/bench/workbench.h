@@ -15,7 +15,7 @@ namespace bench {
 /// A 2D raster among the stages.
 struct RasterWork {
     std::string name;
-    double step, offset;              ///< m
+    double step, offset;  ///< m
     spawnfield::LayerChoice layers = {};
 };
 
@@ -32,8 +32,8 @@ struct Setting {
     double cell = 0.5;               ///< of the terrain raster, m; a voxel is 2.5 cells
     std::vector<RasterWork> rasters = {};
     double step_3d = 1;
-    int thinning = 1;              ///< plain FCL does every so many-th row and column of the 3D raster
-    std::size_t poses = 100000;    ///< to check
+    int thinning = 1;            ///< plain FCL does every so many-th row and column of the 3D raster
+    std::size_t poses = 100000;  ///< to check
     std::size_t samples = 2000;
     double sample_distance = 2.5;  ///< m
     std::size_t finds = 500;       ///< valid ones of a search
@@ -44,7 +44,7 @@ struct Setting {
 enum class Extent { Quick, Usual, Full };
 std::vector<Setting> settings(Extent extent);
 std::vector<Setting> tiled_settings(Extent extent);  ///< hills-1x, hills-4x, hills-16x: as many tiles, for baking
-spawnfield::Robot husky_box();  ///< box:0.99,0.67,0.39
+spawnfield::Robot husky_box();                       ///< box:0.99,0.67,0.39
 
 /// One scene with all that its stages need, made when it is first asked for.
 class Workbench {
@@ -127,9 +127,9 @@ private:
     std::vector<spawnfield::Pose> poses_;
 };
 
-/// A stage and its rivals ("stage rival"), each once untimed and then in turns: round after round each of them once. What
-/// takes longer than 10 s is not run again: then the first time counts.
-/// Throws std::runtime_error where results differ that have to be the same.
+/// A stage and its rivals ("stage rival"), each once untimed and then in turns: round after round each of them once.
+/// What takes longer than 10 s is not run again: then the first time counts. Throws std::runtime_error where results
+/// differ that have to be the same.
 std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds);
 
 }  // namespace bench

@@ -17,14 +17,17 @@ struct FuzzArgs {
 
 void add_options(CLI::App& app, FuzzArgs& args)
 {
-    app.add_option("--seconds", args.seconds, "Start no scene after this time (default 60)")->check(CLI::PositiveNumber);
+    app.add_option("--seconds", args.seconds, "Start no scene after this time (default 60)")
+        ->check(CLI::PositiveNumber);
     app.add_option("--seed", args.seed, "Of the first scene; the next ones follow (default 1)");
     app.add_option("--scenes", args.scenes, "At most so many scenes (default: as many as the time allows)");
-    app.add_flag("--independent", args.independent, "Compare check with the tests' own decision instead, which knows neither FCL nor a mask");
+    app.add_flag("--independent", args.independent,
+                 "Compare check with the tests' own decision instead, which knows neither FCL nor a mask");
     app.add_flag("--keep-going", args.keep_going, "Go on after a difference; the exit status still tells");
-    app.footer("Example, and how to repeat what it printed:\n"
-               "  spawnfield_fuzz --seconds 600 --seed 1\n"
-               "  spawnfield_fuzz --seed 4711 --scenes 1");
+    app.footer(
+        "Example, and how to repeat what it printed:\n"
+        "  spawnfield_fuzz --seconds 600 --seed 1\n"
+        "  spawnfield_fuzz --seed 4711 --scenes 1");
 }
 
 using Clock = std::chrono::steady_clock;
@@ -34,16 +37,18 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 void print_difference(const HardCase& hard, const compare::Tally& tally)
 {
     std::cout << "seed " << hard.seed << ": " << tally.differences << " differences\n"
-              << "resolution " << hard.resolution << ", offset " << hard.offset << ", " << hard.scene.parts.size() << " parts:";
+              << "resolution " << hard.resolution << ", offset " << hard.offset << ", " << hard.scene.parts.size()
+              << " parts:";
     for (std::size_t i = 0; i < hard.scene.parts.size(); ++i) std::cout << " " << i << " " << hard.scene.parts[i].name;
-    std::cout << "\nrobot " << hard.robot.name << "\n" << compare::described(hard.robot) << "first: " << tally.first << "\n"
+    std::cout << "\nrobot " << hard.robot.name << "\n"
+              << compare::described(hard.robot) << "first: " << tally.first << "\n"
               << "repeat: spawnfield_fuzz --seed " << hard.seed << " --scenes 1" << std::endl;
 }
 
 void print_progress(std::uint64_t scenes, double seconds, const compare::Tally& all)
 {
-    std::cout << scenes << " scenes, " << all.poses << " poses, " << all.exact << " of " << all.asked << " checked exactly, " << all.differences
-              << " differences, " << int(seconds) << " s" << std::endl;
+    std::cout << scenes << " scenes, " << all.poses << " poses, " << all.exact << " of " << all.asked
+              << " checked exactly, " << all.differences << " differences, " << int(seconds) << " s" << std::endl;
 }
 
 int run(const FuzzArgs& args)
@@ -54,7 +59,9 @@ int run(const FuzzArgs& args)
     std::uint64_t scenes = 0;
     for (; seconds_since(start) < args.seconds && (args.scenes == 0 || scenes < args.scenes); ++scenes) {
         const HardCase hard = hard_case(args.seed + scenes);
-        const compare::Tally tally = args.independent ? compare::independently(hard_case(args.seed + scenes, {.razor = false})) : compare::of_case(hard).sum();
+        const compare::Tally tally = args.independent
+                                         ? compare::independently(hard_case(args.seed + scenes, {.razor = false}))
+                                         : compare::of_case(hard).sum();
         all.add(tally);
         if (tally.differences > 0) print_difference(hard, tally);
         if (tally.differences > 0 && !args.keep_going) return 1;
@@ -70,7 +77,8 @@ int run(const FuzzArgs& args)
 
 int main(int argc, char** argv)
 {
-    CLI::App app{"Asks random hard scenes everything with the free-space mask and exhaustively: the answers must be the same"};
+    CLI::App app{
+        "Asks random hard scenes everything with the free-space mask and exhaustively: the answers must be the same"};
     FuzzArgs args;
     add_options(app, args);
     CLI11_PARSE(app, argc, argv);

@@ -1,4 +1,5 @@
-/// Writes robots with any rotation in every format, and truth.json with what they are, for the readers beside this file.
+/// Writes robots with any rotation in every format, and truth.json with what they are, for the readers beside this
+/// file.
 #include "worlds/random.h"
 
 #include <spawnfield/output_file.h>
@@ -17,12 +18,16 @@ namespace {
 std::vector<RobotStart> random_robots(std::size_t count)
 {
     constexpr double pi = std::numbers::pi;
-    const std::vector<std::string> names = numbered_names("--name", "husky_{i:03}", count), name_spaces = numbered_names("--namespace", "fleet/husky_{i}", count);
+    const std::vector<std::string> names = numbered_names("--name", "husky_{i:03}", count),
+                                   name_spaces = numbered_names("--namespace", "fleet/husky_{i}", count);
     Random random{11};
     std::vector<RobotStart> out;
     for (std::size_t i = 0; i < count; ++i) {
         const Rpy rpy = {random.between(-pi, pi), random.between(-pi / 2, pi / 2), random.between(-pi, pi)};
-        out.push_back({names[i], name_spaces[i], {random.between(-500, 500), random.between(-500, 500), random.between(-5, 90)}, rpy});
+        out.push_back({names[i],
+                       name_spaces[i],
+                       {random.between(-500, 500), random.between(-500, 500), random.between(-5, 90)},
+                       rpy});
     }
     out[1].rpy = {0, 0, 0};
     out[2].rpy = {1e-7, -2.5e-9, -3e-5};  // numbers that a shortest text gives exponents
@@ -37,10 +42,11 @@ nlohmann::json truth_of(const std::vector<RobotStart>& robots)
     nlohmann::json out = nlohmann::json::array();
     for (const RobotStart& robot : robots) {
         const Mat3 r = rotation_from(robot.rpy);
-        out.push_back({{"name", robot.name},
-                       {"namespace", robot.name_space},
-                       {"position", {robot.position.x(), robot.position.y(), robot.position.z()}},
-                       {"rotation", {{r(0, 0), r(0, 1), r(0, 2)}, {r(1, 0), r(1, 1), r(1, 2)}, {r(2, 0), r(2, 1), r(2, 2)}}}});
+        out.push_back(
+            {{"name", robot.name},
+             {"namespace", robot.name_space},
+             {"position", {robot.position.x(), robot.position.y(), robot.position.z()}},
+             {"rotation", {{r(0, 0), r(0, 1), r(0, 2)}, {r(1, 0), r(1, 1), r(1, 2)}, {r(2, 0), r(2, 1), r(2, 2)}}}});
     }
     return out;
 }
@@ -67,7 +73,8 @@ void write_all(const fs::path& folder)
     write("none.npy", root_poses_npy({}, QuaternionOrder::Wxyz));
     std::vector<Vec3> points;
     for (const RobotStart& robot : robots) points.push_back(robot.position);
-    const TerrainPatches patches = terrain_patches(points, {.rows = 2, .cols = 3, .bounds = {Vec3(-500, -500, 0), Vec3(500, 500, 0)}});
+    const TerrainPatches patches = terrain_patches(
+        points, {.rows = 2, .cols = 3, .bounds = {Vec3(-500, -500, 0), Vec3(500, 500, 0)}});
     write("flat_patches.npy", patches.flat_patches);
     write("terrain_origins.npy", patches.terrain_origins);
     write("carla.json", carla_json(robots, "vehicle.audi.tt"));

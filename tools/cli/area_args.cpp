@@ -30,34 +30,44 @@ void tell_about(const CommonArgs& common, const Map& map, const std::string& opt
     const Bounds bounds = region.bounds();
     tell_if_off_map(common, map, option + " " + region.name, bounds);
     if (!bounds.meets(map.bounds, 2) && map.origin)
-        notice(common, "regions are in the map's frame: its 0, 0 is x " + number(map.origin->x) + ", y " + number(map.origin->y) + " of the survey");
+        notice(common, "regions are in the map's frame: its 0, 0 is x " + number(map.origin->x) + ", y " +
+                           number(map.origin->y) + " of the survey");
     const auto longest = [](const Bounds& b) { return (b.max - b.min).head<2>().maxCoeff(); };
     if (longest(bounds) < 1e-3 * longest(map.bounds) && bounds.max.head<2>().cwiseAbs().maxCoeff() <= 180)
-        notice(common, option + " " + region.name + " is " + to_string(bounds, 2) + ", tiny beside the map; degrees need to become metres in the map's frame");
+        notice(common, option + " " + region.name + " is " + to_string(bounds, 2) +
+                           ", tiny beside the map; degrees need to become metres in the map's frame");
 }
 
 }  // namespace
 
 void add_area(CLI::App& command, AreaArgs& args)
 {
-    command.add_option("--region", args.regions,
-                       "Where poses are wanted: x0,y0,x1,y1 or x0,y0,z0,x1,y1,z1 in m, or a file in the map's metres: GeoJSON, CSV (x,y), map.yaml of nav2 (free cells); "
-                       "- for GeoJSON or CSV on standard input; repeatable: in any of them")
+    command
+        .add_option("--region", args.regions,
+                    "Where poses are wanted: x0,y0,x1,y1 or x0,y0,z0,x1,y1,z1 in m, or a file in the map's metres: "
+                    "GeoJSON, CSV (x,y), map.yaml of nav2 (free cells); "
+                    "- for GeoJSON or CSV on standard input; repeatable: in any of them")
         ->allow_extra_args(false);
-    command.add_option("--keep-out", args.keep_outs, "Where not, in the same ways; of a nav2 map the occupied cells (repeatable)")->allow_extra_args(false);
+    command
+        .add_option("--keep-out", args.keep_outs,
+                    "Where not, in the same ways; of a nav2 map the occupied cells (repeatable)")
+        ->allow_extra_args(false);
 }
 
 std::optional<Bounds> lone_box(const AreaArgs& args)
 {
-    if (args.regions.size() != 1 || std::filesystem::exists(args.regions[0]) || !is_box(args.regions[0])) return std::nullopt;
+    if (args.regions.size() != 1 || std::filesystem::exists(args.regions[0]) || !is_box(args.regions[0]))
+        return std::nullopt;
     return parse_bounds("--region", args.regions[0], true);
 }
 
 Area read_area(const CommonArgs& common, const AreaArgs& args)
 {
     Area out;
-    for (const std::string& text : args.regions) out.within.push_back(read_one(common, "--region", text, MapCells::Free));
-    for (const std::string& text : args.keep_outs) out.keep_out.push_back(read_one(common, "--keep-out", text, MapCells::Occupied));
+    for (const std::string& text : args.regions)
+        out.within.push_back(read_one(common, "--region", text, MapCells::Free));
+    for (const std::string& text : args.keep_outs)
+        out.keep_out.push_back(read_one(common, "--keep-out", text, MapCells::Occupied));
     return out;
 }
 

@@ -19,7 +19,8 @@ std::string words(const BakeReport& report)
 {
     char megabytes[32];
     std::snprintf(megabytes, sizeof megabytes, "%.1f MB", double(report.bytes) / 1e6);
-    return counted(std::uint64_t(report.layers), "layer") + ", " + std::to_string(report.occupancy_leaves) + " occupancy leaves, " + megabytes;
+    return counted(std::uint64_t(report.layers), "layer") + ", " + std::to_string(report.occupancy_leaves) +
+           " occupancy leaves, " + megabytes;
 }
 
 int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
@@ -28,9 +29,11 @@ int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
     SceneOptions reading = scene_options(args, args);
     BakeOptions options;
     if (resolution_given) options.resolution = parse_positive("--resolution", args.resolution);
-    if (occupancy_given) options.occupancy_resolution = parse_positive("--occupancy-resolution", args.occupancy_resolution);
+    if (occupancy_given)
+        options.occupancy_resolution = parse_positive("--occupancy-resolution", args.occupancy_resolution);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, false);
-    if (!args.z.empty() && !args.bounds.empty()) throw ArgumentError("--z and --bounds both limit heights; give one of them");
+    if (!args.z.empty() && !args.bounds.empty())
+        throw ArgumentError("--z and --bounds both limit heights; give one of them");
     if (!args.z.empty()) options.z = parse_z("--z", args.z);
     options.allow_no_terrain = args.allow_no_terrain;
     options.threads = args.threads;
@@ -56,20 +59,29 @@ void add_bake(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<BakeArgs>();
     CLI::App& command = *app.add_subcommand("bake", "Make a map from a scene");
-    command.add_option("scene", args->scene, "scene.yaml, a Gazebo world or model (.world, .sdf, a model's folder), a mesh (any format assimp reads), an OctoMap (.bt), an elevation model (.tif, .asc, .png, .raw) or a 2D map (map.yaml of nav2 or ROS)")->required();
-    command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")->required()->check(not_empty());
+    command
+        .add_option(
+            "scene", args->scene,
+            "scene.yaml, a Gazebo world or model (.world, .sdf, a model's folder), a mesh (any format assimp reads), "
+            "an OctoMap (.bt), an elevation model (.tif, .asc, .png, .raw) or a 2D map (map.yaml of nav2 or ROS)")
+        ->required();
+    command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")
+        ->required()
+        ->check(not_empty());
     auto* resolution = command.add_option("--resolution", args->resolution, "Side of a terrain cell, m (default 0.1)");
-    auto* occupancy = command.add_option("--occupancy-resolution", args->occupancy_resolution, "Side of a voxel, m (default 2.5 cells)");
-    command.add_option("--bounds", args->bounds, "x0,y0,z0,x1,y1,z1 in m (default: the scene's). z0 and z1 are z limits: layers beyond them are no ground, poses beyond them outside");
+    auto* occupancy = command.add_option("--occupancy-resolution", args->occupancy_resolution,
+                                         "Side of a voxel, m (default 2.5 cells)");
+    command.add_option("--bounds", args->bounds,
+                       "x0,y0,z0,x1,y1,z1 in m (default: the scene's). z0 and z1 are z limits: layers beyond them are "
+                       "no ground, poses beyond them outside");
     command.add_option("--z", args->z, "LOW:HIGH in m: z limits alone, of the whole scene (5: and :8 have one limit)");
     add_scene_options(command, *args);
     add_model_path(command, *args);
     command.add_flag("--allow-no-terrain", args->allow_no_terrain, "Bake a scene in which nothing is terrain");
     add_common(command, *args);
     command.footer("Example:\n  spawnfield bake maps/training/scene.yaml -o /tmp/training");
-    command.callback([=, &run] {
-        run = [=] { return run_bake(*args, resolution->count() > 0, occupancy->count() > 0); };
-    });
+    command.callback(
+        [=, &run] { run = [=] { return run_bake(*args, resolution->count() > 0, occupancy->count() > 0); }; });
 }
 
 }  // namespace spawnfield::cli

@@ -15,9 +15,12 @@ struct CheckArgs : QueryArgs {
 void write_verdicts(const CheckArgs& args, const VerdictReport& report)
 {
     write_output(args.out, [&](const auto& sink) {
-        if (args.format == "json") write_verdicts_json(report, sink);
-        else if (args.format == "junit") write_verdicts_junit(report, sink);
-        else sink(verdicts_csv(report.table, report.judgements, report.map.geometry.parts()));
+        if (args.format == "json")
+            write_verdicts_json(report, sink);
+        else if (args.format == "junit")
+            write_verdicts_junit(report, sink);
+        else
+            sink(verdicts_csv(report.table, report.judgements, report.map.geometry.parts()));
     });
 }
 
@@ -43,7 +46,8 @@ int run_check(const CheckArgs& args)
     fill(options, args, "check");
     options.exact_time = &summary.exact_time;
     const PoseTable table = open_poses(args, args.poses);
-    for (const std::string& name : replaced_columns(table)) notice(args, args.poses + ": column " + name + " is replaced by a new one");
+    for (const std::string& name : replaced_columns(table))
+        notice(args, args.poses + ": column " + name + " is replaced by a new one");
     const auto session = open_session(args);
     summary.lap("load");
     const std::vector<Judgement> judgements = check_poses(session->map, *session->checker, table.poses, options);
@@ -79,14 +83,16 @@ void add_check(CLI::App& app, Run& run)
         ->required();
     add_allow_empty(command, *args);
     command.add_option("--out,-o", args->out, "File to write (default: standard output)");
-    command.add_option("--format", args->format,
-                       "csv: the input's columns and the verdict; json; or junit: a test case for each pose (default csv)")
+    command
+        .add_option("--format", args->format,
+                    "csv: the input's columns and the verdict; json; or junit: a test case for each pose (default csv)")
         ->check(one_of({"csv", "json", "junit"}));
     command.add_flag("--require-valid", args->require_valid,
                      "End with status 3 if any pose is not valid; all rows are written in either case");
-    command.footer("Example:\n"
-                   "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/two_poses.csv\n"
-                   "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv");
+    command.footer(
+        "Example:\n"
+        "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/two_poses.csv\n"
+        "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv");
     command.callback([=, &run] { run = [=] { return run_check(*args); }; });
 }
 

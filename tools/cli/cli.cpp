@@ -58,14 +58,23 @@ void add_allow_empty(CLI::App& command, CommonArgs& args)
 void add_query(CLI::App& command, QueryArgs& args)
 {
     command.add_option("map", args.map, "Map folder, from `spawnfield bake`")->required();
-    command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, an SDF model, or box:LX,LY,LZ[@x,y,z] (m)")->required()->check(not_empty());
+    command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, an SDF model, or box:LX,LY,LZ[@x,y,z] (m)")
+        ->required()
+        ->check(not_empty());
     add_robot_options(command, args);
-    command.add_option("--max-height", args.max_height, "Most metres of the robot's origin above its ground (default 1)");
-    command.add_option("--max-water-depth", args.max_water_depth, "Water higher than this above the ground does not count, m (default: all does)");
-    command.add_option("--max-slope", args.max_slope, "Ask poses that would be valid how they stand too: steep above so many degrees, unstable over an edge (default: not asked)");
-    command.add_option("--collision", args.collision, "What the robot must not touch: geometry (exact), or octree (the baked voxels)")
+    command.add_option("--max-height", args.max_height,
+                       "Most metres of the robot's origin above its ground (default 1)");
+    command.add_option("--max-water-depth", args.max_water_depth,
+                       "Water higher than this above the ground does not count, m (default: all does)");
+    command.add_option("--max-slope", args.max_slope,
+                       "Ask poses that would be valid how they stand too: steep above so many degrees, unstable over "
+                       "an edge (default: not asked)");
+    command
+        .add_option("--collision", args.collision,
+                    "What the robot must not touch: geometry (exact), or octree (the baked voxels)")
         ->check(one_of({"geometry", "octree"}));
-    command.add_flag("--exhaustive", args.exhaustive, "Check every pose exactly, without the free-space mask: the same answers, slowly");
+    command.add_flag("--exhaustive", args.exhaustive,
+                     "Check every pose exactly, without the free-space mask: the same answers, slowly");
     add_common(command, args);
 }
 
@@ -80,7 +89,8 @@ void refuse(const CLI::App& command, const std::vector<std::string>& options, co
         if (command.count(option) > 0) throw ArgumentError(option + " " + reason);
 }
 
-void tell_idle(const CommonArgs& args, const CLI::App& command, const std::vector<std::string>& options, const std::string& reason)
+void tell_idle(const CommonArgs& args, const CLI::App& command, const std::vector<std::string>& options,
+               const std::string& reason)
 {
     for (const std::string& option : options)
         if (command.count(option) > 0) notice(args, option + " has no effect: " + reason);
@@ -261,7 +271,8 @@ void fill(QueryOptions& options, const QueryArgs& args, const std::string& label
     options.exhaustive = args.exhaustive;
     options.threads = args.threads;
     options.progress = progress_bar(args, label);
-    if (args.max_slope && !(*args.max_slope > 0 && *args.max_slope < 90)) throw bad_value("--max-slope", *args.max_slope, "> 0 and < 90 degrees");
+    if (args.max_slope && !(*args.max_slope > 0 && *args.max_slope < 90))
+        throw bad_value("--max-slope", *args.max_slope, "> 0 and < 90 degrees");
     if (args.max_slope) options.max_slope = *args.max_slope * std::numbers::pi / 180;
     if (!(options.max_height >= 0)) throw bad_value("--max-height", options.max_height, ">= 0 m");
     if (!(options.max_water_depth >= 0)) throw bad_value("--max-water-depth", options.max_water_depth, ">= 0 m");
@@ -276,11 +287,12 @@ void tell_if_off_map(const CommonArgs& args, const Map& map, const std::string& 
 void tell_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice& layers)
 {
     if (layers.kind == LayerChoice::Kind::Index && layers.index >= map.layers)
-        notice(args, "--layers " + std::to_string(layers.index) + ": no cell of the map has so many, the most is " + counted(std::uint64_t(map.layers), "layer") +
-                         " (0 is the highest)");
+        notice(args, "--layers " + std::to_string(layers.index) + ": no cell of the map has so many, the most is " +
+                         counted(std::uint64_t(map.layers), "layer") + " (0 is the highest)");
 }
 
-void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer,
+void write_output(const std::string& file,
+                  const std::function<void(const std::function<void(std::string_view)>&)>& writer,
                   const std::function<void()>& then)
 {
     clear_progress_bar();

@@ -64,7 +64,8 @@ CLI::Validator not_empty();
 void refuse(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason);
 
 /// A notice for each of the options that was given and says nothing here.
-void tell_idle(const CommonArgs& args, const CLI::App& command, const std::vector<std::string>& options, const std::string& reason);
+void tell_idle(const CommonArgs& args, const CLI::App& command, const std::vector<std::string>& options,
+               const std::string& reason);
 
 /// Words for people: notices, one at a time on standard error, unless --quiet.
 void notice(const CommonArgs& args, const std::string& text);
@@ -154,8 +155,9 @@ void tell_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice&
 
 /// `-o FILE`, whole or not at all, or standard output where the file is empty or `-`. `then` runs when all is written
 /// but the file has not its name yet: it gets that only if `then` succeeds too.
-void write_output(const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer,
-                  const std::function<void()>& then = [] {});
+void write_output(
+    const std::string& file, const std::function<void(const std::function<void(std::string_view)>&)>& writer,
+    const std::function<void()>& then = [] {});
 
 /// Each adds its command to the app; `run` is set when it is chosen.
 using Run = std::function<int()>;

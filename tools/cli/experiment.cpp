@@ -21,8 +21,8 @@ struct ExperimentArgs : RasterArgs {
     std::string steps, steps_z, out, command_line;
 };
 
-/// "FROM:TO:BY", TO included (to 1e-9 of BY), or one number; m. Each is rounded to 1e-9 m, so that 0.1:0.5:0.1 has 0.3 in it
-/// and not its neighbour. Throws ArgumentError.
+/// "FROM:TO:BY", TO included (to 1e-9 of BY), or one number; m. Each is rounded to 1e-9 m, so that 0.1:0.5:0.1 has 0.3
+/// in it and not its neighbour. Throws ArgumentError.
 std::vector<double> parse_steps(const std::string& option, const std::string& text)
 {
     constexpr double most = 10000;
@@ -42,9 +42,11 @@ std::vector<double> parse_steps(const std::string& option, const std::string& te
 std::vector<std::pair<double, double>> step_pairs(const ExperimentArgs& args)
 {
     const std::vector<double> across = parse_steps("--steps", args.steps);
-    const std::vector<double> up = args.steps_z.empty() ? std::vector<double>{0} : parse_steps("--steps-z", args.steps_z);
+    const std::vector<double> up = args.steps_z.empty() ? std::vector<double>{0}
+                                                        : parse_steps("--steps-z", args.steps_z);
     if (up.size() != 1 && up.size() != across.size())
-        throw ArgumentError("--steps-z has " + counted(up.size(), "step") + ", needs 1 or as many as --steps: " + std::to_string(across.size()));
+        throw ArgumentError("--steps-z has " + counted(up.size(), "step") +
+                            ", needs 1 or as many as --steps: " + std::to_string(across.size()));
     std::vector<std::pair<double, double>> out;
     for (std::size_t i = 0; i < across.size(); ++i) out.emplace_back(across[i], up[up.size() == 1 ? 0 : i]);
     return out;
@@ -55,14 +57,17 @@ void check_usage(const ExperimentArgs& args, const CLI::App& command)
     if (args.runs < 1) throw bad_value("--runs", double(args.runs), ">= 1");
     if (args.runs > 1000000) throw bad_value("--runs", double(args.runs), "at most 1000000");
     if (args.search) {
-        refuse(command, {"--dims", "--steps", "--steps-z", "--offset", "--layers", "--floor", "--no-height-check", "--snap"}, "is for rasters, not for --search");
+        refuse(command,
+               {"--dims", "--steps", "--steps-z", "--offset", "--layers", "--floor", "--no-height-check", "--snap"},
+               "is for rasters, not for --search");
         if (command.count("-n") == 0) throw ArgumentError("--search needs -n, the spawns wanted");
         return;
     }
     refuse(command, {"-n", "--min-distance", "--max-failures", "--seed"}, "needs --search");
     if (command.count("--dims") == 0) throw ArgumentError("--dims is required, 2 or 3 (or --search)");
     if (args.steps.empty()) throw ArgumentError("--steps is required, as 0.5:2:0.5 (or --search)");
-    if (args.dims == 2) tell_idle(args, command, {"--steps-z"}, "it is for --dims 3; in 2D poses stand on their layers");
+    if (args.dims == 2)
+        tell_idle(args, command, {"--steps-z"}, "it is for --dims 3; in 2D poses stand on their layers");
 }
 
 /// The share of all runs that is done.
@@ -77,8 +82,10 @@ public:
     ExperimentCommand(const ExperimentArgs& args, const CLI::App& command) : args_(args), summary_("experiment", args)
     {
         check_usage(args, command);
-        if (args.search) prepare_searches();
-        else prepare_rasters(command);
+        if (args.search)
+            prepare_searches();
+        else
+            prepare_rasters(command);
     }
 
     int run()
@@ -86,7 +93,8 @@ public:
         OutputFolder folder(args_.out, holds_only(experiment_files, "former experiment"));
         session_ = open_session(args_);
         if (args_.search) {
-            search_.bounds = with_heights(search_.bounds, heights_of(args_.ground, search_.bounds, "--bounds"), session_->map);
+            search_.bounds = with_heights(search_.bounds, heights_of(args_.ground, search_.bounds, "--bounds"),
+                                          session_->map);
             tell_if_off_map(args_, session_->map, "--bounds", search_.bounds);
             tell_about_area(args_, session_->map, search_.area);
         } else {
@@ -160,7 +168,9 @@ private:
             summary_.exact_checks += run.exact_checks;
         }
         summary_.set_counts(counts);
-        Experiment experiment{args_.command_line, session_->map.name, session_->map.hash, session_->robot.name, summary_.threads(), {}, std::move(runs)};
+        Experiment experiment{args_.command_line,   session_->map.name, session_->map.hash,
+                              session_->robot.name, summary_.threads(), {},
+                              std::move(runs)};
         if (args_.search) experiment.seed = search_.seed;
         write_file_atomically(folder.path() / "experiment.csv", experiment_csv(experiment.runs));
         write_file_atomically(folder.path() / "experiment.md", experiment_markdown(experiment));
@@ -177,7 +187,8 @@ private:
         summary_.seed = args_.search ? search_.seed : 0;
         summary_.finish();
         if (short_runs_ == 0) return done;
-        notice(args_, counted(short_runs_, "run") + " of " + std::to_string(args_.runs) + " found fewer than " + std::to_string(search_.count) +
+        notice(args_, counted(short_runs_, "run") + " of " + std::to_string(args_.runs) + " found fewer than " +
+                          std::to_string(search_.count) +
                           " spawns; a smaller --min-distance, more --max-failures or a wider " +
                           (search_.area.is_everywhere() ? "--bounds" : "--region") + " may give more");
         return fewer_found;
@@ -198,18 +209,27 @@ void add_experiment(CLI::App& app, const std::string& command_line, Run& run)
 {
     auto args = std::make_shared<ExperimentArgs>();
     args->command_line = command_line;
-    CLI::App& command = *app.add_subcommand("experiment", "Rasters of many steps, or random searches of many seeds, timed and counted");
+    CLI::App& command = *app.add_subcommand(
+        "experiment", "Rasters of many steps, or random searches of many seeds, timed and counted");
     add_raster_query(command, *args);
     command.add_option("--steps", args->steps, "Between columns: FROM:TO:BY with TO included, or one number, m");
-    command.add_option("--steps-z", args->steps_z, "Between heights: as many as --steps, pairwise, or one for all, m (default: --steps)");
+    command.add_option("--steps-z", args->steps_z,
+                       "Between heights: as many as --steps, pairwise, or one for all, m (default: --steps)");
     command.add_option("--runs", args->runs, "Of each step, or of the search (default 1)");
-    command.add_flag("--search", args->search, "Random searches instead of rasters: seed --seed, the next one for each further run");
+    command.add_flag("--search", args->search,
+                     "Random searches instead of rasters: seed --seed, the next one for each further run");
     add_draws(command, args->draws);
     add_max_failures(command, args->draws);
-    command.add_option("--out,-o", args->out, "Folder to write: experiment.csv, experiment.md; a former one is replaced")->required()->check(not_empty());
-    command.footer("Example:\n"
-                   "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --steps 0.5:2:0.5 --offset 0.5 --runs 3 -o /tmp/box_steps\n"
-                   "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --search -n 20 --min-distance 1.5 --runs 5 -o /tmp/box_searches");
+    command
+        .add_option("--out,-o", args->out, "Folder to write: experiment.csv, experiment.md; a former one is replaced")
+        ->required()
+        ->check(not_empty());
+    command.footer(
+        "Example:\n"
+        "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --steps 0.5:2:0.5 --offset 0.5 "
+        "--runs 3 -o /tmp/box_steps\n"
+        "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --search -n 20 --min-distance 1.5 --runs 5 "
+        "-o /tmp/box_searches");
     command.callback([=, &command, &run] { run = [=, &command] { return ExperimentCommand(*args, command).run(); }; });
 }
 

@@ -22,7 +22,10 @@ void for_each_verdict(const Visit& visit)
     for (std::size_t v = verdict_count; v-- > 0;) visit(Verdict(v));
 }
 
-std::uint64_t poses_of(const ExperimentRun& run) { return std::accumulate(run.counts.begin(), run.counts.end(), std::uint64_t{0}); }
+std::uint64_t poses_of(const ExperimentRun& run)
+{
+    return std::accumulate(run.counts.begin(), run.counts.end(), std::uint64_t{0});
+}
 
 /// As people read it; the CSV file has all digits.
 std::string six_digits(double value)
@@ -64,7 +67,9 @@ std::string table_row(Runs runs)
     if (runs[0].step) cell(number(*runs[0].step));
     if (runs[0].step_z) cell(number(*runs[0].step_z));
     cell(number(tools::mean(runs, poses_of)));
-    for_each_verdict([&](Verdict verdict) { cell(number(tools::mean(runs, [&](const ExperimentRun& run) { return run.counts[std::size_t(verdict)]; }))); });
+    for_each_verdict([&](Verdict verdict) {
+        cell(number(tools::mean(runs, [&](const ExperimentRun& run) { return run.counts[std::size_t(verdict)]; })));
+    });
     cell(number(tools::mean(runs, &ExperimentRun::exact_checks)));
     cell(six_digits(tools::mean(runs, &ExperimentRun::seconds)));
     cell(runs.size() > 1 ? six_digits(tools::sample_variance(runs, &ExperimentRun::seconds)) : "");
@@ -79,9 +84,11 @@ std::string experiment_csv(const std::vector<ExperimentRun>& runs)
     for_each_verdict([&](Verdict verdict) { text += std::string(",") + to_string(verdict); });
     text += ",exact_checks,seconds,seed\n";
     for (const ExperimentRun& run : runs) {
-        text += std::to_string(run.number) + "," + number_or_nothing(run.step) + "," + number_or_nothing(run.step_z) + "," + std::to_string(poses_of(run));
+        text += std::to_string(run.number) + "," + number_or_nothing(run.step) + "," + number_or_nothing(run.step_z) +
+                "," + std::to_string(poses_of(run));
         for_each_verdict([&](Verdict verdict) { text += "," + std::to_string(run.counts[std::size_t(verdict)]); });
-        text += "," + std::to_string(run.exact_checks) + "," + number(run.seconds) + "," + (run.seed ? std::to_string(*run.seed) : "") + "\n";
+        text += "," + std::to_string(run.exact_checks) + "," + number(run.seconds) + "," +
+                (run.seed ? std::to_string(*run.seed) : "") + "\n";
     }
     return text;
 }
@@ -93,10 +100,16 @@ std::string experiment_markdown(const Experiment& experiment)
     std::string text = "# Experiment\n\n```\n" + experiment.command_line + "\n```\n\n";
     text += "- map " + experiment.map + ", hash " + experiment.map_hash + "\n";
     text += "- robot " + experiment.robot + "\n";
-    text += "- " + (experiment.seed ? "seed " + std::to_string(*experiment.seed) + ", one more for each further run" : "no seed: rasters draw nothing") + "\n";
+    text += "- " +
+            (experiment.seed ? "seed " + std::to_string(*experiment.seed) + ", one more for each further run"
+                             : "no seed: rasters draw nothing") +
+            "\n";
     text += "- " + tools::machine() + "; " + counted(experiment.threads, "thread") + "\n\n";
-    text += repeated > 1 ? "Each row: means of " + counted(repeated, "run") + ", and the sample variance of their times. " : "Each row: one run. ";
-    text += "Times are those of the query alone; the very first one also reads\nwhat it needs of the map.\n\n" + table_head(runs[0].step.has_value(), runs[0].step_z.has_value());
+    text += repeated > 1
+                ? "Each row: means of " + counted(repeated, "run") + ", and the sample variance of their times. "
+                : "Each row: one run. ";
+    text += "Times are those of the query alone; the very first one also reads\nwhat it needs of the map.\n\n" +
+            table_head(runs[0].step.has_value(), runs[0].step_z.has_value());
     for (std::size_t first = 0; first < runs.size();) {
         const Runs same = runs_of_step(runs, first);
         text += table_row(same);

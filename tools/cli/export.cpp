@@ -26,12 +26,19 @@ std::vector<std::string> format_names()
 
 const ExportFormat& format_of(const std::string& name)
 {
-    return *std::find_if(formats().begin(), formats().end(), [&](const ExportFormat& format) { return format.name == name; });
+    return *std::find_if(formats().begin(), formats().end(),
+                         [&](const ExportFormat& format) { return format.name == name; });
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
+bool contains(const std::vector<std::string>& names, const std::string& name)
+{
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
 
-bool uses(const ExportFormat& format, const std::string& option) { return contains(format.needs, option) || contains(format.takes, option); }
+bool uses(const ExportFormat& format, const std::string& option)
+{
+    return contains(format.needs, option) || contains(format.takes, option);
+}
 
 /// "glb, ply": those that an option is for.
 std::string users_of(const std::string& option)
@@ -51,7 +58,7 @@ void check_options(const ExportArgs& args, const CLI::App& command)
     const ExportFormat& format = format_of(args.format);
     for (const std::string& option : format.needs)
         if (command.count(option) == 0) throw ArgumentError("--format " + args.format + " needs " + option);
-    if (contains(format.needs, "--out") && args.out == "-") 
+    if (contains(format.needs, "--out") && args.out == "-")
         throw ArgumentError("--out is \"-\": --format " + args.format + " cannot go to standard output, name a file");
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
@@ -84,15 +91,18 @@ std::string help()
         const std::string name = format.name;
         text += "  " + name + std::string(width - name.size() + 2, ' ') + format.about + "\n";
     }
-    return text + "Example:\n  spawnfield export /tmp/training --format nav2 --robot box:0.99,0.67,0.39 -o /tmp/training_nav2.yaml";
+    return text +
+           "Example:\n  spawnfield export /tmp/training --format nav2 --robot box:0.99,0.67,0.39 -o "
+           "/tmp/training_nav2.yaml";
 }
 
 }  // namespace
 
 const std::vector<std::string>& asking_options()
 {
-    static const std::vector<std::string> options{"--model-path", "--joints",    "--mesh-parts", "--max-height", "--max-water-depth",
-                                                  "--max-slope",  "--collision", "--exhaustive", "--offset",     "--yaw"};
+    static const std::vector<std::string> options{"--model-path",      "--joints",    "--mesh-parts", "--max-height",
+                                                  "--max-water-depth", "--max-slope", "--collision",  "--exhaustive",
+                                                  "--offset",          "--yaw"};
     return options;
 }
 
@@ -105,11 +115,15 @@ void add_export(CLI::App& app, Run& run)
     command.get_option("--robot")->required(false);
     command.add_option("--format", args->format, "One of the formats below")->required()->check(one_of(format_names()));
     command.add_option("--out,-o", args->out, "File to write (default: standard output, where the format can)");
-    add_ground(command, args->ground, "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the top (0 first)");
+    add_ground(command, args->ground,
+               "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the "
+               "top (0 first)");
     command.add_option("--yaw", args->yaw, "Of all poses, " + yaw_help + " (default 0)");
     command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
     command.add_option("--step", args->step, "Between columns, m");
-    command.add_option("--bounds", args->bounds, "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
+    command.add_option(
+        "--bounds", args->bounds,
+        "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
     command.add_flag("--local", args->local, "In the map's own frame, though the survey's coordinates are known");
     command.add_option("--poses,-p", args->poses,
                        "CSV file of poses, as sample and check write them; a column name names the robots where --name "

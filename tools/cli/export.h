@@ -28,9 +28,10 @@ struct ExportJob {
 /// A row of the table of formats.
 struct ExportFormat {
     const char* name;
-    const char* about;                ///< one line for --help
-    std::vector<std::string> needs;   ///< options that it cannot do without; --out where it does not go to standard output
-    std::vector<std::string> takes;   ///< further options that say something to it; others are refused
+    const char* about;  ///< one line for --help
+    std::vector<std::string>
+        needs;  ///< options that it cannot do without; --out where it does not go to standard output
+    std::vector<std::string> takes;  ///< further options that say something to it; others are refused
     void (*write)(const ExportJob&);
 };
 

@@ -35,15 +35,17 @@ std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& o
     const Session& session = job.session;
     std::string heights = height_words(job.args.ground, options.z, session.map);
     if (!heights.empty()) heights = ", " + heights;
-    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): where the origin of " + session.robot.name +
-            " can be, " + number(*options.offset) + " m above its layer (" + (job.args.ground.layers.empty() ? layers : job.args.ground.layers) + heights + "), yaw " +
-            number(options.yaw) + " rad"};
+    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash +
+            "): where the origin of " + session.robot.name + " can be, " + number(*options.offset) +
+            " m above its layer (" + (job.args.ground.layers.empty() ? layers : job.args.ground.layers) + heights +
+            "), yaw " + number(options.yaw) + " rad"};
 }
 
 void check_one_layer(const ExportJob& job, const LayerChoice& layers)
 {
     if (layers.kind == LayerChoice::Kind::All)
-        throw ArgumentError("--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of " + job.args.format + " has one value");
+        throw ArgumentError("--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of " +
+                            job.args.format + " has one value");
 }
 
 /// One layer: a pixel has one value.
@@ -57,7 +59,8 @@ RasterOptions image_options(const ExportJob& job)
 GridFrame image_frame(const ExportJob& job)
 {
     const Map& map = job.session.map;
-    return frame_around(map.bounds, job.was_given("--resolution") ? parse_positive("--resolution", job.args.resolution) : map.resolution);
+    return frame_around(map.bounds, job.was_given("--resolution") ? parse_positive("--resolution", job.args.resolution)
+                                                                  : map.resolution);
 }
 
 VerdictImage ask(const ExportJob& job, const RasterOptions& options, const GridFrame& frame)
@@ -117,7 +120,8 @@ void write_ply(const ExportJob& job)
     job.summary.lap("query");
     job.summary.set_counts(result.counts);
     job.summary.exact_checks = result.exact_checks;
-    write_output(job.args.out, [&](const auto& sink) { spawnfield::write_ply(result, comment_of(job, options, "all"), sink); });
+    write_output(job.args.out,
+                 [&](const auto& sink) { spawnfield::write_ply(result, comment_of(job, options, "all"), sink); });
 }
 
 void write_glb(const ExportJob& job)
@@ -133,7 +137,9 @@ void write_glb(const ExportJob& job)
         markers.names = column_of(table, "name");
     }
     const Progress progress = progress_bar(job.args, "export");
-    write_output(job.args.out, [&](const auto& sink) { spawnfield::write_glb(job.session.map, markers, sink, job.args.threads, progress); });
+    write_output(job.args.out, [&](const auto& sink) {
+        spawnfield::write_glb(job.session.map, markers, sink, job.args.threads, progress);
+    });
 }
 
 }  // namespace
@@ -141,14 +147,26 @@ void write_glb(const ExportJob& job)
 std::vector<ExportFormat> map_formats()
 {
     return {
-        {"nav2", "map_server's pair for ROS: -o FILE.yaml and FILE.pgm beside it, free where --robot can stand", {"--robot", "--out"},
-         with(asking_options(), {"--layers", "--z", "--floor", "--resolution"}), write_nav2},
-        {"geotiff", "bands of elevation, layers, clearance, slope, water, obstacle, and the verdict of --robot if there is one", {"--out"},
-         with(asking_options(), {"--robot", "--layers", "--z", "--floor", "--resolution", "--local"}), write_geotiff},
-        {"ply", "points where --robot was asked to stand, every --step metres, coloured by verdict", {"--robot", "--step"},
-         with(asking_options(), {"--layers", "--z", "--floor", "--bounds"}), write_ply},
-        {"glb", "the scene by labels, with a marker at each of --poses: --robot's shape, coloured by a column verdict", {},
-         {"--robot", "--model-path", "--joints", "--mesh-parts", "--poses"}, write_glb},
+        {"nav2",
+         "map_server's pair for ROS: -o FILE.yaml and FILE.pgm beside it, free where --robot can stand",
+         {"--robot", "--out"},
+         with(asking_options(), {"--layers", "--z", "--floor", "--resolution"}),
+         write_nav2},
+        {"geotiff",
+         "bands of elevation, layers, clearance, slope, water, obstacle, and the verdict of --robot if there is one",
+         {"--out"},
+         with(asking_options(), {"--robot", "--layers", "--z", "--floor", "--resolution", "--local"}),
+         write_geotiff},
+        {"ply",
+         "points where --robot was asked to stand, every --step metres, coloured by verdict",
+         {"--robot", "--step"},
+         with(asking_options(), {"--layers", "--z", "--floor", "--bounds"}),
+         write_ply},
+        {"glb",
+         "the scene by labels, with a marker at each of --poses: --robot's shape, coloured by a column verdict",
+         {},
+         {"--robot", "--model-path", "--joints", "--mesh-parts", "--poses"},
+         write_glb},
     };
 }
 

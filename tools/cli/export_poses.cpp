@@ -6,7 +6,8 @@ namespace {
 void write(const ExportJob& job)
 {
     const ExportArgs& args = job.args;
-    export_poses(args, job.command, args.simulator, args.poses, {args.format, args.out, args.robot, 1, robot_options(args)}, job.session);
+    export_poses(args, job.command, args.simulator, args.poses,
+                 {args.format, args.out, args.robot, 1, robot_options(args)}, job.session);
 }
 
 ExportFormat row(const char* name, const char* about)

@@ -13,7 +13,8 @@ Floor floor_of(const GroundArgs& args, const Map& map)
     std::string list;
     for (std::size_t k = 0; k < floors.size(); ++k)
         list += (k == 0 ? ": " : ", ") + std::to_string(k) + " at " + number(floors[k].height) + " m";
-    throw ArgumentError("--floor is " + std::to_string(args.floor) + "; the map has " + counted(floors.size(), "floor") + list);
+    throw ArgumentError("--floor is " + std::to_string(args.floor) + "; the map has " +
+                        counted(floors.size(), "floor") + list);
 }
 
 /// For people to read: an automatic offset is not a round number.
@@ -29,10 +30,14 @@ std::string rounded(double metres)
 void add_ground(CLI::App& command, GroundArgs& args, const std::string& layers_help)
 {
     command.add_option("--offset", args.offset,
-                       "Height of the robot's origin above its layer, m; auto: the robot's lowest point is 0.1 m above the layer (default auto)");
+                       "Height of the robot's origin above its layer, m; auto: the robot's lowest point is 0.1 m above "
+                       "the layer (default auto)");
     command.add_option("--layers,--layer", args.layers, layers_help);
-    command.add_option("--z", args.z, "LOW:HIGH in m: layers at other heights are no ground (5: and :8 have one limit)");
-    command.add_option("--floor", args.floor, "Layers of this floor alone, 0 the lowest; `spawnfield info MAP` lists floors")
+    command.add_option("--z", args.z,
+                       "LOW:HIGH in m: layers at other heights are no ground (5: and :8 have one limit)");
+    command
+        .add_option("--floor", args.floor,
+                    "Layers of this floor alone, 0 the lowest; `spawnfield info MAP` lists floors")
         ->check(CLI::Range(0, 1000000));
 }
 
@@ -74,7 +79,8 @@ ZRange heights_of(const GroundArgs& args, const Bounds& bounds, const std::strin
 ZRange with_floor(const ZRange& heights, const GroundArgs& args, const Map& map)
 {
     if (args.floor < 0) return heights;
-    if (!heights.is_unlimited()) throw ArgumentError("--floor and --z (or six numbers for a box) both limit heights; give one of them");
+    if (!heights.is_unlimited())
+        throw ArgumentError("--floor and --z (or six numbers for a box) both limit heights; give one of them");
     return floor_of(args, map).z;
 }
 
@@ -82,11 +88,14 @@ Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map)
 {
     if (bounds.is_empty() && heights.is_unlimited()) return bounds;
     Bounds out = bounds.is_empty() ? map.bounds : bounds;
-    const auto first_finite = [](double a, double b, double c) { return std::isfinite(a) ? a : std::isfinite(b) ? b : c; };
+    const auto first_finite = [](double a, double b, double c) {
+        return std::isfinite(a) ? a : std::isfinite(b) ? b : c;
+    };
     out.min.z() = first_finite(heights.low, bounds.is_empty() ? heights.low : bounds.min.z(), map.bounds.min.z());
     out.max.z() = first_finite(heights.high, bounds.is_empty() ? heights.high : bounds.max.z(), map.bounds.max.z());
     if (!(out.min.z() <= out.max.z()))
-        throw ArgumentError("--z lies off the map, which is z " + number(map.bounds.min.z()) + " to " + number(map.bounds.max.z()) + " m");
+        throw ArgumentError("--z lies off the map, which is z " + number(map.bounds.min.z()) + " to " +
+                            number(map.bounds.max.z()) + " m");
     return out;
 }
 
@@ -102,8 +111,9 @@ double choose_offset(const QueryArgs& args, const std::optional<double>& wanted,
     const double chosen = wanted.value_or(auto_offset(robot));
     const std::string value = rounded(chosen), how = wanted ? "" : " (auto)";
     if (chosen > args.max_height + touch_tolerance)
-        throw ArgumentError("--offset is " + value + " m" + how + ", needs at most --max-height, " + number(args.max_height) +
-                            " m: `check` calls higher poses aerial; give --max-height " + value + " or more");
+        throw ArgumentError("--offset is " + value + " m" + how + ", needs at most --max-height, " +
+                            number(args.max_height) + " m: `check` calls higher poses aerial; give --max-height " +
+                            value + " or more");
     summary.offset = chosen;
     summary.extra.push_back("offset " + (wanted ? number(chosen) : value) + " m" + how);
     return chosen;
@@ -113,10 +123,11 @@ std::string flat_ground_complaint(const Robot& robot, double offset)
 {
     if (!is_in_flat_ground(robot, offset)) return "";
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "at --offset %.6g m the robot collides with all flat ground: its lowest point is %.6g m below its origin; "
-                  "give --offset auto, which is %.6g m",
-                  offset, 0 - robot.bounds().min.z(), auto_offset(robot));
+    std::snprintf(
+        text, sizeof text,
+        "at --offset %.6g m the robot collides with all flat ground: its lowest point is %.6g m below its origin; "
+        "give --offset auto, which is %.6g m",
+        offset, 0 - robot.bounds().min.z(), auto_offset(robot));
     return text;
 }
 

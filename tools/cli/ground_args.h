@@ -4,7 +4,8 @@
 
 namespace spawnfield::cli {
 
-/// Which ground poses stand on, and how high above it: options of `sample`, `raster`, `heatmap`, `export` and `experiment`.
+/// Which ground poses stand on, and how high above it: options of `sample`, `raster`, `heatmap`, `export` and
+/// `experiment`.
 struct GroundArgs {
     std::string offset = "auto", layers = "all", z;
     int floor = -1;  ///< -1: not given
@@ -28,8 +29,8 @@ ZRange heights_of(const GroundArgs& args, const Bounds& bounds, const std::strin
 /// These heights, or those of --floor. Throws ArgumentError for a floor that the map does not have, or both given.
 ZRange with_floor(const ZRange& heights, const GroundArgs& args, const Map& map);
 
-/// The bounds with finite limits in z: those of `heights` where it has some, else the bounds' own, else the map's. Empty
-/// bounds stay empty if the heights are unlimited.
+/// The bounds with finite limits in z: those of `heights` where it has some, else the bounds' own, else the map's.
+/// Empty bounds stay empty if the heights are unlimited.
 Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map);
 
 /// "floor 1 at 5.2 m" or "heights 2:4 m", for people; empty if the heights are unlimited.

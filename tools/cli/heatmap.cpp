@@ -59,8 +59,9 @@ Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
     facing.is_any = std::any_of(spawns.begin(), spawns.end(),
                                 [&](const Spawn& spawn) { return !is_same_yaw(spawn.yaw, facing.yaw); });
     if (facing.is_any)
-        notice(args, "the spawns have different yaws: the ground shows at how many of 16 headings the robot fits "
-                     "(--yaw RAD shows one)");
+        notice(args,
+               "the spawns have different yaws: the ground shows at how many of 16 headings the robot fits "
+               "(--yaw RAD shows one)");
     else if (!is_same_yaw(facing.yaw, 0))
         notice(args, "the ground is shown for yaw " + number(facing.yaw) +
                          " rad, which all spawns have (--yaw RAD shows another)");
@@ -140,7 +141,8 @@ void crop_to_ground(const HeatmapArgs& args, const Map& map, const TerrainMap& t
     const std::optional<Bounds> ground = ground_bounds(map, terrain, options.z);
     if (!ground) return;
     options.bounds = *ground;
-    notice(args, "the picture shows " + to_string(*ground, 2) + ", where there is ground at these heights (--bounds shows another part)");
+    notice(args, "the picture shows " + to_string(*ground, 2) +
+                     ", where there is ground at these heights (--bounds shows another part)");
 }
 
 int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
@@ -161,7 +163,8 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     require_above_ground(session->robot, *options.offset);
     const TerrainMap terrain = read_terrain(session->map);
     crop_to_ground(args, session->map, terrain, options);
-    options.step = command.count("--step") > 0 ? parse_positive("--step", args.step) : default_step(session->map, options);
+    options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
+                                               : default_step(session->map, options);
     summary.lap("load");
     const RasterResult result = shown_raster(*session, options, facing.is_any, picture);
     summary.lap("query");
@@ -200,13 +203,16 @@ void add_heatmap(CLI::App& app, Run& run)
     add_allow_empty(command, *args);
     command.add_flag("--names", args->names,
                      "Write each spawn's name beside it: its column name, or else the number of its row, from 1");
-    add_ground(command, args->ground, "all (valid if one layer is), top, bottom, or N from the top (0 first; default all)");
+    add_ground(command, args->ground,
+               "all (valid if one layer is), top, bottom, or N from the top (0 first; default all)");
     command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
     command.add_option("--yaw", args->yaw,
-                       "Of all poses, " + yaw_help + "; random: show at how many of 16 headings the robot fits "
-                       "(default: as the spawns face, else 0)");
-    command.add_option("--bounds", args->bounds,
-                       "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
+                       "Of all poses, " + yaw_help +
+                           "; random: show at how many of 16 headings the robot fits "
+                           "(default: as the spawns face, else 0)");
+    command.add_option(
+        "--bounds", args->bounds,
+        "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
     add_area(command, args->area);
     command
         .add_option("--size", args->size,

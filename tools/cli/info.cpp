@@ -30,18 +30,26 @@ Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json json_of(const Bounds& bounds) { return {{"min", json_of(bounds.min)}, {"max", json_of(bounds.max)}}; }
 
-Json json_of(const GeoOrigin& origin) { return {{"x", origin.x}, {"y", origin.y}, {"unit", origin.unit}, {"crs", origin.crs}}; }
+Json json_of(const GeoOrigin& origin)
+{
+    return {{"x", origin.x}, {"y", origin.y}, {"unit", origin.unit}, {"crs", origin.crs}};
+}
 
 Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
 {
     Json out;
     for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water})
-        out["labels"][to_string(label)] = {{"triangles", labels[std::size_t(label)].triangles}, {"primitives", labels[std::size_t(label)].primitives}};
+        out["labels"][to_string(label)] = {{"triangles", labels[std::size_t(label)].triangles},
+                                           {"primitives", labels[std::size_t(label)].primitives}};
     out["parts"] = Json::array();
     for (const Part& part : parts)
-        out["parts"].push_back({{"name", part.name}, {"kind", part.kind}, {"label", to_string(part.label)},
-                                {"triangles", part.triangles}, {"solid_pieces", part.solid_pieces},
-                                {"sheet_pieces", part.sheet_pieces}, {"open_edges", part.open_edges}});
+        out["parts"].push_back({{"name", part.name},
+                                {"kind", part.kind},
+                                {"label", to_string(part.label)},
+                                {"triangles", part.triangles},
+                                {"solid_pieces", part.solid_pieces},
+                                {"sheet_pieces", part.sheet_pieces},
+                                {"open_edges", part.open_edges}});
     return out;
 }
 
@@ -75,13 +83,15 @@ Json json_of(const FaceGroup& group)
 
 Json scene_json(const Scene& scene)
 {
-    Json out = {{"kind", "scene"}, {"name", scene.name}, {"bounds", json_of(scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds)}};
+    Json out = {{"kind", "scene"},
+                {"name", scene.name},
+                {"bounds", json_of(scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds)}};
     out.update(json_of(scene.count_labels(), scene.parts));
     const Json labels = labels_of_parts(scene);
     for (std::size_t p = 0; p < scene.parts.size(); ++p) out["parts"][p]["labels"] = labels[p];
     for (const FaceGroup& group : scene.face_groups)
         if (scene.parts[group.part].kind == "mesh")
-            out["parts"][group.part]["names"].push_back(json_of(group)); // others are meshes of our own making
+            out["parts"][group.part]["names"].push_back(json_of(group));  // others are meshes of our own making
     for (const NameRule& rule : scene.rules)
         out["rules"].push_back({{"what", rule.what}, {"label", to_string(rule.label)}, {"collisions", rule.count}});
     if (scene.origin) out["origin"] = json_of(*scene.origin);
@@ -100,15 +110,24 @@ Json floors_json(const Map& map)
 {
     Json out = Json::array();
     for (const Floor& floor : floors_of(map))
-        out.push_back({{"floor", out.size()}, {"height", floor.height}, {"z", json_of(floor.z)}, {"area", floor.area}, {"share", floor.share}});
+        out.push_back({{"floor", out.size()},
+                       {"height", floor.height},
+                       {"z", json_of(floor.z)},
+                       {"area", floor.area},
+                       {"share", floor.share}});
     return out;
 }
 
 Json map_json(const Map& map, bool verified)
 {
-    Json out = {{"kind", "map"}, {"name", map.name}, {"bounds", json_of(map.bounds)}, {"resolution", map.resolution},
-                {"occupancy_resolution", map.occupancy_resolution}, {"layers", map.layers},
-                {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}}, {"hash", map.hash}};
+    Json out = {{"kind", "map"},
+                {"name", map.name},
+                {"bounds", json_of(map.bounds)},
+                {"resolution", map.resolution},
+                {"occupancy_resolution", map.occupancy_resolution},
+                {"layers", map.layers},
+                {"scene", {{"file", map.scene_file}, {"xxh64", map.scene_hash}}},
+                {"hash", map.hash}};
     if (!map.z_limits.is_unlimited()) out["z_limits"] = json_of(map.z_limits);
     out["floors"] = floors_json(map);
     if (map.origin) out["origin"] = json_of(*map.origin);
@@ -131,13 +150,19 @@ Json robot_json(const Robot& robot)
     out["parts"] = Json::array();
     for (const RobotPart& part : robot.parts) {
         Json entry = {{"name", part.name}, {"shape", kind_of(part)}, {"bounds", json_of(part.bounds())}};
-        if (part.shape.kind == ShapeKind::Hull) entry["vertices"] = part.hull_vertices.size();
-        else entry["size"] = json_of(part.shape.size);
+        if (part.shape.kind == ShapeKind::Hull)
+            entry["vertices"] = part.hull_vertices.size();
+        else
+            entry["size"] = json_of(part.shape.size);
         out["parts"].push_back(entry);
     }
     out["meshes"] = Json::array();
     for (const MeshFit& fit : robot.meshes) {
-        Json entry = {{"name", fit.name}, {"file", fit.file}, {"parts", fit.parts}, {"volume", fit.volume}, {"mesh_volume", nullptr}};
+        Json entry = {{"name", fit.name},
+                      {"file", fit.file},
+                      {"parts", fit.parts},
+                      {"volume", fit.volume},
+                      {"mesh_volume", nullptr}};
         if (fit.mesh_volume) entry["mesh_volume"] = *fit.mesh_volume;
         out["meshes"].push_back(entry);
     }
@@ -164,7 +189,8 @@ std::string extent_lines(const Json& bounds)
     out.precision(6);
     out << "  from  " << metres(bounds["min"]) << " m\n  to    " << metres(bounds["max"]) << " m\n  size  ";
     for (int axis = 0; axis < 3; ++axis)
-        out << (axis ? " x " : "") << bounds["max"][std::size_t(axis)].get<double>() - bounds["min"][std::size_t(axis)].get<double>();
+        out << (axis ? " x " : "")
+            << bounds["max"][std::size_t(axis)].get<double>() - bounds["min"][std::size_t(axis)].get<double>();
     out << " m\n";
     return out.str();
 }
@@ -191,7 +217,8 @@ std::string part_line(const Json& part)
     if (part["triangles"] > 0) line += ", " + counted(part["triangles"], "triangle");
     if (part["solid_pieces"] > 0) line += ", " + part["solid_pieces"].dump() + " solid";
     if (part["sheet_pieces"] > 0) {
-        line += ", " + part["sheet_pieces"].dump() + (part["kind"] == "mesh" ? " shell" : " sheet") + " (without thickness, not filled";
+        line += ", " + part["sheet_pieces"].dump() + (part["kind"] == "mesh" ? " shell" : " sheet") +
+                " (without thickness, not filled";
         if (part["open_edges"] > 0) line += "; " + counted(part["open_edges"], "open edge");
         line += ")";
     }
@@ -243,11 +270,13 @@ std::string scene_lines(const Json& scene)
 {
     std::string out = "labels\n";
     for (const auto& [label, counts] : scene["labels"].items())
-        out += "  " + label + ": " + counted(counts["triangles"], "triangle") + ", " + counted(counts["primitives"], "primitive") + "\n";
+        out += "  " + label + ": " + counted(counts["triangles"], "triangle") + ", " +
+               counted(counts["primitives"], "primitive") + "\n";
     if (scene.contains("rules")) out += "labels come from --label, then from the first rule that matches\n";
     if (scene.contains("rules"))
         for (const Json& rule : scene["rules"])
-            out += "  " + rule["what"].get<std::string>() + " is " + rule["label"].get<std::string>() + ": " + counted(rule["collisions"], "collision") + "\n";
+            out += "  " + rule["what"].get<std::string>() + " is " + rule["label"].get<std::string>() + ": " +
+                   counted(rule["collisions"], "collision") + "\n";
     out += "parts\n";
     const Json& parts = scene["parts"];
     for (std::size_t i = 0; i < std::min(most_lines, parts.size()); ++i) out += part_line(parts[i]);
@@ -262,8 +291,9 @@ std::string floor_lines(const Json& map)
     std::string out = "floors (heights around which much of the ground lies; --floor K selects one)\n";
     for (std::size_t k = floors.size(); k-- > 0;) {
         char line[120];
-        std::snprintf(line, sizeof line, "  %zu: at %.6g m, %.4g m2, %.1f %% of the ground\n", k, floors[k]["height"].get<double>(),
-                      floors[k]["area"].get<double>(), 100 * floors[k]["share"].get<double>());
+        std::snprintf(line, sizeof line, "  %zu: at %.6g m, %.4g m2, %.1f %% of the ground\n", k,
+                      floors[k]["height"].get<double>(), floors[k]["area"].get<double>(),
+                      100 * floors[k]["share"].get<double>());
         out += line;
     }
     return out;
@@ -273,16 +303,19 @@ std::string floor_lines(const Json& map)
 std::string z_limits_line(const Json& map)
 {
     if (!map.contains("z_limits")) return "";
-    const auto limit = [&](std::size_t end) { return map["z_limits"][end].is_null() ? "" : number(map["z_limits"][end]); };
-    return "  z limits " + limit(0) + ":" + limit(1) + " m: layers beyond them are no ground, poses beyond them are outside\n";
+    const auto limit = [&](std::size_t end) {
+        return map["z_limits"][end].is_null() ? "" : number(map["z_limits"][end]);
+    };
+    return "  z limits " + limit(0) + ":" + limit(1) +
+           " m: layers beyond them are no ground, poses beyond them are outside\n";
 }
 
 std::string map_lines(const Json& map)
 {
-    std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() + ", hash " +
-                      map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
-    out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") + "; voxels of " +
-           map["occupancy_resolution"].dump() + " m\n" + z_limits_line(map) + origin_line(map);
+    std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() +
+                      ", hash " + map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
+    out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") +
+           "; voxels of " + map["occupancy_resolution"].dump() + " m\n" + z_limits_line(map) + origin_line(map);
     out += floor_lines(map) + scene_lines(map) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
@@ -294,10 +327,15 @@ std::string mesh_line(const Json& mesh)
 {
     char text[120];
     const double volume = mesh["volume"];
-    if (mesh["mesh_volume"].is_null()) std::snprintf(text, sizeof text, "%.4g m3; not watertight, or it overlaps itself: how much is added is not known", volume);
-    else std::snprintf(text, sizeof text, "%.4g m3, %.1f %% more than the mesh", volume, 100 * (volume / mesh["mesh_volume"].get<double>() - 1));
+    if (mesh["mesh_volume"].is_null())
+        std::snprintf(text, sizeof text,
+                      "%.4g m3; not watertight, or it overlaps itself: how much is added is not known", volume);
+    else
+        std::snprintf(text, sizeof text, "%.4g m3, %.1f %% more than the mesh", volume,
+                      100 * (volume / mesh["mesh_volume"].get<double>() - 1));
     const std::string name = mesh["name"];
-    return "  " + (name.empty() ? "" : name + ": ") + mesh["file"].get<std::string>() + " as " + counted(mesh["parts"], "convex hull") + ", " + text + "\n";
+    return "  " + (name.empty() ? "" : name + ": ") + mesh["file"].get<std::string>() + " as " +
+           counted(mesh["parts"], "convex hull") + ", " + text + "\n";
 }
 
 std::string robot_lines(const Json& robot)
@@ -345,27 +383,31 @@ bool is_moving_model(const std::string& text)
 bool is_robot(const std::string& what, bool has_robot_options, bool has_scene_options)
 {
     const std::string extension = fs::path(what).extension().string();
-    if (has_scene_options && !has_robot_options && !what.starts_with("box:") && extension != ".yaml" && extension != ".yml") return false;
+    if (has_scene_options && !has_robot_options && !what.starts_with("box:") && extension != ".yaml" &&
+        extension != ".yml")
+        return false;
     if (what.starts_with("box:") || extension == ".urdf" || extension == ".xacro") return true;
     if (is_folder(what)) {
         if (!fs::exists(fs::path(what) / "model.config")) return false;
         return has_robot_options || is_moving_model(text_of(fs::path(what) / "model.sdf"));
     }
     if (extension == ".sdf") return has_robot_options || is_moving_model(text_of(what));
-    return (extension == ".yaml" || extension == ".yml") && text_of(what).find("spawnfield-robot/") != std::string::npos;
+    return (extension == ".yaml" || extension == ".yml") &&
+           text_of(what).find("spawnfield-robot/") != std::string::npos;
 }
 
 int run_info(const InfoArgs& args, const CLI::App& command)
 {
-    const std::optional<PictureFile> picture_to =
-        args.picture.empty() ? std::nullopt : std::optional(picture_file(args.picture));
+    const std::optional<PictureFile> picture_to = args.picture.empty() ? std::nullopt
+                                                                       : std::optional(picture_file(args.picture));
     const Progress listen = progress_bar(args, "info");
     Summary summary("info", args);
     Json out;
     std::vector<std::string> robot_options_of_info = robot_option_names;
     robot_options_of_info.emplace_back("--picture");
     const auto has_one_of = [&](const std::vector<std::string>& options) {
-        return std::any_of(options.begin(), options.end(), [&](const std::string& option) { return command.count(option) > 0; });
+        return std::any_of(options.begin(), options.end(),
+                           [&](const std::string& option) { return command.count(option) > 0; });
     };
     const bool robot_given = is_robot(args.what, has_one_of(robot_options_of_info), has_one_of(scene_option_names));
     if (is_folder(args.what) && !robot_given && !fs::exists(fs::path(args.what) / "model.config")) {
@@ -393,10 +435,11 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     listen(1);
     summary.lap("load");
     const std::string kind = out["kind"];
-    const std::string text = args.json          ? out.dump(2) + "\n"
-                             : kind == "map"    ? map_lines(out)
-                             : kind == "robot"  ? robot_lines(out)
-                                                : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) + origin_line(out) + scene_lines(out);
+    const std::string text = args.json         ? out.dump(2) + "\n"
+                             : kind == "map"   ? map_lines(out)
+                             : kind == "robot" ? robot_lines(out)
+                                               : "scene " + out["name"].get<std::string>() + "\n" +
+                                                     extent_lines(out["bounds"]) + origin_line(out) + scene_lines(out);
     write_output("", [&](const auto& sink) { sink(text); });
     summary.lap("write");
     summary.extra = {args.what};
@@ -410,7 +453,10 @@ void add_info(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<InfoArgs>();
     CLI::App& command = *app.add_subcommand("info", "What a map, a scene or a robot holds");
-    command.add_option("what", args->what, "Map folder, scene or world file, model folder, robot.yaml, .urdf, SDF model or box:LX,LY,LZ")->required();
+    command
+        .add_option("what", args->what,
+                    "Map folder, scene or world file, model folder, robot.yaml, .urdf, SDF model or box:LX,LY,LZ")
+        ->required();
     command.add_flag("--json", args->json, "As JSON");
     command.add_option("--picture", args->picture,
                        "Picture (.png, .svg or .pdf): draw a robot from above, from the side and from the front");
@@ -418,7 +464,9 @@ void add_info(CLI::App& app, Run& run)
     add_scene_options(command, *args);
     add_robot_options(command, *args);
     add_common(command, *args);
-    command.footer("Example:\n  spawnfield info maps/training/scene.yaml\n  spawnfield info maps/robots/husky.yaml --picture /tmp/husky.png");
+    command.footer(
+        "Example:\n  spawnfield info maps/training/scene.yaml\n  spawnfield info maps/robots/husky.yaml --picture "
+        "/tmp/husky.png");
     command.callback([=, &command, &run] { run = [=, &command] { return run_info(*args, command); }; });
 }
 

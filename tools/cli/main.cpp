@@ -44,14 +44,17 @@ int guarded(const CLI::App& app, const Run& run)
 std::vector<std::string> command_names(CLI::App& app)
 {
     std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) names.push_back(command->get_name());
+    for (const CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+        names.push_back(command->get_name());
     return names;
 }
 
 /// What a shell would read as one word.
 std::string quoted_if_needed(const std::string& word)
 {
-    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || std::strchr("-_./:,=@+%", c); });
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+        return std::isalnum(c) || std::strchr("-_./:,=@+%", c);
+    });
     if (plain) return word;
     std::string out = "'";
     for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
@@ -78,9 +81,10 @@ int main(int argc, char** argv)
     CLI::App app{"spawnfield: where can this robot stand in this world?", "spawnfield"};
     app.set_version_flag("--version", version());
     app.require_subcommand(1);
-    app.footer("Example:\n"
-               "  spawnfield bake maps/training/scene.yaml -o /tmp/training\n"
-               "  spawnfield sample /tmp/training --robot maps/robots/husky.yaml -n 10");
+    app.footer(
+        "Example:\n"
+        "  spawnfield bake maps/training/scene.yaml -o /tmp/training\n"
+        "  spawnfield sample /tmp/training --robot maps/robots/husky.yaml -n 10");
     Run run;
     add_bake(app, run);
     add_info(app, run);

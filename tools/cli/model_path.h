@@ -14,9 +14,11 @@ struct ModelPathArgs {
 
 inline void add_model_path(CLI::App& command, ModelPathArgs& args)
 {
-    command.add_option("--model-path,--package-path", args.model_paths,
-                       "Folder that holds models or ROS packages, for model:// and package:// in SDF and URDF (repeatable; then come GZ_SIM_RESOURCE_PATH, "
-                       "GAZEBO_MODEL_PATH and the folders above the file)")
+    command
+        .add_option("--model-path,--package-path", args.model_paths,
+                    "Folder that holds models or ROS packages, for model:// and package:// in SDF and URDF "
+                    "(repeatable; then come GZ_SIM_RESOURCE_PATH, "
+                    "GAZEBO_MODEL_PATH and the folders above the file)")
         ->check(CLI::ExistingDirectory);
 }
 

@@ -19,8 +19,10 @@ std::vector<std::string> words_of(const std::string& text)
     for (const char c : text) {
         if (c == '"') is_quoted = !is_quoted;
         depth += c == '(' ? 1 : c == ')' && depth > 0 ? -1 : 0;
-        if (c == ' ' && !is_quoted && depth == 0) out.emplace_back();
-        else out.back() += c;
+        if (c == ' ' && !is_quoted && depth == 0)
+            out.emplace_back();
+        else
+            out.back() += c;
     }
     for (std::string& word : out) word.resize(word.find_last_not_of(":,;") + 1);
     return out;
@@ -37,8 +39,10 @@ std::string kind_of(const std::vector<std::string>& words)
 {
     std::string out;
     for (const std::string& word : words)
-        if (!is_detail(word)) out += word + " ";
-        else if (word.front() != '(') out += "* ";
+        if (!is_detail(word))
+            out += word + " ";
+        else if (word.front() != '(')
+            out += "* ";
     return out;
 }
 
@@ -56,7 +60,7 @@ std::string subject_of(const std::vector<std::string>& words, const std::vector<
 
 struct Kind {
     std::string first;
-    std::vector<std::string> words;     ///< of the first
+    std::vector<std::string> words;  ///< of the first
     std::size_t more = 0;
     std::vector<std::string> subjects;  ///< of the next ones
 };

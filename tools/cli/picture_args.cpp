@@ -42,7 +42,8 @@ PictureFile picture_file(const std::string& file, const std::string& format)
     return {path, chosen};
 }
 
-std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Map& map, const std::string& yaw)
+std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Map& map,
+                            const std::string& yaw)
 {
     std::string text;
     if (options.offset) text = "offset " + rounded(*options.offset) + " m, ";

@@ -17,6 +17,7 @@ struct PictureFile {
 PictureFile picture_file(const std::string& file, const std::string& format = "");
 
 /// Second line of a heat map: what its verdicts hold for. `options` are complete; `yaw` in words, empty: the raster's.
-std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Map& map, const std::string& yaw = "");
+std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Map& map,
+                            const std::string& yaw = "");
 
 }  // namespace spawnfield::cli

@@ -22,7 +22,8 @@ struct RasterCommandArgs : RasterArgs {
 /// In the thesis's terms poses off the terrain are aerial too, and those 2D rasters have.
 void check_write_aerial(const RasterCommandArgs& args, const CLI::App& command, const RasterOptions& options)
 {
-    if (args.dims == 2 && !args.is_thesis()) refuse(command, {"--write-aerial"}, "is for --dims 3: in 2D poses stand on their layers");
+    if (args.dims == 2 && !args.is_thesis())
+        refuse(command, {"--write-aerial"}, "is for --dims 3: in 2D poses stand on their layers");
     if (args.write_aerial && args.dims == 3 && options.layers.kind != LayerChoice::Kind::All)
         throw ArgumentError("--write-aerial needs --layers all: aerial poses are above no layer");
 }
@@ -37,7 +38,8 @@ RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
     return options;
 }
 
-Settings settings_of(const RasterCommandArgs& args, const Session& session, const RasterOptions& options, const RasterGrid& grid)
+Settings settings_of(const RasterCommandArgs& args, const Session& session, const RasterOptions& options,
+                     const RasterGrid& grid)
 {
     Settings out = query_settings("raster", args, session);
     const auto add = [&](const std::string& name, const std::string& value) { out.emplace_back(name, value); };
@@ -65,8 +67,8 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     Summary summary("raster", args);
     RasterOptions options = options_of(args, command);
     options.exact_time = &summary.exact_time;
-    const std::optional<PictureFile> picture_to =
-        args.heatmap.empty() ? std::nullopt : std::optional(picture_file(args.heatmap));
+    const std::optional<PictureFile> picture_to = args.heatmap.empty() ? std::nullopt
+                                                                       : std::optional(picture_file(args.heatmap));
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     const auto session = open_session(args);
     complete(options, args, *session, summary);
@@ -84,10 +86,17 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
         write_heatmap(session->map, read_terrain(session->map), result, picture, picture_to->path);
     };
     if (folder)
-        write_thesis(*folder, settings_of(args, *session, options, result.grid), result.counts, summary,
-                     [&](const auto& into) { return write_thesis_locations(into, result, args.write_aerial, progress_bar(args, "writing")); }, draw);
-    else if (args.out.empty() && !args.heatmap.empty()) draw();
-    else write_output(args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink); }, draw);
+        write_thesis(
+            *folder, settings_of(args, *session, options, result.grid), result.counts, summary,
+            [&](const auto& into) {
+                return write_thesis_locations(into, result, args.write_aerial, progress_bar(args, "writing"));
+            },
+            draw);
+    else if (args.out.empty() && !args.heatmap.empty())
+        draw();
+    else
+        write_output(
+            args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink); }, draw);
     summary.lap("write");
     summary.set_counts(result.counts);
     summary.exact_checks = result.exact_checks;
@@ -106,13 +115,19 @@ void add_raster(CLI::App& app, Run& run)
     command.get_option("--dims")->required();
     command.add_option("--step", args->step, "Between columns, m")->required();
     command.add_option("--step-z", args->step_z, "Between heights, m (default: --step)");
-    command.add_flag("--write-aerial", args->write_aerial, "3D: write aerial poses too; with --format thesis those off the terrain, in 2D as well");
-    command.add_option("--format", args->format, "csv, or thesis: a folder of Valid_Locations.txt and the like in Unity's frame (default csv)")
+    command.add_flag("--write-aerial", args->write_aerial,
+                     "3D: write aerial poses too; with --format thesis those off the terrain, in 2D as well");
+    command
+        .add_option("--format", args->format,
+                    "csv, or thesis: a folder of Valid_Locations.txt and the like in Unity's frame (default csv)")
         ->check(one_of({"csv", "thesis"}));
-    command.add_option("--out,-o", args->out, "CSV file, or folder, to write (default: standard output, or none with --heatmap)");
+    command.add_option("--out,-o", args->out,
+                       "CSV file, or folder, to write (default: standard output, or none with --heatmap)");
     command.add_option("--heatmap", args->heatmap, "Picture to draw: .png, .svg or .pdf (- for standard output)");
-    command.footer("Example:\n"
-                   "  spawnfield raster /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --step 0.5 --offset 0.5 -o /tmp/box_raster.csv");
+    command.footer(
+        "Example:\n"
+        "  spawnfield raster /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --step 0.5 --offset 0.5 -o "
+        "/tmp/box_raster.csv");
     command.callback([=, &command, &run] { run = [=, &command] { return run_raster(*args, command); }; });
 }
 

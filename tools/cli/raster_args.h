@@ -15,11 +15,13 @@ struct RasterArgs : QueryArgs {
 };
 void add_raster_query(CLI::App& command, RasterArgs& args);
 
-/// Everything but the steps and what complete() adds. Tells of options without effect; throws ArgumentError for those that do not go together.
+/// Everything but the steps and what complete() adds. Tells of options without effect; throws ArgumentError for those
+/// that do not go together.
 RasterOptions raster_options(const RasterArgs& args, const CLI::App& command);
 
-/// Completes the options once the map and the robot are known, and notes the offset in the summary. Prints notices where an
-/// answer is plain before it is asked for. Throws ArgumentError for a floor that there is not, or an offset above
+/// Completes the options once the map and the robot are known, and notes the offset in the summary. Prints notices
+/// where an answer is plain before it is asked for. Throws ArgumentError for a floor that there is not, or an offset
+/// above
 /// --max-height, NothingFits where the robot collides with all flat ground.
 void complete(RasterOptions& options, const RasterArgs& args, const Session& session, Summary& summary);
 

@@ -14,7 +14,8 @@ void parse_joints(const std::string& text, std::vector<JointPosition>& out)
         const std::size_t equals = one.rfind('=');
         if (equals == std::string::npos || equals == 0)
             throw ArgumentError("--joints: \"" + one + "\" is no joint, needs name=value[,name=value…], rad or m");
-        out.push_back({one.substr(0, equals), parse_numbers("--joints: " + one.substr(0, equals), one.substr(equals + 1)).at(0)});
+        out.push_back(
+            {one.substr(0, equals), parse_numbers("--joints: " + one.substr(0, equals), one.substr(equals + 1)).at(0)});
         start = comma + 1;
     }
 }
@@ -24,8 +25,12 @@ void parse_joints(const std::string& text, std::vector<JointPosition>& out)
 void add_robot_options(CLI::App& command, RobotArgs& args)
 {
     add_model_path(command, args);
-    command.add_option("--joints", args.joints, "name=value,…: where joints of a URDF or SDF model stand, rad or m (default 0; repeatable)");
-    command.add_option("--mesh-parts", args.mesh_parts, "Split each mesh collision of the robot into at most so many convex parts (default 1: its convex hull)")
+    command.add_option("--joints", args.joints,
+                       "name=value,…: where joints of a URDF or SDF model stand, rad or m (default 0; repeatable)");
+    command
+        .add_option(
+            "--mesh-parts", args.mesh_parts,
+            "Split each mesh collision of the robot into at most so many convex parts (default 1: its convex hull)")
         ->check(CLI::Range(1, 64));
 }
 

@@ -34,12 +34,18 @@ void add_scene_options(CLI::App& command, SceneArgs& args)
     command.add_option("--up", args.up, "Up axis of a bare mesh: y or z (default: what the format says, else z)")
         ->check(one_of({"y", "z"}));
     command.add_option("--scale", args.scale, "Metres per unit of a bare mesh (default 1)");
-    command.add_option("--heightmap", args.heightmap, "Keys of a bare elevation model as in scene.yaml: 'size: [513, 513], z: [0, 75]'");
-    command.add_option("--unknown", args.unknown, "What an OctoMap has not seen, within the box around what it has: free or blocked (default: free, or what scene.yaml says)")
+    command.add_option("--heightmap", args.heightmap,
+                       "Keys of a bare elevation model as in scene.yaml: 'size: [513, 513], z: [0, 75]'");
+    command
+        .add_option("--unknown", args.unknown,
+                    "What an OctoMap has not seen, within the box around what it has: free or blocked (default: free, "
+                    "or what scene.yaml says)")
         ->check(one_of({"free", "blocked"}));
-    command.add_option("--wall-height", args.wall_height, "Of the walls of a 2D map (map.yaml of nav2 or ROS), m (default 2)");
+    command.add_option("--wall-height", args.wall_height,
+                       "Of the walls of a 2D map (map.yaml of nav2 or ROS), m (default 2)");
     command.add_option("--label", args.labels,
-                       "'GLOB=LABEL': label of the nodes, materials, parts, models, links or collisions whose name matches (repeatable; first match wins)");
+                       "'GLOB=LABEL': label of the nodes, materials, parts, models, links or collisions whose name "
+                       "matches (repeatable; first match wins)");
     command.add_option("--auto-label", args.auto_label,
                        "slope=DEG: what no label names is terrain where it looks up and is less steep than DEG "
                        "degrees, else obstacle (meshes, OctoMaps, worlds)");

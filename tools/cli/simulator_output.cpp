@@ -38,7 +38,8 @@ const std::vector<OptionUse> option_uses = {{"--name", {pose_formats.begin(), po
 
 bool is_for(const OptionUse& use, const std::string& format)
 {
-    return std::any_of(use.formats.begin(), use.formats.end(), [&](const std::string& start) { return format.starts_with(start); });
+    return std::any_of(use.formats.begin(), use.formats.end(),
+                       [&](const std::string& start) { return format.starts_with(start); });
 }
 
 TileGrid parse_tiles(const std::string& text)
@@ -46,7 +47,8 @@ TileGrid parse_tiles(const std::string& text)
     const std::vector<double> v = parse_numbers("--tiles", text);
     if (v.size() != 2) throw ArgumentError("--tiles is \"" + text + "\", needs ROWS,COLS: tiles along x and along y");
     for (const double n : v)
-        if (!(n >= 1 && n <= 10000) || n != std::floor(n)) throw bad_value("--tiles", n, "whole numbers from 1 to 10000");
+        if (!(n >= 1 && n <= 10000) || n != std::floor(n))
+            throw bad_value("--tiles", n, "whole numbers from 1 to 10000");
     TileGrid grid;
     grid.rows = int(v[0]);
     grid.cols = int(v[1]);
@@ -70,7 +72,9 @@ std::string first_relative_uri(const std::string& text)
     const std::string begin = "<uri>";
     for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1)) {
         const std::size_t start = text.find_first_not_of(" \t\r\n", at + begin.size());
-        const std::string uri = start == std::string::npos ? "" : text.substr(start, text.find_first_of("< \t\r\n", start) - start);
+        const std::string uri = start == std::string::npos
+                                    ? ""
+                                    : text.substr(start, text.find_first_of("< \t\r\n", start) - start);
         const bool is_file = uri.starts_with("file://");
         const std::string path = is_file ? uri.substr(7) : uri;
         if (!path.empty() && path[0] != '/' && (is_file || uri.find("://") == std::string::npos)) return uri;
@@ -86,8 +90,8 @@ std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map
         const Vec3& p = robot.position;
         const std::optional<Ground> ground = ground_below(column_at(map.geometry, p.x(), p.y()), p.z());
         if (!ground)
-            throw ArgumentError("--format isaaclab: there is no ground below robot " + robot.name + " at " + number(p.x()) + ", " + number(p.y()) + ", " +
-                                number(p.z()));
+            throw ArgumentError("--format isaaclab: there is no ground below robot " + robot.name + " at " +
+                                number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()));
         points.push_back({p.x(), p.y(), ground->height});
     }
     return points;
@@ -106,32 +110,43 @@ std::vector<std::string> simulator_options_of(const std::string& format)
 void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format)
 {
     for (const OptionUse& use : option_uses)
-        if (!is_for(use, format)) tell_idle(common, command, {use.option}, "--format " + format + " does not ask for it");
+        if (!is_for(use, format))
+            tell_idle(common, command, {use.option}, "--format " + format + " does not ask for it");
 }
 
 void add_simulator_options(CLI::App& command, SimulatorArgs& args)
 {
     const std::string names = "Files for simulators";
-    const auto add = [&](const char* option, std::string& value, const char* help) { return command.add_option(option, value, help)->group(names); };
+    const auto add = [&](const char* option, std::string& value, const char* help) {
+        return command.add_option(option, value, help)->group(names);
+    };
     add("--name", args.name, "Robots' names: {i} is the number from 1 on, {i:03} the same as 001 (default robot_{i})");
     add("--namespace", args.name_space, "Their ROS namespaces, by the same kind of pattern (default: their names)");
-    add("--robot-file", args.robot_file, "URDF or SDF that launch files and worlds spawn (default: --robot, if it is one)");
+    add("--robot-file", args.robot_file,
+        "URDF or SDF that launch files and worlds spawn (default: --robot, if it is one)");
     add("--robot-uri", args.robot_uri, "sdf: URI of the robot's model, as model://husky, in place of a file");
-    add("--topic", args.topic, "ROS 2: topic, ROS 1: parameter in each namespace that tells the robot's description, in place of a file");
+    add("--topic", args.topic,
+        "ROS 2: topic, ROS 1: parameter in each namespace that tells the robot's description, in place of a file");
     add("--world", args.world, "sdf: the world file that gets the robots (default: a new world of nothing else)");
-    add("--world-name", args.world_name, "ROS 2: Gazebo's name of the world (default: the one that runs); sdf: that of a new world, or which one of --world");
+    add("--world-name", args.world_name,
+        "ROS 2: Gazebo's name of the world (default: the one that runs); sdf: that of a new world, or which one of "
+        "--world");
     add("--joint-qpos", args.joint_qpos, "mujoco: q,q,... of the joints that follow each free joint (default: none)");
-    add("--keys", args.keys, "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")
+    add("--keys", args.keys,
+        "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")
         ->check(one_of({"each", "together"}));
     add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw from 3 on (default wxyz)")
         ->check(one_of({"wxyz", "xyzw"}));
     add("--tiles", args.tiles, "isaaclab: ROWS,COLS of the terrain patches, along x and y (default 1,1)");
     add("--blueprint", args.blueprint, "carla: what is spawned (default vehicle.tesla.model3)");
-    add("--unity-axes", args.unity_axes, "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity exported as glTF, FBX or OBJ (default ros)")
+    add("--unity-axes", args.unity_axes,
+        "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity exported as glTF, FBX or OBJ "
+        "(default ros)")
         ->check(one_of({"ros", "gltf"}));
 }
 
-SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target)
+SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args,
+                                 Target target)
     : common_(common), args_(args), target_(std::move(target))
 {
     tell_idle_options(common, command, target_.format);
@@ -154,7 +169,8 @@ void SimulatorOutput::give_names(std::vector<RobotStart>& robots, const std::vec
     const bool has_own = args_.name.empty() && !own.empty();
     if (has_own) check_names("column name:", own);
     const std::string option = has_own ? "column name:" : "--name";
-    const std::vector<std::string> names = has_own ? own : numbered_names("--name", args_.name.empty() ? "robot_{i}" : args_.name, robots.size());
+    const std::vector<std::string> names =
+        has_own ? own : numbered_names("--name", args_.name.empty() ? "robot_{i}" : args_.name, robots.size());
     std::vector<std::string> name_spaces = names;
     if (!args_.name_space.empty()) name_spaces = numbered_names("--namespace", args_.name_space, robots.size());
     check_rules(option, names, name_spaces);
@@ -165,11 +181,13 @@ void SimulatorOutput::give_names(std::vector<RobotStart>& robots, const std::vec
     }
 }
 
-void SimulatorOutput::check_rules(const std::string& option, std::span<const std::string> names, std::span<const std::string> name_spaces) const
+void SimulatorOutput::check_rules(const std::string& option, std::span<const std::string> names,
+                                  std::span<const std::string> name_spaces) const
 {
     if (is_ros() || is("sdf")) check_model_names(option, names);
     if (!is_ros()) return;
-    const std::string origin = args_.name_space.empty() ? option + " (as a namespace; --namespace gives others)" : "--namespace";
+    const std::string origin = args_.name_space.empty() ? option + " (as a namespace; --namespace gives others)"
+                                                        : "--namespace";
     check_ros_names(origin, name_spaces, is("ros1-launch") ? 1 : 2);
 }
 
@@ -178,8 +196,11 @@ void SimulatorOutput::tell_joints() const
 {
     const bool says_so = is("ros1-launch") || is("json") || (is("mujoco") && !args_.joint_qpos.empty());
     if (target_.reading.joints.empty() || says_so) return;
-    notice(common_, "--format " + target_.format + " says nothing about joints: robots start with theirs at 0, unless you put them where --joints has them" +
-                        (is("mujoco") ? " (--joint-qpos)" : ""));
+    notice(
+        common_,
+        "--format " + target_.format +
+            " says nothing about joints: robots start with theirs at 0, unless you put them where --joints has them" +
+            (is("mujoco") ? " (--joint-qpos)" : ""));
 }
 
 std::string SimulatorOutput::own_file() const
@@ -190,35 +211,48 @@ std::string SimulatorOutput::own_file() const
     return is_file || is_folder ? lasting_path("--robot", target_.robot) : "";
 }
 
-std::string SimulatorOutput::robot_is_neither() const { return target_.robot.empty() ? "" : "; --robot " + target_.robot + " is neither"; }
+std::string SimulatorOutput::robot_is_neither() const
+{
+    return target_.robot.empty() ? "" : "; --robot " + target_.robot + " is neither";
+}
 
 void SimulatorOutput::settle_launch()
 {
     launch_.world = args_.world_name;
     launch_.topic = args_.topic;
-    if (!args_.topic.empty() && !args_.robot_file.empty()) throw ArgumentError("--topic and --robot-file are both given; robots are made of one of them");
+    if (!args_.topic.empty() && !args_.robot_file.empty())
+        throw ArgumentError("--topic and --robot-file are both given; robots are made of one of them");
     if (args_.topic.empty()) launch_.file = own_file();
     if (fs::is_directory(launch_.file)) launch_.file = scene_file_of(launch_.file).string();  // ROS spawns files
     if (is("ros1-launch")) launch_.joints = target_.reading.joints;
     if (is("ros1-launch") && fs::exists(launch_.file) && model_placement(launch_.file).has_pose)
-        throw ArgumentError("--format ros1-launch: " + launch_.file + " has a <pose> of its own, which gazebo_ros adds to the one of each robot; take it away");
+        throw ArgumentError("--format ros1-launch: " + launch_.file +
+                            " has a <pose> of its own, which gazebo_ros adds to the one of each robot; take it away");
     if (launch_.topic.empty() && launch_.file.empty())
-        throw ArgumentError("--format " + target_.format + " needs --robot-file FILE, a URDF or SDF to spawn, or --topic robot_description" + robot_is_neither());
-    target_.format == "ros2-launch-py" ? ros2_launch_py({}, launch_) : ros1_launch({}, launch_);  // to be told of a bad file now
+        throw ArgumentError("--format " + target_.format +
+                            " needs --robot-file FILE, a URDF or SDF to spawn, or --topic robot_description" +
+                            robot_is_neither());
+    target_.format == "ros2-launch-py" ? ros2_launch_py({}, launch_)
+                                       : ros1_launch({}, launch_);  // to be told of a bad file now
 }
 
 void SimulatorOutput::settle_sdf()
 {
-    if (!args_.robot_uri.empty() && !args_.robot_file.empty()) throw ArgumentError("--robot-uri and --robot-file are both given; robots are made of one of them");
+    if (!args_.robot_uri.empty() && !args_.robot_file.empty())
+        throw ArgumentError("--robot-uri and --robot-file are both given; robots are made of one of them");
     sdf_.uri = args_.robot_uri.empty() ? own_file() : args_.robot_uri;
     sdf_.world_name = args_.world_name;
     if (sdf_.uri.find("$(") != std::string::npos)
-        throw ArgumentError("--format sdf: " + sdf_.uri + " has a $(…), which is for launch files; name the file itself, or --robot-uri");
+        throw ArgumentError("--format sdf: " + sdf_.uri +
+                            " has a $(…), which is for launch files; name the file itself, or --robot-uri");
     if (fs::exists(sdf_.uri))
         if (const std::string frame = model_placement(sdf_.uri).frame; !frame.empty())
-            throw ArgumentError("--format sdf: " + sdf_.uri + " has placement_frame=\"" + frame + "\": <include> would put that frame where the model's own was judged; take it away");
+            throw ArgumentError("--format sdf: " + sdf_.uri + " has placement_frame=\"" + frame +
+                                "\": <include> would put that frame where the model's own was judged; take it away");
     if (sdf_.uri.empty())
-        throw ArgumentError("--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF" + robot_is_neither());
+        throw ArgumentError(
+            "--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF" +
+            robot_is_neither());
     if (args_.world.empty()) return;
     sdf_.world_file = args_.world;
     sdf_.world_text = read_file(args_.world);
@@ -227,7 +261,8 @@ void SimulatorOutput::settle_sdf()
     const std::string relative = first_relative_uri(sdf_.world_text);
     const bool is_beside = !target_.out.empty() && folder_of(target_.out) == folder_of(args_.world);
     if (!relative.empty() && !is_beside)
-        notice(common_, args_.world + ": " + relative + " and the like are relative to this file, and will be looked for beside the new one; " +
+        notice(common_, args_.world + ": " + relative +
+                            " and the like are relative to this file, and will be looked for beside the new one; " +
                             "-o beside it keeps them right");
 }
 
@@ -245,7 +280,8 @@ std::string SimulatorOutput::text_of(std::span<const RobotStart> robots) const
     return unity_csv(robots, args_.unity_axes == "gltf" ? Frame::UnityGltf : Frame::Unity);
 }
 
-void SimulatorOutput::write(std::span<const RobotStart> robots, const Map& map, const std::function<std::string()>& json) const
+void SimulatorOutput::write(std::span<const RobotStart> robots, const Map& map,
+                            const std::function<std::string()>& json) const
 {
     if (is("isaaclab")) return write_isaac_lab(robots, map);
     const std::string text = is("json") ? json() : text_of(robots);
@@ -261,7 +297,8 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     nlohmann::ordered_json about;
     about["format"] = "spawnfield-isaaclab/1";
     about["frame"] = "metres, right-handed, x forward, y left, z up";
-    about["root_pose.npy"] = {{"shape", {robots.size(), 7}}, {"columns", has_w_first ? "x y z qw qx qy qz" : "x y z qx qy qz qw"},
+    about["root_pose.npy"] = {{"shape", {robots.size(), 7}},
+                              {"columns", has_w_first ? "x y z qw qx qy qz" : "x y z qx qy qz qw"},
                               {"for", has_w_first ? "Isaac Lab 1 and 2" : "Isaac Lab 3"}};
     about["flat_patches.npy"] = {{"shape", {grid.rows, grid.cols, patches.patches_per_tile, 3}},
                                  {"is", "ground below the spawns, by tile: rows along x, columns along y"}};
@@ -269,7 +306,8 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     about["map"] = {{"name", map.name}, {"hash", map.hash}};
     clear_progress_bar();
     const fs::path& into = folder_->path();
-    write_file_atomically(into / "root_pose.npy", root_poses_npy(robots, has_w_first ? QuaternionOrder::Wxyz : QuaternionOrder::Xyzw));
+    write_file_atomically(into / "root_pose.npy",
+                          root_poses_npy(robots, has_w_first ? QuaternionOrder::Wxyz : QuaternionOrder::Xyzw));
     write_file_atomically(into / "flat_patches.npy", patches.flat_patches);
     write_file_atomically(into / "terrain_origins.npy", patches.terrain_origins);
     write_file_atomically(into / "isaaclab.json", about.dump(2) + "\n");
@@ -277,8 +315,8 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     folder_->commit();
 }
 
-void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, const std::string& poses,
-                  SimulatorOutput::Target target, const Session& session)
+void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args,
+                  const std::string& poses, SimulatorOutput::Target target, const Session& session)
 {
     const PoseTable table = open_poses(common, poses);
     target.count = table.poses.size();

@@ -33,22 +33,25 @@ std::string upper_first(std::string text)
 
 std::string shortfall(const SpawnOptions& options, const SpawnList& list, const std::string& command)
 {
-    const std::string found = std::to_string(list.spawns.size()), of_count = found + " of " + std::to_string(options.count) + " spawns ";
+    const std::string found = std::to_string(list.spawns.size()),
+                      of_count = found + " of " + std::to_string(options.count) + " spawns ";
     const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
                                (list.near_avoided > 0 ? "a smaller --avoid-distance, " : "") +
                                (std::isfinite(options.max_slope) ? "a larger --max-slope, " : "") +
-                               (command == "sample"               ? "another --offset or a wider --region"
+                               (command == "sample"            ? "another --offset or a wider --region"
                                 : options.area.is_everywhere() ? "more --max-failures or wider --bounds"
                                                                : "more --max-failures or a wider --region");
     if (list.is_full && list.spawns.empty())
         return std::string("no spawn fits: it is proven that no pose is valid") +
                (list.near_avoided > 0 ? " and far enough from the avoided poses; " : "; ") + advice + " may give some";
-    if (list.is_full) return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice + " may give more";
+    if (list.is_full)
+        return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice +
+               " may give more";
     if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
     char area[32];
     std::snprintf(area, sizeof area, "%.3g", list.undecided_area);
-    return "only " + of_count + "were found. Another one may fit in " + area + " m2 of the region; it is proven that none fits elsewhere. " +
-           upper_first(advice) + " may give more";
+    return "only " + of_count + "were found. Another one may fit in " + area +
+           " m2 of the region; it is proven that none fits elsewhere. " + upper_first(advice) + " may give more";
 }
 
 /// What was asked for, and by `own` what the command alone has; then what was found.
@@ -61,7 +64,8 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnO
     add("Count", std::to_string(options.count));
     add("Min distance (m)", number(options.min_distance));
     add("Yaw (rad)", options.random_yaw ? "random" : number(options.yaw));
-    add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, command == "sample" ? 2 : 3));
+    add("Bounds (m, z up)",
+        bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, command == "sample" ? 2 : 3));
     for (const Region& region : options.area.within) add("Region", region.name);
     for (const Region& region : options.area.keep_out) add("Keep out", region.name);
     for (const AvoidedPoints& group : options.avoid) add("Avoid", words_of(group));
@@ -78,7 +82,8 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnO
 }
 
 template <class Options>
-void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& session, const Options& options, const SpawnList& list)
+void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& session, const Options& options,
+           const SpawnList& list)
 {
     if (!output.has_names()) return write_output(args.out, [&](const auto& sink) { sink(spawns_csv(list)); });
     std::vector<RobotStart> robots = robot_starts(list);
@@ -87,18 +92,20 @@ void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& 
 }
 
 /// `hopeless`: why no pose can be valid, or empty.
-int finish(Summary& summary, const SpawnArgs& args, const Session& session, const SpawnOptions& options, const SpawnList& list,
-           const std::string& command, const std::string& hopeless)
+int finish(Summary& summary, const SpawnArgs& args, const Session& session, const SpawnOptions& options,
+           const SpawnList& list, const std::string& command, const std::string& hopeless)
 {
     summary.lap("write");
     summary.set_counts(list.counts);
     summary.exact_checks = list.exact_checks;
     summary.map_hash = session.map.hash;
     summary.seed = options.seed;
-    summary.extra.insert(summary.extra.begin(), std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns");
-    summary.extra.push_back(counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
-                            (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
-                            (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region"));
+    summary.extra.insert(summary.extra.begin(),
+                         std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns");
+    summary.extra.push_back(
+        counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
+        (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
+        (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region"));
     summary.draws = {{"all", list.draws},
                      {"too_close", list.too_close},
                      {"near_avoided", list.near_avoided},
@@ -112,9 +119,12 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
 /// A command's own part of run_spawn, once the map and the robot are known.
 template <class Options>
 struct SpawnQuery {
-    std::function<Settings(const Session&, Options&)> prepare;  ///< returns settings that the other command does not have
+    std::function<Settings(const Session&, Options&)>
+        prepare;  ///< returns settings that the other command does not have
     SpawnList (*run)(const Map&, const CollisionChecker&, const Options&);
-    std::function<std::string(const Session&, const Options&)> find_hopeless = [](const auto&, const auto&) { return ""; };
+    std::function<std::string(const Session&, const Options&)> find_hopeless = [](const auto&, const auto&) {
+        return "";
+    };
 };
 
 /// Nothing was drawn: all of the region is undecided.
@@ -128,8 +138,8 @@ SpawnList nothing_drawn(const Map& map, const SpawnOptions& options)
 
 /// Both commands, once their options are known.
 template <class Options>
-int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArgs& args, const CLI::App& app, Options options,
-              const std::string& command)
+int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArgs& args, const CLI::App& app,
+              Options options, const std::string& command)
 {
     const std::optional<double> yaw = parse_yaw_or_random(args, args.yaw);
     options.random_yaw = !yaw;
@@ -139,19 +149,23 @@ int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArg
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     if (folder) tell_idle_options(args, app, args.format);
     std::optional<SimulatorOutput> output;
-    if (!folder) output.emplace(args, app, args.simulator, SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args)});
+    if (!folder)
+        output.emplace(args, app, args.simulator,
+                       SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args)});
     const auto session = open_session(args);
     const Settings own = query.prepare(*session, options);
     const std::string hopeless = query.find_hopeless(*session, options);
     tell_about_avoided(args, session->map, options.avoid);
     summary.lap("load");
-    const SpawnList list = hopeless.empty() ? query.run(session->map, *session->checker, options) : nothing_drawn(session->map, options);
+    const SpawnList list = hopeless.empty() ? query.run(session->map, *session->checker, options)
+                                            : nothing_drawn(session->map, options);
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
     summary.lap("query");
     if (folder)
         write_thesis(*folder, settings_of(args, *session, options, list, command, own), list.counts, summary,
                      [&](const auto& into) { return write_thesis_locations(into, list); });
-    else write(args, *output, *session, options, list);
+    else
+        write(args, *output, *session, options, list);
     return finish(summary, args, *session, options, list, command, hopeless);
 }
 
@@ -165,7 +179,8 @@ int run_search(const SpawnArgs& args, const CLI::App& command)
         asked.bounds = with_heights(asked.bounds, heights, session.map);
         tell_if_off_map(args, session.map, "--bounds", asked.bounds);
         tell_about_area(args, session.map, asked.area);
-        return Settings{{"Max failures", std::to_string(asked.max_failures)}, {"Max height (m)", number(asked.max_height)}};
+        return Settings{{"Max failures", std::to_string(asked.max_failures)},
+                        {"Max height (m)", number(asked.max_height)}};
     };
     return run_spawn<SearchOptions>({prepare, search}, summary, args, command, options, "search");
 }
@@ -193,7 +208,9 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
         return own;
     };
-    const auto find_hopeless = [](const Session& session, const SampleOptions& asked) { return flat_ground_complaint(session.robot, *asked.offset); };
+    const auto find_hopeless = [](const Session& session, const SampleOptions& asked) {
+        return flat_ground_complaint(session.robot, *asked.offset);
+    };
     return run_spawn<SampleOptions>({prepare, sample, find_hopeless}, summary, args, command, options, "sample");
 }
 
@@ -208,7 +225,10 @@ void add_spawn_options(CLI::App& command, SpawnArgs& args)
     command.add_option("--yaw", args.yaw, yaw_help + ", or random (default 0)");
     std::vector<std::string> formats = pose_formats;
     formats.push_back("thesis");
-    command.add_option("--format", args.format, "csv, json; a file for a simulator; or thesis: a folder of Valid_Locations.txt and the like (default csv)")
+    command
+        .add_option(
+            "--format", args.format,
+            "csv, json; a file for a simulator; or thesis: a folder of Valid_Locations.txt and the like (default csv)")
         ->check(one_of(formats));
     command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
     add_simulator_options(command, args.simulator);
@@ -219,12 +239,17 @@ void add_spawn_options(CLI::App& command, SpawnArgs& args)
 void add_search(CLI::App& app, Run& run)
 {
     auto args = std::make_shared<SpawnArgs>();
-    CLI::App& command = *app.add_subcommand("search", "N spawns by random search in a box, away from all positions checked before");
+    CLI::App& command = *app.add_subcommand(
+        "search", "N spawns by random search in a box, away from all positions checked before");
     add_spawn_options(command, *args);
     add_max_failures(command, args->draws);
-    command.add_option("--bounds", args->bounds, "Box of the draws: x0,y0,z0,x1,y1,z1 in m, or with --z x0,y0,x1,y1 (default: the map's)");
-    command.add_option("--z", args->ground.z, "LOW:HIGH in m: heights of the draws, short for those of --bounds (5: and :8 have one limit)");
-    command.footer("Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 --max-failures 10000");
+    command.add_option("--bounds", args->bounds,
+                       "Box of the draws: x0,y0,z0,x1,y1,z1 in m, or with --z x0,y0,x1,y1 (default: the map's)");
+    command.add_option("--z", args->ground.z,
+                       "LOW:HIGH in m: heights of the draws, short for those of --bounds (5: and :8 have one limit)");
+    command.footer(
+        "Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 "
+        "--max-failures 10000");
     command.callback([=, &command, &run] { run = [=, &command] { return run_search(*args, command); }; });
 }
 
@@ -234,7 +259,8 @@ void add_sample(CLI::App& app, Run& run)
     CLI::App& command = *app.add_subcommand("sample", "N valid spawns, uniform by area");
     add_spawn_options(command, *args);
     add_ground(command, args->ground, "all, top, bottom, or N from the top (0 first; default all)");
-    command.footer("Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");
+    command.footer(
+        "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");
     command.callback([=, &command, &run] { run = [=, &command] { return run_sample(*args, command); }; });
 }
 

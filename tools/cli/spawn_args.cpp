@@ -7,26 +7,30 @@ void add_draws(CLI::App& command, DrawArgs& args)
 {
     command.add_option("-n,--count", args.count, "Spawns wanted");
     command.add_option("--min-distance", args.min_distance, "Between positions, m (default 0)");
-    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)")->check(tools::seed_complaint);
+    command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)")
+        ->check(tools::seed_complaint);
 }
 
 void add_max_failures(CLI::App& command, DrawArgs& args)
 {
-    command.add_option("--max-failures", args.max_failures, "Draws in a row that gave nothing, after which it stops (default 100000)");
+    command.add_option("--max-failures", args.max_failures,
+                       "Draws in a row that gave nothing, after which it stops (default 100000)");
 }
 
 void fill(SpawnOptions& options, const QueryArgs& args, const DrawArgs& draws, const std::string& label)
 {
     fill(options, args, label);
     if (draws.count < 1) throw bad_value("-n", double(draws.count), ">= 1");
-    if (draws.count > static_cast<long long>(max_spawns)) throw bad_value("-n", double(draws.count), "at most " + std::to_string(max_spawns));
+    if (draws.count > static_cast<long long>(max_spawns))
+        throw bad_value("-n", double(draws.count), "at most " + std::to_string(max_spawns));
     options.count = std::size_t(draws.count);
     options.min_distance = parse_finite("--min-distance", draws.min_distance, "m");
     if (options.min_distance < 0) throw bad_value("--min-distance", options.min_distance, ">= 0 m");
     options.seed = draws.seed;
 }
 
-SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds, const std::string& label, bool flat_allowed)
+SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds,
+                             const std::string& label, bool flat_allowed)
 {
     SearchOptions options;
     fill(options, args, draws, label);

@@ -16,8 +16,9 @@ void add_max_failures(CLI::App& command, DrawArgs& args);
 /// What search and sample share, but bounds and yaw. Throws ArgumentError.
 void fill(SpawnOptions& options, const QueryArgs& args, const DrawArgs& draws, const std::string& label);
 
-/// Everything but the yaw; `bounds` as --bounds has it, or empty; flat_allowed: heights come from elsewhere. Throws ArgumentError.
-SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds, const std::string& label,
-                             bool flat_allowed = false);
+/// Everything but the yaw; `bounds` as --bounds has it, or empty; flat_allowed: heights come from elsewhere. Throws
+/// ArgumentError.
+SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds,
+                             const std::string& label, bool flat_allowed = false);
 
 }  // namespace spawnfield::cli

@@ -74,7 +74,8 @@ std::string suggestion(const std::string& text, const std::vector<std::string>& 
     constexpr std::size_t most = 4;
     std::vector<std::string> found = likely(text, words);
     const std::string other = "--region";  // what `sample` calls the --bounds of other commands
-    if (found.empty() && text == "--bounds" && std::find(words.begin(), words.end(), other) != words.end()) found = {other};
+    if (found.empty() && text == "--bounds" && std::find(words.begin(), words.end(), other) != words.end())
+        found = {other};
     return found.empty() || found.size() > most ? "" : "; did you mean " + choice_of(found) + "?";
 }
 

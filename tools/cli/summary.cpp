@@ -15,10 +15,7 @@
 namespace spawnfield::cli {
 namespace {
 
-double now()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::uint64_t peak_memory_bytes()
 {
@@ -29,7 +26,8 @@ std::uint64_t peak_memory_bytes()
 
 }  // namespace
 
-Summary::Summary(std::string command, const CommonArgs& args) : command_(std::move(command)), args_(args), start_(now()), last_(start_)
+Summary::Summary(std::string command, const CommonArgs& args)
+    : command_(std::move(command)), args_(args), start_(now()), last_(start_)
 {
     std::error_code ignored;
     const bool is_pipe = std::filesystem::is_fifo(args.summary, ignored);  // to open it is to wait for its reader
@@ -73,7 +71,8 @@ std::string Summary::line(double total) const
         text += counted(poses, "pose");
         std::string verdicts;
         for (std::size_t v = verdict_count; v-- > 0;)  // valid first
-            if (counts_[v] > 0) verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(counts_[v]) + " " + to_string(Verdict(v));
+            if (counts_[v] > 0)
+                verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(counts_[v]) + " " + to_string(Verdict(v));
         text += verdicts + "; " + counted(exact_checks, "exact check") + "; ";
     }
     char seconds[32];
@@ -100,7 +99,8 @@ std::string Summary::json(double total) const
     // Exact checks run on all threads: their share of the query's time is told.
     const double query = total - load - write, judging = seconds_of("query");
     const double exact = std::min(judging, double(exact_time.nanoseconds) * 1e-9 / threads());
-    out["seconds"] = {{"load", load}, {"query", query}, {"mask", judging - exact}, {"exact", exact}, {"write", write}, {"total", total}};
+    out["seconds"] = {{"load", load},   {"query", query}, {"mask", judging - exact},
+                      {"exact", exact}, {"write", write}, {"total", total}};
     for (const auto& [stage, seconds] : more_stages) out["seconds"][stage] = seconds_of(stage);
     out["peak_memory_bytes"] = peak_memory_bytes();
     out["threads"] = threads();

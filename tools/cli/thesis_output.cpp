@@ -11,7 +11,8 @@ Settings query_settings(const std::string& command, const QueryArgs& args, const
                  {"Map", session.map.name},
                  {"Map hash", session.map.hash},
                  {"Robot", session.robot.name}};
-    for (const auto& [joint, value] : session.robot.joints) out.emplace_back("Joint " + joint + " (rad or m)", number(value));
+    for (const auto& [joint, value] : session.robot.joints)
+        out.emplace_back("Joint " + joint + " (rad or m)", number(value));
     if (session.robot.mesh_parts != 1) out.emplace_back("Mesh parts", std::to_string(session.robot.mesh_parts));
     out.emplace_back("Collision", args.collision);
     out.emplace_back("Exhaustive", args.exhaustive ? "yes" : "no");
@@ -25,13 +26,15 @@ std::unique_ptr<OutputFolder> thesis_folder(const std::string& out)
 }
 
 void write_thesis(OutputFolder& folder, const Settings& settings, const VerdictCounts& counts, const Summary& summary,
-                  const std::function<ThesisCounts(const std::filesystem::path&)>& write_locations, const std::function<void()>& then)
+                  const std::function<ThesisCounts(const std::filesystem::path&)>& write_locations,
+                  const std::function<void()>& then)
 {
     clear_progress_bar();
     const ThesisCounts written = write_locations(folder.path());
     write_file_atomically(folder.path() / "Stats.txt", thesis_stats(settings, counts, written));
-    write_file_atomically(folder.path() / "RunTime.txt", "Load (s): " + number(summary.seconds_of("load")) + "\nQuery (s): " +
-                                                             number(summary.seconds_of("query")) + "\nTotal (s): " + number(summary.elapsed()) + "\n");
+    write_file_atomically(folder.path() / "RunTime.txt", "Load (s): " + number(summary.seconds_of("load")) +
+                                                             "\nQuery (s): " + number(summary.seconds_of("query")) +
+                                                             "\nTotal (s): " + number(summary.elapsed()) + "\n");
     then();
     if (was_interrupted()) throw Interrupted{};
     folder.commit();

@@ -17,9 +17,11 @@ Settings query_settings(const std::string& command, const QueryArgs& args, const
 /// without -o, OutputError if something else is there.
 std::unique_ptr<OutputFolder> thesis_folder(const std::string& out);
 
-/// All files of the folder; it gets its name when they and `then` succeed. `write_locations` writes those of the locations
-/// into the folder that it is told.
-void write_thesis(OutputFolder& folder, const Settings& settings, const VerdictCounts& counts, const Summary& summary,
-                  const std::function<ThesisCounts(const std::filesystem::path&)>& write_locations, const std::function<void()>& then = [] {});
+/// All files of the folder; it gets its name when they and `then` succeed. `write_locations` writes those of the
+/// locations into the folder that it is told.
+void write_thesis(
+    OutputFolder& folder, const Settings& settings, const VerdictCounts& counts, const Summary& summary,
+    const std::function<ThesisCounts(const std::filesystem::path&)>& write_locations,
+    const std::function<void()>& then = [] {});
 
 }  // namespace spawnfield::cli

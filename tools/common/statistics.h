@@ -20,7 +20,8 @@ double sample_variance(const Items& items, const Value& value = {})
     if (items.size() < 2) return 0;
     const double centre = mean(items, value);
     double sum = 0;
-    for (const auto& item : items) sum += (double(std::invoke(value, item)) - centre) * (double(std::invoke(value, item)) - centre);
+    for (const auto& item : items)
+        sum += (double(std::invoke(value, item)) - centre) * (double(std::invoke(value, item)) - centre);
     return sum / double(items.size() - 1);
 }
 

@@ -39,7 +39,8 @@ Run run_raster(const Environment& environment, const Robot& robot, const RasterO
     run.robot = robot.name;
     run.mode = options.exhaustive ? Mode::Fcl : Mode::Mask;
     run.step = options.step;
-    run.positions = std::uint64_t(result.grid.cols) * std::uint64_t(result.grid.rows) * std::uint64_t(options.dims == 3 ? result.grid.heights : 1);
+    run.positions = std::uint64_t(result.grid.cols) * std::uint64_t(result.grid.rows) *
+                    std::uint64_t(options.dims == 3 ? result.grid.heights : 1);
     run.exact_checks = result.exact_checks;
     add_counts(result.counts, run);
     return run;
@@ -48,14 +49,17 @@ Run run_raster(const Environment& environment, const Robot& robot, const RasterO
 void check_same(const std::vector<Run>& runs)
 {
     for (const Run& run : runs)
-        if (run.valid != runs[0].valid || run.invalid != runs[0].invalid || run.aerial != runs[0].aerial || run.positions != runs[0].positions)
-            throw std::runtime_error(tools::formatted("test %d, %s, step %g: %s finds %llu valid of %llu, %s %llu of %llu", run.test, run.robot.c_str(), run.step,
-                                                      to_string(run.mode), (unsigned long long)run.valid, (unsigned long long)run.positions,
-                                                      to_string(runs[0].mode), (unsigned long long)runs[0].valid, (unsigned long long)runs[0].positions));
+        if (run.valid != runs[0].valid || run.invalid != runs[0].invalid || run.aerial != runs[0].aerial ||
+            run.positions != runs[0].positions)
+            throw std::runtime_error(tools::formatted(
+                "test %d, %s, step %g: %s finds %llu valid of %llu, %s %llu of %llu", run.test, run.robot.c_str(),
+                run.step, to_string(run.mode), (unsigned long long)run.valid, (unsigned long long)run.positions,
+                to_string(runs[0].mode), (unsigned long long)runs[0].valid, (unsigned long long)runs[0].positions));
 }
 
 /// With the mask so many times, and with FCL at every position; all have to give the same counts.
-std::vector<Run> repeated(const Environment& environment, const Robot& robot, RasterOptions options, const Run& like, int mask_times, int fcl_times)
+std::vector<Run> repeated(const Environment& environment, const Robot& robot, RasterOptions options, const Run& like,
+                          int mask_times, int fcl_times)
 {
     std::vector<Run> runs;
     for (int i = 0; i < mask_times + fcl_times; ++i) {
@@ -83,7 +87,8 @@ RasterOptions benchmark_options(const Settings& settings, int heights)
     return options;
 }
 
-/// Limits of the thesis's rasters and searches. Its counts of test 4 and 6 at 1.5 m and more are those of a square: 1 m more in y.
+/// Limits of the thesis's rasters and searches. Its counts of test 4 and 6 at 1.5 m and more are those of a square: 1 m
+/// more in y.
 Bounds limits(int test, double step)
 {
     if (test % 2 == 1) return {{0, 0, 31}, {500, 500, 124}};
@@ -117,7 +122,11 @@ Run run_search(const Environment& environment, const Robot& robot, const SearchO
 {
     const CollisionChecker checker(environment.map.geometry, robot);
     SpawnList list;
-    Run run{.test = test, .environment = environment.name, .robot = robot.name, .step = options.min_distance, .repetition = int(options.seed)};
+    Run run{.test = test,
+            .environment = environment.name,
+            .robot = robot.name,
+            .step = options.min_distance,
+            .repetition = int(options.seed)};
     run.seconds = seconds_of([&] { list = search(environment.map, checker, options); });
     run.exact_checks = list.exact_checks;
     add_counts(list.counts, run);
@@ -125,7 +134,10 @@ Run run_search(const Environment& environment, const Robot& robot, const SearchO
     return run;
 }
 
-const Environment& environment_of(const Districts& districts, int test) { return test % 2 == 1 ? districts.low : districts.complex; }
+const Environment& environment_of(const Districts& districts, int test)
+{
+    return test % 2 == 1 ? districts.low : districts.complex;
+}
 
 }  // namespace
 
@@ -137,7 +149,8 @@ std::vector<Run> aerial_runs(const Settings& settings)
         settings.tell(tools::formatted("test 1: %d positions", heights * 100));
         const Environment empty = empty_environment(heights);
         for (const char* const name : {"box", "hull"})
-            append(runs, repeated(empty, robot(settings, name), benchmark_options(settings, heights), {.test = 1}, settings.quick ? 2 : 10, 1));
+            append(runs, repeated(empty, robot(settings, name), benchmark_options(settings, heights), {.test = 1},
+                                  settings.quick ? 2 : 10, 1));
     }
     return runs;
 }
@@ -151,8 +164,10 @@ std::vector<Run> collision_runs(const Settings& settings, const Environment& cub
         RasterOptions options = benchmark_options(settings, int(environment.map.bounds.max.z()) + 1);
         options.height_check = false;
         const Run like{.test = 2, .obstacle = figure.obstacle};
-        append(runs, repeated(environment, robot(settings, figure.robot), options, like, settings.quick ? 2 : 10, settings.quick ? 1 : 3));
-        if (runs.back().invalid != runs.back().positions) throw std::runtime_error("test 2: a position without collision");
+        append(runs, repeated(environment, robot(settings, figure.robot), options, like, settings.quick ? 2 : 10,
+                              settings.quick ? 1 : 3));
+        if (runs.back().invalid != runs.back().positions)
+            throw std::runtime_error("test 2: a position without collision");
     }
     return runs;
 }
@@ -165,10 +180,11 @@ std::vector<Run> raster_runs(const Settings& settings, const Districts& district
             const double step = settings.quick ? 16 * figure.step : figure.step;
             settings.tell(tools::formatted("test %d: step %g m", test, step));
             for (const char* const name : {"box", "hull"}) {
-                append(runs, repeated(environment_of(districts, test), robot(settings, name), raster_options(settings, test, step), {.test = test},
-                                      settings.quick ? 2 : 5, 1));
+                append(runs, repeated(environment_of(districts, test), robot(settings, name),
+                                      raster_options(settings, test, step), {.test = test}, settings.quick ? 2 : 5, 1));
                 if (!settings.quick && runs.back().positions != figure.positions)
-                    throw std::runtime_error(tools::formatted("test %d, step %g: %llu positions, needs %llu", test, step, (unsigned long long)runs.back().positions,
+                    throw std::runtime_error(tools::formatted("test %d, step %g: %llu positions, needs %llu", test,
+                                                              step, (unsigned long long)runs.back().positions,
                                                               (unsigned long long)figure.positions));
             }
         }
@@ -183,7 +199,8 @@ std::vector<Run> search_runs(const Settings& settings, const Districts& district
         for (const bool with_distance : {true, false}) {
             settings.tell(tools::formatted("test %d: %s distance check", test, with_distance ? "with" : "without"));
             for (int seed = 1; seed <= (settings.quick ? 2 : 20); ++seed)
-                runs.push_back(run_search(environment_of(districts, test), box, search_options(settings, test, with_distance, seed), test));
+                runs.push_back(run_search(environment_of(districts, test), box,
+                                          search_options(settings, test, with_distance, seed), test));
         }
     return runs;
 }
@@ -191,7 +208,8 @@ std::vector<Run> search_runs(const Settings& settings, const Districts& district
 SpawnList first_search(const Settings& settings, const Districts& districts, int test)
 {
     const Environment& environment = environment_of(districts, test);
-    return search(environment.map, CollisionChecker(environment.map.geometry, robot(settings, "box")), search_options(settings, test, true, 1));
+    return search(environment.map, CollisionChecker(environment.map.geometry, robot(settings, "box")),
+                  search_options(settings, test, true, 1));
 }
 
 std::vector<Milestone> milestones(const Settings& settings, const Districts& districts)
@@ -218,7 +236,8 @@ std::vector<ColumnFinds> column_finds(const Settings& settings, const Environmen
     std::map<std::pair<double, double>, ColumnFinds> columns;
     const auto look = [&](const RasterOptions& options, bool ColumnFinds::*found) {
         for (const RasterPose& pose : raster(low.map, checker, options).poses)
-            columns.try_emplace({pose.y, pose.x}, ColumnFinds{pose.x, pose.y, false, false, false}).first->second.*found |= pose.verdict == Verdict::Valid;
+            columns.try_emplace({pose.y, pose.x}, ColumnFinds{pose.x, pose.y, false, false, false}).first->second.*
+                found |= pose.verdict == Verdict::Valid;
     };
     RasterOptions options = raster_options(settings, 5, settings.quick ? 20 : 2.5);
     look(options, &ColumnFinds::in_2d);

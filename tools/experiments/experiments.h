@@ -4,7 +4,8 @@
 
 namespace experiments {
 
-/// How an answer came about: the free-space mask with FCL where it can't decide, or FCL at every position (--exhaustive).
+/// How an answer came about: the free-space mask with FCL where it can't decide, or FCL at every position
+/// (--exhaustive).
 enum class Mode { Mask, Fcl };
 inline const char* to_string(Mode mode) { return mode == Mode::Mask ? "mask" : "fcl"; }
 
@@ -12,14 +13,14 @@ inline const char* to_string(Mode mode) { return mode == Mode::Mask ? "mask" : "
 struct Run {
     int test = 0;  ///< 1 to 8, as the thesis counts them
     std::string environment = {}, robot = {};
-    std::string obstacle = {};     ///< test 2: "cubes" or "balls"
+    std::string obstacle = {};  ///< test 2: "cubes" or "balls"
     Mode mode = Mode::Mask;
-    double step = 0;               ///< m; of a search: its least distance
-    int repetition = 0;            ///< a search's seed too
-    std::uint64_t positions = 0;   ///< checked: columns in 2D, poses in 3D, draws of a search that kept their distance
+    double step = 0;              ///< m; of a search: its least distance
+    int repetition = 0;           ///< a search's seed too
+    std::uint64_t positions = 0;  ///< checked: columns in 2D, poses in 3D, draws of a search that kept their distance
     std::uint64_t valid = 0, invalid = 0, aerial = 0;  ///< in the thesis's terms: off_terrain is aerial
     std::uint64_t exact_checks = 0;
-    double seconds = 0;            ///< of the query, the mask's preparation with it; without reading map and robot
+    double seconds = 0;  ///< of the query, the mask's preparation with it; without reading map and robot
 };
 
 /// Seconds until a search had found so many.

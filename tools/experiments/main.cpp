@@ -18,16 +18,21 @@ void run(const Settings& settings, const std::string& command)
     const std::filesystem::path pictures = settings.folder / "experiments";
     std::filesystem::create_directories(pictures);
     const bool quick = settings.quick;
-    const Environment cubes = environment(settings, "benchmark-cubes", [&](std::uint64_t) { return worlds::benchmark_cubes(quick ? 20 : 500); }, 0.1);
-    const Environment balls = environment(settings, "benchmark-balls", [&](std::uint64_t) { return worlds::benchmark_balls(quick ? 20 : 500); }, 0.1);
-    const Districts districts = {environment(settings, "low-complexity", worlds::low_complexity, quick ? 1 : 0.1),
-                                 environment(settings, "complex", [](std::uint64_t seed) { return worlds::complex_district(seed); }, quick ? 2 : 0.25)};
+    const Environment cubes = environment(
+        settings, "benchmark-cubes", [&](std::uint64_t) { return worlds::benchmark_cubes(quick ? 20 : 500); }, 0.1);
+    const Environment balls = environment(
+        settings, "benchmark-balls", [&](std::uint64_t) { return worlds::benchmark_balls(quick ? 20 : 500); }, 0.1);
+    const Districts districts = {
+        environment(settings, "low-complexity", worlds::low_complexity, quick ? 1 : 0.1),
+        environment(
+            settings, "complex", [](std::uint64_t seed) { return worlds::complex_district(seed); }, quick ? 2 : 0.25)};
     const Environment deck = environment(
-        settings, "complex-deck", [](std::uint64_t seed) { return worlds::complex_district(seed, worlds::Bridge::DeckAlone); }, quick ? 2 : 0.25);
+        settings, "complex-deck",
+        [](std::uint64_t seed) { return worlds::complex_district(seed, worlds::Bridge::DeckAlone); }, quick ? 2 : 0.25);
 
     Results results;
-    for (const std::vector<Run>& runs :
-         {aerial_runs(settings), collision_runs(settings, cubes, balls), raster_runs(settings, districts), search_runs(settings, districts)})
+    for (const std::vector<Run>& runs : {aerial_runs(settings), collision_runs(settings, cubes, balls),
+                                         raster_runs(settings, districts), search_runs(settings, districts)})
         results.runs.insert(results.runs.end(), runs.begin(), runs.end());
     results.milestones = milestones(settings, districts);
     results.column_finds = column_finds(settings, districts.low);
@@ -39,21 +44,26 @@ void run(const Settings& settings, const std::string& command)
     write_file_atomically(settings.folder / "thesis.csv", thesis_csv());
     write_file_atomically(settings.folder / "milestones.csv", milestones_csv(results.milestones));
     write_file_atomically(settings.folder / "column_finds.csv", column_finds_csv(results.column_finds));
-    write_file_atomically(settings.folder / "experiments.md", report(settings, {&cubes, &balls, &districts.low, &districts.complex, &deck}, results, command, "experiments"));
+    write_file_atomically(
+        settings.folder / "experiments.md",
+        report(settings, {&cubes, &balls, &districts.low, &districts.complex, &deck}, results, command, "experiments"));
 }
 
 }  // namespace
 
 int main(int argc, char** argv)
 {
-    CLI::App app{"Runs the eight experiments of the thesis that spawnfield grew from, and writes tables, pictures and a report"};
+    CLI::App app{
+        "Runs the eight experiments of the thesis that spawnfield grew from, and writes tables, pictures and a report"};
     Settings settings;
     std::string command = "spawnfield_experiments";
     app.add_option("-o,--output", settings.folder, "Folder of all results, made where missing")->required();
     app.add_flag("--quick", settings.quick, "Coarse steps and maps: counts and invariants, no times worth a look");
     app.add_option("--threads", settings.threads, "0: all cores (default 0)")->check(CLI::Range(0, 1024));
     app.add_option("--command", command, "What the report says it was made by")->capture_default_str();
-    app.footer("Example:\n  spawnfield_experiments --quick -o /tmp/experiments\ntools/experiments.sh runs it and draws the plots.");
+    app.footer(
+        "Example:\n  spawnfield_experiments --quick -o /tmp/experiments\ntools/experiments.sh runs it and draws the "
+        "plots.");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -35,7 +35,8 @@ RasterResult verdicts_in(const Settings& settings, const Environment& environmen
     return raster(environment.map, CollisionChecker(environment.map.geometry, robot(settings, "box")), options);
 }
 
-Picture draw_case(const Settings& settings, const Environment& environment, const Case& shown, const std::filesystem::path& folder)
+Picture draw_case(const Settings& settings, const Environment& environment, const Case& shown,
+                  const std::filesystem::path& folder)
 {
     const RasterResult verdicts = verdicts_in(settings, environment, region_of(environment, shown.landmark), 0.3);
     const Robot box = robot(settings, "box");
@@ -48,11 +49,13 @@ Picture draw_case(const Settings& settings, const Environment& environment, cons
 
 }  // namespace
 
-std::vector<Picture> draw_cases(const Settings& settings, const Districts& districts, const Environment& bridge_deck, const std::filesystem::path& folder)
+std::vector<Picture> draw_cases(const Settings& settings, const Districts& districts, const Environment& bridge_deck,
+                                const std::filesystem::path& folder)
 {
     settings.tell("pictures of special cases");
     std::vector<Picture> out;
-    for (const Case& shown : {Case{"fountain", "the fountain on the square"}, Case{"lake", "open ground and lake"}, Case{"dense_forest", "dense forest"}})
+    for (const Case& shown : {Case{"fountain", "the fountain on the square"}, Case{"lake", "open ground and lake"},
+                              Case{"dense_forest", "dense forest"}})
         out.push_back(draw_case(settings, districts.low, shown, folder));
     for (const Case& shown : {Case{"car", "an abandoned car"}, Case{"fence_and_water", "fence and water"},
                               Case{"bridge", "the bridge, frames and pillars of one object with the deck"}})
@@ -61,7 +64,8 @@ std::vector<Picture> draw_cases(const Settings& settings, const Districts& distr
     return out;
 }
 
-std::vector<Picture> draw_spawns(const Settings& settings, const Districts& districts, const std::filesystem::path& folder)
+std::vector<Picture> draw_spawns(const Settings& settings, const Districts& districts,
+                                 const std::filesystem::path& folder)
 {
     settings.tell("pictures of random spawns");
     std::vector<Picture> out;
@@ -75,7 +79,8 @@ std::vector<Picture> draw_spawns(const Settings& settings, const Districts& dist
         options.title = environment.name + ", " + std::to_string(options.spawns.size()) + " random spawns";
         Picture picture{"spawns_" + environment.name + ".png", options.title};
         std::replace(picture.file.begin(), picture.file.end(), '-', '_');
-        write_heatmap(environment.map, read_terrain(environment.map), verdicts_in(settings, environment, environment.map.bounds, 1.0), options, folder / picture.file);
+        write_heatmap(environment.map, read_terrain(environment.map),
+                      verdicts_in(settings, environment, environment.map.bounds, 1.0), options, folder / picture.file);
         out.push_back(picture);
     }
     return out;

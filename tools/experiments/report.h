@@ -23,7 +23,7 @@ std::string column_finds_csv(const std::vector<ColumnFinds>& finds);
 std::string thesis_csv();
 
 /// The report, with pictures and plots under `pictures`/ beside it.
-std::string report(const Settings& settings, const std::vector<const Environment*>& environments, const Results& results, const std::string& command,
-                   const std::string& pictures);
+std::string report(const Settings& settings, const std::vector<const Environment*>& environments,
+                   const Results& results, const std::string& command, const std::string& pictures);
 
 }  // namespace experiments

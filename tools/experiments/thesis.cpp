@@ -13,7 +13,8 @@ const std::vector<Aerial>& aerial()
 
 const std::vector<Collision>& collision()
 {
-    static const std::vector<Collision> all = {{"box", "cubes", 212.6}, {"box", "balls", 217.8}, {"hull", "cubes", 203.6}, {"hull", "balls", 223.0}};
+    static const std::vector<Collision> all = {
+        {"box", "cubes", 212.6}, {"box", "balls", 217.8}, {"hull", "cubes", 203.6}, {"hull", "balls", 223.0}};
     return all;
 }
 

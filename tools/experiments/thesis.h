@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-/// Figures that the thesis printed: Ropelato, feasible spawn locations in Unity (PhysX), Clearpath Husky, Ryzen 7 3700X.
+/// Figures that the thesis printed: Ropelato, feasible spawn locations in Unity (PhysX), Clearpath Husky, Ryzen 7
+/// 3700X.
 namespace thesis {
 
 struct Raster {

@@ -32,8 +32,9 @@ World benchmark_balls(int heights)
 {
     hand::Mesh mesh = ball();
     for (Vec3& vertex : mesh.vertices) vertex *= size / 2;
-    return lattice_of("benchmark-balls", heights,
-                      [&](Scene& scene, const Pose& pose) { hand::add_mesh(scene, Label::Obstacle, hand::moved(mesh, pose)); });
+    return lattice_of("benchmark-balls", heights, [&](Scene& scene, const Pose& pose) {
+        hand::add_mesh(scene, Label::Obstacle, hand::moved(mesh, pose));
+    });
 }
 
 }  // namespace worlds

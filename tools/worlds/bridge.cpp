@@ -19,15 +19,28 @@ hand::Mesh box_between(const Vec3& low, const Vec3& high)
     return hand::moved(hand::box(high - low), {(low + high) / 2, Mat3::Identity()});
 }
 
-hand::Mesh across(const std::vector<Eigen::Vector2d>& profile) { return profile_along_y(profile, -bridge_half_width, bridge_half_width); }
+hand::Mesh across(const std::vector<Eigen::Vector2d>& profile)
+{
+    return profile_along_y(profile, -bridge_half_width, bridge_half_width);
+}
 
 /// A level slab between two wedges, which reach a little into it: what is rounded on its way to a file leaves no gap.
 Pieces deck_of(const BridgeSite& site)
 {
-    const double foot = std::min({site.left_ground, site.right_ground, site.bed}) - foundation, inner = half_span - overlap;
-    return {box_between({-half_span, -bridge_half_width, site.deck - thickness}, {half_span, bridge_half_width, site.deck}),
-            across({{-half_length, foot}, {-inner, foot}, {-inner, site.deck}, {-half_span, site.deck}, {-half_length, site.left_ground}}),
-            across({{inner, foot}, {half_length, foot}, {half_length, site.right_ground}, {half_span, site.deck}, {inner, site.deck}})};
+    const double foot = std::min({site.left_ground, site.right_ground, site.bed}) - foundation,
+                 inner = half_span - overlap;
+    return {
+        box_between({-half_span, -bridge_half_width, site.deck - thickness}, {half_span, bridge_half_width, site.deck}),
+        across({{-half_length, foot},
+                {-inner, foot},
+                {-inner, site.deck},
+                {-half_span, site.deck},
+                {-half_length, site.left_ground}}),
+        across({{inner, foot},
+                {half_length, foot},
+                {half_length, site.right_ground},
+                {half_span, site.deck},
+                {inner, site.deck}})};
 }
 
 /// Two posts beside the path and a beam over it.
@@ -43,7 +56,8 @@ Pieces pillars_at(double x, const BridgeSite& site)
 {
     Pieces out;
     const double foot = site.bed - foundation, top = site.deck - thickness / 2, half = pillar / 2;
-    for (const double y : {-2.0, 2.0}) out.push_back(box_between({x - half, y - half, foot}, {x + half, y + half, top}));
+    for (const double y : {-2.0, 2.0})
+        out.push_back(box_between({x - half, y - half, foot}, {x + half, y + half, top}));
     return out;
 }
 

@@ -16,9 +16,9 @@ namespace {
 
 constexpr int house_models = 28, tower_models = 4, car_models = 6;
 constexpr int wild_trees = 1500;
-constexpr double highest = 80;       // m, of all that stands on the island
+constexpr double highest = 80;         // m, of all that stands on the island
 constexpr double deepest_floor = 1.5;  // m under the sea: houses do not stand deeper
-constexpr double panel = 3;          // m, length of a fence's
+constexpr double panel = 3;            // m, length of a fence's
 constexpr double low_fence = 0.9, high_fence = 1.6;
 constexpr double lot_width = 17, lot_depth = (StreetGrid::block_v - StreetGrid::street) / 2;
 
@@ -100,7 +100,8 @@ void Settler::make_models()
 {
     constexpr double foundation = 3;  // m: the ground may fall so far under a house
     for (int i = 0; i < house_models; ++i)
-        houses_.push_back(model_of(i % 4 == 0 ? house(random_, foundation) : Pieces{recessed_house(random_, {.foundation = foundation})}));
+        houses_.push_back(model_of(i % 4 == 0 ? house(random_, foundation)
+                                              : Pieces{recessed_house(random_, {.foundation = foundation})}));
     for (int i = 0; i < tower_models; ++i)
         towers_.push_back(model_of({recessed_house(random_, {foundation, 12 + 3 * i, 13 + 3 * i})}));
     for (int i = 0; i < car_models; ++i) cars_.push_back(model_of(car(random_)));
@@ -129,8 +130,8 @@ void Settler::add_bridge_of_canal()
 {
     const Vec2 middle(Island::canal_u, Island::bridge_v), half(bridge_length / 2, 0);
     const auto ground = [&](const Vec2& uv) { return island_.height(StreetGrid::to_world(uv)); };
-    const BridgeSite site = {pose_at(StreetGrid::to_world(middle), 0, StreetGrid::turn), ground(middle - half), ground(middle + half),
-                             ground(middle), Island::sea_level + 4};
+    const BridgeSite site = {pose_at(StreetGrid::to_world(middle), 0, StreetGrid::turn), ground(middle - half),
+                             ground(middle + half), ground(middle), Island::sea_level + 4};
     add_bridge(world_.scene, site, bridge_);
 }
 
@@ -150,7 +151,8 @@ void Settler::add_car(const Site& site, double steepest)
     const Ground ground = ground_under(site, model.half_size);
     if (!ground.whole || ground.low < Island::sea_level - deepest_floor || is_on_bridge(site.middle, 4)) return;
     if (ground.high - ground.low > steepest * 2 * model.half_size.x()) return;
-    add_thing(world_.scene, "car", Label::Obstacle, model.pieces, pose_at(site.middle, (ground.low + ground.high) / 2 - 0.05, site.yaw()));
+    add_thing(world_.scene, "car", Label::Obstacle, model.pieces,
+              pose_at(site.middle, (ground.low + ground.high) / 2 - 0.05, site.yaw()));
 }
 
 /// The trunk alone: a robot passes under what a crown would be.
@@ -159,7 +161,8 @@ void Settler::add_tree(const Vec2& p)
     const double radius = random_.between(0.12, 0.3), length = random_.between(4, 9);
     if (!island_.has_ground(p) || island_.height(p) < Island::sea_level - deepest_floor) return;
     const Pose pose = pose_at(p, island_.height(p) + length / 2 - 0.5, 0);
-    hand::add_shape(world_.scene, Label::Obstacle, {.kind = ShapeKind::Cylinder, .size = {radius, length, 0}, .pose = pose});
+    hand::add_shape(world_.scene, Label::Obstacle,
+                    {.kind = ShapeKind::Cylinder, .size = {radius, length, 0}, .pose = pose});
     world_.scene.parts.back().name = "tree-" + std::to_string(world_.scene.parts.size() - 1);
 }
 
@@ -168,12 +171,14 @@ void Settler::add_panel(const Vec2& from, const Vec2& to, double height)
 {
     constexpr double sunk = 0.3, thickness = 0.04;  // m
     const double z0 = island_.height(from), z1 = island_.height(to);
-    const bool usable = island_.has_ground(from) && island_.has_ground(to) && std::min(z0, z1) > Island::sea_level - deepest_floor;
+    const bool usable = island_.has_ground(from) && island_.has_ground(to) &&
+                        std::min(z0, z1) > Island::sea_level - deepest_floor;
     if (!usable || std::abs(z1 - z0) > 0.4 * panel) return;
     const Vec2 along = to - from, middle = (from + to) / 2;
     const Mat3 rotation = rotation_from_rpy(0, -std::atan2(z1 - z0, along.norm()), std::atan2(along.y(), along.x()));
     const Vec3 centre(middle.x(), middle.y(), (z0 + z1) / 2 + (height - sunk) / 2);
-    hand::add_shape(world_.scene, Label::Obstacle, {.size = {along.norm(), thickness, height + sunk}, .pose = {centre, rotation}});
+    hand::add_shape(world_.scene, Label::Obstacle,
+                    {.size = {along.norm(), thickness, height + sunk}, .pose = {centre, rotation}});
     world_.scene.parts.back().name = "fence-" + std::to_string(world_.scene.parts.size() - 1);
 }
 
@@ -211,7 +216,8 @@ void Settler::add_towers(const Site& block)
 {
     for (const double x : {-28.0, 0.0, 28.0}) {
         const double y = random_.between(-12, 12);
-        add_building({block.to_world({x, y}), block.quarters + random_.below(2)}, towers_[std::size_t(random_.below(tower_models))]);
+        add_building({block.to_world({x, y}), block.quarters + random_.below(2)},
+                     towers_[std::size_t(random_.below(tower_models))]);
     }
     for (int i = 0; i < 14; ++i) {
         const double x = random_.between(-40, 40), y = random_.between(17, 25) * (i % 2 == 0 ? 1 : -1);
@@ -224,7 +230,8 @@ void Settler::add_cars_in_rows(const Site& block)
 {
     for (const double y : {-18.0, 0.0, 18.0})
         for (double x = -38; x < 40; x += 3.2)
-            if (random_.chance(0.45)) add_car({block.to_world({x + random_.between(-0.3, 0.3), y}), block.quarters + 1}, 0.15);
+            if (random_.chance(0.45))
+                add_car({block.to_world({x + random_.between(-0.3, 0.3), y}), block.quarters + 1}, 0.15);
 }
 
 void Settler::add_park(const Site& block)
@@ -237,7 +244,8 @@ void Settler::add_park(const Site& block)
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec2 from = corners[i], to = corners[(i + 1) % 4];
         for (const double start : {0.0, 0.55})  // a gate in the middle of each side
-            add_fence(block.to_world(from + start * (to - from)), block.to_world(from + (start + 0.45) * (to - from)), high_fence);
+            add_fence(block.to_world(from + start * (to - from)), block.to_world(from + (start + 0.45) * (to - from)),
+                      high_fence);
     }
 }
 
@@ -258,9 +266,12 @@ void Settler::add_block(int i, int j)
     const Vec2 corner(i * StreetGrid::block_u, j * StreetGrid::block_v);
     const Site block = {StreetGrid::to_world(corner + Vec2(StreetGrid::block_u, StreetGrid::block_v) / 2), 0};
     const double kind = random_.between(0, 1);
-    if (kind < 0.07) add_park(block);
-    else if (kind < 0.12) add_cars_in_rows(block);
-    else if (kind < 0.22) add_towers(block);
+    if (kind < 0.07)
+        add_park(block);
+    else if (kind < 0.12)
+        add_cars_in_rows(block);
+    else if (kind < 0.22)
+        add_towers(block);
     else
         for (const int side : {0, 2}) add_row({Site{block.middle, side}.to_world({0, -lot_depth / 2}), side});
     add_street_cars(corner);

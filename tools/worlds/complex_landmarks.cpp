@@ -15,7 +15,8 @@ std::vector<Bounds> bounds_of_parts(const Scene& scene)
 {
     std::vector<Bounds> bounds(scene.parts.size());
     for (std::size_t t = 0; t < scene.triangles.size(); ++t)
-        for (const std::uint32_t v : scene.triangles[t]) bounds[scene.pieces[scene.triangle_pieces[t]].part].extend(scene.vertices[v]);
+        for (const std::uint32_t v : scene.triangles[t])
+            bounds[scene.pieces[scene.triangle_pieces[t]].part].extend(scene.vertices[v]);
     for (const Primitive& primitive : scene.primitives) {
         const Shape& shape = primitive.shape;
         const double length = shape.kind == ShapeKind::Box ? shape.size[2] : shape.size[1];
@@ -30,7 +31,10 @@ public:
 
     Landmark car() const;
     Landmark fence_and_water() const;
-    Landmark bridge() const { return {"bridge", around(StreetGrid::to_world({Island::canal_u, Island::bridge_v}), 40)}; }
+    Landmark bridge() const
+    {
+        return {"bridge", around(StreetGrid::to_world({Island::canal_u, Island::bridge_v}), 40)};
+    }
     Landmark houses() const;
     Landmark shore() const;
 
@@ -53,7 +57,8 @@ Bounds Guide::around(const Vec2& middle, double half) const
     for (double y = low.y(); y <= high.y(); y += 2)
         for (double x = low.x(); x <= high.x(); x += 2) top = std::max(top, island_.height({x, y}));
     for (std::size_t i = 0; i < bounds_.size(); ++i)
-        if (scene_.parts[i].name.find('-') != std::string::npos && bounds_[i].meets(region, 2)) top = std::max(top, bounds_[i].max.z());
+        if (scene_.parts[i].name.find('-') != std::string::npos && bounds_[i].meets(region, 2))
+            top = std::max(top, bounds_[i].max.z());
     region.max.z() = std::ceil(top);
     return region;
 }
@@ -63,7 +68,8 @@ double Guide::wet_share(const Vec2& middle, double half) const
 {
     int wet = 0;
     for (int row = -4; row <= 4; ++row)
-        for (int col = -4; col <= 4; ++col) wet += island_.height(middle + half / 4 * Vec2(col, row)) < Island::sea_level;
+        for (int col = -4; col <= 4; ++col)
+            wet += island_.height(middle + half / 4 * Vec2(col, row)) < Island::sea_level;
     return wet / 81.0;
 }
 
@@ -71,7 +77,8 @@ std::vector<Vec2> Guide::middles_of(const std::string& kind) const
 {
     std::vector<Vec2> middles;
     for (std::size_t i = 0; i < bounds_.size(); ++i)
-        if (scene_.parts[i].name.starts_with(kind + "-")) middles.push_back((bounds_[i].min + bounds_[i].max).head<2>() / 2);
+        if (scene_.parts[i].name.starts_with(kind + "-"))
+            middles.push_back((bounds_[i].min + bounds_[i].max).head<2>() / 2);
     return middles;
 }
 
@@ -87,9 +94,8 @@ Vec2 best_of(const std::vector<Vec2>& places, const std::function<double(const V
 /// Dry, and near the middle of the island.
 Landmark Guide::car() const
 {
-    const Vec2 place = best_of(middles_of("car"), [&](const Vec2& p) {
-        return (p - StreetGrid::origin()).norm() + 1e4 * wet_share(p, 8);
-    });
+    const Vec2 place = best_of(
+        middles_of("car"), [&](const Vec2& p) { return (p - StreetGrid::origin()).norm() + 1e4 * wet_share(p, 8); });
     return {"car", around(place, 8)};
 }
 

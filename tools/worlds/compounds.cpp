@@ -23,7 +23,8 @@ Element block(const std::string& name, const Vec3& size, double x, double y)
 }
 
 /// A capsule along `rotation`'s z, `length` from end to end.
-Element capsule(const std::string& name, double radius, double length, const Vec3& centre, const Mat3& rotation = Mat3::Identity())
+Element capsule(const std::string& name, double radius, double length, const Vec3& centre,
+                const Mat3& rotation = Mat3::Identity())
 {
     return {name, {.kind = ShapeKind::Capsule, .size = {radius, length - 2 * radius, 0}, .pose = {centre, rotation}}};
 }
@@ -43,7 +44,8 @@ void add_roof(const HouseSize& size, double pitch, double x, Compound& out)
         const double y = side * (half + overhang) / 2;
         const Vec3 centre(x, y, size.walls + ridge - std::abs(y) * std::tan(pitch) + thickness / 2);
         const char* name = side < 0 ? "roof-right" : "roof-left";
-        out.push_back(box(name, {size.length + 2 * overhang, slope, thickness}, centre, rotation_from_rpy(-side * pitch, 0, 0)));
+        out.push_back(
+            box(name, {size.length + 2 * overhang, slope, thickness}, centre, rotation_from_rpy(-side * pitch, 0, 0)));
     }
 }
 
@@ -75,7 +77,8 @@ Compound church_of_boxes()
 
 Compound broad_tree(Random& random)
 {
-    const double radius = random.between(1.5, 2.8), clear = random.between(2.0, 2.9), thick = random.between(0.16, 0.34);
+    const double radius = random.between(1.5, 2.8), clear = random.between(2.0, 2.9),
+                 thick = random.between(0.16, 0.34);
     const double height = clear + 2 * radius + random.between(0.1, 2.5);
     return {upright_capsule("trunk", thick, -sunk, clear + radius), upright_capsule("crown", radius, clear, height)};
 }
@@ -110,7 +113,8 @@ Compound fountain()
     for (int i = 0; i < sides; ++i) {
         const double turn = 2 * pi * i / sides;
         const Vec3 centre(radius * std::cos(turn), radius * std::sin(turn), (height - sunk) / 2);
-        out.push_back(box("rim-" + std::to_string(i), {rim, length, height + sunk}, centre, rotation_from_rpy(0, 0, turn)));
+        out.push_back(
+            box("rim-" + std::to_string(i), {rim, length, height + sunk}, centre, rotation_from_rpy(0, 0, turn)));
     }
     out.push_back(block("plinth", {1.4, 1.4, 1.1}, 0, 0));
     out.push_back(upright_capsule("column", 0.35, 0, 3.4));
@@ -135,11 +139,13 @@ Compound street_lamp()
 Compound car_of_boxes(Random& random)
 {
     const double length = random.between(3.8, 4.6);
-    Compound out = {box("body", {length, 1.75, 0.8}, {0, 0, 0.7}), box("cabin", {0.55 * length, 1.6, 0.55}, {-0.08 * length, 0, 1.3})};
+    Compound out = {box("body", {length, 1.75, 0.8}, {0, 0, 0.7}),
+                    box("cabin", {0.55 * length, 1.6, 0.55}, {-0.08 * length, 0, 1.3})};
     const Mat3 across = rotation_from_rpy(pi / 2, 0, 0);
     for (const double x : {-0.32, 0.32})
         for (const double y : {-0.78, 0.78})
-            out.push_back(capsule("wheel-" + std::to_string(out.size() - 2), 0.3, 0.7, {x * length, 0.65 * y, 0.3}, across));
+            out.push_back(
+                capsule("wheel-" + std::to_string(out.size() - 2), 0.3, 0.7, {x * length, 0.65 * y, 0.3}, across));
     return out;
 }
 
@@ -162,7 +168,8 @@ Compound jetty(double length, double depth)
     Compound out = {box("deck", {length, width, thickness}, {-length / 2, 0, -thickness / 2})};
     for (double x = 2 * spacing; x < length; x += spacing)
         for (const double y : {-0.8, 0.8})
-            out.push_back(box("pile-" + std::to_string(out.size() - 1), {0.25, 0.25, pile}, {-x, y, -thickness - pile / 2}));
+            out.push_back(
+                box("pile-" + std::to_string(out.size() - 1), {0.25, 0.25, pile}, {-x, y, -thickness - pile / 2}));
     return out;
 }
 

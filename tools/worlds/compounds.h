@@ -27,10 +27,10 @@ inline constexpr double sunk = 1.2;
 Compound house_of_boxes(Random& random, const HouseSize& size);  ///< walls, a gabled roof along x, a chimney
 Compound church_of_boxes();                                      ///< a nave along x with a tower at its end
 
-Compound broad_tree(Random& random);    ///< a bare trunk 2 to 3 m high under a round crown
-Compound conifer(Random& random);       ///< its crown begins less than 1 m above the ground
-Compound bush(Random& random);          ///< waist-high and more
-Compound boulder(Random& random);       ///< one or two boxes
+Compound broad_tree(Random& random);  ///< a bare trunk 2 to 3 m high under a round crown
+Compound conifer(Random& random);     ///< its crown begins less than 1 m above the ground
+Compound bush(Random& random);        ///< waist-high and more
+Compound boulder(Random& random);     ///< one or two boxes
 
 Compound fountain();                    ///< a rim 9 m across and a column in its middle
 Compound bench();                       ///< along x, its back at larger y
@@ -38,8 +38,9 @@ Compound street_lamp();                 ///< its arm along x
 Compound car_of_boxes(Random& random);  ///< along x
 Compound fence(double length);          ///< along x from the origin, posts and two rails
 
-Compound jetty(double length, double depth);  ///< along -x from the origin, its deck's top at z = 0, its piles' feet at -depth
-Compound hut();                               ///< 2.8 m high
+Compound jetty(double length,
+               double depth);  ///< along -x from the origin, its deck's top at z = 0, its piles' feet at -depth
+Compound hut();                ///< 2.8 m high
 Compound mast(double height);
 Compound border_stone();
 

@@ -167,7 +167,8 @@ void add_piece(Scene& scene, const Mesh& mesh, const MeshOptions& options)
     for (const Triangle& t : mesh.triangles) scene.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
     scene.vertices.insert(scene.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
     scene.triangle_labels.insert(scene.triangle_labels.end(), labels.begin(), labels.end());
-    scene.triangle_pieces.insert(scene.triangle_pieces.end(), mesh.triangles.size(), std::uint32_t(scene.pieces.size()));
+    scene.triangle_pieces.insert(scene.triangle_pieces.end(), mesh.triangles.size(),
+                                 std::uint32_t(scene.pieces.size()));
     scene.pieces.push_back(piece);
 }
 

@@ -19,7 +19,7 @@ struct Mesh {
 /// n corners: triangles 2 i and 2 i + 1 are the side from corner i to the next, 2 n and on are bottom and top in turns.
 Mesh extruded(const std::vector<Eigen::Vector2d>& polygon, double bottom, double top);
 
-Mesh box(const spawnfield::Vec3& size);         ///< centred; sides in order -y, x, y, -x
+Mesh box(const spawnfield::Vec3& size);        ///< centred; sides in order -y, x, y, -x
 Mesh rectangle(double size_x, double size_y);  ///< level, centred, seen from above
 
 /// cells x cells squares, centred, each split from its smallest x, largest y to its largest x, smallest y.
@@ -29,7 +29,7 @@ Mesh relief(int cells, double size, const std::function<double(double x, double 
 Mesh convex_hull(const std::vector<spawnfield::Vec3>& points);
 
 Mesh moved(Mesh mesh, const spawnfield::Pose& pose);
-Mesh flipped(Mesh mesh);                                       ///< wound the other way round
+Mesh flipped(Mesh mesh);                                        ///< wound the other way round
 Mesh without(Mesh mesh, std::size_t first, std::size_t count);  ///< some triangles left out; vertices stay
 
 struct MeshOptions {

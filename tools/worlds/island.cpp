@@ -18,7 +18,7 @@ constexpr double dry_share = 0.4335;
 // m, beside the lengths in StreetGrid.
 constexpr double rim_radius = 583, shore_inland = 95;
 constexpr double coast_width = 120, dune_height = 0.4;
-constexpr double highest_block = 26;  // above the sea
+constexpr double highest_block = 26;                                          // above the sea
 constexpr double bed_slope = 0.056, bank_slope = 0.5, steepest_block = 0.13;  // rise per run
 constexpr double canal_depth = 2.5, canal_width = 30, canal_end = 80;
 constexpr double kerb = 0.2, roughness = 0.4;
@@ -52,7 +52,8 @@ Vec2 StreetGrid::to_world(const Vec2& uv) { return origin() + Eigen::Rotation2Dd
 Vec2 StreetGrid::from_world(const Vec2& p) { return Eigen::Rotation2Dd(-turn) * (p - origin()); }
 
 Island::Island(Random& random)
-    : bays_(waves(random, 330)), coves_(waves(random, 90)), shoals_(waves(random, 200)), swell_(waves(random, 260)), knolls_(waves(random, 80))
+    : bays_(waves(random, 330)), coves_(waves(random, 90)), shoals_(waves(random, 200)), swell_(waves(random, 260)),
+      knolls_(waves(random, 80))
 {
     hills_ = {{{830, 800}, 36, 95}, {{600, 930}, 20, 80}, {{930, 520}, 14, 75}};
     for (Hill& hill : hills_) {
@@ -70,7 +71,8 @@ double Island::inland(const Vec2& p) const
 {
     const Vec2 d = (p - StreetGrid::origin()).cwiseAbs();
     const double radius = std::cbrt(std::pow(d.x(), 3) + std::pow(d.y(), 3));
-    return rim_radius - radius + 28 * std::clamp(swing(bays_, p), -1.5, 1.5) + 5 * std::clamp(swing(coves_, p), -2.0, 2.0);
+    return rim_radius - radius + 28 * std::clamp(swing(bays_, p), -1.5, 1.5) +
+           5 * std::clamp(swing(coves_, p), -2.0, 2.0);
 }
 
 /// m from the shore inwards: it keeps away from the rim, now more, now less.
@@ -84,7 +86,8 @@ double Island::land(const Vec2& p) const
 {
     const double north_east = (p - StreetGrid::origin()).dot(Vec2(0.6, 0.8));
     double height = 0.5 + 0.9 * swing(swell_, p) + smooth_step(-80, 420, north_east) * (22 + 0.9 * swing(knolls_, p));
-    for (const Hill& hill : hills_) height += hill.height * std::exp(-0.5 * (p - hill.top).squaredNorm() / (hill.spread * hill.spread));
+    for (const Hill& hill : hills_)
+        height += hill.height * std::exp(-0.5 * (p - hill.top).squaredNorm() / (hill.spread * hill.spread));
     return height;
 }
 
@@ -103,10 +106,12 @@ void Island::choose_blocks()
 {
     for (int j = -most_blocks; j < most_blocks; ++j)
         for (int i = -most_blocks; i < most_blocks; ++i) {
-            const Vec2 middle = StreetGrid::to_world({(i + 0.5) * StreetGrid::block_u, (j + 0.5) * StreetGrid::block_v});
+            const Vec2 middle = StreetGrid::to_world(
+                {(i + 0.5) * StreetGrid::block_u, (j + 0.5) * StreetGrid::block_v});
             const double east = land(middle + Vec2(20, 0)) - land(middle - Vec2(20, 0));
             const double north = land(middle + Vec2(0, 20)) - land(middle - Vec2(0, 20));
-            settled_.push_back(from_shore(middle) > 25 && land(middle) < highest_block && std::hypot(east, north) / 40 < steepest_block);
+            settled_.push_back(from_shore(middle) > 25 && land(middle) < highest_block &&
+                               std::hypot(east, north) / 40 < steepest_block);
         }
 }
 
@@ -171,7 +176,8 @@ void Island::raise_to_sea_level()
 
 double Island::height(const Vec2& p) const
 {
-    const double x = std::clamp((p.x() - low_x) / cell, 0.0, cells - 1e-9), y = std::clamp((p.y() - low_y) / cell, 0.0, cells - 1e-9);
+    const double x = std::clamp((p.x() - low_x) / cell, 0.0, cells - 1e-9),
+                 y = std::clamp((p.y() - low_y) / cell, 0.0, cells - 1e-9);
     const int col = int(x), row = int(y);
     const double u = x - col, v = y - row;
     return (1 - v) * ((1 - u) * heights_[slot(row, col)] + u * heights_[slot(row, col + 1)]) +
@@ -201,7 +207,8 @@ hand::Mesh Island::sheet(bool streets) const
     for (int row = 0; row < cells; ++row)
         for (int col = 0; col < cells; ++col) {
             if (!has_ground_[cell_slot(row, col)] || is_street(middle(row, col)) != streets) continue;
-            const std::uint32_t a = vertex(row, col), b = vertex(row, col + 1), c = vertex(row + 1, col + 1), d = vertex(row + 1, col);
+            const std::uint32_t a = vertex(row, col), b = vertex(row, col + 1), c = vertex(row + 1, col + 1),
+                                d = vertex(row + 1, col);
             mesh.triangles.insert(mesh.triangles.end(), {{a, b, d}, {b, c, d}});
         }
     return mesh;

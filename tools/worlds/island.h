@@ -8,8 +8,8 @@ namespace worlds {
 
 using Vec2 = Eigen::Vector2d;
 
-/// A grid of streets, turned against the axes. Block (i, j) lies between the middles of streets i and i + 1 (u = i block_u)
-/// and j and j + 1 (v = j block_v); u runs along the blocks' longer sides.
+/// A grid of streets, turned against the axes. Block (i, j) lies between the middles of streets i and i + 1 (u = i
+/// block_u) and j and j + 1 (v = j block_v); u runs along the blocks' longer sides.
 struct StreetGrid {
     static constexpr double block_u = 96, block_v = 64, street = 10;  // m
     static constexpr double turn = 0.3;                               // rad, of u from x
@@ -19,8 +19,8 @@ struct StreetGrid {
     static Vec2 from_world(const Vec2& p);
 };
 
-/// The ground of the complex district: an island in a square of sea, its lower half partly flooded, streets over it, and a
-/// canal that ends among them. A sheet of 2 m cells; beyond the island's rim there is none.
+/// The ground of the complex district: an island in a square of sea, its lower half partly flooded, streets over it,
+/// and a canal that ends among them. A sheet of 2 m cells; beyond the island's rim there is none.
 class Island {
 public:
     static constexpr double low_x = -128, low_y = -212, side = 1280;  // m, of the square
@@ -32,10 +32,10 @@ public:
 
     explicit Island(Random& random);
 
-    double height(const Vec2& p) const;       ///< m; beyond the rim as the sea bed goes on
-    bool has_ground(const Vec2& p) const;     ///< whether the sheet reaches here
-    bool is_settled(int i, int j) const;      ///< whether block (i, j) is part of the town
-    bool is_in_town(const Vec2& uv) const;    ///< whether a place in the streets' frame lies in a settled block
+    double height(const Vec2& p) const;     ///< m; beyond the rim as the sea bed goes on
+    bool has_ground(const Vec2& p) const;   ///< whether the sheet reaches here
+    bool is_settled(int i, int j) const;    ///< whether block (i, j) is part of the town
+    bool is_in_town(const Vec2& uv) const;  ///< whether a place in the streets' frame lies in a settled block
 
     void add_to(spawnfield::Scene& scene) const;  ///< ground, streets and sea
 
@@ -63,9 +63,9 @@ private:
 
     Waves bays_, coves_, shoals_, swell_, knolls_;
     std::vector<Hill> hills_;
-    std::vector<double> heights_;       ///< m, of the corners, row after row from the least y
-    std::vector<char> has_ground_;      ///< of the cells, likewise
-    std::vector<char> settled_;         ///< of the blocks
+    std::vector<double> heights_;   ///< m, of the corners, row after row from the least y
+    std::vector<char> has_ground_;  ///< of the cells, likewise
+    std::vector<char> settled_;     ///< of the blocks
 };
 
 }  // namespace worlds

@@ -26,7 +26,8 @@ struct Growth {
 
 class Valley {
 public:
-    explicit Valley(std::uint64_t seed) : random_(seed), land_(random_), edge_(waves_between(random_, 50, 140)), placer_(land_, world_.scene)
+    explicit Valley(std::uint64_t seed)
+        : random_(seed), land_(random_), edge_(waves_between(random_, 50, 140)), placer_(land_, world_.scene)
     {
         world_.scene.name = "low-complexity";
     }
@@ -70,7 +71,8 @@ void Valley::add_ground()
     const double half = ground_side / 2;
     const auto height = [&](double x, double y) { return land_.height({x + half, y + half}); };
     const hand::Mesh mesh = hand::relief(ground_cells, ground_side, height);
-    hand::add_mesh(world_.scene, Label::Terrain, hand::moved(mesh, {{half, half, 0}, Mat3::Identity()}), {.kind = "heightmap"});
+    hand::add_mesh(world_.scene, Label::Terrain, hand::moved(mesh, {{half, half, 0}, Mat3::Identity()}),
+                   {.kind = "heightmap"});
     world_.scene.parts.back().name = "ground";
 }
 
@@ -80,7 +82,8 @@ void Valley::add_lake()
     constexpr double deck = ValleyLand::water + 0.5, length = 24;  // m
     const auto& [centre, radius] = land_.lake();
     const Pose pose = {{centre.x(), centre.y(), ValleyLand::water}, Mat3::Identity()};
-    hand::add_mesh(world_.scene, Label::Water, hand::moved(hand::rectangle(2 * radius, 2 * radius), pose), {.kind = "plane"});
+    hand::add_mesh(world_.scene, Label::Water, hand::moved(hand::rectangle(2 * radius, 2 * radius), pose),
+                   {.kind = "plane"});
     world_.scene.parts.back().name = "lake";
 
     const Vec2 outwards = (land_.town().centre - centre).normalized();
@@ -128,9 +131,12 @@ bool Valley::plant(const Disc& ground, double conifers, double bushes)
 {
     if (!land_.is_dry(ground.centre) || !placer_.is_clear(ground)) return false;
     const double kind = random_.between(0, 1);
-    if (kind < conifers) placer_.add("tree", conifer(random_), ground.centre, 0);
-    else if (kind < conifers + bushes) placer_.add("bush", bush(random_), ground.centre, 0);
-    else placer_.add("tree", broad_tree(random_), ground.centre, 0);
+    if (kind < conifers)
+        placer_.add("tree", conifer(random_), ground.centre, 0);
+    else if (kind < conifers + bushes)
+        placer_.add("bush", bush(random_), ground.centre, 0);
+    else
+        placer_.add("tree", broad_tree(random_), ground.centre, 0);
     placer_.keep_clear(ground);
     return true;
 }

@@ -35,9 +35,12 @@ int main(int argc, char** argv)
     for (const auto& [known, make] : makers()) names.push_back(known);
     app.add_option("world", name, "Which")->required()->check(CLI::IsMember(names));
     app.add_option("-o,--output", folder, "Folder, made where missing")->required();
-    app.add_option("--seed", seed, "The same seed gives the same bytes; the benchmark's worlds have none")->check(tools::seed_complaint)->capture_default_str();
-    app.footer("Example:\n  spawnfield_worlds benchmark-cubes -o /tmp/cubes\n"
-               "  spawnfield bake /tmp/cubes/scene.yaml -o /tmp/cubes-map --allow-no-terrain");
+    app.add_option("--seed", seed, "The same seed gives the same bytes; the benchmark's worlds have none")
+        ->check(tools::seed_complaint)
+        ->capture_default_str();
+    app.footer(
+        "Example:\n  spawnfield_worlds benchmark-cubes -o /tmp/cubes\n"
+        "  spawnfield bake /tmp/cubes/scene.yaml -o /tmp/cubes-map --allow-no-terrain");
     app.set_version_flag("--version", spawnfield::version());
     try {
         app.parse(argc, argv);

@@ -34,7 +34,10 @@ void Placer::add(const std::string& kind, const Compound& compound, const Vec2& 
     add(kind, compound, {on_ground(place), rotation_from_rpy(0, 0, yaw)});
 }
 
-void Placer::keep_clear(const Vec2& from, const Vec2& to, double half_width) { ways_.push_back({from, to, half_width}); }
+void Placer::keep_clear(const Vec2& from, const Vec2& to, double half_width)
+{
+    ways_.push_back({from, to, half_width});
+}
 
 bool Placer::is_clear(const Disc& ground) const
 {
@@ -42,7 +45,9 @@ bool Placer::is_clear(const Disc& ground) const
         const double apart = ground.radius + other.radius;
         return (ground.centre - other.centre).squaredNorm() < apart * apart;
     };
-    const auto crosses = [&](const Way& way) { return distance(ground.centre, way.from, way.to) < ground.radius + way.half_width; };
+    const auto crosses = [&](const Way& way) {
+        return distance(ground.centre, way.from, way.to) < ground.radius + way.half_width;
+    };
     return std::none_of(taken_.begin(), taken_.end(), meets) && std::none_of(ways_.begin(), ways_.end(), crosses);
 }
 

@@ -28,10 +28,7 @@ hand::Mesh profile_along_y(const std::vector<Vec2>& profile, double y0, double y
 
 namespace {
 
-Mat3 turned(double angle, const Vec3& axis)
-{
-    return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-}
+Mat3 turned(double angle, const Vec3& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
 
 hand::Mesh box(const Vec3& size, const Vec3& centre)
 {
@@ -62,11 +59,21 @@ hand::Mesh cone(int corners, double radius, double bottom, double top)
 hand::Mesh icosahedron()
 {
     const double t = std::numbers::phi;
-    hand::Mesh mesh = {{{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0}, {0, -1, t}, {0, 1, t}, {0, -1, -t}, {0, 1, -t},
-                        {t, 0, -1}, {t, 0, 1}, {-t, 0, -1}, {-t, 0, 1}},
-                       {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2},
-                        {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5},
-                        {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}}};
+    hand::Mesh mesh = {{{-1, t, 0},
+                        {1, t, 0},
+                        {-1, -t, 0},
+                        {1, -t, 0},
+                        {0, -1, t},
+                        {0, 1, t},
+                        {0, -1, -t},
+                        {0, 1, -t},
+                        {t, 0, -1},
+                        {t, 0, 1},
+                        {-t, 0, -1},
+                        {-t, 0, 1}},
+                       {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
     for (Vec3& vertex : mesh.vertices) vertex.normalize();
     return mesh;
 }
@@ -107,7 +114,7 @@ void add_gabled_house(const Gable& size, double foundation, const Pose& pose, Pi
     const std::vector<Vec2> walls = {
         {-half, -foundation}, {half, -foundation}, {half, size.walls}, {0, size.ridge}, {-half, size.walls}};
     const double eave = half + 0.5, inner = size.ridge - 0.05, outer = size.ridge + 0.2;
-    const std::vector<Vec2> roof = {{0, inner}, {eave, inner - pitch * eave}, {eave, outer - pitch * eave},
+    const std::vector<Vec2> roof = {{0, inner}, {eave, inner - pitch * eave},  {eave, outer - pitch * eave},
                                     {0, outer}, {-eave, outer - pitch * eave}, {-eave, inner - pitch * eave}};
     out.push_back(hand::moved(profile_along_x(walls, size.length), pose));
     out.push_back(hand::moved(profile_along_x(roof, size.length + 0.8), pose));
@@ -125,7 +132,8 @@ void add_conifer(Random& random, Pieces& out)
 
 void add_leaf_tree(Random& random, Pieces& out)
 {
-    const double height = random.between(4, 11), bare = random.between(1, 2.5), width = random.between(0.25, 0.4) * height;
+    const double height = random.between(4, 11), bare = random.between(1, 2.5),
+                 width = random.between(0.25, 0.4) * height;
     out.push_back(hand::extruded(circle(8, 0.03 * height), -0.6, (bare + height) / 2));
     out.push_back(rough_ball(random, false, {width, width, (height - bare) / 2}, {0, 0, (bare + height) / 2}));
 }
@@ -148,7 +156,9 @@ hand::Mesh blocks(const BlockGrid& grid)
     std::map<std::array<int, 3>, std::uint32_t> corners;
     const auto corner = [&](const std::array<int, 3>& at) {
         const auto [found, is_new] = corners.try_emplace(at, std::uint32_t(mesh.vertices.size()));
-        if (is_new) mesh.vertices.emplace_back(grid.x[std::size_t(at[0])], grid.y[std::size_t(at[1])], grid.z[std::size_t(at[2])]);
+        if (is_new)
+            mesh.vertices.emplace_back(grid.x[std::size_t(at[0])], grid.y[std::size_t(at[1])],
+                                       grid.z[std::size_t(at[2])]);
         return found->second;
     };
     /// The side of a block towards +-axis.
@@ -171,7 +181,8 @@ hand::Mesh blocks(const BlockGrid& grid)
                 for (int axis = 0; axis < 3; ++axis)
                     for (const int side : {0, 1}) {
                         const int step = 2 * side - 1;
-                        if (!filled(i + (axis == 0) * step, j + (axis == 1) * step, k + (axis == 2) * step)) add_side({i, j, k}, axis, side);
+                        if (!filled(i + (axis == 0) * step, j + (axis == 1) * step, k + (axis == 2) * step))
+                            add_side({i, j, k}, axis, side);
                     }
             }
     return mesh;
@@ -208,7 +219,8 @@ hand::Mesh recessed_house(Random& random, const RecessedHouse& plan)
     const double recess = random.between(0.15, 1.2);
     grid.y = {-depth / 2, -depth / 2 + recess, depth / 2 - 0.2, depth / 2};
     grid.z = {-plan.foundation};
-    for (int i = 0; i < storeys; ++i) grid.z.insert(grid.z.end(), {i * storey + (i == 0 ? 0.1 : 0), i * storey + 0.9, i * storey + 2.2});
+    for (int i = 0; i < storeys; ++i)
+        grid.z.insert(grid.z.end(), {i * storey + (i == 0 ? 0.1 : 0), i * storey + 0.9, i * storey + 2.2});
     grid.z.push_back(storeys * storey);
     const bool set_back = random.chance(0.4);
     grid.filled = [=, top = 3 * storeys](int i, int j, int k) {
@@ -223,8 +235,10 @@ hand::Mesh recessed_house(Random& random, const RecessedHouse& plan)
 Pieces tree(Random& random)
 {
     Pieces out;
-    if (random.chance(0.5)) add_conifer(random, out);
-    else add_leaf_tree(random, out);
+    if (random.chance(0.5))
+        add_conifer(random, out);
+    else
+        add_leaf_tree(random, out);
     return out;
 }
 
@@ -247,7 +261,8 @@ Pieces rock(Random& random)
 {
     const bool boulder = random.chance(0.1);
     const double size = boulder ? random.between(1.2, 3) : random.between(0.15, 1);
-    const double length = size * random.between(0.8, 1.4), width = size * random.between(0.7, 1), height = size * random.between(0.5, 0.9);
+    const double length = size * random.between(0.8, 1.4), width = size * random.between(0.7, 1),
+                 height = size * random.between(0.5, 0.9);
     return {rough_ball(random, boulder, {length, width, height}, {0, 0, 0.2 * height})};
 }
 

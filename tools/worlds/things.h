@@ -18,7 +18,7 @@ hand::Mesh profile_along_y(const std::vector<Eigen::Vector2d>& profile, double y
 
 /// A building of blocks: what lies between neighbouring coordinates is filled or not. Closed, whatever is filled.
 struct BlockGrid {
-    std::vector<double> x, y, z;                  ///< m, ascending
+    std::vector<double> x, y, z;                ///< m, ascending
     std::function<bool(int, int, int)> filled;  ///< block (i, j, k) lies between x[i] and x[i + 1], …
 };
 hand::Mesh blocks(const BlockGrid& grid);
@@ -27,7 +27,7 @@ hand::Mesh blocks(const BlockGrid& grid);
 Pieces house(Random& random, double foundation);
 
 struct RecessedHouse {
-    double foundation = 1;                   ///< m below the ground
+    double foundation = 1;  ///< m below the ground
     int least_storeys = 1, most_storeys = 3;
 };
 
@@ -42,6 +42,7 @@ Pieces rock(Random& random);  ///< a rough ball, half sunk
 Pieces fence_panel(Random& random, const spawnfield::Vec3& from, const spawnfield::Vec3& to);
 
 /// Adds a part of these pieces, named after its number in the scene.
-void add_thing(spawnfield::Scene& scene, const char* name, spawnfield::Label label, const Pieces& pieces, const spawnfield::Pose& pose);
+void add_thing(spawnfield::Scene& scene, const char* name, spawnfield::Label label, const Pieces& pieces,
+               const spawnfield::Pose& pose);
 
 }  // namespace worlds

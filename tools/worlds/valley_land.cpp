@@ -9,7 +9,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double plain_height = 50, town_height = 50.3, hill_height = 56;  // m
-constexpr double broad_height = 1.2, rough_height = 0.5;                  // m, of the waves up and down
+constexpr double broad_height = 1.2, rough_height = 0.5;                   // m, of the waves up and down
 
 /// 1 in the middle of a disc, 0 on its rim, level at both.
 double bell(const Disc& disc, const Vec2& p)
@@ -35,13 +35,12 @@ Waves waves_between(Random& random, double shortest, double longest)
 double swing(const Waves& waves, const Vec2& p) { return waves.at(p) / double(waves.count()); }
 
 ValleyLand::ValleyLand(Random& random)
-    : broad_(waves_between(random, 120, 260)),
-      rough_(waves_between(random, 18, 40)),
+    : broad_(waves_between(random, 120, 260)), rough_(waves_between(random, 18, 40)),
       bay_phase_(random.between(0, 2 * pi)),
-      cape_phase_(random.between(0, 2 * pi)),
-      lake_{{random.between(120, 130), random.between(112, 122)}, 63},
-      town_{{random.between(290, 300), random.between(205, 215)}, 85},
-      hill_{{random.between(460, 468), random.between(456, 464)}, 125}
+      cape_phase_(random.between(0, 2 * pi)), lake_{{random.between(120, 130), random.between(112, 122)}, 63},
+      town_{{random.between(290, 300), random.between(205, 215)}, 85}, hill_{{random.between(460, 468),
+                                                                              random.between(456, 464)},
+                                                                             125}
 {
 }
 
@@ -50,7 +49,8 @@ double ValleyLand::from_shore(const Vec2& p) const
 {
     const Vec2 out = p - lake_.centre;
     const double direction = std::atan2(out.y(), out.x());
-    const double shore = 0.8 + 0.12 * std::sin(2 * direction + bay_phase_) + 0.07 * std::sin(3 * direction + cape_phase_);
+    const double shore = 0.8 + 0.12 * std::sin(2 * direction + bay_phase_) +
+                         0.07 * std::sin(3 * direction + cape_phase_);
     return out.norm() / (shore * lake_.radius);
 }
 
@@ -64,7 +64,8 @@ double ValleyLand::unevenness(const Vec2& p) const
 /// The land without town and lake.
 double ValleyLand::plain(const Vec2& p) const
 {
-    return plain_height + broad_height * swing(broad_, p) + rough_height * unevenness(p) * swing(rough_, p) + hill_height * bell(hill_, p);
+    return plain_height + broad_height * swing(broad_, p) + rough_height * unevenness(p) * swing(rough_, p) +
+           hill_height * bell(hill_, p);
 }
 
 double ValleyLand::height(const Vec2& p) const

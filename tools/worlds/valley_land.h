@@ -22,7 +22,7 @@ struct Disc {
 /// Heights of a valley of 500 x 500 m: a plain with a lake, level ground for a town, uneven ground, and a hill.
 class ValleyLand {
 public:
-    static constexpr double water = 46.5;    ///< m: height of the lake's surface
+    static constexpr double water = 46.5;     ///< m: height of the lake's surface
     static constexpr double lake_bed = 31.2;  ///< m: lowest ground
 
     explicit ValleyLand(Random& random);

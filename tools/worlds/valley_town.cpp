@@ -87,9 +87,11 @@ void Town::add_street(double turn)
     constexpr double front = 7, first = 30, spacing = 16.5;  // m
     for (const double side : {-1.0, 1.0})
         for (double u = first; u < street_end; u += spacing)
-            if (random_.chance(0.92)) add_house(turn, u + random_.between(-0.8, 0.8), side * (front + 4.7), side < 0 ? pi : 0);
+            if (random_.chance(0.92))
+                add_house(turn, u + random_.between(-0.8, 0.8), side * (front + 4.7), side < 0 ? pi : 0);
     for (double u = 24; u < street_end; u += 19) add("lamp", street_lamp(), turn, u, 4.4, -pi / 2);
-    for (double u = 27; u < street_end; u += random_.between(14, 30)) add("car", car_of_boxes(random_), turn, u, -3.1, 0);
+    for (double u = 27; u < street_end; u += random_.between(14, 30))
+        add("car", car_of_boxes(random_), turn, u, -3.1, 0);
     placer_.keep_clear(frame_.centre, turned(turn, street_end, 0), street);
 }
 

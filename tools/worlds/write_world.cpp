@@ -82,10 +82,12 @@ private:
         const std::string start = ", label: " + std::string(to_string(part.label)) + ", ";
         for (std::size_t i = 0; i < items.primitives.size(); ++i) {
             const Shape& shape = items.primitives[i]->shape;
-            text += "  - {name: " + part.name + (i > 0 ? "-" + std::to_string(i + 1) : "") + start + shape_text(shape) + pose_text(shape.pose) + "}\n";
+            text += "  - {name: " + part.name + (i > 0 ? "-" + std::to_string(i + 1) : "") + start + shape_text(shape) +
+                    pose_text(shape.pose) + "}\n";
         }
         if (!items.pieces.empty())
-            text += "  - {name: " + part.name + start + (part.kind == "plane" ? plane_text(*items.pieces[0]) : mesh_text(part, items.pieces)) + "}\n";
+            text += "  - {name: " + part.name + start +
+                    (part.kind == "plane" ? plane_text(*items.pieces[0]) : mesh_text(part, items.pieces)) + "}\n";
     }
 
     Bounds bounds_of(const Piece& piece) const
@@ -100,7 +102,8 @@ private:
     {
         const Bounds bounds = bounds_of(piece);
         const Vec3 size = bounds.max - bounds.min;
-        return "plane: [" + length(size.x()) + ", " + length(size.y()) + "]" + pose_text({(bounds.min + bounds.max) / 2, Mat3::Identity()});
+        return "plane: [" + length(size.x()) + ", " + length(size.y()) + "]" +
+               pose_text({(bounds.min + bounds.max) / 2, Mat3::Identity()});
     }
 
     /// Meshes that are equal but for their place share a file.
