@@ -25,12 +25,12 @@ public:
     FreeSpace(FreeSpace&&) noexcept;
     ~FreeSpace();
 
-    /// At any rotation. Tilted robots are never Blocked.
-    Proof at(const Pose& scene_from_robot) const;
-    /// Upright: roll and pitch are 0.
-    Proof at(const Vec3& position, double yaw) const;
-    /// Free, or Blocked: at every yaw. By discs around the parts and within them.
-    Proof at_every_yaw(const Vec3& position) const;
+    /// Returns what is proven of a pose. Tilted robots are never Blocked.
+    Proof proof_of(const Pose& scene_from_robot) const;
+    /// The same for an upright robot: roll and pitch are 0.
+    Proof proof_of(const Vec3& position, double yaw) const;
+    /// Returns what is proven of every yaw at this position, by discs around the parts and within them.
+    Proof proof_at_every_yaw(const Vec3& position) const;
 
     struct Impl;
     const Impl& impl() const { return *impl_; }

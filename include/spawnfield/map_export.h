@@ -15,7 +15,7 @@ struct VerdictImage {
 
     GridFrame frame;
     std::vector<std::uint8_t> verdicts;  ///< a Verdict or no_pose; row after row, row 0 is the largest y
-    VerdictCounts counts{};
+    VerdictCounts counts;
     std::uint64_t exact_checks = 0;
 
     std::uint8_t at(int row, int col) const
@@ -24,11 +24,10 @@ struct VerdictImage {
     }
 };
 
-/// Asks at the centre of each cell, as a 2D raster does there; no pose where the column has not the chosen layer. Of
-/// the options step and bounds are left aside. In strips of rows: a byte for each cell, and little more. Throws
-/// ArgumentError as `raster` does, and for LayerChoice All: a cell has one verdict.
-VerdictImage verdict_image(const Map& map, const CollisionChecker& checker, const GridFrame& frame,
-                           const RasterOptions& options);
+/// Returns the verdict at the centre of each cell, as a 2D raster gives it; no pose where the column lacks the chosen
+/// layer. The options' step and bounds are not used. Works in strips of rows: a byte for each cell, and little more.
+/// Throws as raster() does, and ArgumentError for LayerChoice All, because a cell has one verdict.
+VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const RasterOptions& options);
 
 /// The image that belongs to a map_server's yaml: of the same name, but .pgm. Throws ArgumentError unless that ends in
 /// .yaml or .yml.

@@ -45,9 +45,9 @@ std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::
 /// The table's columns that are named as some that verdicts_csv adds: those take their place.
 std::vector<std::string> replaced_columns(const PoseTable& table);
 
-/// Table's columns but the replaced ones, then verdict,ground,height_above,hit. Numbers read back to the same double.
-std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements,
-                         const std::vector<Part>& parts);
+/// Returns the table's columns but the replaced ones, then verdict,ground,height_above,hit. Numbers read back to the same
+/// double.
+std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Map& map);
 
 /// x,y,z,yaw,layer,verdict, told to `sink` in pieces; layer is empty where the ground is no layer. With `aerial` also
 /// the aerial poses of a 3D raster that `raster` leaves out, in their places.
@@ -59,11 +59,11 @@ std::string spawns_csv(const SpawnList& list);
 /// The same, after a column `name` if the robots have names.
 std::string robots_csv(std::span<const RobotStart> robots);
 
-/// Poses with names and quaternions (x, y, z, w), and what they were made from and with: settings, counts; of a sample
-/// also whether it is full. `robots` are the list's spawns.
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+/// Returns poses with names and quaternions (x, y, z, w), and what they were made from and with: settings, counts; for a
+/// sample also whether it is full. `robots` are the list's spawns.
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
                         const SampleOptions& options);
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
                         const SearchOptions& options);
 
 /// The same of poses that come from somewhere else: without settings and counts.

@@ -4,22 +4,16 @@
 
 namespace spawnfield {
 
-/// Poses of a table with their verdicts, and what they were judged against. Refers to all of it.
+/// Poses of a table with their judgements, and who judged them. Refers to all of it.
 struct VerdictReport {
     const PoseTable& table;
     const std::vector<Judgement>& judgements;  ///< one for each pose of the table
-    const Map& map;
-    const Robot& robot;
-    const QueryOptions& options;
-    bool octree = false;  ///< the robot was checked against the map's voxels
+    const Judge& judge;
 };
 
 /// Returns a name for each pose: the table's column `name`, or "pose N" (N from 1) where it has none. " (pose N)" is
 /// added to names that occur more than once.
 std::vector<std::string> pose_names(const PoseTable& table);
-
-/// Returns the verdict and its cause, for people: "collision with thin_wall". `index` is below the number of poses.
-std::string described(const VerdictReport& report, std::size_t index);
 
 /// Writes JSON, format spawnfield-verdicts/1: what the poses were judged against, counts, and for each pose its row,
 /// name, pose, verdict, ground, hit and the fields of its row as text, on one line. `sink` gets the text in pieces.
