@@ -155,7 +155,7 @@ bool is_png(std::string_view start)
 
 namespace {
 
-using Bytes = std::unique_ptr<png_byte[]>;
+using PngBytes = std::unique_ptr<png_byte[]>;
 
 void require(bool good, const Reader& reader, const std::string& file)
 {
@@ -170,20 +170,20 @@ void check_size(const Reader& reader, const std::string& file, std::uint64_t mos
 }
 
 /// All samples of a prepared reader, of one byte or two, row after row.
-Bytes read_samples(Reader& reader, const std::string& file)
+PngBytes read_samples(Reader& reader, const std::string& file)
 {
     const std::size_t rows = std::size_t(reader.rows());
     const std::size_t row_bytes = std::size_t(reader.cols()) * std::size_t(reader.channels()) *
                                   (reader.bits() == 16 ? 2 : 1);
     // Not cleared, so that a damaged header which tells of a giant costs nothing.
-    Bytes data = std::make_unique_for_overwrite<png_byte[]>(rows * row_bytes);
+    PngBytes data = std::make_unique_for_overwrite<png_byte[]>(rows * row_bytes);
     const auto starts = std::make_unique_for_overwrite<png_bytep[]>(rows);
     for (std::size_t row = 0; row < rows; ++row) starts[row] = data.get() + row * row_bytes;
     require(reader.read_rows(starts.get()), reader, file);
     return data;
 }
 
-std::uint16_t sample(const Bytes& data, std::size_t i, bool wide)
+std::uint16_t sample(const PngBytes& data, std::size_t i, bool wide)
 {
     return wide ? std::uint16_t(data[2 * i] * 256 + data[2 * i + 1]) : data[i];
 }
@@ -220,7 +220,7 @@ GreyImage read_grey_png(const std::filesystem::path& path, std::uint64_t most)
     if (reader.has_palette() || reader.channels() != 1) return grey_of(read_colour_png(path, most), file);
     check_size(reader, file, most);
     require(reader.prepare(false), reader, file);
-    const Bytes data = read_samples(reader, file);
+    const PngBytes data = read_samples(reader, file);
     const bool wide = reader.bits() == 16;
     GreyImage image{reader.rows(), reader.cols(), wide ? 65535.0 : 255.0, {}};
     image.pixels.resize(std::size_t(image.rows) * std::size_t(image.cols));
@@ -235,7 +235,7 @@ ColourImage read_colour_png(const std::filesystem::path& path, std::uint64_t mos
     require(reader.read_header(), reader, file);
     check_size(reader, file, most);
     require(reader.prepare(true), reader, file);
-    const Bytes data = read_samples(reader, file);
+    const PngBytes data = read_samples(reader, file);
     const bool wide = reader.bits() == 16;
     ColourImage image{reader.rows(), reader.cols(), reader.channels(), wide ? 65535 : 255, {}};
     image.samples.resize(std::size_t(image.rows) * std::size_t(image.cols) * std::size_t(image.channels));

@@ -10,14 +10,14 @@
 namespace spawnfield {
 namespace {
 
-constexpr int circle_corners = 32;
+constexpr int disc_corners = 32;
 constexpr int capsule_balls = 17;      ///< along its straight part
 constexpr double least_spread = 1e-6;  // m
 
 void add_circle(const Vec3& centre, const Vec3& u, const Vec3& v, std::vector<Vec3>& out)
 {
-    for (int k = 0; k < circle_corners; ++k) {
-        const double angle = 2 * std::numbers::pi * k / circle_corners;
+    for (int k = 0; k < disc_corners; ++k) {
+        const double angle = 2 * std::numbers::pi * k / disc_corners;
         out.push_back(centre + std::cos(angle) * u + std::sin(angle) * v);
     }
 }

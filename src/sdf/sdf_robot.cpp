@@ -26,9 +26,9 @@ Joint::Motion motion_of(sdf::JointType type)
     }
 }
 
-class SdfReader {
+class RobotReader {
 public:
-    SdfReader(fs::path file, const RobotOptions& options)
+    RobotReader(fs::path file, const RobotOptions& options)
         : file_(scene_file_of(file)), options_(options), paths_(options.model_paths, file_)
     {
     }
@@ -197,7 +197,7 @@ private:
 
 Robot sdf_module::read_robot(const fs::path& file_or_folder, const RobotOptions& options)
 {
-    return without_foreign_exceptions(file_or_folder, [&] { return SdfReader(file_or_folder, options).read(); });
+    return without_foreign_exceptions(file_or_folder, [&] { return RobotReader(file_or_folder, options).read(); });
 }
 
 }  // namespace spawnfield
