@@ -1,7 +1,7 @@
 #include "scene/bodies.h"
 
 #include "base/number.h"
-#include "geometry/sphere_mesh.h"
+#include "mesh/sphere_mesh.h"
 #include "scene/extrusion.h"
 #include "scene/gazebo_heights.h"
 #include "scene/ground_rules.h"
