@@ -2,7 +2,7 @@
 #include "picture/figure.h"
 #include "picture/silhouette.h"
 #include "picture/ticks.h"
-#include "query/contacts.h"
+#include "robot/contacts.h"
 
 #include <spawnfield/robot_picture.h>
 
@@ -280,8 +280,6 @@ double turning_radius(const Robot& robot)
         for (const Vec2& corner : silhouette(part, seen_from_above)) radius = std::max(radius, corner.norm());
     return radius;
 }
-
-RobotContacts robot_contacts(const Robot& robot) { return {contacts_of(robot), span_area(robot.contacts)}; }
 
 void write_robot_picture(const Robot& robot, const std::filesystem::path& file)
 {

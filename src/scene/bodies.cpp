@@ -2,7 +2,7 @@
 
 #include "base/number.h"
 #include "base/rotation.h"
-#include "geometry/sphere_mesh.h"
+#include "mesh/sphere_mesh.h"
 #include "scene/extrusion.h"
 #include "scene/gazebo_heights.h"
 #include "scene/ground_rules.h"
