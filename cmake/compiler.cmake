@@ -11,14 +11,21 @@ if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
-# Headers take most of the compile time: with SPAWNFIELD_UNITY, ten source files of the library or the program share one
-# translation unit. They see each other's unnamed namespaces then, about which two warnings are off; the dev preset
-# compiles each file alone, with all warnings.
-option(SPAWNFIELD_UNITY "Compile the library and the program in batches of files: a quicker first build" ON)
-function(compile_in_batches target)
-  if(SPAWNFIELD_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+# Headers take most of the compile time: with SPAWNFIELD_UNITY, the source files of a folder share one translation unit.
+# They see each other's unnamed namespaces then, about which two warnings are off; the dev preset compiles each file
+# alone, with all warnings.
+option(SPAWNFIELD_UNITY "Compile the source files of a folder at once: a quicker first build" ON)
+function(compile_by_folder target)
+  if(NOT SPAWNFIELD_UNITY)
+    return()
   endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    cmake_path(GET source PARENT_PATH folder)
+    cmake_path(GET folder FILENAME folder)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+  endforeach()
 endfunction()
 
 # Asserts stay on in optimised builds; a fused multiply-add would be another number (same bytes on every machine).

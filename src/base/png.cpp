@@ -35,9 +35,9 @@ struct Message {
 
 void on_warning(png_structp, png_const_charp) {}
 
-class Reader {
+class PngReader {
 public:
-    explicit Reader(std::string_view bytes) : left_(bytes)
+    explicit PngReader(std::string_view bytes) : left_(bytes)
     {
         png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message_, on_error, on_warning);
         if (png_) info_ = png_create_info_struct(png_);
@@ -47,9 +47,9 @@ public:
         }
         png_set_read_fn(png_, &left_, take);
     }
-    Reader(const Reader&) = delete;
-    Reader& operator=(const Reader&) = delete;
-    ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+    PngReader(const PngReader&) = delete;
+    PngReader& operator=(const PngReader&) = delete;
+    ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
     bool read_header()
     {
@@ -157,12 +157,12 @@ namespace {
 
 using PngBytes = std::unique_ptr<png_byte[]>;
 
-void require(bool good, const Reader& reader, const std::string& file)
+void require(bool good, const PngReader& reader, const std::string& file)
 {
     if (!good) throw FileError(file, std::string("is a damaged PNG image: ") + reader.message());
 }
 
-void check_size(const Reader& reader, const std::string& file, std::uint64_t most)
+void check_size(const PngReader& reader, const std::string& file, std::uint64_t most)
 {
     if (std::uint64_t(reader.rows()) * std::uint64_t(reader.cols()) > most)
         throw FileError(file, "has " + std::to_string(reader.cols()) + " x " + std::to_string(reader.rows()) +
@@ -170,7 +170,7 @@ void check_size(const Reader& reader, const std::string& file, std::uint64_t mos
 }
 
 /// All samples of a prepared reader, of one byte or two, row after row.
-PngBytes read_samples(Reader& reader, const std::string& file)
+PngBytes read_samples(PngReader& reader, const std::string& file)
 {
     const std::size_t rows = std::size_t(reader.rows());
     const std::size_t row_bytes = std::size_t(reader.cols()) * std::size_t(reader.channels()) *
@@ -215,7 +215,7 @@ GreyImage grey_of(const ColourImage& image, const std::string& file)
 GreyImage read_grey_png(const std::filesystem::path& path, std::uint64_t most)
 {
     const std::string bytes = read_file(path), file = path.string();
-    Reader reader(bytes);
+    PngReader reader(bytes);
     require(reader.read_header(), reader, file);
     if (reader.has_palette() || reader.channels() != 1) return grey_of(read_colour_png(path, most), file);
     check_size(reader, file, most);
@@ -231,7 +231,7 @@ GreyImage read_grey_png(const std::filesystem::path& path, std::uint64_t most)
 ColourImage read_colour_png(const std::filesystem::path& path, std::uint64_t most)
 {
     const std::string bytes = read_file(path), file = path.string();
-    Reader reader(bytes);
+    PngReader reader(bytes);
     require(reader.read_header(), reader, file);
     check_size(reader, file, most);
     require(reader.prepare(true), reader, file);

@@ -19,7 +19,7 @@
 namespace spawnfield {
 namespace {
 
-using Json = nlohmann::json;
+using GeoJson = nlohmann::json;
 using Ring = Region::Ring;
 
 /// Drops the repeated first corner and others that stand twice in a row.
@@ -47,11 +47,11 @@ Ring checked(Ring ring, const std::string& file, const std::string& place)
 
 // ---- GeoJSON ----
 
-class GeoJson {
+class GeoJsonReader {
 public:
-    GeoJson(std::string file, Region& out) : file_(std::move(file)), out_(out) {}
+    GeoJsonReader(std::string file, Region& out) : file_(std::move(file)), out_(out) {}
 
-    void read(const Json& node, const std::string& place)
+    void read(const GeoJson& node, const std::string& place)
     {
         constexpr std::size_t longest = 1000;  // characters, as deep as anybody nests collections
         if (place.size() > longest) fail(place.substr(0, 40) + "…", "is nested too deep");
@@ -61,11 +61,11 @@ public:
         if (type == "Polygon")
             polygon(member(node, "coordinates", place), place + ".coordinates");
         else if (type == "MultiPolygon")
-            each(node, "coordinates", place, [&](const Json& one, const std::string& at) { polygon(one, at); });
+            each(node, "coordinates", place, [&](const GeoJson& one, const std::string& at) { polygon(one, at); });
         else if (type == "GeometryCollection")
-            each(node, "geometries", place, [&](const Json& one, const std::string& at) { read(one, at); });
+            each(node, "geometries", place, [&](const GeoJson& one, const std::string& at) { read(one, at); });
         else if (type == "FeatureCollection")
-            each(node, "features", place, [&](const Json& one, const std::string& at) { read(one, at); });
+            each(node, "features", place, [&](const GeoJson& one, const std::string& at) { read(one, at); });
         else if (type == "Feature")
             feature(node, place);
         else if (type == "Point" || type == "MultiPoint" || type == "LineString" || type == "MultiLineString")
@@ -93,33 +93,33 @@ private:
         return std::to_string(without_area_) + (without_area_ == 1 ? " point or line" : " points or lines");
     }
 
-    static std::string text(const Json& node, const char* key)
+    static std::string text(const GeoJson& node, const char* key)
     {
         return node.contains(key) && node[key].is_string() ? node[key].get<std::string>() : "";
     }
 
-    const Json& member(const Json& node, const char* key, const std::string& place) const
+    const GeoJson& member(const GeoJson& node, const char* key, const std::string& place) const
     {
         if (!node.contains(key) || !node[key].is_array()) fail(place + "." + key, "is missing or no list");
         return node[key];
     }
 
     template <class Visit>
-    void each(const Json& node, const char* key, const std::string& place, const Visit& visit)
+    void each(const GeoJson& node, const char* key, const std::string& place, const Visit& visit)
     {
         std::size_t number = 0;
-        for (const Json& one : member(node, key, place))
+        for (const GeoJson& one : member(node, key, place))
             visit(one, place + "." + key + "[" + std::to_string(number++) + "]");
     }
 
-    void feature(const Json& node, const std::string& place)
+    void feature(const GeoJson& node, const std::string& place)
     {
         if (!node.contains("geometry")) fail(place + ".geometry", "is missing");
         if (!node["geometry"].is_null()) read(node["geometry"], place + ".geometry");
     }
 
     /// A crs member is of GeoJSON before RFC 7946.
-    void refuse_degrees(const Json& node)
+    void refuse_degrees(const GeoJson& node)
     {
         if (!node.contains("crs") || !node["crs"].is_object() || !node["crs"].contains("properties")) return;
         const std::string name = text(node["crs"]["properties"], "name");
@@ -132,7 +132,7 @@ private:
                                    " is not looked at: coordinates are metres in the map's frame");
     }
 
-    void polygon(const Json& rings, const std::string& place)
+    void polygon(const GeoJson& rings, const std::string& place)
     {
         if (!rings.is_array() || rings.empty()) fail(place, "is no list of rings");
         Region::Polygon out;
@@ -141,12 +141,12 @@ private:
         out_.polygons.push_back(std::move(out));
     }
 
-    Ring ring(const Json& corners, const std::string& place) const
+    Ring ring(const GeoJson& corners, const std::string& place) const
     {
         if (!corners.is_array()) fail(place, "is no ring (a list of positions)");
         Ring out;
         for (std::size_t i = 0; i < corners.size(); ++i) {
-            const Json& p = corners[i];
+            const GeoJson& p = corners[i];
             if (!p.is_array() || p.size() < 2 || !p[0].is_number() || !p[1].is_number())
                 fail(place + "[" + std::to_string(i) + "]", "is no position [x, y]");
             out.emplace_back(p[0].get<double>(), p[1].get<double>());
@@ -165,13 +165,13 @@ private:
 
 void read_geojson(const std::string& text, const std::string& file, Region& out)
 {
-    Json root;
+    GeoJson root;
     try {
-        root = Json::parse(text);
-    } catch (const Json::exception& error) {
+        root = GeoJson::parse(text);
+    } catch (const GeoJson::exception& error) {
         throw FileError(file, std::string("is no JSON: ") + error.what());
     }
-    GeoJson reader(file, out);
+    GeoJsonReader reader(file, out);
     reader.read(root, "$");
     reader.finish();
 }
