@@ -2,6 +2,8 @@
 
 #include "streams.h"
 
+#include <spawnfield/region_file.h>
+
 #include <filesystem>
 
 namespace spawnfield::cli {

@@ -1,8 +1,8 @@
 #include "ground_args.h"
 #include "scene_args.h"
 
+#include <spawnfield/bake.h>
 #include <spawnfield/error.h>
-#include <spawnfield/map.h>
 
 #include <cstdio>
 
