@@ -413,7 +413,7 @@ TEST_CASE("random poses meet every verdict but footings, and few are too close t
         for (const Pose& pose : random_poses(scene, seed, 30)) {
             const auto decision = slow::decide(scene, rough_bounds(scene), robot, pose, 1.0, unlimited);
             if (decision.verdict)
-                ++counts[std::size_t(*decision.verdict)];
+                ++counts[*decision.verdict];
             else
                 ++unclear;
         }

@@ -15,6 +15,13 @@ struct BakeOptions {
     Progress progress = {};
 };
 
+/// Returns the map of a scene in memory, for scenes without files: geometry, mask, layers and floors are those that
+/// bake() writes, so queries give the same answers. Its hash, scene_file and folder are empty.
+///
+/// Throws ArgumentError for bad options, a scene without terrain (unless allowed), and bounds that do not meet the
+/// scene.
+Map make_map(const Scene& scene, const BakeOptions& options = {});
+
 /// What a bake did, for its summary.
 struct BakeReport {
     std::vector<std::string> notices;

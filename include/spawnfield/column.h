@@ -12,7 +12,7 @@ struct Span {
     bool sealed = true;    ///< false: of a mesh with holes that is solid by wish, so its inside is a guess
 };
 
-/// What stands on the vertical line through (x, y). DESIGN.md, Definitions.
+/// What stands on the vertical line through (x, y).
 struct Column {
     std::vector<Span> spans;     ///< every single piece's, terrain and obstacle, highest top first; not joined
     std::vector<double> layers;  ///< upper ends of joined terrain, from the top down

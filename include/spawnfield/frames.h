@@ -24,7 +24,7 @@ Rpy rpy_from(const Mat3& rotation);
 /// Of the two quaternions of a rotation the one with w >= 0; exact sines and cosines of the half angles.
 Eigen::Quaterniond quaternion_from(const Rpy& rpy);
 
-/// The frames that files are written in. Each is told by where its axes point for a robot that stands at yaw 0.
+/// The frames that files are written in. Each is described by where its axes point for a robot that stands at yaw 0.
 enum class Frame {
     Ros,        ///< REP-103, as inside: right-handed, x forward, y left, z up. ROS, Gazebo (SDF), MuJoCo, Isaac Lab
     Carla,      ///< left-handed, x forward, y right, z up, m

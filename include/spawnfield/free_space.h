@@ -5,16 +5,17 @@
 
 namespace spawnfield {
 
-/// What images can prove of a pose.
+/// What the mask can prove of a pose.
 enum class Proof : std::uint8_t { Candidate, Free, Blocked };
 
 /// The free-space mask of a robot: which poses surely collide with nothing, and which surely with something, from the
-/// heights of what is solid in each cell under and around it. What is neither, the CollisionChecker decides.
+/// heights of what is solid in each cell under and around it. What is neither, the CollisionChecker decides. Any number
+/// of threads may call its const methods at the same time; they throw FileError if a tile of a damaged map turns up.
 ///
 /// Free: no cell that a part of the robot overlaps, seen from above and 1e-5 m wider, holds anything solid between the
 /// part's lowest and highest point. Blocked: some cell that a part covers whole holds something solid inside the part,
 /// 1e-5 m from its surface. Each part counts by itself, so a low body and a thin mast do not block each other. Coarse
-/// cells first, finer ones where those cannot tell. This is grey dilation of the scene by the robot (Lozano-Pérez,
+/// cells first, finer ones where those cannot decide. This is grey dilation of the scene by the robot (Lozano-Pérez,
 /// Spatial planning: a configuration space approach, 1983), done only where it is asked for.
 class FreeSpace {
 public:

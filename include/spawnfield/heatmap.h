@@ -40,10 +40,9 @@ struct HeatmapOptions {
 ///
 /// Spawns are footprints where those are at least 6 pixels long, otherwise arrows, or dots where arrows would be
 /// crowded. Names that would cover each other are left out, and the legend says how many are shown.
-/// Colours: src/picture/palette.h for verdicts; viridis (Smith, van der Walt, 2015) for quantities.
-/// O(pixels + columns + poses + terrain cells * layers).
-/// Throws ArgumentError unless options are within their limits, the raster has columns and its poses stand on them;
-/// OutputError.
+/// Colours of verdicts are for all kinds of colour vision; of quantities: viridis (Smith, van der Walt, 2015) for
+/// quantities. O(pixels + columns + poses + terrain cells * layers). Throws ArgumentError unless options are within
+/// their limits, the raster has columns and its poses stand on them; OutputError.
 void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult& raster, const HeatmapOptions& options,
                    const std::filesystem::path& file);
 

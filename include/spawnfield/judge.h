@@ -28,8 +28,8 @@ struct JudgeOptions {
     double max_height = 1.0;
     double max_water_depth = std::numeric_limits<double>::infinity();  ///< m of water above the ground that count, >= 0
     /// Steepest ground to stand on: rad from level, inclusive, > 0 and < pi/2. Infinite: slopes are not looked at. With
-    /// a limit, a pose that would be valid is also judged by the surfaces under the robot's contacts, and may be `steep`
-    /// or `unstable`.
+    /// a limit, a pose that would be valid is also judged by the surfaces under the robot's contacts, and may be
+    /// `steep` or `unstable`.
     ///
     /// Contacts are the robot's own if it has three or more that do not lie on one line; else the corners of the convex
     /// hull, seen from above, of all that lies within 2 cm of its lowest point. They move with the pose, its roll and
@@ -38,10 +38,10 @@ struct JudgeOptions {
     /// lowest point; solids that touch count as one. A surface is within reach if it is at most r tan(max_slope) + 2 cm
     /// above or below the pose's ground, where r is the contact's horizontal distance from the origin. If all surfaces
     /// are within reach, the pose is steep when the plane that fits them best (least squares) is inclined by more than
-    /// max_slope, else valid. If a surface is out of reach, the pose is unstable. Exception: it is steep when that plane
-    /// is too inclined and neither a surface nor the ground lies farther from it than 2 cm + 10 % of the range of their
-    /// heights (an even slope). So a larger max_slope never makes a valid pose invalid. Ground between the contacts is
-    /// not looked at.
+    /// max_slope, else valid. If a surface is out of reach, the pose is unstable. Exception: it is steep when that
+    /// plane is too inclined and neither a surface nor the ground lies farther from it than 2 cm + 10 % of the range of
+    /// their heights (an even slope). So a larger max_slope never makes a valid pose invalid. Ground between the
+    /// contacts is not looked at.
     double max_slope = std::numeric_limits<double>::infinity();
     Obstacles obstacles = Obstacles::Geometry;
     bool exhaustive = false;  ///< decide every collision by an exact check, without the mask: the same answers, slowly
@@ -58,7 +58,7 @@ struct Judgement {
 
 /// How a long call runs. Results are the same at any number of threads.
 struct RunOptions {
-    int threads = 0;          ///< 0: all cores
+    int threads = 0;  ///< 0: all cores
     Progress progress = {};
 };
 
@@ -89,7 +89,7 @@ public:
     const Robot& robot() const;
     const JudgeOptions& options() const;
 
-    struct Impl;  // what queries share is seen in src/ only
+    struct Impl;
     const Impl& impl() const { return *impl_; }
 
 private:

@@ -35,13 +35,13 @@ inline constexpr std::array map_files{"bounds.bin",   "geometry.bin", "heightmap
 /// Throws FileError, which names the file, for a map that is missing, damaged, cut short or newer.
 Map read_map(const std::filesystem::path& folder);
 
-/// The pages of terrain.tiff. Throws FileError.
+/// Returns the pages of terrain.tiff, or makes them for a map without a folder. Throws FileError.
 TerrainMap read_terrain(const Map& map);
 
 /// Map::floors, or where there are none find_floors of the terrain. Throws FileError.
 std::vector<Floor> floors_of(const Map& map);
 
-/// occupancy.bt. Throws FileError.
+/// Returns the tree of occupancy.bt, or makes it for a map without a folder. Throws FileError.
 OccupancyTree read_occupancy(const Map& map);
 
 /// Sizes and checksums of all files of the folder. Throws FileError at the first that differs.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// A whole map in files of other programs. What their pixels, frames and colours mean: docs/exports.md.
+/// A whole map in files of other programs.
 namespace spawnfield {
 
 /// The verdict on one pose in each cell of a frame.
@@ -43,7 +43,7 @@ void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml
                     const std::vector<std::string>& comment = {});
 
 struct GeoTiffOptions {
-    LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< whose clearance and slope are told: one
+    LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< whose clearance and slope are written: one layer
     ZRange z = {};       ///< layers beyond these heights, m, or beyond the map's z limits are left out
     bool survey = true;  ///< in the survey's coordinates where the map knows them by an EPSG code
     int threads = 0;
@@ -69,9 +69,9 @@ struct GeoTiffOptions {
 void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* verdicts, const GeoTiffOptions& options,
                    const std::filesystem::path& file);
 
-/// A raster's poses as points of a binary little-endian PLY, in their order, told to `sink` in pieces: x, y, z as
+/// A raster's poses as points of a binary little-endian PLY, in their order, given to `sink` in pieces: x, y, z as
 /// double (m), red, green, blue of the verdict as in heat maps, and its number as uchar `verdict`. Each line of
-/// `comment` is one of the header, and one tells the numbers. Source: Turk, The PLY Polygon File Format, 1994.
+/// `comment` is one of the header, and one explains the numbers. Source: Turk, The PLY Polygon File Format, 1994.
 void write_ply(const RasterResult& raster, const std::vector<std::string>& comment,
                const std::function<void(std::string_view)>& sink);
 
@@ -83,7 +83,8 @@ struct GlbMarkers {
     const Robot* robot = nullptr;  ///< drawn with a cone on its top along its x; without it the cone alone, 1 m long
 };
 
-/// The scene as binary glTF 2.0, told to `sink` in pieces: y up as glTF wants it, (x, y, z) becomes (x, z, -y), metres.
+/// Writes the scene as binary glTF 2.0, given to `sink` in pieces: y up as glTF wants it, (x, y, z) becomes (x, z, -y),
+/// metres.
 ///
 /// A node for each part, of its name; a material for each label and for the verdicts of markers. Their root carries the
 /// scene's place in whole metres, so that float32 corners keep their millimetres far from the origin. Round solids

@@ -11,7 +11,7 @@ namespace spawnfield {
 /// Framework Based on Octrees, 2013).
 class OccupancyTree {
 public:
-    struct Impl;  // octomap is seen in src/ only
+    struct Impl;
     explicit OccupancyTree(std::unique_ptr<Impl> impl);
     OccupancyTree(OccupancyTree&&) noexcept;
     ~OccupancyTree();

@@ -13,8 +13,8 @@ class OutputFolder {
 public:
     using Path = std::filesystem::path;
 
-    /// An empty folder may be replaced; one that holds something only if `objection` to it is empty, else it is told.
-    /// Throws OutputError, before anything is made.
+    /// An empty folder may be replaced; one that holds something only if `objection` to it is empty, else the error
+    /// names it. Throws OutputError, before anything is made.
     OutputFolder(const Path& target, const std::function<std::string(const Path&)>& objection);
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;

@@ -45,12 +45,12 @@ std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::
 /// The table's columns that are named as some that verdicts_csv adds: those take their place.
 std::vector<std::string> replaced_columns(const PoseTable& table);
 
-/// Returns the table's columns but the replaced ones, then verdict,ground,height_above,hit. Numbers read back to the same
-/// double.
+/// Returns the table's columns but the replaced ones, then verdict,ground,height_above,hit. Numbers read back to the
+/// same double.
 std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Map& map);
 
-/// x,y,z,yaw,layer,verdict, told to `sink` in pieces; layer is empty where the ground is no layer. With `aerial` also
-/// the aerial poses of a 3D raster that `raster` leaves out, in their places.
+/// Writes x,y,z,yaw,layer,verdict, given to `sink` in pieces; layer is empty where the ground is no layer. With
+/// `aerial` also the aerial poses of a 3D raster that `raster` leaves out, in their places.
 void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink);
 
 /// x,y,z,roll,pitch,yaw.
@@ -59,8 +59,8 @@ std::string spawns_csv(const SpawnList& list);
 /// The same, after a column `name` if the robots have names.
 std::string robots_csv(std::span<const RobotStart> robots);
 
-/// Returns poses with names and quaternions (x, y, z, w), and what they were made from and with: settings, counts; for a
-/// sample also whether it is full. `robots` are the list's spawns.
+/// Returns poses with names and quaternions (x, y, z, w), and what they were made from and with: settings, counts; for
+/// a sample also whether it is full. `robots` are the list's spawns.
 std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
                         const SampleOptions& options);
 std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,

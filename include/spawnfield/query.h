@@ -36,8 +36,8 @@ struct RasterOptions {
     LayerChoice layers = {};   ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
     bool height_check = true;  ///< false (3D only): collisions alone, at every pose; max_slope is not used
     /// 3D with height check: each chosen layer within the bounds' z has its pose of the 2D raster, which replaces the
-    /// lowest step at or above it (RasterGrid::step_above) if there is one, and a step at its very place (to 1e-9 m). So
-    /// no terrain between two steps is lost.
+    /// lowest step at or above it (RasterGrid::step_above) if there is one, and a step at its very place (to 1e-9 m).
+    /// So no terrain between two steps is lost.
     bool snap = false;
     int threads = 0;  ///< 0: all cores; results are the same at any number
     Progress progress = {};
@@ -75,8 +75,8 @@ struct RasterResult {
     std::uint64_t exact_checks = 0;
 };
 
-/// Returns the verdict on every pose of a raster. Throws ArgumentError for options beyond their limits, bounds the wrong
-/// way round or more than 2^31 columns, FileError for a damaged map.
+/// Returns the verdict on every pose of a raster. Throws ArgumentError for options beyond their limits, bounds the
+/// wrong way round or more than 2^31 columns, FileError for a damaged map.
 RasterResult raster(const Judge& judge, const RasterOptions& options);
 
 /// A raster's poses in their order, with `aerial` also the aerial ones of a 3D raster that it does not list, in their
@@ -139,11 +139,12 @@ struct SampleOptions {
     bool random_yaw = false;  ///< uniform in [-pi, pi), else yaw
     double yaw = 0;           ///< rad
     std::uint64_t seed = 0;
-    std::optional<double> offset = {};  ///< m of the origin above its layer, at most max_height; no value: auto_offset()
+    std::optional<double> offset =
+        {};  ///< m of the origin above its layer, at most max_height; no value: auto_offset()
     LayerChoice layers = {};
     ZRange z = {};       ///< layers beyond these heights, m, or beyond the map's z limits are no ground
     Bounds bounds = {};  ///< in x and y; empty: the map's
-    Area area = {};                         ///< as SearchOptions::area
+    Area area = {};      ///< as SearchOptions::area
     std::vector<AvoidedPoints> avoid = {};  ///< as SearchOptions::avoid
     int threads = 0;                        ///< 0: all cores; results are the same at any number
     Progress progress = {};

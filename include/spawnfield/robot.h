@@ -67,7 +67,7 @@ struct RobotOptions {
 Robot load_robot(const std::string& robot, const RobotOptions& options = {});
 
 /// Where the robot touches the ground, in its own frame, and whether its file says so. Otherwise they are what
-/// QueryOptions::max_slope takes: the corners of what lies within 2 cm of its lowest point.
+/// JudgeOptions::max_slope uses: the corners of what lies within 2 cm of its lowest point.
 struct RobotContacts {
     std::vector<Vec3> points;
     bool given = false;

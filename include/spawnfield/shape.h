@@ -16,6 +16,23 @@ struct Shape {
     Pose pose;         ///< parent_from_shape
 };
 
+/// Shapes by their sizes (m, > 0) at a place: box_shape({1, 1, 2}, {{3, 0, 1}}) is a box around (3, 0, 1).
+inline Shape box_shape(const Vec3& size, const Pose& pose = {}) { return {ShapeKind::Box, size, pose}; }
+inline Shape sphere_shape(double radius, const Vec3& centre) { return {ShapeKind::Sphere, {radius, 0, 0}, {centre}}; }
+inline Shape cylinder_shape(double radius, double length, const Pose& pose = {})
+{
+    return {ShapeKind::Cylinder, {radius, length, 0}, pose};
+}
+inline Shape capsule_shape(double radius, double straight_length, const Pose& pose = {})
+{
+    return {ShapeKind::Capsule, {radius, straight_length, 0}, pose};
+}
+
+/// Returns whether the sizes that the shape's kind uses are > 0 m, and they and its pose are finite. Not for hulls.
+bool has_extent(const Shape& shape);
+
+const char* to_string(ShapeKind kind);  ///< as in scene.yaml: "box", …
+
 /// Vertical interval of a solid, m.
 struct Interval {
     double bottom, top;

@@ -41,7 +41,7 @@ struct LaunchOptions {
     std::string file =
         {};  ///< URDF, or SDF if it ends in .sdf; XML takes $(find …) and $(find-pkg-share …) in it. Or else
     std::string topic =
-        {};  ///< ROS 2: topic, ROS 1: parameter, in the robot's namespace, that tells the robot's description
+        {};  ///< ROS 2: topic, ROS 1: parameter, in the robot's namespace, that holds the robot's description
     std::string world = {};                  ///< ROS 2: name of Gazebo's world; empty: the first that runs
     std::vector<JointPosition> joints = {};  ///< ROS 1: where joints stand (spawn_model -J)
 };

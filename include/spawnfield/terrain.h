@@ -2,7 +2,9 @@
 
 #include <spawnfield/column.h>
 
-#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
 
 namespace spawnfield {
 
@@ -22,7 +24,19 @@ GridFrame frame_around(const Bounds& bounds, double cell);
 inline constexpr double max_columns = 1e8;
 inline constexpr double max_side = 1e6;  ///< rows or columns, as libpng takes them
 
-using HeightImage = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+/// A value for each cell of a raster, row after row; row 0 is the largest y. NaN where there is nothing.
+struct HeightImage {
+    int rows = 0, cols = 0;
+    std::vector<float> values = {};  ///< rows * cols; heights in m
+
+    HeightImage() = default;
+    HeightImage(int rows_, int cols_, float value = std::numeric_limits<float>::quiet_NaN())
+        : rows(rows_), cols(cols_), values(std::size_t(rows_) * std::size_t(cols_), value)
+    {
+    }
+    float operator()(int row, int col) const { return values[std::size_t(row) * std::size_t(cols) + std::size_t(col)]; }
+    float& operator()(int row, int col) { return values[std::size_t(row) * std::size_t(cols) + std::size_t(col)]; }
+};
 
 /// What stands in each column of a raster, as pages of float32 metres; NaN where there is nothing.
 ///

@@ -33,8 +33,7 @@ using ThesisCounts = std::array<std::uint64_t, thesis_class_count>;
 ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air,
                                     const Progress& progress = {});
 
-/// Spawns are valid locations. No others are kept, so Invalid_Locations.txt is empty: thesis_stats tells how many there
-/// were.
+/// Spawns are valid locations. No others are kept, so Invalid_Locations.txt is empty: thesis_stats counts them.
 ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const SpawnList& list);
 
 /// Stats.txt: "Name: value" per line: the settings, what was judged by class and by verdict, and the lines of each

@@ -4,10 +4,12 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <mutex>
@@ -21,9 +23,9 @@ inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info:
 template <class T>
 using PerThread = tbb::enumerable_thread_specific<T>;
 
-/// Calls body(i) for each i < count on at most `threads` threads (0: all cores), in an arena of their own: nothing
-/// changes for the rest of the process. Each i must write to its own slot only. `progress` is called after items; an
-/// exception from there or from body ends the loop and is thrown on.
+/// Calls body(i) for each i < count on at most `threads` threads (0: all cores), and no more than the process allows
+/// TBB, in an arena of their own: nothing changes for the rest of the process. Each i must write to its own slot only.
+/// `progress` is called after items; an exception from there or from body ends the loop and is thrown on.
 template <class Body>
 void parallel_for(std::size_t count, int threads, const Progress& progress, const Body& body)
 {
@@ -49,7 +51,8 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
             if (const std::unique_lock lock(reporting, std::try_to_lock); lock) progress(double(now) / double(count));
         }
     };
-    tbb::task_arena arena(thread_count(threads));
+    const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    tbb::task_arena arena(std::min(thread_count(threads), int(allowed)));
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), run); });
 }
 

@@ -325,7 +325,7 @@ Proof Mask::proof_of(const Vec3& position)
         for (Pass& pass : part.passes) {
             if (!pass.is_ready) cover(part, pass);
             proof = coarser == nullptr && is_clear(part, pass, x, z) ? Proof::Free
- : proof_of(part, pass, coarser, x, z);
+                                                                     : proof_of(part, pass, coarser, x, z);
             coarser = &pass;
             if (proof != Proof::Candidate) break;
         }

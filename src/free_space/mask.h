@@ -18,8 +18,8 @@ struct FreeSpace::Impl {
     std::vector<Footprint> every_yaw;
 };
 
-/// Proves poses free or blocked for one thread. Keeps what neighbouring poses share: the footprints at one rotation, and
-/// the cells that they cover from one row of poses (equal y).
+/// Proves poses free or blocked for one thread. Keeps what neighbouring poses share: the footprints at one rotation,
+/// and the cells that they cover from one row of poses (equal y).
 class Mask {
 public:
     /// Upright at this yaw until another rotation is set.
@@ -28,9 +28,9 @@ public:
         set_rotation(yaw);
     }
 
-    void set_rotation(double yaw);              ///< upright
-    void set_rotation(const Mat3& rotation);    ///< any; poses of a tilted robot are never Blocked
-    void set_every_yaw();                       ///< upright: proofs hold for every yaw
+    void set_rotation(double yaw);            ///< upright
+    void set_rotation(const Mat3& rotation);  ///< any; poses of a tilted robot are never Blocked
+    void set_every_yaw();                     ///< upright: proofs hold for every yaw
     Proof proof_of(const Vec3& position);
     /// Returns whether something solid on the vertical line through the origin, whose spans these are, is certainly
     /// inside a part.
@@ -54,10 +54,10 @@ private:
     struct Pass {
         std::size_t level;
         bool is_ready = false;
-        std::vector<CoverRow> rows;  ///< one after the other
-        double low = 0, high = 0;    ///< of all rows
+        std::vector<CoverRow> rows;        ///< one after the other
+        double low = 0, high = 0;          ///< of all rows
         std::vector<CellRange> undecided;  ///< of each row: cells outside of this are proven free at the last pose
-        std::array<OpenTile, 4> tiles;  ///< the last ones that were looked at: all that a part straddles
+        std::array<OpenTile, 4> tiles;     ///< the last ones that were looked at: all that a part straddles
     };
     struct Part {
         Footprint footprint;

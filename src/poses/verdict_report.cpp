@@ -219,7 +219,8 @@ std::vector<std::string> pose_names(const PoseTable& table)
 
 void write_verdicts_json(const VerdictReport& report, const Sink& sink)
 {
-    Json head = json_head("check", report.judge.map(), report.judge.robot(), settings_json(report), "spawnfield-verdicts/1");
+    Json head = json_head("check", report.judge.map(), report.judge.robot(), settings_json(report),
+                          "spawnfield-verdicts/1");
     const VerdictCounts counts = counts_of(report);
     for (const Verdict verdict : all_verdicts) head["counts"][to_string(verdict)] = counts[verdict];
     std::string text = json_text(head, 2);

@@ -23,7 +23,8 @@ struct CellProofs::Prism {
 /// One cell under proof.
 class CellProofs::Cell {
 public:
-    Cell(const CellProofs& proofs, const Rect& rect) : proofs_(proofs), rect_(rect), facets_(proofs.shared_.map.geometry, rect)
+    Cell(const CellProofs& proofs, const Rect& rect)
+        : proofs_(proofs), rect_(rect), facets_(proofs.shared_.map.geometry, rect)
     {
     }
 

@@ -50,7 +50,7 @@ private:
     const AreaIndex& area_;
     const SpacedPoints& taken_;
     const AvoidIndex& avoided_;
-    std::vector<Prism> prisms_;      ///< within the robot at every yaw that is drawn, relative to its origin
+    std::vector<Prism> prisms_;   ///< within the robot at every yaw that is drawn, relative to its origin
     std::vector<Eroded> eroded_;  ///< from the lowest range of heights on
 };
 

@@ -9,8 +9,8 @@
 
 namespace spawnfield {
 
-/// Decides how a robot would stand at a pose, as JudgeOptions::max_slope describes, from the scene's geometry alone. One
-/// for each thread. Refers to the geometry and the robot.
+/// Decides how a robot would stand at a pose, as JudgeOptions::max_slope describes, from the scene's geometry alone.
+/// One for each thread. Refers to the geometry and the robot.
 class Footing {
 public:
     /// Upright at yaw 0 until another rotation is set.
@@ -35,11 +35,11 @@ private:
 
     const Geometry* geometry_;
     const Robot* robot_;
-    std::vector<Vec3> points_;       ///< contacts_of the robot
-    double lowest_, steepest_;       ///< z of the upright robot's lowest point; tangent of the limit
-    std::vector<Contact> contacts_;  ///< none: as the robot is turned, they span no area
-    Vec2 middle_ = Vec2::Zero();     ///< of the contacts
-    std::vector<double> rises_;      ///< of the surfaces under the contacts, above the pose's ground
+    std::vector<Vec3> points_;        ///< contacts_of the robot
+    double lowest_, steepest_;        ///< z of the upright robot's lowest point; tangent of the limit
+    std::vector<Contact> contacts_;   ///< none: as the robot is turned, they span no area
+    Vec2 middle_ = Vec2::Zero();      ///< of the contacts
+    std::vector<double> rises_;       ///< of the surfaces under the contacts, above the pose's ground
     std::optional<Vec2> columns_at_;  ///< where the contacts' columns were taken; poses above each other share them
 };
 

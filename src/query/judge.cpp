@@ -100,7 +100,8 @@ std::vector<std::uint32_t> in_neighbourhoods(std::span<const Pose> poses)
     const auto bin_of = [&](const Vec3& p) {
         const auto along = [&](int axis) {
             const double share = (p[axis] - bounds.min[axis]) / (bounds.max[axis] - bounds.min[axis]);
-            return share > 0 ? std::size_t(std::min(share, 1.0) * (side - 1)) : 0;  // also where the share is not a number
+            return share > 0 ? std::size_t(std::min(share, 1.0) * (side - 1))
+                             : 0;  // also where the share is not a number
         };
         return along(1) * side + along(0);
     };
@@ -255,8 +256,7 @@ std::string Judge::describe(const Pose& pose, const Judgement& judgement) const
                " m above the ground, the limit is " + rounded(impl_->options.max_height) + " m";
     case Verdict::OffTerrain:
         return verdict + ": the ground is " + impl_->map.geometry.parts()[judgement.ground->part].name;
-    case Verdict::Collision:
-        return judgement.hit ? verdict + " with " + name_of(*judgement.hit, impl_->map) : verdict;
+    case Verdict::Collision: return judgement.hit ? verdict + " with " + name_of(*judgement.hit, impl_->map) : verdict;
     default: return verdict;
     }
 }

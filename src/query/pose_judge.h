@@ -64,9 +64,10 @@ struct Judge::Impl {
     const Robot robot;
     const JudgeOptions options;
     const CollisionChecker checker;
-    const std::optional<FreeSpace> space;   ///< none: every pose is checked exactly
-    const std::optional<Footing> footing;   ///< none: slopes are not looked at; each PoseJudge takes its own copy
-    mutable PerThread<PoseJudge> pose_judges{[this] { return PoseJudge(*this, 0); }};  ///< for poses that come one by one
+    const std::optional<FreeSpace> space;  ///< none: every pose is checked exactly
+    const std::optional<Footing> footing;  ///< none: slopes are not looked at; each PoseJudge takes its own copy
+    mutable PerThread<PoseJudge> pose_judges{
+        [this] { return PoseJudge(*this, 0); }};  ///< for poses that come one by one
 };
 
 }  // namespace spawnfield

@@ -25,8 +25,8 @@ inline Bounds overlap(Bounds box, const Bounds& other)
 /// Throws ArgumentError unless the distance and the points are in their limits.
 void check_avoided(const char* function, const AvoidedPoints& group);
 
-/// Throws ArgumentError unless count, distances and yaw are in their limits. `Options`, here and below: SearchOptions or
-/// SampleOptions.
+/// Throws ArgumentError unless count, distances and yaw are in their limits. `Options`, here and below: SearchOptions
+/// or SampleOptions.
 template <class Options>
 void check_spawn_options(const char* function, const Options& options)
 {

@@ -45,7 +45,7 @@ bool was_interrupted() { return interrupt_seen; }
 void add_common(CLI::App& command, CommonArgs& args)
 {
     command.add_option("--threads", args.threads, "Threads; 0: all cores. The result is the same at any number")
-        ->check(CLI::Range(0, 1024));
+        ->check(CLI::Range(0, most_threads));
     command.add_flag("--quiet,-q", args.quiet, "No notices, no progress, no summary line");
     command.add_option("--summary", args.summary, "Write the summary to this file as JSON (- for standard output)");
 }

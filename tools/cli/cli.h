@@ -35,6 +35,9 @@ struct NothingFits {
     std::string why;
 };
 
+/// Greatest value of --threads.
+inline constexpr int most_threads = 1024;
+
 /// Options that every command has.
 struct CommonArgs {
     int threads = 0;

@@ -166,7 +166,7 @@ private:
             summary_.exact_checks += run.exact_checks;
         }
         summary_.set_counts(counts);
-        Experiment experiment{args_.command_line,   session_.map.name, session_.map.hash,
+        Experiment experiment{args_.command_line,  session_.map.name,  session_.map.hash,
                               session_.robot.name, summary_.threads(), {},
                               std::move(runs)};
         if (args_.search) experiment.seed = search_.seed;

@@ -166,7 +166,7 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     summary.lap("query");
     picture.title = session.map.name + ", " + session.robot.name;
     const std::string headings = facing.is_any ? std::to_string(picture.headings) + " headings" : "";
-    picture.caption = heatmap_caption(options, args.ground, session.map, headings);
+    picture.caption = heatmap_caption(options, args.ground, *session.judge, headings);
     picture.robot = &session.robot;
     picture.format = file.format;
     write_heatmap(session.map, terrain, result, picture, file.path);

@@ -78,7 +78,7 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     const auto draw = [&] {
         if (!picture_to) return;
         const HeatmapOptions picture{.title = session.map.name + ", " + session.robot.name,
-                                     .caption = heatmap_caption(options, args.ground, session.map),
+                                     .caption = heatmap_caption(options, args.ground, *session.judge),
                                      .robot = &session.robot,
                                      .format = picture_to->format,
                                      .threads = args.threads};
