@@ -1,6 +1,6 @@
 #include "catch.h"
 #include "compare.h"
-#include "query/contacts.h"
+#include "robot/contacts.h"
 #include "slow.h"
 #include "worlds/hand_scene.h"
 

@@ -1,3 +1,4 @@
+#include "base/rotation.h"
 #include "catch.h"
 #include "worlds/random.h"
 
@@ -139,4 +140,16 @@ TEST_CASE("the thesis's Unity frame is another one, and stays")
 {
     CHECK(unity_from({1, 2, 3}) == Vec3(1, 3, 2));
     CHECK(point_in(Frame::Unity, {1, 2, 3}) == Vec3(-2, 3, 1));
+}
+
+TEST_CASE("the z axis turns to a direction without turning about it")
+{
+    for (const Vec3& direction : {Vec3(0, 0, 1), Vec3(0, 0, 2), Vec3(1, 0, 0), Vec3(0.3, -0.4, 0.1), Vec3(0, 1, -7)}) {
+        const Mat3 turn = rotation_from_z_to(direction);
+        CHECK((turn.col(2) - direction.normalized()).norm() < 1e-13);
+        CHECK((turn.transpose() * turn - Mat3::Identity()).norm() < 1e-13);
+        const Vec3 axis = Vec3::UnitZ().cross(direction);  // of the smallest rotation: it stays where it is
+        CHECK((turn * axis - axis).norm() < 1e-13);
+    }
+    CHECK(rotation_from_z_to({0, 0, -3}) == Mat3(Vec3(1, -1, -1).asDiagonal()));
 }

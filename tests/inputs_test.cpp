@@ -4,7 +4,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
-#include <spawnfield/region.h>
+#include <spawnfield/region_file.h>
 #include <spawnfield/robot.h>
 #include <spawnfield/scene.h>
 

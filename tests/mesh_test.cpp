@@ -1,6 +1,6 @@
 #include "catch.h"
+#include "mesh/face_pieces.h"
 #include "mesh_text.h"
-#include "scene/pieces.h"
 #include "scene_text.h"
 
 #include <spawnfield/column.h>

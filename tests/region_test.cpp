@@ -9,6 +9,7 @@
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
+#include <spawnfield/region_file.h>
 
 #include <cmath>
 #include <numbers>

@@ -3,7 +3,7 @@
 #include "paths.h"
 #include "random_scene.h"
 
-#include <spawnfield/map.h>
+#include <spawnfield/bake.h>
 #include <spawnfield/query.h>
 
 #include <memory>

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <spawnfield/column.h>
+#include <spawnfield/geometry.h>
 #include <spawnfield/robot.h>
 
 #include <memory>
+#include <optional>
 
 namespace spawnfield {
 
@@ -22,9 +23,6 @@ struct CollisionHit {
 /// that solver's rounding says.
 class CollisionChecker {
 public:
-    /// m; libccd's own tolerance for exact contact, measured.
-    static constexpr double touch_margin = 1e-6;
-
     /// Against the scene's own geometry.
     CollisionChecker(const Geometry& geometry, const Robot& robot);
     /// Against the occupied voxels of a baked tree instead.
@@ -42,7 +40,7 @@ public:
     std::optional<CollisionHit> find_hit(const Pose& scene_from_robot) const;
 
 private:
-    struct Impl;  // FCL is seen in src/collision.cpp only
+    struct Impl;  // FCL is seen in src/collision/collision.cpp only
     std::unique_ptr<const Impl> impl_;
 };
 

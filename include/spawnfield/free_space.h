@@ -18,7 +18,7 @@ enum class Proof : std::uint8_t { Candidate, Free, Blocked };
 /// Spatial planning: a configuration space approach, 1983), done only where it is asked for.
 class FreeSpace {
 public:
-    /// m that proofs stay away from contact: more than FCL's tolerance and CollisionChecker::touch_margin.
+    /// m that proofs stay away from contact: more than FCL's tolerance and touch_margin.
     static constexpr double margin = 1e-5;
 
     FreeSpace(const SolidBounds& bounds, const Robot& robot);

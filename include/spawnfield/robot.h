@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/joints.h>
 #include <spawnfield/shape.h>
 
 #include <filesystem>
@@ -35,12 +36,6 @@ struct MeshFit {
 };
 
 /// A rigid body: the union of convex parts, in its own frame, whose origin is the pose that commands take and give.
-/// Where a joint stands.
-struct JointPosition {
-    std::string joint;
-    double value = 0;  ///< rad of revolute and continuous joints, m of prismatic ones
-};
-
 struct Robot {
     std::string name;
     std::vector<RobotPart> parts;  ///< at least one
@@ -70,5 +65,13 @@ struct RobotOptions {
 /// files, ArgumentError for a bad `box:`, for joints that the file has not, that cannot be moved or whose limits do not
 /// hold the value, and for mesh_parts out of range.
 Robot load_robot(const std::string& robot, const RobotOptions& options = {});
+
+/// Where the robot touches the ground, in its own frame, and whether its file says so. Otherwise they are what
+/// QueryOptions::max_slope takes: the corners of what lies within 2 cm of its lowest point.
+struct RobotContacts {
+    std::vector<Vec3> points;
+    bool given = false;
+};
+RobotContacts robot_contacts(const Robot& robot);
 
 }  // namespace spawnfield

@@ -10,14 +10,6 @@ namespace spawnfield {
 /// around them, so up to 0.2 % of their own radius too much.
 double turning_radius(const Robot& robot);
 
-/// Where the robot touches the ground, in its own frame, and whether its file says so. Otherwise they are what
-/// QueryOptions::max_slope takes: the corners of what lies within 2 cm of its lowest point.
-struct RobotContacts {
-    std::vector<Vec3> points;
-    bool given = false;
-};
-RobotContacts robot_contacts(const Robot& robot);
-
 /// Draws the robot from above, from its right side and from the front, to one scale: parts coloured by link, footprint,
 /// contacts, the axes of its frame, scale bar and sizes, in 1000 pixels of width. The file's ending chooses the
 /// format, as picture_format() says. Throws ArgumentError for another ending, OutputError.

@@ -50,8 +50,6 @@ struct GeoOrigin {
     std::string crs;      ///< "EPSG:32611", or the survey's own words; empty: unknown
 };
 
-using Triangle = std::array<std::uint32_t, 3>;
-
 /// A rule by which the collisions of a world got their label, for the user to see.
 struct NameRule {
     std::string what;  ///< "plane", "name road*", …

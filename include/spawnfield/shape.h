@@ -31,4 +31,7 @@ Bounds bounds_of(const Shape& shape);
 /// Lines and points this close to a surface lie on it, m: rounding of coordinates up to 10 km stays below it.
 inline constexpr double touch_tolerance = 1e-9;
 
+/// Solids that are this close to each other touch, m: the measured tolerance of libccd for exact contact.
+inline constexpr double touch_margin = 1e-6;
+
 }  // namespace spawnfield

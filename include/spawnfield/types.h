@@ -14,6 +14,9 @@ namespace spawnfield {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
+/// Indices of three vertices in a list.
+using Triangle = std::array<std::uint32_t, 3>;
+
 /// A closed range of heights, m; without limits by default.
 struct ZRange {
     double low = -std::numeric_limits<double>::infinity();

@@ -1,6 +1,7 @@
 #include "base/geotiff.h"
 
 #include "base/coordinate_system.h"
+#include "base/geo_tags.h"
 #include "base/number.h"
 #include "base/tiff.h"
 
@@ -11,17 +12,6 @@
 
 namespace spawnfield {
 namespace {
-
-enum GeoTag : std::uint32_t {
-    model_pixel_scale = 33550,
-    model_tiepoint = 33922,
-    model_transformation = 34264,
-    geo_key_directory = 34735,
-    geo_double_params = 34736,
-    geo_ascii_params = 34737,
-    gdal_metadata = 42112,
-    gdal_no_data = 42113,
-};
 
 enum GeoKey : std::uint16_t {
     model_type = 1024,
@@ -37,30 +27,6 @@ enum GeoKey : std::uint16_t {
 };
 
 constexpr unsigned user_defined = 32767;
-
-TIFFExtendProc parent_extender = nullptr;
-
-void extend_tags(TIFF* tiff)
-{
-    static char names[8][20] = {"ModelPixelScale", "ModelTiepoint",  "ModelTransformation", "GeoKeyDirectory",
-                                "GeoDoubleParams", "GeoAsciiParams", "GDALMetadata",        "GDALNoData"};
-    const auto any = [](std::uint32_t tag, TIFFDataType type, char* name) {
-        return TIFFFieldInfo{tag, TIFF_VARIABLE2, TIFF_VARIABLE2, type, FIELD_CUSTOM, 1, 1, name};
-    };
-    const auto text = [](std::uint32_t tag, char* name) {
-        return TIFFFieldInfo{tag, TIFF_VARIABLE, TIFF_VARIABLE, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name};
-    };
-    static const TIFFFieldInfo fields[] = {any(model_pixel_scale, TIFF_DOUBLE, names[0]),
-                                           any(model_tiepoint, TIFF_DOUBLE, names[1]),
-                                           any(model_transformation, TIFF_DOUBLE, names[2]),
-                                           any(geo_key_directory, TIFF_SHORT, names[3]),
-                                           any(geo_double_params, TIFF_DOUBLE, names[4]),
-                                           text(geo_ascii_params, names[5]),
-                                           text(gdal_metadata, names[6]),
-                                           text(gdal_no_data, names[7])};
-    TIFFMergeFieldInfo(tiff, fields, std::uint32_t(std::size(fields)));
-    if (parent_extender != nullptr) parent_extender(tiff);
-}
 
 template <class T>
 std::vector<T> array_of(TIFF* tiff, std::uint32_t tag)
@@ -303,8 +269,6 @@ void tell_other_units(const std::vector<UnitWord>& words, const std::string& fil
 }
 
 }  // namespace
-
-void register_geo_tags() { parent_extender = TIFFSetTagExtender(extend_tags); }
 
 GeoTags read_geo_tags(const std::filesystem::path& file)
 {

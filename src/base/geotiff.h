@@ -38,7 +38,4 @@ std::optional<double> no_data_value(const GeoTags& tags, const std::string& file
 /// for heights that are stored with a scale or an offset.
 double height_unit(const GeoTags& tags, const std::string& file, std::vector<std::string>& notices);
 
-/// Tells libtiff the types of these tags; open_tiff calls it.
-void register_geo_tags();
-
 }  // namespace spawnfield

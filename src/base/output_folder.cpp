@@ -15,7 +15,7 @@ namespace {
 
 fs::path without_slash(const fs::path& path) { return path.has_filename() ? path : path.parent_path(); }
 
-fs::path target_of(const fs::path& folder)
+fs::path target_folder(const fs::path& folder)
 {
     std::error_code error;
     const fs::path target = fs::is_symlink(folder, error) ? fs::canonical(folder, error) : folder;
@@ -38,7 +38,7 @@ bool exchange(const fs::path& a, const fs::path& b)
 }  // namespace
 
 OutputFolder::OutputFolder(const Path& target, const std::function<std::string(const Path&)>& objection)
-    : target_(target_of(without_slash(target)))
+    : target_(target_folder(without_slash(target)))
 {
     refuse_foreign(target_, objection);
     const std::string suffix = "-" + std::to_string(getpid());

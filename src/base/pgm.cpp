@@ -12,9 +12,9 @@ namespace {
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-class Reader {
+class PgmReader {
 public:
-    Reader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+    PgmReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
     /// The next whole number, after white space and comments.
     std::uint32_t number(const std::string& what)
@@ -51,7 +51,7 @@ std::uint32_t within(std::uint32_t value, std::uint32_t most, const std::string&
     return value;
 }
 
-void read_text(Reader& reader, std::size_t count, std::vector<double>& pixels)
+void read_text(PgmReader& reader, std::size_t count, std::vector<double>& pixels)
 {
     for (std::size_t i = 0; i < count; ++i) pixels.push_back(reader.number("pixel " + std::to_string(i)));
 }
@@ -74,7 +74,7 @@ GreyImage read_pgm(const std::filesystem::path& path, std::uint64_t most)
 {
     const std::string file = path.string(), text = read_file(path);
     if (!is_pgm(text)) throw FileError(file, "is no PGM image (P2 or P5)");
-    Reader reader(text, file);
+    PgmReader reader(text, file);
     constexpr std::uint32_t most_side = 2147483647;
     const std::uint32_t cols = within(reader.number("the width"), most_side, file, "width"),
                         rows = within(reader.number("the height"), most_side, file, "height");

@@ -35,9 +35,9 @@ struct Message {
 
 void on_warning(png_structp, png_const_charp) {}
 
-class Reader {
+class PngReader {
 public:
-    explicit Reader(std::string_view bytes) : left_(bytes)
+    explicit PngReader(std::string_view bytes) : left_(bytes)
     {
         png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message_, on_error, on_warning);
         if (png_) info_ = png_create_info_struct(png_);
@@ -47,9 +47,9 @@ public:
         }
         png_set_read_fn(png_, &left_, take);
     }
-    Reader(const Reader&) = delete;
-    Reader& operator=(const Reader&) = delete;
-    ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+    PngReader(const PngReader&) = delete;
+    PngReader& operator=(const PngReader&) = delete;
+    ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
     bool read_header()
     {
@@ -155,14 +155,14 @@ bool is_png(std::string_view start)
 
 namespace {
 
-using Bytes = std::unique_ptr<png_byte[]>;
+using PngBytes = std::unique_ptr<png_byte[]>;
 
-void require(bool good, const Reader& reader, const std::string& file)
+void require(bool good, const PngReader& reader, const std::string& file)
 {
     if (!good) throw FileError(file, std::string("is a damaged PNG image: ") + reader.message());
 }
 
-void check_size(const Reader& reader, const std::string& file, std::uint64_t most)
+void check_size(const PngReader& reader, const std::string& file, std::uint64_t most)
 {
     if (std::uint64_t(reader.rows()) * std::uint64_t(reader.cols()) > most)
         throw FileError(file, "has " + std::to_string(reader.cols()) + " x " + std::to_string(reader.rows()) +
@@ -170,20 +170,20 @@ void check_size(const Reader& reader, const std::string& file, std::uint64_t mos
 }
 
 /// All samples of a prepared reader, of one byte or two, row after row.
-Bytes read_samples(Reader& reader, const std::string& file)
+PngBytes read_samples(PngReader& reader, const std::string& file)
 {
     const std::size_t rows = std::size_t(reader.rows());
     const std::size_t row_bytes = std::size_t(reader.cols()) * std::size_t(reader.channels()) *
                                   (reader.bits() == 16 ? 2 : 1);
     // Not cleared, so that a damaged header which tells of a giant costs nothing.
-    Bytes data = std::make_unique_for_overwrite<png_byte[]>(rows * row_bytes);
+    PngBytes data = std::make_unique_for_overwrite<png_byte[]>(rows * row_bytes);
     const auto starts = std::make_unique_for_overwrite<png_bytep[]>(rows);
     for (std::size_t row = 0; row < rows; ++row) starts[row] = data.get() + row * row_bytes;
     require(reader.read_rows(starts.get()), reader, file);
     return data;
 }
 
-std::uint16_t sample(const Bytes& data, std::size_t i, bool wide)
+std::uint16_t sample(const PngBytes& data, std::size_t i, bool wide)
 {
     return wide ? std::uint16_t(data[2 * i] * 256 + data[2 * i + 1]) : data[i];
 }
@@ -215,12 +215,12 @@ GreyImage grey_of(const ColourImage& image, const std::string& file)
 GreyImage read_grey_png(const std::filesystem::path& path, std::uint64_t most)
 {
     const std::string bytes = read_file(path), file = path.string();
-    Reader reader(bytes);
+    PngReader reader(bytes);
     require(reader.read_header(), reader, file);
     if (reader.has_palette() || reader.channels() != 1) return grey_of(read_colour_png(path, most), file);
     check_size(reader, file, most);
     require(reader.prepare(false), reader, file);
-    const Bytes data = read_samples(reader, file);
+    const PngBytes data = read_samples(reader, file);
     const bool wide = reader.bits() == 16;
     GreyImage image{reader.rows(), reader.cols(), wide ? 65535.0 : 255.0, {}};
     image.pixels.resize(std::size_t(image.rows) * std::size_t(image.cols));
@@ -231,11 +231,11 @@ GreyImage read_grey_png(const std::filesystem::path& path, std::uint64_t most)
 ColourImage read_colour_png(const std::filesystem::path& path, std::uint64_t most)
 {
     const std::string bytes = read_file(path), file = path.string();
-    Reader reader(bytes);
+    PngReader reader(bytes);
     require(reader.read_header(), reader, file);
     check_size(reader, file, most);
     require(reader.prepare(true), reader, file);
-    const Bytes data = read_samples(reader, file);
+    const PngBytes data = read_samples(reader, file);
     const bool wide = reader.bits() == 16;
     ColourImage image{reader.rows(), reader.cols(), reader.channels(), wide ? 65535 : 255, {}};
     image.samples.resize(std::size_t(image.rows) * std::size_t(image.cols) * std::size_t(image.channels));

@@ -39,6 +39,9 @@ Polygon cut(const Polygon& polygon, const Vec2& normal, double offset)
     return out;
 }
 
+/// Convex hull of points (Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979).
+Polygon2 convex_hull(Polygon2 points);
+
 /// Whether a point is in a convex polygon, rim included; in one without corners none is.
 inline bool contains(const Polygon2& polygon, const Vec2& point)
 {

@@ -24,4 +24,12 @@ inline std::string trimmed(std::string_view text)
                                            : std::string(text.substr(first, text.find_last_not_of(space) + 1 - first));
 }
 
+/// Returns the text with spaces for control characters, so that it fits on one line.
+inline std::string one_line(std::string text)
+{
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    return text;
+}
+
 }  // namespace spawnfield

@@ -1,6 +1,6 @@
 #include "base/tiff.h"
 
-#include "base/geotiff.h"
+#include "base/geo_tags.h"
 
 #include <spawnfield/error.h>
 

@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Point = std::array<float, 3>;
 
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 // ---------------------------------------------------------------- the scene's elements, in its order
 
@@ -99,7 +99,7 @@ class JsonArray {
 public:
     std::size_t add(const Json& json)
     {
-        text_ += (size_ > 0 ? "," : "") + text_of(json);
+        text_ += (size_ > 0 ? "," : "") + dumped(json);
         return size_++;
     }
     std::size_t size() const { return size_; }
@@ -227,7 +227,7 @@ private:
                     {"extras", {{"map", map.name}, {"map_hash", map.hash}}}}},
                   {"scene", 0},
                   {"scenes", {{{"nodes", {root}}}}}};
-        std::string text = text_of(json);
+        std::string text = dumped(json);
         text.pop_back();
         text += ",\"nodes\":" + nodes.take();
         if (meshes_.size() > 0) {
@@ -236,7 +236,7 @@ private:
                 {{"buffer", 0}, {"byteOffset", points_.size()}, {"byteLength", indices_.size()}, {"target", 34963}}};
             text += ",\"materials\":" + materials_.take() + ",\"meshes\":" + meshes_.take() +
                     ",\"accessors\":" + accessors_.take();
-            text += ",\"bufferViews\":" + text_of(json) +
+            text += ",\"bufferViews\":" + dumped(json) +
                     ",\"buffers\":[{\"byteLength\":" + std::to_string(points_.size() + indices_.size()) + "}]";
         }
         return text + "}";

@@ -1,5 +1,5 @@
 #include "base/number.h"
-#include "export/words.h"
+#include "base/text.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/map_export.h>

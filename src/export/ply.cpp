@@ -1,4 +1,5 @@
 #include "base/binary.h"
+#include "base/text.h"
 #include "export/words.h"
 #include "picture/palette.h"
 

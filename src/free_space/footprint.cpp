@@ -1,6 +1,5 @@
 #include "free_space/footprint.h"
 
-#include <spawnfield/collision.h>
 #include <spawnfield/free_space.h>
 
 #include <algorithm>
@@ -154,29 +153,9 @@ Prism prism_within(const PartCorners& corners)
     return best;
 }
 
-constexpr double reach = CollisionChecker::touch_margin * 2 +
-                         FreeSpace::margin;  // hulls grow by up to sqrt(3) times as much
+constexpr double reach = touch_margin * 2 + FreeSpace::margin;  // hulls grow by up to sqrt(3) times as much
 
 }  // namespace
-
-Polygon2 convex_hull(Polygon2 points)
-{
-    std::sort(points.begin(), points.end(),
-              [](const Vec2& l, const Vec2& r) { return l.x() != r.x() ? l.x() < r.x() : l.y() < r.y(); });
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    if (points.size() < 3) return points;
-    Polygon2 hull;
-    const auto add = [&](const Vec2& p, std::size_t kept) {
-        while (hull.size() >= kept + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
-            hull.pop_back();
-        hull.push_back(p);
-    };
-    for (const Vec2& p : points) add(p, 0);
-    const std::size_t lower = hull.size() - 1;
-    for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
-    hull.pop_back();
-    return hull;
-}
 
 Interval height_of(const RobotPart& part, const Mat3& rotation)
 {

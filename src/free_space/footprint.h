@@ -20,9 +20,6 @@ struct Footprint {
     Prism inner;  ///< lies in the part, FreeSpace::margin from its surface; no corners: none is known
 };
 
-/// Convex hull (Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979).
-Polygon2 convex_hull(Polygon2 points);
-
 /// Lowest and highest point of the part with the robot turned by `rotation` about its origin.
 Interval height_of(const RobotPart& part, const Mat3& rotation);
 

@@ -1,6 +1,6 @@
 #include "base/parallel.h"
+#include "column/cell_clip.h"
 #include "free_space/bounds_tile.h"
-#include "map/cell_clip.h"
 
 #include <spawnfield/error.h>
 

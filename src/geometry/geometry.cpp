@@ -17,7 +17,7 @@ constexpr int refinement = 4;  // between the cell sizes of two levels
 constexpr double elements_a_tile = 256;
 constexpr double most_tiles_along = 1024;  // so that thin scenes have no more tiles than others
 constexpr double refs_an_element = 6;
-constexpr std::size_t alignment = 64;  // of tiles
+constexpr std::size_t tile_alignment = 64;  // of tiles
 
 ElementBox box_of(const Scene& scene, std::uint32_t element)
 {
@@ -100,7 +100,7 @@ public:
         for (const std::uint32_t element : elements_) put(element);
         for (const std::uint32_t start : starts_) put(start);
         for (const std::uint32_t ref : refs_) put(ref);
-        out_.resize((out_.size() + alignment - 1) / alignment * alignment, '\0');
+        out_.resize((out_.size() + tile_alignment - 1) / tile_alignment * tile_alignment, '\0');
         return std::move(out_);
     }
 
@@ -234,7 +234,7 @@ bool is_consistent(std::string_view view, std::size_t parts)
     TileHead head;
     std::memcpy(&head, view.data(), sizeof head);
     const std::uint64_t size = tile_size(head);
-    if (view.size() < size || view.size() >= size + alignment) return false;
+    if (view.size() < size || view.size() >= size + tile_alignment) return false;
     if (!(head.bin > 0) || head.bin_cols == 0 || head.bin_rows == 0) return false;
     const Tile tile(view);
     const auto below = [](std::uint32_t value, std::size_t limit) { return value < limit; };

@@ -10,8 +10,8 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::string_view magic = "SPAWNBND";
-constexpr std::uint32_t file_version = 1;
+constexpr std::string_view bounds_magic = "SPAWNBND";
+constexpr std::uint32_t bounds_version = 1;
 
 std::string written_head(const SolidBounds::Impl& bounds)
 {
@@ -49,14 +49,14 @@ bool is_consistent(const SolidBounds::Impl& bounds)
 void write_bounds(const std::filesystem::path& file, const SolidBounds& bounds)
 {
     OutputFile out(file);
-    out.write(tiled_head(magic, file_version, written_head(bounds.impl())));
+    out.write(tiled_head(bounds_magic, bounds_version, written_head(bounds.impl())));
     out.write(bounds.impl().bytes.view);
     out.commit();
 }
 
 SolidBounds open_bounds(const std::filesystem::path& file, const std::string& head_checksum)
 {
-    const TiledFile tiled = open_tiled(file, magic, file_version, head_checksum);
+    const TiledFile tiled = open_tiled(file, bounds_magic, bounds_version, head_checksum);
     auto impl = std::make_shared<SolidBounds::Impl>();
     try {
         BinaryReader in(tiled.head);

@@ -10,8 +10,8 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::string_view magic = "SPAWNGEO";
-constexpr std::uint32_t file_version = 2;
+constexpr std::string_view geometry_magic = "SPAWNGEO";
+constexpr std::uint32_t geometry_version = 2;
 
 std::string written_head(const Geometry::Impl& geometry)
 {
@@ -80,14 +80,14 @@ bool is_consistent(const Geometry::Impl& geometry)
 void write_geometry(const std::filesystem::path& file, const Geometry& geometry)
 {
     OutputFile out(file);
-    out.write(tiled_head(magic, file_version, written_head(geometry.impl())));
+    out.write(tiled_head(geometry_magic, geometry_version, written_head(geometry.impl())));
     out.write(geometry.impl().bytes.view);
     out.commit();
 }
 
 Geometry open_geometry(const std::filesystem::path& file, const std::string& head_checksum)
 {
-    const TiledFile tiled = open_tiled(file, magic, file_version, head_checksum);
+    const TiledFile tiled = open_tiled(file, geometry_magic, geometry_version, head_checksum);
     auto impl = std::make_shared<Geometry::Impl>();
     try {
         BinaryReader in(tiled.head);

@@ -6,7 +6,7 @@
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/yaml_map.h"
+#include "base/yaml_map.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/output_file.h>

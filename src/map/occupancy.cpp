@@ -1,7 +1,7 @@
 #include "base/number.h"
 #include "base/parallel.h"
+#include "column/cell_clip.h"
 #include "geometry/tile.h"
-#include "map/cell_clip.h"
 #include "map/occupancy_impl.h"
 #include "scene/octomap_file.h"
 

@@ -13,13 +13,13 @@ namespace spawnfield {
 namespace {
 
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t tile_cells = std::size_t(TerrainMap::tile) * TerrainMap::tile;
+constexpr std::size_t page_tile_cells = std::size_t(TerrainMap::tile) * TerrainMap::tile;
 
 std::string deflated(const std::vector<float>& values) { return deflate_floats(values, TerrainMap::tile); }
 
 const std::string& empty_tile()
 {
-    static const std::string stream = deflated(std::vector<float>(tile_cells, nothing));
+    static const std::string stream = deflated(std::vector<float>(page_tile_cells, nothing));
     return stream;
 }
 
@@ -72,7 +72,7 @@ private:
 
     static void set(std::vector<float>& page, std::size_t cell, double height)
     {
-        if (page.empty()) page.assign(tile_cells, nothing);
+        if (page.empty()) page.assign(page_tile_cells, nothing);
         page[cell] = float(height);
     }
 
@@ -136,7 +136,7 @@ HeightImage page_image(const TerrainMap& terrain, const std::string& name)
     HeightImage tile(TerrainMap::tile, TerrainMap::tile);
     for (std::size_t t = 0; t < page->tiles.size(); ++t) {
         if (page->tiles[t] == empty_tile()) continue;
-        inflate_floats(page->tiles[t], TerrainMap::tile, {tile.data(), tile_cells});
+        inflate_floats(page->tiles[t], TerrainMap::tile, {tile.data(), page_tile_cells});
         const int row = int(t) / terrain.tile_cols() * TerrainMap::tile,
                   col = int(t) % terrain.tile_cols() * TerrainMap::tile;
         const int rows = std::min(TerrainMap::tile, terrain.frame.rows - row),

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t most_nested = 200, most_depth = 500;
+constexpr std::size_t most_nested = 200, most_scene_depth = 500;
 constexpr std::uint64_t most_used = 300000000;  // 100 million triangles
 
 /// What the text tells of them; nodes go by the names that others call them: their place in the list, or the key in
@@ -189,9 +189,9 @@ private:
         std::vector<char> reached(nodes_.size(), 0);
         for (std::size_t depth = 1; !level.empty(); ++depth, level = std::exchange(next, {}))
             for (const std::size_t node : level) {
-                if (depth > most_depth)
+                if (depth > most_scene_depth)
                     throw FileError(file_, called(nodes_[node].name) + " is nested more than " +
-                                               std::to_string(most_depth) + " deep; merge nodes");
+                                               std::to_string(most_scene_depth) + " deep; merge nodes");
                 reached[node] = 1;
                 for (const std::string& child : nodes_[node].children) next.push_back(places_.at(child));
             }

@@ -21,7 +21,7 @@ namespace {
 constexpr unsigned most_corners =
     32767;  // assimp's own limit (AI_MAX_FACE_INDICES); its polygon cutter takes the square of it
 
-constexpr unsigned most_depth = 1000;  // of nodes, which readers visit recursively
+constexpr unsigned most_node_depth = 1000;  // of nodes, which readers visit recursively
 constexpr std::uint64_t most_triangles = 100000000;
 
 constexpr aiImporterDesc ply_description{
@@ -113,9 +113,9 @@ void check_instances(const aiScene& scene, const std::vector<std::uint64_t>& tri
     while (!open.empty() && open.back().node != nullptr) {
         const auto [node, depth] = open.back();
         open.pop_back();
-        if (depth > most_depth)
+        if (depth > most_node_depth)
             throw FileError(file, "node \"" + std::string(node->mName.C_Str()) + "\" is nested more than " +
-                                      std::to_string(most_depth) + " deep; merge nodes");
+                                      std::to_string(most_node_depth) + " deep; merge nodes");
         for (unsigned m = 0; m < node->mNumMeshes; ++m) all += triangles.at(node->mMeshes[m]);
         if (all > std::max(most_triangles, in_file))
             throw FileError(file, "its nodes repeat " + std::to_string(in_file) + " triangles to more than " +

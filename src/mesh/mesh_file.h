@@ -1,10 +1,11 @@
 #pragma once
 
-#include <spawnfield/scene.h>
+#include <spawnfield/types.h>
 
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <vector>
 
 namespace spawnfield {
 

@@ -48,7 +48,7 @@ FileError line_fault(const std::string& file, std::size_t line, const std::strin
 }
 
 /// As a message shows it: short, and without bytes that are no text.
-std::string quoted(std::string_view word)
+std::string shown(std::string_view word)
 {
     constexpr std::size_t most = 40;
     std::string text(word.substr(0, most));
@@ -112,7 +112,7 @@ public:
                 read_property(words);
             } else {
                 throw fault(
-                    quoted(words[0]) +
+                    shown(words[0]) +
                     " is no word of a PLY header; known: comment, obj_info, format, element, property, end_header");
             }
         }
@@ -156,11 +156,11 @@ private:
         Element element{std::string(words[1]), 0, line_, {}};
         double rows = 0;
         if (!parse_number(words[2], rows) || !(rows >= 0 && rows <= double(most_rows)) || rows != std::floor(rows))
-            throw fault("element " + quoted(words[1]) + " has the count " + quoted(words[2]) +
+            throw fault("element " + shown(words[1]) + " has the count " + shown(words[2]) +
                         ", needs a whole number of 0 .. " + std::to_string(most_rows));
         element.rows = std::uint64_t(rows);
         for (const Element& other : header_.elements)
-            if (other.name == element.name) throw fault("a second element " + quoted(element.name));
+            if (other.name == element.name) throw fault("a second element " + shown(element.name));
         header_.elements.push_back(std::move(element));
     }
 
@@ -173,7 +173,7 @@ private:
             const std::optional<Type> type = type_of(word);
             if (!type)
                 throw fault(
-                    "the type " + quoted(word) +
+                    "the type " + shown(word) +
                     " is unknown; known: char, uchar, short, ushort, int, uint, float, double, int8, uint8, int16, "
                     "uint16, int32, uint32, float32, float64");
             return *type;
@@ -181,9 +181,9 @@ private:
         Property property{std::string(words.back()), known(words[words.size() - 2]), {}};
         if (list) property.count = known(words[2]);
         if (list && property.count->kind == Type::Kind::Float)
-            throw fault("a list is counted in " + quoted(words[2]) + ", needs whole numbers");
+            throw fault("a list is counted in " + shown(words[2]) + ", needs whole numbers");
         for (const Property& other : header_.elements.back().properties)
-            if (other.name == property.name) throw fault("a second property " + quoted(property.name));
+            if (other.name == property.name) throw fault("a second property " + shown(property.name));
         header_.elements.back().properties.push_back(std::move(property));
     }
 
@@ -232,13 +232,13 @@ public:
         const std::string_view word = row_.substr(in_row_, end - in_row_);
         in_row_ = end;
         double value = 0;
-        if (!parse_number(word, value)) throw fault(quoted(word) + " is no number; " + row_name(*name_, index_));
+        if (!parse_number(word, value)) throw fault(shown(word) + " is no number; " + row_name(*name_, index_));
         return value;
     }
     void end()
     {
         if (skip_space() != row_.size())
-            throw fault(quoted(row_.substr(skip_space())) + " stands after the row's last number; " +
+            throw fault(shown(row_.substr(skip_space())) + " stands after the row's last number; " +
                         row_name(*name_, index_));
     }
     void finish()
@@ -389,7 +389,7 @@ private:
     void read_element(const Element& element)
     {
         if (element.properties.empty())
-            throw line_fault(file_, element.line, "element " + quoted(element.name) + " has no property");
+            throw line_fault(file_, element.line, "element " + shown(element.name) + " has no property");
         if (rows_.least_bytes(element) > rows_.bytes_left())
             throw line_fault(file_, element.line,
                              "element " + element.name + " has " + std::to_string(element.rows) +

@@ -353,7 +353,7 @@ void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult
     Kinds kinds = column_kinds(shown, raster, options);
     mark_obstacles(kinds, obstacle_mask(map.geometry, frame_of(raster.grid), search));
     const View columns = view_of(raster.grid);
-    Frame frame{
+    PictureFrame frame{
         with_room(columns), options.pixels, options.title.empty() ? map.name : options.title, {}, options.caption};
 
     Image colours;

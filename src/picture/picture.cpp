@@ -196,7 +196,7 @@ cv::Rect plot_in(const View& view, const Margins& margins, double width, double 
     return {margins.left, margins.top, whole(scale * view.width), whole(scale * view.height)};
 }
 
-Layout legend_beside(const Frame& frame, const Margins& margins, double unit)
+Layout legend_beside(const PictureFrame& frame, const Margins& margins, double unit)
 {
     const Panel panel = panel_of(frame.legend, unit, infinite);
     const int between = std::max(margins.right, cvRound(26 * unit)), border = cvRound(margin * unit);
@@ -213,7 +213,7 @@ Layout legend_beside(const Frame& frame, const Margins& margins, double unit)
     return layout;
 }
 
-Layout legend_below(const Frame& frame, const Margins& margins, double unit)
+Layout legend_below(const PictureFrame& frame, const Margins& margins, double unit)
 {
     const int border = cvRound(margin * unit), right = std::max(margins.right, border);
     const double width = frame.pixels - margins.left - right, bearing_at = width - bearing_width * unit;
@@ -228,7 +228,7 @@ Layout legend_below(const Frame& frame, const Margins& margins, double unit)
     return layout;
 }
 
-Layout arrange(const Frame& frame, const Margins& margins, double unit)
+Layout arrange(const PictureFrame& frame, const Margins& margins, double unit)
 {
     constexpr double wide = 1.75;  // from here on a legend below leaves more room for the plot
     const bool is_wide = frame.view.width > wide * frame.view.height;
@@ -247,7 +247,7 @@ double line_height(const std::string& text, double cap, int width, double unit)
 
 // ---------------------------------------------------------------- parts of the picture
 
-void draw_title(Figure& figure, const Frame& frame, double unit)
+void draw_title(Figure& figure, const PictureFrame& frame, double unit)
 {
     const double room = figure.size.width - 2 * margin * unit + 1;
     const auto write = [&](const std::string& text, double cap, double y, Colour colour) {
@@ -340,7 +340,7 @@ ColourScale scale_between(const std::string& heading, double low, double high, c
     return {heading, "", ticks_within(low, high, round_up((high - low) / 6)), ramp, low, high};
 }
 
-Layout lay_out(const Frame& frame)
+Layout lay_out(const PictureFrame& frame)
 {
     const double unit = frame.pixels / 1000.0;
     const double head = frame.title.empty() ? 20 : title_cap + 42;
@@ -364,7 +364,7 @@ Layout lay_out(const Frame& frame)
     return layout;
 }
 
-void draw_surroundings(Figure& figure, const Frame& frame, const Layout& layout)
+void draw_surroundings(Figure& figure, const PictureFrame& frame, const Layout& layout)
 {
     draw_title(figure, frame, layout.unit);
     draw_axes(figure, frame.view, layout);
@@ -372,7 +372,7 @@ void draw_surroundings(Figure& figure, const Frame& frame, const Layout& layout)
     draw_bearing(figure, layout.bearing, layout.plot.width / frame.view.width, layout.unit);
 }
 
-Image draw_picture(const Frame& frame, const Layout& layout, const Image& plot)
+Image draw_picture(const PictureFrame& frame, const Layout& layout, const Image& plot)
 {
     Figure figure{layout.size, {}};
     draw_image(figure, layout.plot.tl(), plot);

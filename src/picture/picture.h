@@ -53,7 +53,7 @@ struct Legend {
 };
 
 /// All of a picture but its plot.
-struct Frame {
+struct PictureFrame {
     View view;
     int pixels = 1000;  ///< longer side
     std::string title;  ///< may be empty
@@ -73,12 +73,12 @@ struct Layout {
 };
 
 /// The legend stands to the right of the plot, or below it where the view is wide.
-Layout lay_out(const Frame& frame);
+Layout lay_out(const PictureFrame& frame);
 
 /// Title, axes, legend, scale bar and north arrow: all but the plot.
-void draw_surroundings(Figure& figure, const Frame& frame, const Layout& layout);
+void draw_surroundings(Figure& figure, const PictureFrame& frame, const Layout& layout);
 
 /// The whole picture; plot has the size layout.plot.
-Image draw_picture(const Frame& frame, const Layout& layout, const Image& plot);
+Image draw_picture(const PictureFrame& frame, const Layout& layout, const Image& plot);
 
 }  // namespace spawnfield

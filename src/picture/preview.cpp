@@ -166,7 +166,7 @@ Image picture_of(const Scenery& scenery, const std::string& title, int pixels)
 {
     const ColourScale heights = scale_over(scenery.top.terrain, "terrain height, m", hypsometric());
     const Drawing drawing = draw_top(scenery.top, scenery.light, heights);
-    const Frame frame{scenery.view, pixels, title, legend_of(drawing, heights)};
+    const PictureFrame frame{scenery.view, pixels, title, legend_of(drawing, heights)};
     const Layout layout = lay_out(frame);
     Image plot;
     cv::resize(drawing.image, plot, layout.plot.size(), 0, 0, cv::INTER_AREA);

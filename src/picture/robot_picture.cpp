@@ -2,7 +2,7 @@
 #include "picture/figure.h"
 #include "picture/silhouette.h"
 #include "picture/ticks.h"
-#include "query/contacts.h"
+#include "robot/contacts.h"
 
 #include <spawnfield/robot_picture.h>
 
@@ -15,8 +15,8 @@
 namespace spawnfield {
 namespace {
 
-constexpr double text_cap = 10, small_cap = 8, title_cap = 14, line = 19;  // pixels
-constexpr double left = 66, right = 24, top = 66, bottom = 46, between = 74;
+constexpr double label_cap = 10, number_cap = 8, heading_cap = 14, line_step = 19;  // pixels
+constexpr double left = 66, right = 24, top = 66, bottom = 46, pane_gap = 74;
 constexpr double least_legend = 250;
 
 /// A view with its names. `nearness` points to the viewer.
@@ -26,9 +26,9 @@ struct Axes : ViewAxes {
     const char *u_name, *v_name;
 };
 
-const Axes from_above{{Vec3::UnitX(), Vec3::UnitY()}, Vec3::UnitZ(), "from above", "x", "y"};
-const Axes from_right{{Vec3::UnitX(), Vec3::UnitZ()}, -Vec3::UnitY(), "from its right side", "x", "z"};
-const Axes from_front{{Vec3::UnitY(), Vec3::UnitZ()}, Vec3::UnitX(), "from the front", "y", "z"};
+const Axes seen_from_above{{Vec3::UnitX(), Vec3::UnitY()}, Vec3::UnitZ(), "from above", "x", "y"};
+const Axes seen_from_right{{Vec3::UnitX(), Vec3::UnitZ()}, -Vec3::UnitY(), "from its right side", "x", "z"};
+const Axes seen_from_front{{Vec3::UnitY(), Vec3::UnitZ()}, Vec3::UnitX(), "from the front", "y", "z"};
 
 /// Colours of links, in the order of the file; the ninth has that of the first.
 class LinkColours {
@@ -94,9 +94,9 @@ Sheet lay_out(const Bounds& bounds)
 {
     constexpr double width = 1000, most_height = 1100;
     const Vec3 size = bounds.max - bounds.min;
-    const double room = width - left - right - between;
+    const double room = width - left - right - pane_gap;
     double scale = std::min(room / (size.x() + size.y()),
-                            (most_height - top - bottom - between) / (size.y() + size.z()));
+                            (most_height - top - bottom - pane_gap) / (size.y() + size.z()));
     if (size.y() * scale < least_legend) scale = std::min(scale, (room - least_legend) / size.x());
     const auto pane = [&](const Axes& axes, double x, double y) {
         const double u = axes.u.dot(bounds.min), v = axes.v.dot(bounds.min);
@@ -108,9 +108,10 @@ Sheet lay_out(const Bounds& bounds)
     };
     // The legend needs some height too, however flat the view from above is.
     const double first_row = std::max(size.y() * scale, 300.0);
-    const double second = left + size.x() * scale + between, below = top + first_row + between;
+    const double second = left + size.x() * scale + pane_gap, below = top + first_row + pane_gap;
     Sheet sheet;
-    sheet.panes = {pane(from_above, left, top), pane(from_right, left, below), pane(from_front, second, below)};
+    sheet.panes = {pane(seen_from_above, left, top), pane(seen_from_right, left, below),
+                   pane(seen_from_front, second, below)};
     sheet.legend = {cvRound(second), int(top), cvRound(std::max(width - right - second, least_legend)),
                     whole(first_row)};
     sheet.size = {int(width), cvRound(below + size.z() * scale + bottom)};
@@ -126,18 +127,18 @@ void draw_grid(Figure& figure, const Pane& pane)
     for (int k = 0; k < us.count; ++k) {
         const double x = pane.at(us.at(k), 0).x;
         fill(figure, {cvRound(x - 0.5), pane.area.y, 1, pane.area.height}, grid);
-        draw_text(figure, us.label(k), {x, pane.area.br().y + 8 + small_cap}, {small_cap, muted, Align::Centre});
+        draw_text(figure, us.label(k), {x, pane.area.br().y + 8 + number_cap}, {number_cap, muted, Align::Centre});
     }
     for (int k = 0; k < vs.count; ++k) {
         const double y = pane.at(0, vs.at(k)).y;
         fill(figure, {pane.area.x, cvRound(y - 0.5), pane.area.width, 1}, grid);
-        draw_text(figure, vs.label(k), {pane.area.x - 8.0, y + small_cap / 2}, {small_cap, muted, Align::Right});
+        draw_text(figure, vs.label(k), {pane.area.x - 8.0, y + number_cap / 2}, {number_cap, muted, Align::Right});
     }
     const std::string names = std::string(pane.axes.u_name) + " right, " + pane.axes.v_name + " up, m";
-    draw_text(figure, pane.axes.heading, {double(pane.area.x), pane.area.y - 9.0}, {text_cap});
-    const double used = text_width(pane.axes.heading, text_cap);
-    if (used + 16 + text_width(names, small_cap) < pane.area.width)
-        draw_text(figure, names, {double(pane.area.br().x), pane.area.y - 9.0}, {small_cap, muted, Align::Right});
+    draw_text(figure, pane.axes.heading, {double(pane.area.x), pane.area.y - 9.0}, {label_cap});
+    const double used = text_width(pane.axes.heading, label_cap);
+    if (used + 16 + text_width(names, number_cap) < pane.area.width)
+        draw_text(figure, names, {double(pane.area.br().x), pane.area.y - 9.0}, {number_cap, muted, Align::Right});
 }
 
 /// The farthest first. Around them all a thick line, the outline of their union; the hidden ones show as thin lines.
@@ -181,14 +182,14 @@ void draw_axes(Figure& figure, const Pane& pane)
         draw_polygon(figure, {origin, tip - head * along}, ink, ink, 2);
         draw_polygon(figure, {tip, tip - head * along + 4.5 * side, tip - head * along - 4.5 * side}, ink, ink, 1);
         const cv::Point2d place = tip + 9.0 * along;
-        draw_text(figure, name, {place.x, place.y + text_cap / 2}, {text_cap, ink, Align::Centre});
+        draw_text(figure, name, {place.x, place.y + label_cap / 2}, {label_cap, ink, Align::Centre});
     };
     arrow({1, 0}, pane.axes.u_name);
     arrow({0, -1}, pane.axes.v_name);
     draw_dot(figure, origin, 3.5, white, ink, 1.5);
 }
 
-std::string rounded(double value)
+std::string millimetres(double value)
 {
     const std::string text = fixed(value, 3);
     return text == "-0.000" ? "0.000" : text;
@@ -197,32 +198,32 @@ std::string rounded(double value)
 /// Writes line by line downwards.
 class LegendWriter {
 public:
-    LegendWriter(Figure& figure, const cv::Rect& area) : figure_(figure), area_(area), y_(area.y + text_cap) {}
+    LegendWriter(Figure& figure, const cv::Rect& area) : figure_(figure), area_(area), y_(area.y + label_cap) {}
 
     void text(const std::string& words, Colour colour = ink)
     {
-        draw_text(figure_, cut_to(words, text_cap, area_.width), {double(area_.x), y_}, {text_cap, colour});
-        y_ += line;
+        draw_text(figure_, cut_to(words, label_cap, area_.width), {double(area_.x), y_}, {label_cap, colour});
+        y_ += line_step;
     }
     void swatch(Colour colour, const std::string& words)
     {
-        const cv::Rect box(area_.x, cvRound(y_ - text_cap - 1), 18, 12);
+        const cv::Rect box(area_.x, cvRound(y_ - label_cap - 1), 18, 12);
         fill(figure_, box, colour);
         outline(figure_, box, 1, muted);
-        draw_text(figure_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
-        y_ += line;
+        draw_text(figure_, cut_to(words, label_cap, area_.width - 28), {area_.x + 28.0, y_}, {label_cap});
+        y_ += line_step;
     }
     void contact(bool given, const std::string& words)
     {
-        draw_contact(figure_, {area_.x + 9.0, y_ - text_cap / 2}, given);
-        draw_text(figure_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
-        y_ += line;
+        draw_contact(figure_, {area_.x + 9.0, y_ - label_cap / 2}, given);
+        draw_text(figure_, cut_to(words, label_cap, area_.width - 28), {area_.x + 28.0, y_}, {label_cap});
+        y_ += line_step;
     }
     void thick_line(const std::string& words)
     {
-        fill(figure_, {area_.x, cvRound(y_ - text_cap / 2 - 1), 18, 3}, ink);
-        draw_text(figure_, cut_to(words, text_cap, area_.width - 28), {area_.x + 28.0, y_}, {text_cap});
-        y_ += line;
+        fill(figure_, {area_.x, cvRound(y_ - label_cap / 2 - 1), 18, 3}, ink);
+        draw_text(figure_, cut_to(words, label_cap, area_.width - 28), {area_.x + 28.0, y_}, {label_cap});
+        y_ += line_step;
     }
     void scale_bar(double scale)
     {
@@ -231,12 +232,12 @@ public:
         fill(figure_, {area_.x, y, length, 3}, ink);
         fill(figure_, {area_.x, y - 4, 2, 11}, ink);
         fill(figure_, {area_.x + length - 2, y - 4, 2, 11}, ink);
-        draw_text(figure_, fixed(step.value, step.decimals) + " m", {area_.x + length + 10.0, y + text_cap / 2 + 1},
-                  {text_cap});
-        y_ += line + 4;
+        draw_text(figure_, fixed(step.value, step.decimals) + " m", {area_.x + length + 10.0, y + label_cap / 2 + 1},
+                  {label_cap});
+        y_ += line_step + 4;
     }
-    void gap() { y_ += line / 2; }
-    int lines_left() const { return int((area_.br().y - y_) / line) + 1; }
+    void gap() { y_ += line_step / 2; }
+    int lines_left() const { return int((area_.br().y - y_) / line_step) + 1; }
 
 private:
     Figure& figure_;
@@ -251,12 +252,12 @@ void write_legend(Figure& figure, const Sheet& sheet, const Robot& robot, const 
     const Bounds bounds = robot.bounds();
     const Vec3 size = bounds.max - bounds.min;
     legend.scale_bar(sheet.panes[0].scale);
-    legend.text(rounded(size.x()) + " x " + rounded(size.y()) + " x " + rounded(size.z()) + " m");
+    legend.text(millimetres(size.x()) + " x " + millimetres(size.y()) + " x " + millimetres(size.z()) + " m");
     const double low = bounds.min.z();
-    legend.text("lowest point " + (std::abs(low) < 5e-4
-                                       ? "at the height of the origin"
-                                       : rounded(std::abs(low)) + (low < 0 ? " m below origin" : " m above origin")));
-    legend.text("turns within " + rounded(turning_radius(robot)) + " m of its origin");
+    legend.text("lowest point " + (std::abs(low) < 5e-4 ? "at the height of the origin"
+                                                        : millimetres(std::abs(low)) +
+                                                              (low < 0 ? " m below origin" : " m above origin")));
+    legend.text("turns within " + millimetres(turning_radius(robot)) + " m of its origin");
     legend.gap();
     legend.thick_line("footprint");
     legend.contact(contacts.given, contacts.given ? "contacts" : "contacts taken: none given");
@@ -276,11 +277,9 @@ double turning_radius(const Robot& robot)
 {
     double radius = 0;
     for (const RobotPart& part : robot.parts)
-        for (const Vec2& corner : silhouette(part, from_above)) radius = std::max(radius, corner.norm());
+        for (const Vec2& corner : silhouette(part, seen_from_above)) radius = std::max(radius, corner.norm());
     return radius;
 }
-
-RobotContacts robot_contacts(const Robot& robot) { return {contacts_of(robot), span_area(robot.contacts)}; }
 
 void write_robot_picture(const Robot& robot, const std::filesystem::path& file)
 {
@@ -296,7 +295,7 @@ void write_robot_picture(const Robot& robot, const std::filesystem::path& file)
         draw_axes(figure, pane);
         outline(figure, pane.area, 1, muted);
     }
-    draw_text(figure, cut_to(robot.name, title_cap, sheet.size.width - left - right), {left, 30}, {title_cap});
+    draw_text(figure, cut_to(robot.name, heading_cap, sheet.size.width - left - right), {left, 30}, {heading_cap});
     write_legend(figure, sheet, robot, contacts, colours);
     write_figure(figure, format, file);
 }

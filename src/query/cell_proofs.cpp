@@ -9,7 +9,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double slack = proof_slack;
 constexpr std::size_t most_in_cluster = 12;
 
@@ -265,7 +265,7 @@ private:
     {
         Vec2 low(rect_.low_x, rect_.low_y), high(rect_.high_x, rect_.high_y);
         const auto narrow = [&](const SmallPolygon& polygon, const Vec2& by) {
-            Vec2 least(inf, inf), most(-inf, -inf);
+            Vec2 least(infinity, infinity), most(-infinity, -infinity);
             for (const Vec2& p : polygon) {
                 least = least.cwiseMin(p - by);
                 most = most.cwiseMax(p - by);
@@ -275,7 +275,7 @@ private:
         };
         narrow(from.polygon, Vec2::Zero());
         narrow(to.polygon, shift);
-        if (low.x() > high.x() || low.y() > high.y()) return {inf, -inf};
+        if (low.x() > high.x() || low.y() > high.y()) return {infinity, -infinity};
         const Vec2 middle = (low + high) / 2, half = (high - low) / 2;
         const double rise = to.at(middle.x() + shift.x(), middle.y() + shift.y()) - from.at(middle.x(), middle.y());
         const double reach = (to.slope - from.slope).cwiseAbs().dot(half);

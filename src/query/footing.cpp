@@ -1,7 +1,7 @@
 #include "query/footing.h"
 
 #include "free_space/footprint.h"
-#include "query/contacts.h"
+#include "robot/contacts.h"
 
 #include <spawnfield/error.h>
 

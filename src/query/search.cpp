@@ -58,10 +58,7 @@ double auto_offset(const Robot& robot)
     return above_ground - robot.bounds().min.z();
 }
 
-bool is_in_flat_ground(const Robot& robot, double offset)
-{
-    return offset + robot.bounds().min.z() <= CollisionChecker::touch_margin;
-}
+bool is_in_flat_ground(const Robot& robot, double offset) { return offset + robot.bounds().min.z() <= touch_margin; }
 
 namespace {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scene/collision_geometry.h"
-#include "scene/model_paths.h"
+#include "model/collision_geometry.h"
+#include "model/model_paths.h"
 
 #include <spawnfield/robot.h>
 

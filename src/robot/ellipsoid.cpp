@@ -1,6 +1,6 @@
 #include "robot/ellipsoid.h"
 
-#include "geometry/sphere_mesh.h"
+#include "mesh/sphere_mesh.h"
 #include "robot/convex_split.h"
 #include "robot/hull.h"
 

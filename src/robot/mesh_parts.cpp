@@ -1,8 +1,8 @@
 #include "robot/mesh_parts.h"
 
+#include "mesh/face_pieces.h"
 #include "robot/convex_split.h"
 #include "robot/hull.h"
-#include "scene/pieces.h"
 
 #include <Eigen/Geometry>
 

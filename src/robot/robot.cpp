@@ -1,10 +1,10 @@
 #include "base/foreign_file.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "base/yaml_map.h"
+#include "model/jointed_model.h"
+#include "robot/body_parts.h"
 #include "robot/mesh_parts.h"
-#include "robot/sdf_robot.h"
-#include "robot/urdf.h"
-#include "scene/yaml_map.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/input_file.h>
@@ -134,6 +134,22 @@ Robot read_robot_yaml(const std::filesystem::path& file, int mesh_parts)
     return robot;
 }
 
+/// A URDF, or an SDF model, whose file or folder may be given.
+Robot read_model_robot(const std::filesystem::path& file_or_folder, const RobotOptions& options)
+{
+    const std::filesystem::path file = model_file_of(file_or_folder);
+    ModelPaths paths(options.model_paths, file);
+    const bool is_urdf = lower_case(file.extension().string()) == ".urdf";
+    JointedModel model = is_urdf ? read_urdf_model(file, options.joints) : read_sdf_model(file, paths, options.joints);
+    Robot robot;
+    robot.name = model.name;
+    robot.notices = std::move(model.notices);
+    for (const CollisionBody& body : model.bodies) append_body(robot, body, paths, file.string(), options.mesh_parts);
+    if (robot.parts.empty())
+        throw FileError(file.string(), "has no <collision>, needs at least one (<visual> does not count)");
+    return robot;
+}
+
 constexpr const char* known_kinds = "a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]";
 
 Robot read_robot(const std::string& robot, const RobotOptions& options)
@@ -141,13 +157,12 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
     const std::filesystem::path file = robot;
     const std::string extension = lower_case(file.extension().string());
     std::error_code unreachable;
-    if (std::filesystem::is_directory(file, unreachable)) return read_sdf_robot(file, options);
+    if (std::filesystem::is_directory(file, unreachable)) return read_model_robot(file, options);
     if (!std::filesystem::exists(file, unreachable) && !unreachable)
         throw FileError(robot, std::string("does not exist; a robot is ") + known_kinds);
     require_file(file);
     refuse_foreign_robot(file);
-    if (extension == ".urdf") return read_urdf(file, options);
-    if (extension == ".sdf" || extension == ".world") return read_sdf_robot(file, options);
+    if (extension == ".urdf" || extension == ".sdf" || extension == ".world") return read_model_robot(file, options);
     if (extension != ".yaml" && extension != ".yml")
         throw FileError(robot, std::string("is no known robot format, needs ") + known_kinds);
     if (!options.joints.empty())

@@ -1,7 +1,8 @@
 #include "scene/bodies.h"
 
 #include "base/number.h"
-#include "geometry/sphere_mesh.h"
+#include "base/rotation.h"
+#include "mesh/sphere_mesh.h"
 #include "scene/extrusion.h"
 #include "scene/gazebo_heights.h"
 #include "scene/ground_rules.h"
@@ -11,8 +12,6 @@
 #include "scene/shape_slope.h"
 
 #include <spawnfield/error.h>
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -320,8 +319,7 @@ private:
 
     static Pose plane_pose(const CollisionBody& body)
     {
-        const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), body.geometry.normal).toRotationMatrix();
-        return body.pose * Pose{Vec3::Zero(), turn};
+        return body.pose * Pose{Vec3::Zero(), rotation_from_z_to(body.geometry.normal)};
     }
 
     void append_plane(const CollisionBody& body, Label label)

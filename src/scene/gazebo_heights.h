@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/collision_geometry.h"
+#include "model/collision_geometry.h"
 #include "scene/heightmap.h"
 
 namespace spawnfield {

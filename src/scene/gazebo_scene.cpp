@@ -1,10 +1,10 @@
 #include "scene/gazebo_scene.h"
 
-#include "robot/urdf.h"
+#include "model/built_in_models.h"
+#include "model/jointed_model.h"
+#include "model/sdf_world.h"
 #include "scene/bodies.h"
-#include "scene/built_in_models.h"
 #include "scene/label_rules.h"
-#include "scene/sdf_world.h"
 
 #include <spawnfield/error.h>
 
@@ -81,7 +81,7 @@ Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
 Scene read_urdf_scene(const fs::path& file, const SceneOptions& options)
 {
     ModelPaths paths(options.model_paths, file);
-    UrdfModel model = read_urdf_model(file, {});
+    JointedModel model = read_urdf_model(file, {});
     Scene scene;
     scene.name = model.name;
     scene.notices = std::move(model.notices);

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "scene/collision_geometry.h"
+#include "model/collision_geometry.h"
+
+#include <spawnfield/scene.h>
 
 #include <optional>
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "base/yaml_map.h"
 #include "scene/height_file.h"
-#include "scene/yaml_map.h"
 
 #include <spawnfield/scene.h>
 

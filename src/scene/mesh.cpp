@@ -1,6 +1,7 @@
 #include "scene/mesh.h"
 
 #include "base/number.h"
+#include "mesh/face_pieces.h"
 #include "scene/pieces.h"
 
 #include <Eigen/Geometry>

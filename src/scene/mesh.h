@@ -3,6 +3,8 @@
 #include "mesh/mesh_file.h"
 #include "scene/glob.h"
 
+#include <spawnfield/scene.h>
+
 #include <optional>
 #include <span>
 

@@ -4,9 +4,9 @@
 #include "base/number.h"
 #include "base/pgm.h"
 #include "base/png.h"
+#include "base/yaml_map.h"
 #include "scene/height_file.h"
 #include "scene/pieces.h"
-#include "scene/yaml_map.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/input_file.h>

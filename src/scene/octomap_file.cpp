@@ -13,21 +13,21 @@ namespace {
 
 constexpr int max_depth = 16;
 
-/// Header of a .bt or .ot file: lines of `key value` up to `data` (octomap/AbstractOcTree.cpp).
-struct Header {
+/// OctoMapHeader of a .bt or .ot file: lines of `key value` up to `data` (octomap/AbstractOcTree.cpp).
+struct OctoMapHeader {
     std::string id;
     double nodes = 0, resolution = 0;
     std::size_t data = 0;  ///< where the nodes start
 };
 
-Header read_header(const std::filesystem::path& file, const std::string& bytes, const std::string& kind,
-                   const std::string& magic)
+OctoMapHeader read_header(const std::filesystem::path& file, const std::string& bytes, const std::string& kind,
+                          const std::string& magic)
 {
     const auto refuse = [&](const std::string& what) { throw FileError(file.string(), "is no " + kind + ": " + what); };
     if (!bytes.starts_with(magic)) refuse("its first line is not \"" + magic + "\"");
     const std::size_t data = bytes.find("\ndata\n");
     if (data == std::string::npos) refuse("its header has no line `data`");
-    Header header;
+    OctoMapHeader header;
     header.data = data + 6;
     std::istringstream lines(bytes.substr(0, data));
     for (std::string line; std::getline(lines, line);) {
@@ -46,7 +46,7 @@ Header read_header(const std::filesystem::path& file, const std::string& bytes, 
 /// Trees that hold log-odds of occupancy and write them alike; others count or map something else.
 constexpr const char* known_types = "OcTree, ColorOcTree or OcTreeStamped";
 
-void check_type(const std::filesystem::path& file, const Header& header)
+void check_type(const std::filesystem::path& file, const OctoMapHeader& header)
 {
     if (header.id == "OcTree" || header.id == "ColorOcTree" || header.id == "OcTreeStamped") return;
     throw FileError(file.string(),
@@ -76,7 +76,7 @@ std::size_t count_nodes(std::string_view data, int depth, std::size_t& at)
 std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
 {
     const std::string bytes = read_file(file);
-    const Header header = read_header(file, bytes, "binary OctoMap (.bt)", "# Octomap OcTree binary file");
+    const OctoMapHeader header = read_header(file, bytes, "binary OctoMap (.bt)", "# Octomap OcTree binary file");
     check_type(file, header);
     const std::string_view data = std::string_view(bytes).substr(header.data);
     std::size_t at = 0;
@@ -108,7 +108,7 @@ bool copy_plain(std::string_view data, std::size_t extra, int depth, std::size_t
 std::unique_ptr<octomap::OcTree> read_full(const std::filesystem::path& file)
 {
     const std::string bytes = read_file(file);
-    const Header header = read_header(file, bytes, "full OctoMap (.ot)", "# Octomap OcTree file");
+    const OctoMapHeader header = read_header(file, bytes, "full OctoMap (.ot)", "# Octomap OcTree file");
     check_type(file, header);
     auto tree = std::make_unique<octomap::OcTree>(header.resolution);
     if (header.nodes == 0) return tree;

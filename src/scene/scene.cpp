@@ -1,13 +1,13 @@
 #include "base/foreign_file.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "model/sdf_world.h"
 #include "scene/bare_scene.h"
 #include "scene/elements.h"
 #include "scene/gazebo_scene.h"
 #include "scene/nav2_map.h"
 #include "scene/plausibility.h"
 #include "scene/scene_yaml.h"
-#include "scene/sdf_world.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/input_file.h>
@@ -80,11 +80,7 @@ void check_extent(const Scene& scene, const std::string& file)
 
 }  // namespace
 
-fs::path scene_file_of(const fs::path& scene)
-{
-    std::error_code unreachable;  // a circle of links, say
-    return fs::is_directory(scene, unreachable) ? sdf_file_of(scene) : scene;
-}
+fs::path scene_file_of(const fs::path& scene) { return model_file_of(scene); }
 
 Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
 {

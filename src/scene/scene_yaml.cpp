@@ -1,11 +1,11 @@
 #include "scene/scene_yaml.h"
 
 #include "base/number.h"
+#include "base/yaml_map.h"
 #include "scene/heightmap.h"
 #include "scene/label_rules.h"
 #include "scene/octomap_part.h"
 #include "scene/pieces.h"
-#include "scene/yaml_map.h"
 
 #include <spawnfield/error.h>
 

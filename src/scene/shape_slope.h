@@ -2,6 +2,8 @@
 
 #include "mesh/mesh_file.h"
 
+#include <spawnfield/shape.h>
+
 #include <optional>
 
 namespace spawnfield {

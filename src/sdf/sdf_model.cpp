@@ -1,6 +1,6 @@
-#include "scene/sdf_model.h"
+#include "model/sdf_model.h"
 
-#include "scene/sdf_module.h"
+#include "model/sdf_module.h"
 #include "sdf/sdf_parser.h"
 
 #include <spawnfield/error.h>

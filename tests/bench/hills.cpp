@@ -1,5 +1,6 @@
 #include "hills.h"
 
+#include "base/rotation.h"
 #include "worlds/things.h"
 
 #include <Eigen/Geometry>
@@ -269,8 +270,7 @@ Vec2 Settler::find_site(const Wish& wish)
 
 Mat3 Settler::along_ground(const Vec2& p, double turn) const
 {
-    const auto tilt = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), land_.normal(p));
-    return tilt.toRotationMatrix() * rotation_from_rpy(0, 0, turn);
+    return rotation_from_z_to(land_.normal(p)) * rotation_from_rpy(0, 0, turn);
 }
 
 void Settler::add(const char* name, const Pieces& pieces, const Pose& pose)

@@ -5,6 +5,7 @@
 #include "plain_fcl.h"
 #include "report.h"
 
+#include <spawnfield/bake.h>
 #include <spawnfield/query.h>
 
 #include <functional>

@@ -5,6 +5,8 @@
 #include "session.h"
 #include "streams.h"
 
+#include <spawnfield/region_file.h>
+
 #include <filesystem>
 
 namespace spawnfield::cli {

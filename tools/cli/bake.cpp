@@ -4,8 +4,8 @@
 #include "numbers.h"
 #include "scene_args.h"
 
+#include <spawnfield/bake.h>
 #include <spawnfield/error.h>
-#include <spawnfield/map.h>
 
 #include <cstdio>
 

@@ -11,7 +11,7 @@ constexpr std::size_t most_shown = 5;  // names of further notices of one kind
 
 /// Returns the words between spaces, without the colon or comma behind them. Text in quotation marks or parentheses is
 /// one word, with its spaces.
-std::vector<std::string> words_of(const std::string& text)
+std::vector<std::string> split_at_spaces(const std::string& text)
 {
     std::vector<std::string> out(1);
     bool is_quoted = false;
@@ -81,7 +81,7 @@ std::vector<std::string> grouped(const std::vector<std::string>& notices)
     std::vector<Kind> kinds;
     std::map<std::string, std::size_t> index;
     for (const std::string& notice : notices) {
-        std::vector<std::string> words = words_of(notice);
+        std::vector<std::string> words = split_at_spaces(notice);
         const auto [known, is_new] = index.try_emplace(kind_of(words), kinds.size());
         if (is_new) {
             kinds.push_back({notice, std::move(words), 0, {}});

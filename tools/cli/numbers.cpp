@@ -75,7 +75,8 @@ LayerChoice parse_layers(const std::string& text)
     int index = 0;
     const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), index);
     if (error != std::errc{} || stop != text.data() + text.size() || index < 0)
-        throw ArgumentError("--layers is \"" + text + "\", needs all, top, bottom or a number (0 is the highest layer)");
+        throw ArgumentError("--layers is \"" + text +
+                            "\", needs all, top, bottom or a number (0 is the highest layer)");
     return {LayerChoice::Kind::Index, index};
 }
 

@@ -18,7 +18,7 @@ PictureFormat format_named(const std::string& name)
 }
 
 /// Returns at most four significant digits.
-std::string rounded(double value)
+std::string short_number(double value)
 {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", value + 0.0);
@@ -49,13 +49,13 @@ std::string heatmap_caption(const RasterOptions& options, const GroundArgs& grou
                             const std::string& yaw)
 {
     std::string text;
-    if (options.offset) text = "offset " + rounded(*options.offset) + " m, ";
-    text += yaw.empty() ? "yaw " + rounded(options.yaw * 180 / std::numbers::pi) + " deg" : yaw;
+    if (options.offset) text = "offset " + short_number(*options.offset) + " m, ";
+    text += yaw.empty() ? "yaw " + short_number(options.yaw * 180 / std::numbers::pi) + " deg" : yaw;
     if (const std::string words = height_words(ground, options.z, map); options.dims == 2 && !words.empty())
         text += ", " + words;
     if (options.height_check) text += ", " + layer_words(ground.layers);
     if (std::isfinite(options.max_slope))
-        text += ", slope up to " + rounded(options.max_slope * 180 / std::numbers::pi) + " deg";
+        text += ", slope up to " + short_number(options.max_slope * 180 / std::numbers::pi) + " deg";
     return text;
 }
 

@@ -11,8 +11,7 @@ namespace spawnfield::cli {
 void add_map_and_robot(CLI::App& command, QueryArgs& args)
 {
     command.add_option("map", args.map, "Map folder that `spawnfield bake` made")->required();
-    command
-        .add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, an SDF model, or box:LX,LY,LZ[@x,y,z] (m)")
+    command.add_option("--robot,-r", args.robot, "robot.yaml, a .urdf, an SDF model, or box:LX,LY,LZ[@x,y,z] (m)")
         ->required()
         ->check(not_empty());
 }
@@ -22,8 +21,9 @@ void add_verdict_options(CLI::App& command, QueryArgs& args)
     start_group(command, help_group::ground);
     command.add_option("--max-height", args.max_height,
                        "Largest height of the robot's origin above its ground, m (default 1)");
-    command.add_option("--max-water-depth", args.max_water_depth,
-                       "A water surface higher than this above the ground does not count, m (default: every one counts)");
+    command.add_option(
+        "--max-water-depth", args.max_water_depth,
+        "A water surface higher than this above the ground does not count, m (default: every one counts)");
     command.add_option("--max-slope", args.max_slope,
                        "Degrees. Valid poses on steeper ground become steep, and those over an edge unstable (default: "
                        "slopes do not count)");

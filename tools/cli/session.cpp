@@ -16,10 +16,11 @@ void notice_if_larger_than_map(const CommonArgs& args, const Robot& robot, const
     const Vec3 size = box.max - box.min, room = map.bounds.max - map.bounds.min;
     if (size.head<2>().maxCoeff() <= room.head<2>().maxCoeff()) return;
     char text[300];
-    std::snprintf(text, sizeof text,
-                  "the robot is %.6g x %.6g m, larger than the map (%.6g x %.6g m); is one of them not in metres? Correct it "
-                  "with `scale` in robot.yaml or scene.yaml, or with bake --scale",
-                  size.x(), size.y(), room.x(), room.y());
+    std::snprintf(
+        text, sizeof text,
+        "the robot is %.6g x %.6g m, larger than the map (%.6g x %.6g m); is one of them not in metres? Correct it "
+        "with `scale` in robot.yaml or scene.yaml, or with bake --scale",
+        size.x(), size.y(), room.x(), room.y());
     notice(args, text);
 }
 

@@ -1,5 +1,6 @@
 #include "setup.h"
 
+#include <spawnfield/bake.h>
 #include <spawnfield/output_file.h>
 
 #include <chrono>

@@ -1,0 +1,196 @@
+#include "base/checksum.h"
+#include "base/chosen_bounds.h"
+#include "base/input_file.h"
+#include "base/number.h"
+#include "base/parallel.h"
+#include "base/png.h"
+#include "base/stopwatch.h"
+#include "map/bounds_file.h"
+#include "map/geometry_file.h"
+#include "map/map_yaml.h"
+#include "map/terrain_file.h"
+
+#include <spawnfield/bake.h>
+#include <spawnfield/error.h>
+#include <spawnfield/heatmap.h>
+#include <spawnfield/output_folder.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Others have a map.yaml too: nav2's map server.
+std::string objection_to(const fs::path& folder)
+{
+    const fs::path file = folder / "map.yaml";
+    const bool is_map = fs::is_regular_file(file) && read_file(file).starts_with("format: spawnfield-map/");
+    return is_map ? "" : "exists and is no map";
+}
+
+/// What people put into the old folder moves to the new one.
+void keep_foreign_files(const fs::path& old, const fs::path& now)
+{
+    const std::vector<fs::directory_entry> entries(fs::directory_iterator(old), {});  // read first: some will leave
+    for (const fs::directory_entry& entry : entries) {
+        const fs::path name = entry.path().filename();
+        if (name == "map.yaml" || std::find(map_files.begin(), map_files.end(), name) != map_files.end()) continue;
+        std::error_code error;
+        fs::rename(entry.path(), now / name, error);
+        if (error) throw OutputError(entry.path().string(), "cannot be moved into the new map: " + error.message());
+    }
+}
+
+double default_resolution(const Bounds& bounds, BakeReport& report)
+{
+    double resolution = 0.1;
+    const auto side = [&](int axis) { return std::ceil((bounds.max[axis] - bounds.min[axis]) / resolution); };
+    while (side(0) * side(1) > max_columns || std::max(side(0), side(1)) > max_side) resolution *= 2;
+    if (resolution > 0.1)
+        report.notices.push_back(
+            "resolution is " + number(resolution) +
+            " m, as 0.1 m would pass 100 million columns, or a million along one side (--resolution sets it)");
+    return resolution;
+}
+
+double default_occupancy_resolution(const Bounds& bounds, double resolution, BakeReport& report)
+{
+    const double wanted = 2.5 * resolution;
+    double voxel = wanted;
+    const double reach = std::max(bounds.min.cwiseAbs().maxCoeff(), bounds.max.cwiseAbs().maxCoeff());
+    while (reach / voxel > 32767) voxel *= 2;
+    if (voxel > wanted)
+        report.notices.push_back("occupancy resolution is " + number(voxel) +
+                                 " m, as OctoMap reaches 32768 voxels from the origin and the scene lies " +
+                                 number(reach) + " m out (--occupancy-resolution sets it)");
+    return voxel;
+}
+
+/// 16-bit image of the top layer: 0 where there is none, 1 .. 65535 from the lowest height to the highest. The pair is
+/// what 0 and 65535 stand for, as `heightmap: {z: [..]}` in a scene file takes it.
+std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::path& file)
+{
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const float z : top.reshaped())
+        if (!std::isnan(z)) {
+            low = std::min(low, double(z));
+            high = std::max(high, double(z));
+        }
+    if (!(low <= high)) low = high = 0;
+    const double step = high > low ? (high - low) / 65534 : 1e-3;
+    std::vector<std::uint16_t> pixels(std::size_t(top.size()));
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const float z = top.data()[i];
+        pixels[i] = std::isnan(z) ? std::uint16_t(0) : std::uint16_t((z - low) / step + 1.5);
+    }
+    write_grey_png(file, int(top.rows()), int(top.cols()), pixels.data());
+    return {low - step, low + 65534 * step};
+}
+
+/// terrain.tiff, heightmap.png and preview.png side by side. Sets map.layers; returns heightmap.png's range.
+std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path& folder, Map& map, int threads)
+{
+    std::pair<double, double> z_range;
+    parallel_for(3, threads, {}, [&](std::size_t file) {
+        if (file == 0) {
+            const HeightImage top = page_image(terrain, "height.0");
+            map.layers = top.isNaN().all() ? 0 : terrain.layers();
+            z_range = write_heightmap_png(top, folder / "heightmap.png");
+        }
+        if (file == 1) write_preview(map, terrain, folder / "preview.png");
+        if (file == 2) write_terrain(folder / "terrain.tiff", terrain);
+    });
+    return z_range;
+}
+
+/// The stages' share of the progress bar.
+Progress part_of(const Progress& progress, double from, double to)
+{
+    if (!progress) return {};
+    return [=](double share) { progress(from + share * (to - from)); };
+}
+
+Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& options, BakeReport& report)
+{
+    if (!options.allow_no_terrain && !scene.has_terrain())
+        throw FileError(
+            scene_file.string(),
+            "has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') "
+            "or pass --allow-no-terrain");
+    if (!(options.resolution >= 0)) throw ArgumentError("bake", "resolution", options.resolution, "> 0 m (0: chosen)");
+    if (!(options.z.low <= options.z.high)) throw ArgumentError("bake", "z.high", options.z.high, "at least z.low");
+    if (!(options.occupancy_resolution >= 0))
+        throw ArgumentError("bake", "occupancy_resolution", options.occupancy_resolution, "> 0 m (0: chosen)");
+    Map map;
+    map.name = scene.name.empty() ? scene_file.stem().string() : scene.name;
+    const Bounds extent = scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds;
+    map.bounds = chosen_bounds("bake", options.bounds, extent);
+    map.z_limits = !options.z.is_unlimited() ? options.z : options.bounds.is_empty() ? ZRange{} : map.bounds.z();
+    if (std::isfinite(map.z_limits.low)) map.bounds.min.z() = map.z_limits.low;
+    if (std::isfinite(map.z_limits.high)) map.bounds.max.z() = map.z_limits.high;
+    if (!map.bounds.meets(extent))
+        throw FileError(scene_file.string(),
+                        "bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
+    const Vec3 size = map.bounds.max - map.bounds.min;
+    constexpr double tiny = 1 + 1e-9;  // m: no robot's world is smaller, but what is left of one may be
+    if (options.bounds.is_empty() && size.x() <= tiny && size.y() <= tiny)
+        report.notices.push_back("the map is only " + number(size.x()) + " x " + number(size.y()) +
+                                 " m; is a part of the scene missing or in the wrong unit?");
+    map.origin = scene.origin;
+    map.resolution = options.resolution > 0 ? options.resolution : default_resolution(map.bounds, report);
+    map.occupancy_resolution = options.occupancy_resolution > 0
+                                   ? options.occupancy_resolution
+                                   : default_occupancy_resolution(map.bounds, map.resolution, report);
+    map.scene_file = scene_file.filename().string();
+    map.scene_hash = checksum(read_file(scene_file));
+    return map;
+}
+
+}  // namespace
+
+BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder, const BakeOptions& options)
+{
+    BakeReport report;
+    Stopwatch watch;
+    const auto lap = [&](const char* stage) { report.seconds.emplace_back(stage, watch.lap()); };
+    Map map = plan_map(scene, scene_file, options, report);
+    const GridFrame frame = frame_around(map.bounds, map.resolution);
+    OutputFolder target(folder, objection_to);
+    map.geometry = Geometry(scene, options.threads);
+    const bool has_terrain = scene.has_terrain();
+    const Bounds extent = scene.bounds();
+    scene = {};
+    lap("geometry");
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame, options.threads,
+                                                 part_of(options.progress, 0, 0.3), map.z_limits);
+    map.floors = find_floors(terrain, options.threads);
+    lap("terrain");
+    const std::pair<double, double> z_range = write_images(terrain, target.path(), map, options.threads);
+    if (map.layers == 0 && has_terrain)
+        report.notices.push_back("no robot can stand in the bounds " + to_string(map.bounds) +
+                                 ": there is no terrain at any cell's centre; the scene is " + to_string(extent));
+    lap("images");
+    map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads,
+                                   part_of(options.progress, 0.3, 0.6));
+    write_bounds(target.path() / "bounds.bin", map.solid_bounds);
+    map.solid_bounds = {};
+    lap("bounds");
+    report.occupancy_leaves = write_occupancy(target.path() / "occupancy.bt", map.geometry, map.bounds,
+                                              map.occupancy_resolution, options.threads,
+                                              part_of(options.progress, 0.6, 0.9));
+    lap("occupancy");
+
+    write_geometry(target.path() / "geometry.bin", map.geometry);
+    report.hash = write_map_yaml(target.path(), map, terrain, z_range);
+    if (options.progress) options.progress(1);
+    for (const auto& entry : fs::directory_iterator(target.path())) report.bytes += entry.file_size();
+    target.commit(keep_foreign_files);
+    report.layers = map.layers;
+    lap("write");
+    return report;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,26 @@
+#include "base/polygon2.h"
+
+#include <algorithm>
+
+namespace spawnfield {
+
+Polygon2 convex_hull(Polygon2 points)
+{
+    std::sort(points.begin(), points.end(),
+              [](const Vec2& l, const Vec2& r) { return l.x() != r.x() ? l.x() < r.x() : l.y() < r.y(); });
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    if (points.size() < 3) return points;
+    Polygon2 hull;
+    const auto add = [&](const Vec2& p, std::size_t kept) {
+        while (hull.size() >= kept + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
+            hull.pop_back();
+        hull.push_back(p);
+    };
+    for (const Vec2& p : points) add(p, 0);
+    const std::size_t lower = hull.size() - 1;
+    for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
+    hull.pop_back();
+    return hull;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <spawnfield/types.h>
+
+namespace spawnfield {
+
+/// Returns the smallest rotation that turns the z axis to `direction`, which must not be zero. For a direction that is
+/// straight down (to 1e-12), it is a half turn about the x axis. The numbers are those of Eigen's
+/// Quaterniond::FromTwoVectors, whose singular value decomposition costs seconds of compile time in each file.
+Mat3 rotation_from_z_to(const Vec3& direction);
+
+}  // namespace spawnfield

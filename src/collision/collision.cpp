@@ -1,0 +1,273 @@
+#include "geometry/tile.h"
+#include "map/occupancy_impl.h"
+#include "robot/hull.h"
+
+#include <spawnfield/collision.h>
+#include <spawnfield/free_space.h>
+
+#include <fcl/geometry/octree/octree.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/detail/gjk_solver_libccd.h>
+
+#include <algorithm>
+#include <variant>
+
+namespace spawnfield {
+namespace {
+
+using Transform = fcl::Transform3<double>;
+using FclShape = std::variant<fcl::Box<double>, fcl::Sphere<double>, fcl::Cylinder<double>, fcl::Capsule<double>,
+                              fcl::Convex<double>>;
+
+FclShape fcl_shape(const Shape& shape)
+{
+    switch (shape.kind) {
+    case ShapeKind::Sphere: return fcl::Sphere<double>(shape.size[0]);
+    case ShapeKind::Cylinder: return fcl::Cylinder<double>(shape.size[0], shape.size[1]);
+    case ShapeKind::Capsule: return fcl::Capsule<double>(shape.size[0], shape.size[1]);
+    case ShapeKind::Box:
+    case ShapeKind::Hull: break;
+    }
+    return fcl::Box<double>(shape.size);
+}
+
+FclShape fcl_convex(const RobotPart& hull)
+{
+    auto faces = std::make_shared<std::vector<int>>();
+    for (const auto& face : hull.hull_faces) faces->insert(faces->end(), {3, face[0], face[1], face[2]});
+    return fcl::Convex<double>(std::make_shared<const std::vector<Vec3>>(hull.hull_vertices),
+                               int(hull.hull_faces.size()), faces);
+}
+
+const fcl::CollisionGeometry<double>* geometry_of(const FclShape& shape)
+{
+    return std::visit([](const auto& s) -> const fcl::CollisionGeometry<double>* { return &s; }, shape);
+}
+
+Transform transform_of(const Pose& pose)
+{
+    Transform transform = Transform::Identity();
+    transform.linear() = pose.rotation;
+    transform.translation() = pose.position;
+    return transform;
+}
+
+/// A robot's part, grown by the touch margin. A hull's corners are in the robot's frame already.
+struct CheckedPart {
+    FclShape shape;
+    Pose robot_from_shape;
+    Vec3 centre;
+    Shape bounds_shape;  ///< for bounds at a pose; unused by hulls
+    std::vector<Vec3> hull_vertices;
+    Vec3 box_centre, box_half;  ///< of the box around it, along the shape's own axes
+
+    explicit CheckedPart(const RobotPart& part)
+        : shape(part.shape.kind == ShapeKind::Hull ? fcl_convex(part) : fcl_shape(part.shape)),
+          robot_from_shape(part.shape.kind == ShapeKind::Hull ? Pose{} : part.shape.pose), centre(part.centre()),
+          bounds_shape(part.shape), hull_vertices(part.hull_vertices)
+    {
+        Bounds box;
+        for (const Vec3& vertex : hull_vertices) box.extend(vertex);
+        if (bounds_shape.kind != ShapeKind::Hull) box = bounds_of({bounds_shape.kind, bounds_shape.size, {}});
+        box_centre = (box.min + box.max) / 2;
+        box_half = (box.max - box.min) / 2;
+    }
+
+    Bounds bounds_at(const Pose& pose) const
+    {
+        if (bounds_shape.kind != ShapeKind::Hull) {
+            Shape placed = bounds_shape;
+            placed.pose = pose * bounds_shape.pose;
+            return bounds_of(placed);
+        }
+        Bounds box;
+        for (const Vec3& vertex : hull_vertices) box.extend(pose.rotation * vertex + pose.position);
+        return box;
+    }
+};
+
+bool overlap(const ElementBox& a, const Bounds& b)
+{
+    return a.min[0] <= b.max[0] && a.max[0] >= b.min[0] && a.min[1] <= b.max[1] && a.max[1] >= b.min[1] &&
+           a.min[2] <= b.max[2] && a.max[2] >= b.min[2];
+}
+
+/// A robot's part at one pose. Everything is told FCL relative to the robot's position, so that coordinates stay small
+/// and keep their precision far from the scene's origin.
+struct PlacedPart {
+    const CheckedPart* part;
+    Transform robot_from_shape;  ///< turned like the scene, origin at the robot's position
+    Bounds bounds;               ///< in the scene's frame
+};
+
+/// Whether the box around a part lies beside a triangle or off its plane: most triangles near a robot, far sooner than
+/// FCL tells. By more than the margin within which FCL's answer depends on its own tolerance.
+bool is_apart(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
+{
+    const Vec3& half = placed.part->box_half;
+    std::array<Vec3, 3> seen;  // from the middle of the box, along its axes
+    for (std::size_t k = 0; k < 3; ++k)
+        seen[k] = placed.robot_from_shape.linear().transpose() * (corners[k] - placed.robot_from_shape.translation()) -
+                  placed.part->box_centre;
+    const Vec3 low = seen[0].cwiseMin(seen[1]).cwiseMin(seen[2]), high = seen[0].cwiseMax(seen[1]).cwiseMax(seen[2]);
+    if (((low - half).array() > FreeSpace::margin).any() || ((-half - high).array() > FreeSpace::margin).any())
+        return true;
+    const Vec3 normal = (seen[1] - seen[0]).cross(seen[2] - seen[0]);
+    return std::abs(normal.dot(seen[0])) > normal.cwiseAbs().dot(half) + FreeSpace::margin * normal.norm();
+}
+
+/// Whether rounding decides where a triangle's normal points.
+bool is_sliver(const std::array<Vec3, 3>& corners)
+{
+    const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], bc = corners[2] - corners[1];
+    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
+    return ab.cross(ac).squaredNorm() <= 1e-18 * longest * longest;
+}
+
+bool meets_triangle(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
+{
+    if (is_apart(placed, corners)) return false;
+    static const fcl::detail::GJKSolver_libccd<double> solver;
+    const auto meets = [&](const auto& shape) {
+        return solver.shapeTriangleIntersect(shape, placed.robot_from_shape, corners[0], corners[1], corners[2],
+                                             static_cast<Vec3*>(nullptr), static_cast<double*>(nullptr),
+                                             static_cast<Vec3*>(nullptr));
+    };
+    // FCL's own answer for spheres rests on the normal, and is wrong for slivers that are nowhere near; a capsule's
+    // does not.
+    if (const auto* sphere = std::get_if<fcl::Sphere<double>>(&placed.part->shape);
+        sphere != nullptr && is_sliver(corners))
+        return meets(fcl::Capsule<double>(sphere->radius, 0));
+    return std::visit(meets, placed.part->shape);
+}
+
+bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& at_a,
+                 const fcl::CollisionGeometry<double>* b, const Transform& at_b)
+{
+    fcl::CollisionRequest<double> request;
+    request.gjk_solver_type = fcl::GST_LIBCCD;
+    fcl::CollisionResult<double> result;
+    return fcl::collide(a, at_a, b, at_b, request, result) > 0;
+}
+
+}  // namespace
+
+struct CollisionChecker::Impl {
+    Robot robot;
+    Geometry geometry;
+    std::shared_ptr<const OccupancyTree> tree;
+    std::unique_ptr<fcl::OcTree<double>> octree;
+    std::vector<CheckedPart> parts;
+
+    std::vector<PlacedPart> place(const Pose& pose) const
+    {
+        std::vector<PlacedPart> placed;
+        placed.reserve(parts.size());
+        for (const CheckedPart& part : parts)
+            placed.push_back(
+                {&part, transform_of(Pose{Vec3::Zero(), pose.rotation} * part.robot_from_shape), part.bounds_at(pose)});
+        return placed;
+    }
+
+    static bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
+                              const Vec3& origin)
+    {
+        for (const PlacedPart& part : placed) {
+            if (!overlap(tile.boxes[element], part.bounds)) continue;
+            if (tile.is_triangle(element)) {
+                std::array<Vec3, 3> corners = tile.corners(element);
+                for (Vec3& corner : corners) corner -= origin;
+                if (meets_triangle(part, corners)) return true;
+            } else {
+                const Shape shape = tile.primitive(element).shape();
+                const FclShape other = fcl_shape(shape);
+                const Transform at = transform_of({shape.pose.position - origin, shape.pose.rotation});
+                if (fcl_collide(geometry_of(part.part->shape), part.robot_from_shape, geometry_of(other), at))
+                    return true;
+            }
+        }
+        return false;
+    }
+
+    /// The first part, below `best`, in whose filled meshes a part of the robot lies. Its surface is not touched, so
+    /// one point of each convex part tells for all of it.
+    std::uint32_t first_around(const Pose& pose, std::uint32_t best) const
+    {
+        if (!geometry.impl().has_filled_meshes) return best;
+        for (const CheckedPart& part : parts) {
+            const Vec3 centre = pose.rotation * part.centre + pose.position;
+            for (const Span& span : column_at(geometry, centre.x(), centre.y()).spans)
+                if (span.bottom <= centre.z() && centre.z() <= span.top) best = std::min(best, span.part);
+        }
+        return best;
+    }
+
+    std::optional<CollisionHit> find(const Pose& pose, bool any_will_do) const
+    {
+        const std::vector<PlacedPart> placed = place(pose);
+        if (octree) return find_in_octree(placed, pose.position);
+        Bounds all;
+        for (const PlacedPart& part : placed) {
+            all.extend(part.bounds.min);
+            all.extend(part.bounds.max);
+        }
+        std::uint32_t best = CollisionHit::occupancy;
+        geometry.impl().visit_in(all, [&](const Tile& tile, std::uint32_t element) {
+            if ((any_will_do && best != CollisionHit::occupancy) || tile.label(element) == Label::Water) return;
+            const std::uint32_t part = tile.part(element);
+            if (part < best && element_meets(tile, element, placed, pose.position)) best = part;
+        });
+        if (!any_will_do || best == CollisionHit::occupancy) best = first_around(pose, best);
+        if (best == CollisionHit::occupancy) return std::nullopt;
+        return CollisionHit{best};
+    }
+
+    std::optional<CollisionHit> find_in_octree(const std::vector<PlacedPart>& placed, const Vec3& origin) const
+    {
+        Transform at = Transform::Identity();
+        at.translation() = -origin;
+        for (const PlacedPart& part : placed)
+            if (fcl_collide(octree.get(), at, geometry_of(part.part->shape), part.robot_from_shape))
+                return CollisionHit{};
+        return std::nullopt;
+    }
+};
+
+CollisionChecker::CollisionChecker(const Geometry& geometry, const Robot& robot)
+{
+    auto impl = std::make_unique<Impl>();
+    impl->robot = robot;
+    impl->geometry = geometry;
+    for (const RobotPart& part : robot.parts) impl->parts.emplace_back(grown(part, touch_margin));
+    impl_ = std::move(impl);
+}
+
+CollisionChecker::CollisionChecker(std::shared_ptr<const OccupancyTree> tree, const Robot& robot)
+{
+    auto impl = std::make_unique<Impl>();
+    impl->robot = robot;
+    impl->tree = std::move(tree);
+    impl->octree = std::make_unique<fcl::OcTree<double>>(impl->tree->impl().tree);
+    for (const RobotPart& part : robot.parts) impl->parts.emplace_back(grown(part, touch_margin));
+    impl_ = std::move(impl);
+}
+
+CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
+CollisionChecker::~CollisionChecker() = default;
+
+const Robot& CollisionChecker::robot() const { return impl_->robot; }
+bool CollisionChecker::uses_occupancy() const { return impl_->octree != nullptr; }
+
+bool CollisionChecker::is_free(const Pose& scene_from_robot) const { return !impl_->find(scene_from_robot, true); }
+
+std::optional<CollisionHit> CollisionChecker::find_hit(const Pose& scene_from_robot) const
+{
+    return impl_->find(scene_from_robot, false);
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,68 @@
+#include "model/built_in_models.h"
+
+#include "base/module.h"
+#include "base/text.h"
+
+#include <stdexcept>
+#include <vector>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> words_between_slashes(const std::string& text)
+{
+    std::vector<std::string> out;
+    for (std::size_t start = 0; start < text.size();) {
+        const std::size_t slash = std::min(text.find('/', start), text.size());
+        if (slash > start) out.push_back(text.substr(start, slash - start));
+        start = slash + 1;
+    }
+    return out;
+}
+
+/// "groundplane" for "Ground%20Plane", "ground_plane" and "GroundPlane".
+std::string plain_name(std::string name)
+{
+    for (std::size_t at = name.find("%20"); at != std::string::npos; at = name.find("%20")) name.erase(at, 3);
+    std::erase_if(name, [](char c) { return c == ' ' || c == '_' || c == '-'; });
+    return lower_case(name);
+}
+
+/// NAME of `https://HOST/1.0/OpenRobotics/models/NAME[/VERSION]`, else "".
+std::string name_on_fuel(const std::vector<std::string>& words)
+{
+    const bool is_model = words.size() >= 6 && words.size() <= 7 && lower_case(words[3]) == "openrobotics" &&
+                          words[4] == "models";
+    return is_model ? words[5] : "";
+}
+
+/// NAME of `model://NAME`, `model://NAME/model.sdf` or NAME, else "".
+std::string name_of_model(std::vector<std::string> words, bool has_scheme)
+{
+    if (has_scheme) words.erase(words.begin());
+    if (words.size() == 2 && words[1] == "model.sdf") words.pop_back();
+    return words.size() == 1 ? words[0] : "";
+}
+
+}  // namespace
+
+std::string built_in_model(const std::string& uri)
+{
+    const bool is_web = uri.starts_with("https://") || uri.starts_with("http://"),
+               has_scheme = uri.starts_with("model://");
+    if (!is_web && !has_scheme && uri.find(':') != std::string::npos) return "";
+    const std::vector<std::string> words = words_between_slashes(uri);
+    const std::string name = plain_name(is_web ? name_on_fuel(words) : name_of_model(words, has_scheme));
+    return name == "groundplane" ? "ground_plane" : name == "sun" ? "sun" : "";
+}
+
+fs::path built_in_file(const std::string& model)
+{
+    const fs::path file = library_folder() / "spawnfield-models" / (model + ".sdf");
+    if (!fs::is_regular_file(file)) throw std::runtime_error(file.string() + " is missing; install spawnfield again");
+    return file;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,120 @@
+#include "model/joints.h"
+
+#include "base/number.h"
+
+#include <spawnfield/error.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+const char* unit_of(const Joint& joint) { return joint.motion == Joint::Motion::Sliding ? "m" : "rad"; }
+
+std::string limits_of(const Joint& joint)
+{
+    return number(joint.lower) + " to " + number(joint.upper) + " " + unit_of(joint);
+}
+
+bool is_within(const Joint& joint, double value)
+{
+    constexpr double tolerance = 1e-9;  // limits are often rounded
+    return value >= joint.lower - tolerance && value <= joint.upper + tolerance;
+}
+
+class Positions {
+public:
+    Positions(const std::string& file, const std::vector<Joint>& joints, const std::vector<JointPosition>& given)
+        : file_(file), joints_(joints)
+    {
+        for (const JointPosition& position : given) take(position);
+    }
+
+    std::map<std::string, double> all(std::vector<std::string>& notices) const
+    {
+        std::map<std::string, double> out;
+        for (const Joint& joint : joints_) {
+            if (joint.motion != Joint::Motion::Turning && joint.motion != Joint::Motion::Sliding) continue;
+            const double value = out[joint.name] = value_of(joint, 0);
+            if (is_within(joint, value)) continue;
+            notices.push_back(file_ + ": joint \"" + joint.name + "\" stands at " + number(value) + " " +
+                              unit_of(joint) + (joint.mimic ? ", as \"" + joint.mimic->joint + "\" has it" : "") +
+                              ", though its limits are " + limits_of(joint));
+        }
+        return out;
+    }
+
+private:
+    void take(const JointPosition& position)
+    {
+        const std::string place = "joint \"" + position.joint + "\" ";
+        const Joint* const joint = find(position.joint);
+        if (joint == nullptr) refuse(place + "is not in " + file_ + "; " + movable());
+        if (joint->motion == Joint::Motion::None) refuse(place + "is fixed in " + file_ + "; " + movable());
+        if (joint->motion == Joint::Motion::Other)
+            refuse(place + "is of type " + joint->type + ", which cannot be moved by one number; " + movable());
+        if (joint->mimic) refuse(place + "follows joint \"" + joint->mimic->joint + "\"; give that one");
+        if (!std::isfinite(position.value)) refuse(place + "is " + number(position.value) + ", needs a finite number");
+        if (!is_within(*joint, position.value))
+            refuse(place + "is " + number(position.value) + ", its limits in " + file_ + " are " + limits_of(*joint));
+        if (!given_.emplace(position.joint, position.value).second) refuse(place + "is given twice");
+    }
+
+    double value_of(const Joint& joint, std::size_t depth) const
+    {
+        if (!joint.mimic) {
+            const auto entry = given_.find(joint.name);
+            return entry == given_.end() ? 0 : entry->second;
+        }
+        const Joint* const leader = find(joint.mimic->joint);
+        if (leader == nullptr)
+            throw FileError(file_,
+                            "joint \"" + joint.name + "\" mimics \"" + joint.mimic->joint + "\", which is no joint");
+        if (depth > joints_.size()) throw FileError(file_, "joint \"" + joint.name + "\" mimics itself");
+        return joint.mimic->multiplier * value_of(*leader, depth + 1) + joint.mimic->offset;
+    }
+
+    const Joint* find(const std::string& name) const
+    {
+        const auto found = std::find_if(joints_.begin(), joints_.end(),
+                                        [&](const Joint& joint) { return joint.name == name; });
+        return found == joints_.end() ? nullptr : &*found;
+    }
+
+    /// What can be given, for messages.
+    std::string movable() const
+    {
+        std::string names;
+        for (const Joint& joint : joints_)
+            if ((joint.motion == Joint::Motion::Turning || joint.motion == Joint::Motion::Sliding) && !joint.mimic)
+                names += (names.empty() ? "" : ", ") + joint.name;
+        return names.empty() ? "it has none that moves" : "those that move: " + names;
+    }
+
+    [[noreturn]] static void refuse(const std::string& what) { throw ArgumentError("load_robot", what); }
+
+    const std::string& file_;
+    const std::vector<Joint>& joints_;
+    std::map<std::string, double> given_;
+};
+
+}  // namespace
+
+std::map<std::string, double> joint_positions(const std::string& file, const std::vector<Joint>& joints,
+                                              const std::vector<JointPosition>& given,
+                                              std::vector<std::string>& notices)
+{
+    return Positions(file, joints, given).all(notices);
+}
+
+Pose joint_motion(Joint::Motion motion, const Vec3& axis, double value)
+{
+    if (value == 0) return {};  // to the bit as without a joint
+    if (motion == Joint::Motion::Sliding) return {value * axis, Mat3::Identity()};
+    return {Vec3::Zero(), Eigen::AngleAxisd(value, axis).toRotationMatrix()};
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,139 @@
+#include "model/model_paths.h"
+
+#include "base/number.h"
+#include "base/text.h"
+#include "base/xml.h"
+#include "model/built_in_models.h"
+
+#include <spawnfield/error.h>
+
+#include <cstdlib>
+
+namespace spawnfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string without(const std::string& prefix, const std::string& text) { return text.substr(prefix.size()); }
+
+void add_variable(const char* variable, std::vector<fs::path>& folders)
+{
+    const char* const value = std::getenv(variable);
+    const std::string text = value != nullptr ? value : "";
+    for (std::size_t start = 0; start < text.size();) {
+        const std::size_t colon = std::min(text.find(':', start), text.size());
+        if (colon > start) folders.emplace_back(text.substr(start, colon - start));
+        start = colon + 1;
+    }
+}
+
+/// `models/x/meshes/y.dae` in a folder of models, or in the model's own.
+fs::path found_in(const fs::path& folder, const fs::path& inside)
+{
+    if (fs::exists(folder / inside)) return folder / inside;
+    const bool is_own = !inside.empty() && folder.filename() == *inside.begin();
+    return is_own && fs::exists(folder.parent_path() / inside) ? folder.parent_path() / inside : fs::path();
+}
+
+/// Gazebo keeps what it took from Fuel in ~/.gz/fuel/HOST/OWNER/models/NAME/VERSION; the URI is
+/// https://HOST/1.0/OWNER/models/NAME[/VERSION|/tip][/files/…], with spaces as %20 and the cache in small letters.
+fs::path found_in_fuel_cache(const std::string& uri)
+{
+    const char* const home = std::getenv("HOME");
+    std::vector<std::string> words;
+    for (const fs::path& word : fs::path(without("https://", uri))) words.push_back(word.string());
+    if (home == nullptr || words.size() < 5) return {};
+    std::string name = lower_case(words[4]);
+    for (std::size_t at = name.find("%20"); at != std::string::npos; at = name.find("%20")) name.replace(at, 3, " ");
+    const std::string owner = lower_case(words[2]);
+    for (const char* const cache : {".gz/fuel", ".ignition/fuel"}) {
+        const fs::path versions = fs::path(home) / cache / words[0] / owner / words[3] / name;
+        double newest = 0;
+        std::error_code none;
+        for (const fs::directory_entry& entry : fs::directory_iterator(versions, none)) {
+            double version = 0;
+            if (parse_number(entry.path().filename().string(), version)) newest = std::max(newest, version);
+        }
+        if (newest > 0) return versions / number(newest);
+    }
+    return {};
+}
+
+fs::path sdf_file_of(const fs::path& folder)
+{
+    const fs::path config = folder / "model.config";
+    if (fs::is_regular_file(config)) {
+        const auto document = read_xml(config, "a <model> element");
+        std::string name;
+        double highest = -1;
+        for_each_child(*document->RootElement(), "sdf", [&](const Xml& sdf) {
+            const double version = sdf.DoubleAttribute("version", 0);
+            // Files of versions for old simulators are often listed without being there.
+            if (sdf.GetText() == nullptr || version <= highest || !fs::is_regular_file(folder / sdf.GetText())) return;
+            highest = version;
+            name = sdf.GetText();
+        });
+        if (!name.empty()) return folder / name;
+    }
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() == ".sdf") files.push_back(entry.path());
+    if (files.size() == 1) return files[0];
+    if (fs::is_regular_file(folder / "model.sdf")) return folder / "model.sdf";
+    throw FileError(folder.string(),
+                    files.empty() ? "is a folder without model.config and .sdf file, needs to be a model's"
+                                  : "has no model.config that names one of its .sdf files; name the file itself");
+}
+
+}  // namespace
+
+ModelPaths::ModelPaths(const std::vector<Path>& given, const Path& file) : named_(given)
+{
+    for (const char* const variable : {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH"})
+        add_variable(variable, named_);
+    const Path absolute = fs::absolute(file).lexically_normal();
+    for (Path folder = absolute.parent_path(); folder != folder.root_path(); folder = folder.parent_path()) {
+        above_.push_back(folder);
+        above_.push_back(folder / "models");
+    }
+}
+
+ModelPaths::Path ModelPaths::find(const std::string& uri, const Path& folder)
+{
+    const Path found = find_on_disk(uri, folder);
+    const std::string model = found.empty() ? built_in_model(uri) : "";
+    if (model.empty()) return found;
+    built_in_.insert(uri);
+    return built_in_file(model);
+}
+
+ModelPaths::Path ModelPaths::find_on_disk(const std::string& uri, const Path& folder)
+{
+    if (uri.starts_with("https://") || uri.starts_with("http://")) return found_in_fuel_cache(uri);
+    Path inside = uri;
+    bool is_named = false;  // of a model or package, and not seen from the folder
+    for (const char* const scheme : {"model://", "package://", "file://"})
+        if (uri.starts_with(scheme)) {
+            inside = without(scheme, uri);
+            is_named = std::string(scheme) != "file://";
+        }
+    if (inside.empty()) return {};
+    if (inside.is_absolute()) return fs::exists(inside) ? inside : Path();
+    if (!is_named && fs::exists(folder / inside)) return folder / inside;
+    for (const Path& named : named_)
+        if (const Path found = found_in(named, inside); !found.empty()) return found;
+    for (const Path& above : above_)
+        if (const Path found = found_in(above, inside); !found.empty()) {
+            if (above != above_.front()) guessed_.insert(above);  // beside the file is no guess
+            return found;
+        }
+    return {};
+}
+
+fs::path model_file_of(const fs::path& file_or_folder)
+{
+    std::error_code unreachable;  // a circle of links, say
+    return fs::is_directory(file_or_folder, unreachable) ? sdf_file_of(file_or_folder) : file_or_folder;
+}
+
+}  // namespace spawnfield

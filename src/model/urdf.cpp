@@ -1,0 +1,208 @@
+#include "model/jointed_model.h"
+
+#include "base/input_file.h"
+#include "base/number.h"
+#include "base/xml.h"
+#include "model/joints.h"
+
+#include <spawnfield/error.h>
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+Pose pose_of(const urdf::Pose& pose)
+{
+    const urdf::Rotation& q = pose.rotation;
+    return {Vec3(pose.position.x, pose.position.y, pose.position.z),
+            Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix()};
+}
+
+/// Keeps what urdfdom says from standard error, and the first error of it; warnings are about looks.
+class UrdfdomErrors : public console_bridge::OutputHandler {
+public:
+    UrdfdomErrors() { console_bridge::useOutputHandler(this); }
+    UrdfdomErrors(const UrdfdomErrors&) = delete;
+    UrdfdomErrors& operator=(const UrdfdomErrors&) = delete;
+    ~UrdfdomErrors() override { console_bridge::restorePreviousOutputHandler(); }
+
+    void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override
+    {
+        if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) first_ = text;
+    }
+    const std::string& first() const { return first_; }
+
+private:
+    std::string first_;
+};
+
+Joint joint_of(const urdf::Joint& joint)
+{
+    using Motion = Joint::Motion;
+    Joint out;
+    out.name = joint.name;
+    switch (joint.type) {
+    case urdf::Joint::REVOLUTE: out.motion = Motion::Turning, out.type = "revolute"; break;
+    case urdf::Joint::CONTINUOUS: out.motion = Motion::Turning, out.type = "continuous"; break;
+    case urdf::Joint::PRISMATIC: out.motion = Motion::Sliding, out.type = "prismatic"; break;
+    case urdf::Joint::FLOATING: out.motion = Motion::Other, out.type = "floating"; break;
+    case urdf::Joint::PLANAR: out.motion = Motion::Other, out.type = "planar"; break;
+    default: out.type = "fixed"; break;
+    }
+    if (joint.limits && joint.type != urdf::Joint::CONTINUOUS) {
+        out.lower = joint.limits->lower;
+        out.upper = joint.limits->upper;
+    }
+    if (joint.mimic) out.mimic = Joint::Mimic{joint.mimic->joint_name, joint.mimic->multiplier, joint.mimic->offset};
+    return out;
+}
+
+CollisionGeometry geometry_of(const urdf::Geometry& geometry, const std::filesystem::path& folder)
+{
+    CollisionGeometry out;
+    if (geometry.type == urdf::Geometry::BOX) {
+        const auto& box = static_cast<const urdf::Box&>(geometry);
+        out.kind = CollisionGeometry::Kind::Box;
+        out.size = {box.dim.x, box.dim.y, box.dim.z};
+    } else if (geometry.type == urdf::Geometry::SPHERE) {
+        out.kind = CollisionGeometry::Kind::Sphere;
+        out.size[0] = static_cast<const urdf::Sphere&>(geometry).radius;
+    } else if (geometry.type == urdf::Geometry::CYLINDER) {
+        const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+        out.kind = CollisionGeometry::Kind::Cylinder;
+        out.size = {cylinder.radius, cylinder.length, 1};
+    } else {
+        const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
+        out.kind = CollisionGeometry::Kind::Mesh;
+        out.size = {mesh.scale.x, mesh.scale.y, mesh.scale.z};
+        out.uri = mesh.filename;
+        out.folder = folder;
+    }
+    return out;
+}
+
+class UrdfReader {
+public:
+    UrdfReader(std::filesystem::path file, const std::vector<JointPosition>& joints)
+        : file_(std::move(file)), joints_(joints)
+    {
+    }
+
+    JointedModel read()
+    {
+        const std::string text = read_file(file_);
+        if (text.find("<xacro:") != std::string::npos)
+            throw FileError(file_.string(), "holds xacro macros; expand them first: xacro " +
+                                                file_.filename().string() + " > robot.urdf");
+        check_xml();
+        UrdfdomErrors errors;
+        const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+        // urdfdom goes on with a link that it could not read to its end, and that would make the robot smaller.
+        if (!errors.first().empty()) throw FileError(file_.string(), "is no valid URDF: " + errors.first());
+        if (!model || !model->getRoot()) throw FileError(file_.string(), "is no valid URDF");
+        out_.name = model->getName();
+        std::vector<Joint> joints;
+        for (const auto& entry : model->joints_) joints.push_back(joint_of(*entry.second));
+        positions_ = joint_positions(file_.string(), joints, joints_, out_.notices);
+        add_links(*model->getRoot());
+        if (out_.bodies.empty())
+            throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
+        return std::move(out_);
+    }
+
+private:
+    /// Faults of which urdfdom tells no line, or nothing at all.
+    void check_xml() const
+    {
+        const auto document = read_xml(file_, "a <robot> element");
+        for_each_element(*document->RootElement(), [&](const Xml& element) {
+            const std::string name = element.Name();
+            const auto refuse = [&](const std::string& what) {
+                throw FileError(file_.string(), line_of(element) + what);
+            };
+            if (name == "origin" && element.Attribute("quat_xyzw") != nullptr && element.Attribute("rpy") == nullptr)
+                refuse("<origin quat_xyzw> is not read, and a part would stand unturned; write it as rpy");
+            if (name != "geometry" || element.Parent() == nullptr ||
+                std::string(element.Parent()->Value()) != "collision")
+                return;
+            std::size_t shapes = 0;
+            for_each_child(element, nullptr, [&](const Xml&) { ++shapes; });
+            if (shapes > 1)
+                refuse("<geometry> holds " + std::to_string(shapes) +
+                       " shapes, needs one; give each a <collision> of its own");
+        });
+    }
+
+    /// From the root on, each before those that hang on it. A chain may be longer than the call stack.
+    void add_links(const urdf::Link& root)
+    {
+        std::vector<std::pair<const urdf::Link*, Pose>> left{{&root, {}}};
+        while (!left.empty()) {
+            const auto [link, robot_from_link] = left.back();
+            left.pop_back();
+            add_collisions(*link, robot_from_link);
+            for (auto joint = link->child_joints.rbegin(); joint != link->child_joints.rend(); ++joint)
+                for (const auto& child : link->child_links)
+                    if (child->name == (*joint)->child_link_name)
+                        left.emplace_back(child.get(), robot_from_link *
+                                                           pose_of((*joint)->parent_to_joint_origin_transform) *
+                                                           motion_of(*link, **joint));
+        }
+    }
+
+    void add_collisions(const urdf::Link& link, const Pose& robot_from_link)
+    {
+        for (const auto& collision : link.collision_array) {
+            if (!collision || !collision->geometry) fail(link, "has a <collision> without geometry");
+            require_positive(link, *collision->geometry);
+            out_.bodies.push_back({{out_.name, link.name, collision->name},
+                                   robot_from_link * pose_of(collision->origin),
+                                   geometry_of(*collision->geometry, file_.parent_path())});
+        }
+    }
+
+    Pose motion_of(const urdf::Link& link, const urdf::Joint& joint) const
+    {
+        const auto value = positions_.find(joint.name);
+        if (value == positions_.end() || value->second == 0) return {};
+        const Vec3 axis(joint.axis.x, joint.axis.y, joint.axis.z);
+        if (!(axis.norm() > 1e-6)) fail(link, "joint \"" + joint.name + "\" has an <axis> of no length");
+        return joint_motion(joint_of(joint).motion, axis.normalized(), value->second);
+    }
+
+    void require_positive(const urdf::Link& link, const urdf::Geometry& geometry) const
+    {
+        const CollisionGeometry found = geometry_of(geometry, {});
+        if (found.kind == CollisionGeometry::Kind::Mesh) return;
+        const char* const what = found.kind == CollisionGeometry::Kind::Box      ? "<box size>"
+                                 : found.kind == CollisionGeometry::Kind::Sphere ? "<sphere radius>"
+                                                                                 : "<cylinder>";
+        for (const double side : found.size)
+            if (!(side > 0) || !std::isfinite(side))
+                fail(link, std::string(what) + " is " + number(side) + ", needs > 0");
+    }
+
+    [[noreturn]] void fail(const urdf::Link& link, const std::string& what) const
+    {
+        throw FileError(file_.string(), "link \"" + link.name + "\": " + what);
+    }
+
+    const std::filesystem::path file_;
+    const std::vector<JointPosition>& joints_;
+    JointedModel out_;
+    std::map<std::string, double> positions_;  ///< of joints
+};
+
+}  // namespace
+
+JointedModel read_urdf_model(const std::filesystem::path& file, const std::vector<JointPosition>& joints)
+{
+    return UrdfReader(file, joints).read();
+}
+
+}  // namespace spawnfield

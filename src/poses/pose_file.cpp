@@ -1,0 +1,205 @@
+#include "base/csv.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "poses/pose_columns.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/input_file.h>
+#include <spawnfield/poses.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace spawnfield {
+namespace {
+
+constexpr double radians_per_degree = std::numbers::pi / 180;
+
+/// The column of an angle; field -1: the file has none.
+struct AngleColumn {
+    std::string name;
+    int field = -1;
+    bool is_degrees = false;
+    std::size_t beyond_turn = 0;  ///< rows with more than a whole turn, which are likely degrees
+    std::string first = {};       ///< the first of them, in words
+};
+
+/// Which field holds what; -1: not in the file.
+struct PoseColumns {
+    int x, y, z, qx, qy, qz, qw;
+    std::array<AngleColumn, 3> angles;  ///< roll, pitch, yaw
+    std::size_t count;
+    bool has_quaternion() const { return qx >= 0; }
+};
+
+class PoseReader {
+public:
+    explicit PoseReader(std::string name) : file_(std::move(name)) {}
+
+    PoseTable read(std::string_view text, bool allow_empty)
+    {
+        PoseTable table;
+        PoseColumns columns{};
+        bool has_header = false;
+        for (std::size_t start = 0; start < text.size();) {
+            const std::size_t end = std::min(text.find('\n', start), text.size());
+            std::string line(text.substr(start, end - start));
+            start = end + 1;
+            ++line_;
+            if (line_ == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
+            if (!line.empty() && line.back() == '\r') line.pop_back();
+            if (line.find_first_not_of(" \t") == std::string::npos) continue;
+            if (!has_header) {
+                columns = read_header(line);
+                tell_other_case(line, table);
+                table.header = line;
+                has_header = true;
+                continue;
+            }
+            if (std::count(line.begin(), line.end(), '"') % 2 != 0) fail("has a quote that is not closed");
+            table.poses.push_back(read_pose(csv_fields(line), columns));
+            table.rows.push_back(std::move(line));
+        }
+        if (!has_header) throw FileError(file_, "is empty, needs a header x,y,z,roll,pitch,yaw");
+        tell_beyond_turn(columns, table);
+        if (!table.poses.empty()) return table;
+        if (!allow_empty) throw FileError(file_, "has a header but no pose; --allow-empty accepts that");
+        table.notices.push_back(file_ + ": has a header but no pose");
+        return table;
+    }
+
+private:
+    PoseColumns read_header(const std::string& line) const
+    {
+        if (const std::string complaint = separator_complaint(line); !complaint.empty()) fail(complaint);
+        const auto names = csv_fields(line);
+        if (are_numbers(names))
+            fail("has numbers, needs a header before them: add the line " + likely_header(names.size()));
+        const auto find = [&](const std::string& name) {
+            const auto at = std::find(names.begin(), names.end(), name);
+            if (at != names.end() && std::find(at + 1, names.end(), name) != names.end())
+                fail("column " + name + " is given twice");
+            return at == names.end() ? -1 : int(at - names.begin());
+        };
+        const auto angle = [&](const std::string& name) {
+            const int radians = find(name), degrees = find(name + "_deg");
+            if (radians >= 0 && degrees >= 0)
+                fail("has columns " + name + " and " + name + "_deg, needs one of the two");
+            return degrees >= 0 ? AngleColumn{name + "_deg", degrees, true} : AngleColumn{name, radians};
+        };
+        PoseColumns c{find("x"),   find("y"),  find("z"),  find("qx"),
+                      find("qy"),  find("qz"), find("qw"), {angle("roll"), angle("pitch"), angle("yaw")},
+                      names.size()};
+        for (const auto& axis : {std::pair{c.x, "x"}, std::pair{c.y, "y"}, std::pair{c.z, "z"}})
+            if (axis.first < 0) {
+                const auto other = std::find_if(names.begin(), names.end(),
+                                                [&](const std::string& n) { return lower_case(n) == axis.second; });
+                fail(std::string("column ") + axis.second + " is missing, needs a header x,y,z,roll,pitch,yaw" +
+                     (other == names.end() ? "" : "; there is " + *other + ", but names are lower case"));
+            }
+        const int quaternions = (c.qx >= 0) + (c.qy >= 0) + (c.qz >= 0) + (c.qw >= 0);
+        if (quaternions != 0 && quaternions != 4) fail("has some of the columns qx,qy,qz,qw, needs all four or none");
+        const bool has_angle = std::any_of(c.angles.begin(), c.angles.end(),
+                                           [](const AngleColumn& a) { return a.field >= 0; });
+        if (quaternions == 4 && has_angle) fail("has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
+        return c;
+    }
+
+    /// What a row of so many numbers is likely to be.
+    static std::string likely_header(std::size_t fields)
+    {
+        if (fields == 3) return "x,y,z";
+        if (fields == 4) return "x,y,z,yaw (or yaw_deg)";
+        return fields == 7 ? "x,y,z,qx,qy,qz,qw" : "x,y,z,roll,pitch,yaw (or roll_deg,pitch_deg,yaw_deg)";
+    }
+
+    /// A name that is known but for its case is read as any other: not at all.
+    void tell_other_case(const std::string& header, PoseTable& table) const
+    {
+        for (const std::string& name : csv_fields(header)) {
+            const std::string lower = lower_case(name);
+            if (name == lower || !is_pose_column(lower)) continue;
+            table.notices.push_back(file_ + ": column " + name + " is carried along, not read: names are lower case (" +
+                                    lower + ")");
+        }
+    }
+
+    void tell_beyond_turn(const PoseColumns& columns, PoseTable& table) const
+    {
+        for (const AngleColumn& angle : columns.angles) {
+            if (angle.beyond_turn == 0) continue;
+            const std::string more = angle.beyond_turn == 1
+                                         ? ""
+                                         : " (the first of " + std::to_string(angle.beyond_turn) + " rows)";
+            table.notices.push_back(file_ + ": " + angle.first + more +
+                                    ", which is more than a turn of 2 pi rad; for degrees name the column " +
+                                    angle.name + "_deg");
+        }
+    }
+
+    Pose read_pose(const std::vector<std::string>& fields, PoseColumns& c) const
+    {
+        if (fields.size() != c.count)
+            fail("has " + std::to_string(fields.size()) + " fields, the header has " + std::to_string(c.count));
+        Pose pose;
+        pose.position = {number_in(fields, c.x, "x"), number_in(fields, c.y, "y"), number_in(fields, c.z, "z")};
+        if (!c.has_quaternion()) {
+            const double roll = angle_in(fields, c.angles[0]), pitch = angle_in(fields, c.angles[1]),
+                         yaw = angle_in(fields, c.angles[2]);
+            pose.rotation = rotation_from_rpy(roll, pitch, yaw);
+            return pose;
+        }
+        const Eigen::Quaterniond q(number_in(fields, c.qw, "qw"), number_in(fields, c.qx, "qx"),
+                                   number_in(fields, c.qy, "qy"), number_in(fields, c.qz, "qz"));
+        if (!(std::abs(q.norm() - 1) <= 1e-3))
+            fail("the quaternion's length is " + number(q.norm()) + ", needs 1 (to 0.001)");
+        pose.rotation = q.normalized().toRotationMatrix();
+        return pose;
+    }
+
+    /// rad
+    double angle_in(const std::vector<std::string>& fields, AngleColumn& angle) const
+    {
+        const double value = number_in(fields, angle.field, angle.name.c_str());
+        if (angle.is_degrees) return value * radians_per_degree;
+        constexpr double turn = 2 * std::numbers::pi + 1e-9;
+        if (std::abs(value) > turn && angle.beyond_turn++ == 0)
+            angle.first = "line " + std::to_string(line_) + ": column " + angle.name + " is " + number(value);
+        return value;
+    }
+
+    double number_in(const std::vector<std::string>& fields, int column, const char* name) const
+    {
+        if (column < 0) return 0;
+        double value = 0;
+        const std::string& text = fields[std::size_t(column)];
+        if (!parse_number(text, value)) fail(std::string("column ") + name + " is \"" + text + "\", needs a number");
+        if (!std::isfinite(value)) fail(std::string("column ") + name + " is " + text + ", needs a finite number");
+        return value;
+    }
+
+    [[noreturn]] void fail(const std::string& what) const
+    {
+        throw FileError(file_, "line " + std::to_string(line_) + ": " + what);
+    }
+
+    const std::string file_;
+    int line_ = 0;
+};
+
+}  // namespace
+
+PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty)
+{
+    return PoseReader(name).read(text, allow_empty);
+}
+
+PoseTable read_poses(const std::filesystem::path& file, bool allow_empty)
+{
+    return parse_poses(read_file(file), file.string(), allow_empty);
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,260 @@
+#include "base/csv.h"
+#include "base/number.h"
+#include "poses/pose_columns.h"
+#include "poses/pose_json.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/poses.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+/// The line's fields as they are written, quotes and all, each with a comma behind it, but those that are flagged.
+void append_fields(std::string& text, const std::string& line, const std::vector<std::uint8_t>& left_out)
+{
+    if (std::find(left_out.begin(), left_out.end(), 1) == left_out.end()) {
+        text += line + ',';
+        return;
+    }
+    std::size_t field = 0, start = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i <= line.size(); ++i) {
+        if (i < line.size() && line[i] == '"') quoted = !quoted;
+        if (i < line.size() && (line[i] != ',' || quoted)) continue;
+        if (left_out[field++] == 0) text.append(line, start, i - start) += ',';
+        start = i + 1;
+    }
+}
+
+void append_numbers(std::string& text, std::initializer_list<double> values)
+{
+    bool first = true;
+    for (const double value : values) {
+        if (!first) text += ',';
+        first = false;
+        append_number(text, value);
+    }
+}
+
+void append_row(std::string& text, const RasterPose& pose, double yaw)
+{
+    append_numbers(text, {pose.x, pose.y, pose.z, yaw});
+    text += ',';
+    if (pose.layer >= 0) text += std::to_string(pose.layer);
+    text += ',';
+    text += to_string(pose.verdict);
+    text += '\n';
+}
+
+Json bounds_json(const Bounds& bounds, int axes)
+{
+    Json out = Json::array();
+    for (const Vec3& corner : {bounds.min, bounds.max})
+        for (int axis = 0; axis < axes; ++axis) out.push_back(corner[axis]);
+    return out;
+}
+
+Json layers_json(const LayerChoice& layers)
+{
+    switch (layers.kind) {
+    case LayerChoice::Kind::Top: return "top";
+    case LayerChoice::Kind::Bottom: return "bottom";
+    case LayerChoice::Kind::Index: return layers.index;
+    case LayerChoice::Kind::All: break;
+    }
+    return "all";
+}
+
+/// An infinite limit is null.
+Json z_json(const ZRange& z)
+{
+    const auto limit = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+    return {limit(z.low), limit(z.high)};
+}
+
+/// What both commands have; a limit that there is not is left out.
+Json settings_json(const SpawnOptions& options, const Map& map, int axes)
+{
+    Json out = {{"count", options.count}, {"min_distance", options.min_distance}, {"seed", options.seed}};
+    out["yaw"] = options.random_yaw ? Json("random") : Json(options.yaw);
+    out["bounds"] = bounds_json(options.bounds.is_empty() ? map.bounds : options.bounds, axes);
+    if (std::isfinite(options.max_water_depth)) out["max_water_depth"] = options.max_water_depth;
+    if (std::isfinite(options.max_slope)) out["max_slope"] = options.max_slope;
+    for (const Region& region : options.area.within) out["region"].push_back(region.name);
+    for (const Region& region : options.area.keep_out) out["keep_out"].push_back(region.name);
+    for (const AvoidedPoints& group : options.avoid)
+        out["avoid"].push_back({{"poses", group.name}, {"count", group.points.size()}, {"distance", group.distance}});
+    return out;
+}
+
+std::string finished(Json out, const std::optional<VerdictCounts>& counts, std::span<const RobotStart> robots)
+{
+    for (std::size_t verdict = 0; counts && verdict < verdict_count; ++verdict)
+        out["counts"][to_string(Verdict(verdict))] = (*counts)[verdict];
+    out["poses"] = Json::array();
+    for (const RobotStart& robot : robots) out["poses"].push_back(pose_json(robot));
+    return json_text(out, 2) + "\n";
+}
+
+void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& names,
+              const std::vector<std::string>& name_spaces)
+{
+    for (std::size_t i = 0; i < names.size(); ++i) robots.at(i).name = names[i];
+    for (std::size_t i = 0; i < name_spaces.size(); ++i) robots.at(i).name_space = name_spaces[i];
+}
+
+}  // namespace
+
+std::vector<Spawn> spawns_of(const PoseTable& table)
+{
+    std::vector<Spawn> out;
+    for (const Pose& pose : table.poses)
+        out.push_back({pose.position, std::atan2(pose.rotation(1, 0), pose.rotation(0, 0))});
+    return out;
+}
+
+std::vector<std::string> column_of(const PoseTable& table, const std::string& name)
+{
+    const std::vector<std::string> names = csv_fields(table.header);
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) return {};
+    std::vector<std::string> out;
+    for (const std::string& row : table.rows) out.push_back(csv_fields(row)[std::size_t(at - names.begin())]);
+    return out;
+}
+
+std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::path& file)
+{
+    std::vector<Verdict> out;
+    for (const std::string& text : column_of(table, "verdict")) {
+        std::size_t verdict = 0;
+        while (verdict < verdict_count && text != to_string(Verdict(verdict))) ++verdict;
+        if (verdict == verdict_count)
+            throw FileError(file.string(), "pose " + std::to_string(out.size() + 1) + ": column verdict is \"" + text +
+                                               "\", needs a verdict's name, as valid or collision");
+        out.push_back(Verdict(verdict));
+    }
+    return out;
+}
+
+std::vector<std::string> replaced_columns(const PoseTable& table)
+{
+    std::vector<std::string> names = csv_fields(table.header);
+    std::erase_if(names, [](const std::string& name) { return !is_verdict_column(name); });
+    return names;
+}
+
+std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements,
+                         const std::vector<Part>& parts)
+{
+    std::vector<std::uint8_t> replaced;
+    for (const std::string& name : csv_fields(table.header)) replaced.push_back(is_verdict_column(name));
+    std::string text;
+    append_fields(text, table.header, replaced);
+    text += "verdict,ground,height_above,hit\n";
+    for (std::size_t i = 0; i < judgements.size(); ++i) {
+        const Judgement& judged = judgements[i];
+        append_fields(text, table.rows[i], replaced);
+        text += to_string(judged.verdict);
+        text += ',';
+        if (judged.ground)
+            append_numbers(text, {judged.ground->height, table.poses[i].position.z() - judged.ground->height});
+        else
+            text += ',';
+        text += ',';
+        if (judged.hit)
+            text += judged.hit->part == CollisionHit::occupancy ? "occupancy"
+                                                                : csv_quoted(parts[judged.hit->part].name);
+        text += '\n';
+    }
+    return text;
+}
+
+void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink)
+{
+    constexpr std::size_t piece = 1 << 20;
+    std::string text = "x,y,z,yaw,layer,verdict\n";
+    for_each_pose(raster, aerial, [&](const RasterPose& pose) {
+        append_row(text, pose, raster.yaw);
+        if (text.size() < piece) return;
+        sink(text);
+        text.clear();
+    });
+    sink(text);
+}
+
+std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names,
+                                     const std::vector<std::string>& name_spaces)
+{
+    std::vector<RobotStart> out;
+    for (const Spawn& spawn : list.spawns) out.push_back({{}, {}, spawn.position, {0, 0, spawn.yaw}});
+    name_all(out, names, name_spaces);
+    return out;
+}
+
+std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names,
+                                     const std::vector<std::string>& name_spaces)
+{
+    std::vector<RobotStart> out;
+    for (const Pose& pose : table.poses) out.push_back({{}, {}, pose.position, rpy_from(pose.rotation)});
+    name_all(out, names, name_spaces);
+    return out;
+}
+
+std::string robots_csv(std::span<const RobotStart> robots)
+{
+    const bool named = !robots.empty() && !robots[0].name.empty();
+    std::string text = named ? "name,x,y,z,roll,pitch,yaw\n" : "x,y,z,roll,pitch,yaw\n";
+    for (const RobotStart& robot : robots) {
+        if (named) text += csv_quoted(robot.name) + ',';
+        append_numbers(text, {robot.position.x(), robot.position.y(), robot.position.z(), robot.rpy.roll,
+                              robot.rpy.pitch, robot.rpy.yaw});
+        text += '\n';
+    }
+    return text;
+}
+
+std::string spawns_csv(const SpawnList& list)
+{
+    std::string text = "x,y,z,roll,pitch,yaw\n";
+    for (const Spawn& spawn : list.spawns) {
+        append_numbers(text, {spawn.position.x(), spawn.position.y(), spawn.position.z(), 0, 0, spawn.yaw});
+        text += '\n';
+    }
+    return text;
+}
+
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+                        const SampleOptions& options)
+{
+    Json settings = settings_json(options, map, 2);
+    settings["offset"] = options.offset.value_or(auto_offset(robot));
+    if (!options.z.is_unlimited()) settings["z"] = z_json(options.z);
+    settings["layers"] = layers_json(options.layers);
+    Json out = json_head("sample", map, robot, std::move(settings));
+    out["full"] = list.is_full;
+    out["undecided_area"] = list.undecided_area;
+    return finished(std::move(out), list.counts, robots);
+}
+
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+                        const SearchOptions& options)
+{
+    Json settings = settings_json(options, map, 3);
+    settings["max_height"] = options.max_height;
+    settings["max_failures"] = options.max_failures;
+    return finished(json_head("search", map, robot, std::move(settings)), list.counts, robots);
+}
+
+std::string poses_json(std::span<const RobotStart> robots, const Map& map, const Robot& robot)
+{
+    return finished(json_head("export", map, robot, {}), std::nullopt, robots);
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,258 @@
+#include "base/csv.h"
+#include "base/text.h"
+#include "poses/pose_json.h"
+
+#include <spawnfield/frames.h>
+#include <spawnfield/verdict_report.h>
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+namespace spawnfield {
+namespace {
+
+using Sink = std::function<void(std::string_view)>;
+constexpr std::size_t piece = 1 << 20;  // bytes
+
+/// Six digits are enough for people.
+std::string rounded(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value + 0.0);  // never -0
+    return text;
+}
+
+std::string listed(const Vec3& values)
+{
+    return rounded(values.x()) + ", " + rounded(values.y()) + ", " + rounded(values.z());
+}
+
+std::string hit_name(const VerdictReport& report, const CollisionHit& hit)
+{
+    return hit.part == CollisionHit::occupancy ? "occupancy" : report.map.geometry.parts()[hit.part].name;
+}
+
+double height_above(const VerdictReport& report, std::size_t index)
+{
+    return report.table.poses[index].position.z() - report.judgements[index].ground->height;
+}
+
+VerdictCounts counts_of(const VerdictReport& report)
+{
+    VerdictCounts counts{};
+    for (const Judgement& judged : report.judgements) ++counts[std::size_t(judged.verdict)];
+    return counts;
+}
+
+Json settings_json(const VerdictReport& report)
+{
+    Json out = {{"max_height", report.options.max_height}};
+    if (std::isfinite(report.options.max_water_depth)) out["max_water_depth"] = report.options.max_water_depth;
+    if (std::isfinite(report.options.max_slope)) out["max_slope"] = report.options.max_slope;
+    out["collision"] = report.octree ? "octree" : "geometry";
+    return out;
+}
+
+/// The fields of a row by their columns' names, without those that the new verdict replaces.
+Json fields_json(const VerdictReport& report, std::size_t index, const std::vector<std::string>& columns)
+{
+    const std::vector<std::string> fields = csv_fields(report.table.rows[index]);
+    const std::vector<std::string> replaced = replaced_columns(report.table);
+    Json out = Json::object();
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        if (std::count(replaced.begin(), replaced.end(), columns[i]) == 0) out[columns[i]] = fields[i];
+    return out;
+}
+
+Json verdict_json(const VerdictReport& report, std::size_t index, const std::string& name,
+                  const std::vector<std::string>& columns)
+{
+    const Judgement& judged = report.judgements[index];
+    const Pose& pose = report.table.poses[index];
+    Json out = {{"row", index + 1}};
+    out.update(pose_json({name, {}, pose.position, rpy_from(pose.rotation)}));
+    out["verdict"] = to_string(judged.verdict);
+    out["ground"] = judged.ground ? Json(judged.ground->height) : Json();
+    out["height_above"] = judged.ground ? Json(height_above(report, index)) : Json();
+    out["hit"] = judged.hit ? Json(hit_name(report, *judged.hit)) : Json();
+    out["columns"] = fields_json(report, index, columns);
+    return out;
+}
+
+/// A text that XML can hold on one line: valid UTF-8 without control characters.
+std::string xml_text(const std::string& text)
+{
+    std::string out = one_line(Json::parse(json_text(text, -1)).get<std::string>());
+    for (const char* const forbidden : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE, U+FFFF
+        for (std::size_t at = out.find(forbidden); at != std::string::npos; at = out.find(forbidden, at))
+            out.replace(at, 3, "\xEF\xBF\xBD");
+    return out;
+}
+
+/// Writes XML as it comes; closed elements are handed on in pieces.
+class JunitWriter {
+public:
+    JunitWriter(const VerdictReport& report, const Sink& sink) : report_(report), sink_(sink) {}
+
+    void write()
+    {
+        printer_.PushDeclaration("xml version=\"1.0\" encoding=\"UTF-8\"");
+        printer_.OpenElement("testsuites");
+        push_counts("spawnfield check");
+        printer_.OpenElement("testsuite");
+        push_counts("spawnfield check " + report_.map.name);
+        push("skipped", "0");
+        push_properties();
+        const std::vector<std::string> names = pose_names(report_.table);
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            push_case(i, names[i]);
+            if (std::size_t(printer_.CStrSize()) > piece) flush();
+        }
+        printer_.CloseElement();
+        printer_.CloseElement();
+        flush();
+    }
+
+private:
+    void push(const char* name, const std::string& value) { printer_.PushAttribute(name, xml_text(value).c_str()); }
+
+    /// Some readers need a time; a measured one would differ from run to run.
+    void push_counts(const std::string& name)
+    {
+        const std::uint64_t valid = counts_of(report_)[std::size_t(Verdict::Valid)], all = report_.judgements.size();
+        push("name", name);
+        push("tests", std::to_string(all));
+        push("failures", std::to_string(all - valid));
+        push("errors", "0");
+        push("time", "0");
+    }
+
+    void push_property(const std::string& name, const std::string& value)
+    {
+        printer_.OpenElement("property");
+        push("name", name);
+        push("value", value);
+        printer_.CloseElement();
+    }
+
+    void push_properties()
+    {
+        printer_.OpenElement("properties");
+        push_property("version", version());
+        push_property("map", report_.map.name);
+        push_property("map_hash", report_.map.hash);
+        push_property("robot", robot_name());
+        const Json settings = settings_json(report_);
+        for (const auto& [name, value] : settings.items())
+            push_property(name, value.is_string() ? value.get<std::string>() : json_text(value, -1));
+        printer_.CloseElement();
+    }
+
+    void push_case(std::size_t index, const std::string& name)
+    {
+        const Verdict verdict = report_.judgements[index].verdict;
+        printer_.OpenElement("testcase");
+        push("classname", report_.map.name + "." + robot_name());
+        push("name", name);
+        push("time", "0");
+        if (verdict != Verdict::Valid) {
+            printer_.OpenElement("failure");
+            push("type", to_string(verdict));
+            push("message", described(report_, index));
+            printer_.PushText(details(index).c_str());
+            printer_.CloseElement();
+        }
+        printer_.CloseElement();
+    }
+
+    std::string details(std::size_t index) const
+    {
+        const Judgement& judged = report_.judgements[index];
+        const Pose& pose = report_.table.poses[index];
+        const Vec3& p = pose.position;
+        const Rpy rpy = rpy_from(pose.rotation);
+        std::string text = "row " + std::to_string(index + 1) + ": " + xml_text(report_.table.rows[index]) + "\n";
+        text += "position " + listed({p.x(), p.y(), p.z()}) + " m; ";
+        text += "roll, pitch, yaw " + listed({rpy.roll, rpy.pitch, rpy.yaw}) + " rad\n";
+        if (judged.ground)
+            text += "ground at " + rounded(judged.ground->height) + " m, " + rounded(height_above(report_, index)) +
+                    " m below the origin\n";
+        else
+            text += "no ground below the origin\n";
+        if (judged.hit) text += "hit " + xml_text(hit_name(report_, *judged.hit)) + "\n";
+        return text;
+    }
+
+    /// A box has no name of its own.
+    std::string robot_name() const { return report_.robot.name.empty() ? "robot" : report_.robot.name; }
+
+    void flush()
+    {
+        sink_(printer_.CStr());
+        printer_.ClearBuffer(false);
+    }
+
+    const VerdictReport& report_;
+    const Sink& sink_;
+    tinyxml2::XMLPrinter printer_;
+};
+
+}  // namespace
+
+std::vector<std::string> pose_names(const PoseTable& table)
+{
+    std::vector<std::string> names = column_of(table, "name");
+    names.resize(table.poses.size());
+    std::map<std::string, int> uses;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (names[i].empty()) names[i] = "pose " + std::to_string(i + 1);
+        ++uses[names[i]];
+    }
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (uses[names[i]] > 1) names[i] += " (pose " + std::to_string(i + 1) + ")";
+    return names;
+}
+
+std::string described(const VerdictReport& report, std::size_t index)
+{
+    const Judgement& judged = report.judgements[index];
+    const std::string verdict = to_string(judged.verdict);
+    switch (judged.verdict) {
+    case Verdict::Outside: return verdict + " the map's bounds";
+    case Verdict::Aerial:
+        if (!judged.ground) return verdict + ": no ground below the origin";
+        return verdict + ": " + rounded(height_above(report, index)) + " m above the ground, the limit is " +
+               rounded(report.options.max_height) + " m";
+    case Verdict::OffTerrain:
+        return verdict + ": the ground is " + report.map.geometry.parts()[judged.ground->part].name;
+    case Verdict::Collision: return judged.hit ? verdict + " with " + hit_name(report, *judged.hit) : verdict;
+    default: return verdict;
+    }
+}
+
+void write_verdicts_json(const VerdictReport& report, const Sink& sink)
+{
+    Json head = json_head("check", report.map, report.robot, settings_json(report), "spawnfield-verdicts/1");
+    const VerdictCounts counts = counts_of(report);
+    for (std::size_t v = 0; v < verdict_count; ++v) head["counts"][to_string(Verdict(v))] = counts[v];
+    std::string text = json_text(head, 2);
+    text.erase(text.rfind("\n}"));
+    text += ",\n  \"poses\": [";
+    const std::vector<std::string> names = column_of(report.table, "name"), columns = csv_fields(report.table.header);
+    for (std::size_t i = 0; i < report.judgements.size(); ++i) {
+        text += i == 0 ? "\n    " : ",\n    ";
+        text += json_text(verdict_json(report, i, names.empty() ? "" : names[i], columns), -1);
+        if (text.size() < piece) continue;
+        sink(text);
+        text.clear();
+    }
+    sink(text + "\n  ]\n}\n");
+}
+
+void write_verdicts_junit(const VerdictReport& report, const Sink& sink) { JunitWriter(report, sink).write(); }
+
+}  // namespace spawnfield

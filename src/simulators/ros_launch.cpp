@@ -1,0 +1,113 @@
+#include "base/number.h"
+#include "simulators/text.h"
+
+#include <spawnfield/error.h>
+
+namespace spawnfield {
+namespace {
+
+bool ends_with_any(const std::string& text, std::initializer_list<const char*> ends)
+{
+    for (const char* const end : ends)
+        if (text.ends_with(end)) return true;
+    return false;
+}
+
+void check(const char* function, const LaunchOptions& options)
+{
+    if (options.file.empty() && options.topic.empty())
+        throw ArgumentError(function, "there is neither a file nor a topic that the robots are made of");
+    if (ends_with_any(options.file, {".xacro"}))
+        throw ArgumentError(function, options.file + " is a template: write the URDF first (xacro FILE > robot.urdf)");
+}
+
+/// "-x 1 -y 2 -z 0 -R 0 -P 0 -Y 0".
+std::string pose_arguments(const RobotStart& robot)
+{
+    const Vec3& p = robot.position;
+    return "-x " + plain_number(p.x()) + " -y " + plain_number(p.y()) + " -z " + plain_number(p.z()) + " -R " +
+           plain_number(robot.rpy.roll) + " -P " + plain_number(robot.rpy.pitch) + " -Y " + plain_number(robot.rpy.yaw);
+}
+
+/// Of a word in args of XML: $(…) is for the launcher, so it must not be quoted away.
+std::string argument(const std::string& word)
+{
+    const bool has_substitution = word.find("$(") != std::string::npos;
+    return xml_escaped(has_substitution ? word : shell_quoted(word));
+}
+
+std::string attribute(const std::string& name, const std::string& value) { return " " + name + "=\"" + value + "\""; }
+
+}  // namespace
+
+std::string ros1_launch(std::span<const RobotStart> robots, const LaunchOptions& options)
+{
+    check("ros1_launch", options);
+    const bool is_sdf = options.file.ends_with(".sdf"), has_parameter = !options.file.empty() && !is_sdf;
+    const std::string source = is_sdf ? "-sdf -file " + argument(options.file)
+                                      : "-urdf -param " + argument(has_parameter ? "robot_description" : options.topic);
+    std::string joints;
+    for (const auto& [joint, value] : options.joints) joints += " -J " + argument(joint) + " " + plain_number(value);
+    std::string text = "<?xml version=\"1.0\"?>\n<!-- " + made_by(robots.size()) +
+                       ": m, rad, x forward, y left, z up (REP-103) -->\n<launch>\n";
+    for (const RobotStart& robot : robots) {
+        text += "  <group" + attribute("ns", xml_escaped(robot.name_space)) + ">\n";
+        if (has_parameter)
+            text += "    <param name=\"robot_description\"" + attribute("textfile", xml_escaped(options.file)) + "/>\n";
+        text += "    <node name=\"spawn_model\" pkg=\"gazebo_ros\" type=\"spawn_model\" output=\"screen\"" +
+                attribute("args", source + " -model " + argument(robot.name) + " " + pose_arguments(robot) + joints) +
+                "/>\n  </group>\n";
+    }
+    return text + "</launch>\n";
+}
+
+std::string ros2_launch_xml(std::span<const RobotStart> robots, const LaunchOptions& options)
+{
+    check("ros2_launch_xml", options);
+    const std::string world = options.world.empty() ? "" : "-world " + argument(options.world) + " ";
+    const std::string source = options.file.empty() ? "-topic " + argument(options.topic)
+                                                    : "-file " + argument(options.file);
+    std::string text = "<?xml version=\"1.0\"?>\n<!-- " + made_by(robots.size()) +
+                       ": m, rad, x forward, y left, z up (REP-103) -->\n<launch>\n";
+    for (const RobotStart& robot : robots)
+        text += "  <node pkg=\"ros_gz_sim\" exec=\"create\" name=\"create\" output=\"screen\"" +
+                attribute("namespace", xml_escaped(robot.name_space)) + "\n        " +
+                attribute("args", world + source + " -name " + argument(robot.name) + " " + pose_arguments(robot))
+                    .substr(1) +
+                "/>\n";
+    return text + "</launch>\n";
+}
+
+std::string ros2_launch_py(std::span<const RobotStart> robots, const LaunchOptions& options)
+{
+    check("ros2_launch_py", options);
+    if (options.file.find("$(") != std::string::npos)
+        throw ArgumentError("ros2_launch_py",
+                            options.file + " has a $(…), which is for launch files in XML; name the file itself");
+    std::string text = "\"\"\"" + made_by(robots.size()) +
+                       ": m, rad, x forward, y left, z up (REP-103).\"\"\"\n"
+                       "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n";
+    const std::string source = options.file.empty() ? "'-topic', " + python_quoted(options.topic)
+                                                    : "'-file', " + python_quoted(options.file);
+    const std::string world = options.world.empty() ? "" : "'-world', " + python_quoted(options.world) + ", ";
+    text += "SOURCE = [" + world + source + "]\nROBOTS = [  # name, namespace, x, y, z, roll, pitch, yaw\n";
+    for (const RobotStart& robot : robots) {
+        text += "    (" + python_quoted(robot.name) + ", " + python_quoted(robot.name_space);
+        for (const double value : {robot.position.x(), robot.position.y(), robot.position.z(), robot.rpy.roll,
+                                   robot.rpy.pitch, robot.rpy.yaw}) {
+            text += ", ";
+            append_number(text, value);
+        }
+        text += "),\n";
+    }
+    return text +
+           "]\n\n\ndef generate_launch_description():\n"
+           "    return LaunchDescription([\n"
+           "        Node(package='ros_gz_sim', executable='create', name='create', namespace=namespace, "
+           "output='screen',\n"
+           "             arguments=SOURCE + ['-name', name, '-x', str(x), '-y', str(y), '-z', str(z),\n"
+           "                                 '-R', str(roll), '-P', str(pitch), '-Y', str(yaw)])\n"
+           "        for name, namespace, x, y, z, roll, pitch, yaw in ROBOTS])\n";
+}
+
+}  // namespace spawnfield
