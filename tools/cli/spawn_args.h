@@ -1,10 +1,10 @@
 #pragma once
 
-#include "cli.h"
+#include "query_args.h"
 
 namespace spawnfield::cli {
 
-/// Options of random draws, as `search`, `sample` and `experiment` take them.
+/// Options of random draws, for `search`, `sample` and `experiment`.
 struct DrawArgs {
     long long count = 0, max_failures = 100000;
     std::uint64_t seed = 0;
@@ -13,11 +13,11 @@ struct DrawArgs {
 void add_draws(CLI::App& command, DrawArgs& args);
 void add_max_failures(CLI::App& command, DrawArgs& args);
 
-/// What search and sample share, but bounds and yaw. Throws ArgumentError.
+/// Sets the options that search and sample share, except bounds and yaw. Throws ArgumentError.
 void fill(SpawnOptions& options, const QueryArgs& args, const DrawArgs& draws, const std::string& label);
 
-/// Everything but the yaw; `bounds` as --bounds has it, or empty; flat_allowed: heights come from elsewhere. Throws
-/// ArgumentError.
+/// Returns a search's options without the yaw. `bounds` is the value of --bounds, or empty; flat_allowed: it may have
+/// four numbers. Throws ArgumentError.
 SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds,
                              const std::string& label, bool flat_allowed = false);
 
