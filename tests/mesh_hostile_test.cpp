@@ -293,7 +293,7 @@ TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by 
           "line 13: <matrix> has \"1e\", needs numbers with spaces between");
     CHECK(said("</mesh>", "</mush>")
               .starts_with(
-                  "cannot be read as a mesh: line 4: no valid XML (xml error mismatched element); is it cut short?"));
+                  "cannot be read as a mesh: line 4: not valid XML (xml error mismatched element); is it cut short?"));
     const auto effect = [&](const char* color) {
         return complaint(folder, "a.dae",
                          replaced(collada(), "<library_nodes>",
