@@ -214,7 +214,7 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
          "spawnfield: no_terrain.yaml: has no terrain, so no robot can stand anywhere; label a part `terrain` "
          "(--label 'GLOB=terrain') or pass --allow-no-terrain"},
         {"bake typo.yaml -o map",
-         "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
+         "spawnfield: typo.yaml: part \"b\": spere is not a known key; known keys: " + keys + " (line 3)"},
         {"bake label.yaml -o new",
          "spawnfield: label.yaml: part \"b\": label is \"lava\", needs one of terrain, "
          "obstacle, water, ignore (line 3)"},
@@ -225,7 +225,8 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
         {"check map --poses upper.csv -o out" + husky,
          "spawnfield: upper.csv: line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw; there is X, but "
          "names are lower case"},
-        {"info typo.yaml", "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
+        {"info typo.yaml",
+         "spawnfield: typo.yaml: part \"b\": spere is not a known key; known keys: " + keys + " (line 3)"},
         {"info none", "spawnfield: none: does not exist; is the path right?"},
         {"info endless.yaml", "spawnfield: endless.yaml: is a device, needs a regular file"},
         {"bake endless.yaml -o new", "spawnfield: endless.yaml: is a device, needs a regular file"},
@@ -321,12 +322,13 @@ TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
                 "spawnfield: /dev/full: cannot be written: No space left on device"},
                1);
     desk.check({"experiment map -q --dims 2 --steps 1 -o out" + husky,
-                "spawnfield: out: exists and is no folder; choose another name or remove it"},
+                "spawnfield: out: exists and is not a folder; choose another name or remove it"},
                1);
-    desk.check({"experiment map -q --dims 2 --steps 1 -o map" + husky,
-                "spawnfield: map: holds bounds.bin, which is no part of a former experiment; choose another name or "
-                "remove it"},
-               1);
+    desk.check(
+        {"experiment map -q --dims 2 --steps 1 -o map" + husky,
+         "spawnfield: map: contains bounds.bin, which is not part of a former experiment; choose another name or "
+         "remove it"},
+        1);
     desk.check({raster + "-o new.csv --heatmap none/new.png",
                 "spawnfield: none/new.png: cannot be written: No such file or directory"},
                1);

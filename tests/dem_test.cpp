@@ -193,7 +193,7 @@ TEST_CASE("feet become metres, and it is told")
 
     const Scene unknown = load_scene(write(folder, {.keys = keys_of({{1024, 1}})}));
     CHECK(unknown.bounds().max.x() == 2);
-    CHECK(tells(unknown, "does not tell the unit of x and y, which are taken as metres"));
+    CHECK(tells(unknown, "does not state the unit of x and y; they are taken as metres"));
     CHECK(load_scene(write(folder, {.metadata = item + "ft</Item></GDALMetadata>"})).bounds().max.z() ==
           Approx(6 * 0.3048));
     CHECK(load_scene(write(folder, {.metadata = item + "metre</Item></GDALMetadata>"})).bounds().max.z() == 6);
@@ -239,10 +239,11 @@ TEST_CASE("where the units of heights disagree the first that GDAL takes counts,
     const Scene scene = load_scene(
         write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}, {4099, 9001}}), .metadata = metadata}));
     CHECK(scene.bounds().max.z() == Approx(by_band ? 6 : 6 * 1200.0 / 3937));
-    CHECK(tells(scene, by_band ? "says that heights are in units of 1 m by \"m\", and of 0.30480060960121924 m by "
-                                 "EPSG:6360 (VerticalGeoKey); they are taken by the first"
-                               : "m by EPSG:6360 (VerticalGeoKey), and of 1 m by 9001 (VerticalUnitsGeoKey); they are "
-                                 "taken by the first"));
+    CHECK(tells(scene,
+                by_band
+                    ? "heights are in units of 1 m by \"m\", but of 0.30480060960121924 m by "
+                      "EPSG:6360 (VerticalGeoKey); the first is used"
+                    : "m by EPSG:6360 (VerticalGeoKey), but of 1 m by 9001 (VerticalUnitsGeoKey); the first is used"));
     CHECK_FALSE(tells(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}}),
                                                 .metadata = item + "ft</Item></GDALMetadata>"})),
                       "says that"));
@@ -264,7 +265,7 @@ TEST_CASE("depths are heights turned round, and it is told")
     CHECK(height(scene, -2, 2.5) == -1);
     CHECK(scene.triangles.size() == 3);
     CHECK(tells(scene,
-                "has depths by EPSG:5336 (VerticalGeoKey), which counts downwards; the heights are their negatives"));
+                "its values are depths (EPSG:5336 (VerticalGeoKey) counts downwards); heights are their negatives"));
 }
 
 TEST_CASE("tiles are in the same unit whichever way they tell it")
@@ -286,17 +287,15 @@ TEST_CASE("EPSG codes that tell no unit are refused with what to do")
                           (folder / "a.tif").string() + ": " + reason);
     };
     check_refused(4326,
-                  "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where "
-                  "CODE is a projection in metres such "
-                  "as the UTM zone's");
+                  "has coordinates in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs "
+                  "EPSG:CODE, where "
+                  "CODE is a projection in metres, such as that of the UTM zone");
     CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 4978}})})),
                       Contains("(geocentric, EPSG:4978)"));
     for (const int code : {30000, 5703})  // none, heights alone
-        check_refused(
-            code,
-            "is in EPSG:" + std::to_string(code) +
-                ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives "
-                "it another, or tell its spacing in metres with the key cell");
+        check_refused(code, "is in EPSG:" + std::to_string(code) +
+                                ", which PROJ does not know as a projection, so its unit is unknown; give it another "
+                                "with gdal_edit.py -a_srs, or give the spacing in metres with the key cell");
     SceneOptions options;
     options.heightmap = "cell: 3";
     CHECK(load_scene(folder / "a.tif", options).bounds().max.x() == 3);
@@ -393,15 +392,14 @@ TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
     const TempFolder folder;
     const std::string start = (folder / "a.tif").string() + ": ";
     const std::string known_units =
-        ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they "
-        "are";
+        ", needs metres (9001), kilometres (9036) or feet (9002, 9003); set the unit with gdal_edit.py -units m or ft";
     const auto check_refused = [&](const GeoFile& geo, const std::string& reason) {
         CHECK_THROWS_WITH(load_scene(write(folder, geo)), start + reason);
     };
     check_refused({.keys = keys_of({{1024, 2}, {2048, 4326}})},
-                  "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where "
-                  "CODE is a projection in metres "
-                  "such as the UTM zone's");
+                  "has coordinates in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs "
+                  "EPSG:CODE, where "
+                  "CODE is a projection in metres, such as that of the UTM zone");
     CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 3}})})), Contains("geocentric"));
     check_refused({.scale = {0.001, 0.001, 0}, .tie = {0, 0, 0, -113.5, 48.25, 0}, .keys = {}},
                   "has cells of 0.001 at x -113.4995, y 48.2495, which look like degrees, needs metres; reproject it "
@@ -409,33 +407,35 @@ TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
                   "IN OUT.tif), or tell its spacing in metres with the key cell");
     check_refused(
         {.scale = {}, .tie = {}, .transformation = {2, 0.1, 0, 5, 0, -5, 0, 4, 0, 0, 0, 0, 0, 0, 0, 1}},
-        "is rotated against its coordinates (ModelTransformation), needs rows from west to east; gdalwarp makes it so");
+        "is rotated against its coordinates (ModelTransformation), needs rows from west to east; gdalwarp turns it");
     check_refused(
         {.scale = {}, .tie = {}, .transformation = {2, 0, 0, 5, 0, 5, 0, 4, 0, 0, 0, 0, 0, 0, 0, 1}},
-        "has a pixel scale of 2, -5, needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
+        "has a pixel scale of 2, -5, needs > 0: rows from west to east, the northern one first; gdalwarp turns it");
     check_refused({.scale = {}},
                   "has 1 tie points and no pixel scale (ModelPixelScale), needs one of each, or a ModelTransformation; "
-                  "gdalwarp makes it so");
+                  "gdalwarp writes them");
     check_refused(
         {.scale = {0, 5, 0}},
-        "has a pixel scale of 0, 5, needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
-    check_refused({.tie = {0, 0, 0, hole, 5, 0}}, "has a place or pixel scale that is not finite");
-    check_refused({.keys = keys_of({{1024, 1}, {3076, 9005}})},
-                  "has x and y in unit 9005 (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet "
-                  "(9002, 9003); reproject it with gdalwarp -t_srs");
+        "has a pixel scale of 0, 5, needs > 0: rows from west to east, the northern one first; gdalwarp turns it");
+    check_refused({.tie = {0, 0, 0, hole, 5, 0}}, "has a position or pixel scale that is not finite");
+    check_refused(
+        {.keys = keys_of({{1024, 1}, {3076, 9005}})},
+        "has x and y in the unit 9005 (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet "
+        "(9002, 9003); reproject it with gdalwarp -t_srs");
     check_refused({.keys = keys_of({{1024, 1}, {3076, 9001}, {4099, 9010}})},
-                  "has heights in unit 9010 (VerticalUnitsGeoKey)" + known_units);
+                  "has heights in the unit 9010 (VerticalUnitsGeoKey)" + known_units);
     check_refused({.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 5199}})},
-                  "has heights in unit EPSG:5199 (VerticalGeoKey)" + known_units);
+                  "has heights in the unit EPSG:5199 (VerticalGeoKey)" + known_units);
     check_refused(
         {.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 3855}}), .metadata = item + "cm</Item></GDALMetadata>"},
-        "has heights in unit \"cm\"" + known_units);
+        "has heights in the unit \"cm\"" + known_units);
     check_refused({.keys = keys_of({{1024, 1}, {1025, 5}})},
                   "has GTRasterTypeGeoKey 5, needs 1 (pixels are areas) or 2 (points)");
-    check_refused({.keys = {1, 1, 0, 2, 1024, 0, 1, 1}}, "has a GeoKeyDirectory that is cut short");
+    check_refused({.keys = {1, 1, 0, 2, 1024, 0, 1, 1}}, "has an incomplete GeoKeyDirectory; is it cut short?");
     check_refused({.no_data = "none"}, "has a GDAL_NODATA of \"none\", needs a number");
     check_refused({.metadata = "<Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.1</Item>"},
-                  "has heights with a scale of 0.1, needs plain ones; gdal_translate -unscale -ot Float32 makes them");
+                  "has heights with a scale of 0.1, needs heights without scale and offset; gdal_translate -unscale "
+                  "-ot Float32 applies them");
     check_refused({.cols = 6}, "has 6 x 1 pixels, needs at least 2 x 2");
     check_refused({.scale = {}, .tie = {}, .keys = {}},
                   "does not tell its size; --heightmap 'size: [X, Y]' is missing (m from first to last pixel centre; "
@@ -481,7 +481,7 @@ TEST_CASE("elevation models with one origin lie to each other as in their files"
     CHECK_THROWS_WITH(load_parts(folder, west + ", size: [1, 1]" + origin + "}\n"),
                       Contains("heightmap.origin is for a file that tells where it lies, without size and cell"));
     CHECK_THROWS_WITH(load_parts(folder, west + ", size: [1, 1], cell: 1}}\n"),
-                      Contains("heightmap.cell stands beside size, needs one of them"));
+                      Contains("heightmap.cell is given together with size, needs only one of them"));
 }
 
 TEST_CASE("an ESRI ASCII grid is read whatever its header's case and order")
@@ -551,7 +551,7 @@ TEST_CASE("a .prj beside a grid tells its units")
     folder.write(name, prj("\"Meter\",1.0") + vertical_prj("-1.0", "\"Meter\",1.0"));
     const Scene deep = load_scene(file);
     CHECK(deep.bounds().min.z() == -6);
-    CHECK(tells(deep, "has depths by Plan + Ups"));
+    CHECK(tells(deep, "its values are depths (Plan + Ups"));
     folder.write(name, prj("\"Meter\",1.0"));
     CHECK(load_scene(file).notices.size() == 1);  // where it lies
 }
@@ -561,11 +561,10 @@ TEST_CASE("a .prj of degrees is refused, and one that nobody reads is told")
     const TempFolder folder;
     const std::filesystem::path file = folder.write("a.asc", grid_head + "1 2 3\n4 5 6\n");
     folder.write("a.prj", gcs_of_prj);
-    CHECK_THROWS_WITH(
-        load_scene(file),
-        file.string() +
-            ": is in degrees (geographic, WGS 84), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE "
-            "is a projection in metres such as the UTM zone's");
+    CHECK_THROWS_WITH(load_scene(file), file.string() +
+                                            ": has coordinates in degrees (geographic, WGS 84), needs metres; "
+                                            "reproject it: gdalwarp -t_srs EPSG:CODE, where CODE "
+                                            "is a projection in metres, such as that of the UTM zone");
     SceneOptions options;
     options.heightmap = "cell: 3";
     CHECK(load_scene(file, options).bounds().max.x() == 3);
@@ -670,7 +669,7 @@ TEST_CASE("images and raw numbers need to be told what they are")
     CHECK_THROWS_WITH(load("a.raw", "raw: {type: uint8, rows: 2.5, cols: 3}"),
                       Contains("raw.rows is 2.5, needs a whole number up to 67108864"));
     CHECK_THROWS_WITH(load("a.raw", "size: 3"), Contains("size is 3, needs a list"));
-    CHECK_THROWS_WITH(load("a.raw", "sise: [1, 1]"), Contains("sise is no known key"));
+    CHECK_THROWS_WITH(load("a.raw", "sise: [1, 1]"), Contains("sise is not a known key"));
     CHECK_THROWS_WITH(load("a.raw", "size: [1, 1"), Contains("needs keys such as size: [513, 513], z: [0, 75]"));
 
     const auto shared = shared_scenes();

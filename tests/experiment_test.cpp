@@ -204,8 +204,9 @@ TEST_CASE("an experiment replaces a former one, and no other folder")
     arena.write("out/experiment.md", "old");
     const ProgramRun run = arena(command);
     CHECK(run.status == 1);
-    CHECK(run.err ==
-          "spawnfield: out: holds notes.txt, which is no part of a former experiment; choose another name or remove "
-          "it\n");
+    CHECK(
+        run.err ==
+        "spawnfield: out: contains notes.txt, which is not part of a former experiment; choose another name or remove "
+        "it\n");
     CHECK(bytes_of(arena / "out/experiment.md") == "old");
 }

@@ -174,7 +174,7 @@ TEST_CASE("heightmaps that make no sense are refused by name")
                           "layout told with the key raw (line 4)");
     CHECK_THROWS_WITH(
         load(folder, "file: colour.png, size: [1, 1], z: [0, 1]"),
-        used("colour.png") + "has a pixel that is coloured (column 0, row 0), needs to be a grey image (line 4)");
+        used("colour.png") + "has a pixel that is coloured (column 0, row 0), needs only grey, opaque pixels (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: thin.png, size: [1, 1], z: [0, 1]"),
                       used("thin.png") + "has 2 x 1 pixels, needs at least 2 x 2 (line 4)");
     CHECK_THROWS_WITH(
@@ -192,7 +192,7 @@ TEST_CASE("heightmaps that make no sense are refused by name")
                       start + "size has 0, needs > 0 (line 4)");
     CHECK_THROWS_WITH(load(folder, "size: [1, 1], z: [0, 1]"), start + "file is missing");
     CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1], zed: [0, 1]"),
-                      start + "zed is no known key; known: file, size, cell, z, origin, nodata, raw (line 4)");
+                      start + "zed is not a known key; known keys: file, size, cell, z, origin, nodata, raw (line 4)");
 }
 
 TEST_CASE("real heightmaps have the heights that their sources tell")

@@ -495,9 +495,9 @@ TEST_CASE("files of other programs are named, with how to get the data in")
         CAPTURE(kind.file);
         const fs::path file = folder.write(kind.file, kind.text);
         CHECK_THAT(scene_complaint(file),
-                   Contains(": is " + kind.name + ", which is not read; ") && Contains(kind.scene));
+                   Contains(": is " + kind.name + ", which cannot be read here; ") && Contains(kind.scene));
         CHECK_THAT(robot_complaint(file),
-                   Contains(": is " + kind.name + ", which is not read; ") && Contains(kind.robot));
+                   Contains(": is " + kind.name + ", which cannot be read here; ") && Contains(kind.robot));
     }
     CHECK_NOTHROW(refuse_foreign_robot(folder.write("b.xml", "<robot name='mujoco'/>")));
 }

@@ -204,7 +204,7 @@ TEST_CASE("glTF that needs an extension about geometry is refused, about looks i
         load_scene(needs("KHR_draco_mesh_compression")),
         Contains("needs the glTF extension KHR_draco_mesh_compression") && Contains("gltf-transform copy"));
     CHECK_THROWS_WITH(load_scene(needs("FOO_bar")),
-                      Contains("needs the glTF extension FOO_bar (extensionsRequired), which is not known here"));
+                      Contains("needs the glTF extension FOO_bar (extensionsRequired), which is unknown here"));
     CHECK_THROWS_AS(load_scene(needs("FOO_bar")), FileError);
     for (const char* extension :
          {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual", "EXT_texture_webp"})
@@ -221,10 +221,10 @@ TEST_CASE("glTF with instances or positions that are no floats is refused, requi
         plain, "\"name\":\"crate\"",
         "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{}}},\"name\":\"crate\"");
     CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", instances)),
-                      Contains("node \"crate\": has instances by EXT_mesh_gpu_instancing"));
+                      Contains("node \"crate\" has instances, by EXT_mesh_gpu_instancing"));
     CHECK_THROWS_WITH(
         load_scene(folder.write("a.gltf", replaced(plain, "\"componentType\":5126", "\"componentType\":5123"))),
-        Contains("has positions that are no floats, by KHR_mesh_quantization"));
+        Contains("has positions that are not floats, because of KHR_mesh_quantization"));
     folder.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: a.gltf}]\n");
     CHECK_THROWS_WITH(load_robot((folder / "robot.yaml").string()), Contains("KHR_mesh_quantization"));
 }
@@ -312,7 +312,7 @@ TEST_CASE("glTF with a vertex index beyond its vertices is refused")
     hand::Mesh mesh = hand::box({4, 2, 1});
     mesh.triangles[5][1] = 8;  // of vertices 0 .. 7
     CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", mesh_text::gltf({{.mesh = mesh}}))),
-                      Contains("1 of its 12 triangles have a vertex index beyond their vertices"));
+                      Contains("1 of its 12 triangles refer to a vertex that does not exist"));
 }
 
 TEST_CASE("morph targets count by the weights of their mesh; skins and a node's own weights are told")
@@ -337,11 +337,11 @@ TEST_CASE("morph targets count by the weights of their mesh; skins and a node's 
     const std::string posed = replaced(with("\"weights\":[1],"), "\"name\":\"crate\"",
                                        "\"weights\":[0],\"name\":\"crate\"");
     CHECK_THAT(notices_of(load_scene(folder.write("a.gltf", posed))),
-               Contains("a.gltf: node \"crate\": a node's own weights of morph targets do not count"));
+               Contains("a.gltf: node \"crate\": the morph target weights of a node are ignored"));
     const std::string skinned = replaced(plain, "\"name\":\"crate\"", "\"skin\":0,\"name\":\"crate\"");
     const std::string skin = replaced(skinned, "\"materials\"", "\"skins\":[{\"joints\":[0]}],\"materials\"");
     CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", skin)),
-                      Contains("skin 0: has no inverseBindMatrices for all of its joints"));
+                      Contains("skin 0 has fewer inverseBindMatrices than joints"));
     const std::string matrices = replaced(
         skin, "\"joints\":[0]",
         "\"joints\":[0],\"inverseBindMatrices\":2");  // an accessor over the corners' first 64 bytes
@@ -349,10 +349,10 @@ TEST_CASE("morph targets count by the weights of their mesh; skins and a node's 
         ",{\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"MAT4\"}],\"bufferViews\"";
     folder.write("a.gltf", replaced(matrices, "],\"bufferViews\"", accessor));
     CHECK_THAT(notices_of(load_scene(folder / "a.gltf")),
-               Contains("node \"crate\": the joints of a skin do not count"));
+               Contains("node \"crate\": the joints of its skin are ignored"));
     folder.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: a.gltf}]\n");
     CHECK_THAT(load_robot((folder / "robot.yaml").string()).notices[0],
-               Contains("a.gltf: node \"crate\": the joints of a skin do not count"));
+               Contains("a.gltf: node \"crate\": the joints of its skin are ignored"));
 }
 
 TEST_CASE("a mesh of more than 1 km with walls gets a notice, hills get none")
@@ -390,7 +390,7 @@ TEST_CASE("3MF and AMF are read in their unit, millimetres where they tell none"
     check_wedge(amf(" version=\"1.1\""), 0.001 * Vec3(4, 2, 1));
     check_wedge(folder.write("in.3mf", package_3mf("unit=\"inch\"")), 0.0254 * Vec3(4, 2, 1));
     CHECK_THROWS_WITH(load_scene(folder.write("bad.3mf", package_3mf("unit=\"mile\""))),
-                      Contains("its unit is \"mile\", needs one of micron, millimeter"));
+                      Contains("has the unit \"mile\", needs one of micron, millimeter"));
     const std::string good = package_3mf("unit=\"meter\"");
     for (std::size_t size = 0; size < good.size(); size += 7)  // cut anywhere: a result or a FileError
         try {

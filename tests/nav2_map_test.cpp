@@ -234,7 +234,7 @@ TEST_CASE("maps that make no sense are refused by file, key and line")
     check_refused("over.pgm", usual,
                   used("over.pgm") + "has a pixel of 101, needs at most its largest value 100 (line 1)");
     check_refused("text.pgm", usual,
-                  used("text.pgm") + "is cut short or a damaged PGM image: pixel 1 is no whole number (line 1)");
+                  used("text.pgm") + "is cut short or a damaged PGM image: pixel 1 is not a whole number (line 1)");
     CHECK_THROWS_WITH(load_scene(write_yaml(folder, "short.pgm")), Contains("is cut short"));
     check_refused("full.pgm", usual, "has no free cell (3 x 1); are negate and the thresholds right?");
     check_refused("a.pgm", "origin: [0, 0, 0]\n", "resolution is missing");

@@ -169,7 +169,7 @@ TEST_CASE("a part's name that unknown space takes is refused, and unknown withou
     REQUIRE(plain.notices.size() == 1);
     CHECK(plain.notices[0] == (folder / "a.yaml").string() + ": has no OctoMap, so --unknown has no effect");
     CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + "  - {name: a, box: [1, 1, 1], unknown: free}\n")),
-                      Contains("unknown is no known key"));
+                      Contains("unknown is not a known key"));
 }
 
 TEST_CASE("a robot that is partly in unknown space collides with it where that is blocked")

@@ -101,13 +101,13 @@ TEST_CASE("PNG images that are damaged or not grey are refused with their name a
         CHECK_THROWS_WITH(read_png(folder, png), file + reason);
     };
     check_refused({.colour = 2, .lines = {0, 7, 7, 7, 8, 8, 8, 0, 9, 9, 9, 9, 9, 8}},
-                  "has a pixel that is coloured (column 1, row 1), needs to be a grey image");
+                  "has a pixel that is coloured (column 1, row 1), needs only grey, opaque pixels");
     check_refused({.colour = 4, .lines = {0, 7, '\xff', 8, '\xfe', 0, 9, '\xff', 9, '\xff'}},
-                  "has a pixel that is transparent (column 1, row 0), needs to be a grey image");
+                  "has a pixel that is transparent (column 1, row 0), needs only grey, opaque pixels");
     check_refused({.colour = 6, .lines = std::string(18, '\0')},
-                  "has a pixel that is transparent (column 0, row 0), needs to be a grey image");
+                  "has a pixel that is transparent (column 0, row 0), needs only grey, opaque pixels");
     check_refused({.colour = 3, .lines = std::string(6, '\0'), .before = chunk("PLTE", "abcdef")},
-                  "has a pixel that is coloured (column 0, row 0), needs to be a grey image");
+                  "has a pixel that is coloured (column 0, row 0), needs only grey, opaque pixels");
     check_refused({.lines = {0, 1, 2}}, "is a damaged PNG image: Not enough image data");
     check_refused({.cols = 0, .lines = {0, 0}}, "is a damaged PNG image: Invalid IHDR data");
     check_refused({.cols = 1000000, .rows = 1000000, .lines = {0}},

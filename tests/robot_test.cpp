@@ -277,9 +277,10 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
         {"  - {box: [1, 0, 1]}\n", "part 1: box has 0, needs > 0 (line 4)"},
         {"  - {box: [1, 1, 1]}\n  - {sphere: .nan}\n", "part 2: sphere is .nan, needs a finite number (line 5)"},
         {"  - {box: [1, 1, 1], colour: red}\n",
-         "part 1: colour is no known key; known: name, xyz, rpy, rpy_deg, box (line 4)"},
+         "part 1: colour is not a known key; known keys: name, xyz, rpy, rpy_deg, box (line 4)"},
         {"  - {name: a}\n", "part 1: has no geometry, needs one of box, sphere, cylinder, capsule, mesh (line 4)"},
-        {"  - {box: [1, 1, 1], sphere: 1}\n", "part 1: sphere stands beside box, needs one geometry per part (line 4)"},
+        {"  - {box: [1, 1, 1], sphere: 1}\n",
+         "part 1: sphere is given together with box, needs one geometry per part (line 4)"},
         {"  []\n", "parts is empty, needs at least one part (line 3)"},
         {"  - {mesh: none.stl}\n", "part 1: mesh cannot be used: " + (folder / "none.stl").string() +
                                        ": does not exist; is the path right? (line 4)"},
@@ -301,7 +302,7 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
         {link_of("a", "<mesh filename=\"flat.obj\"/>"),
          "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
              ": its convex hull has no volume: its points lie in a plane"},
-        {"<link", "line 3: is no valid XML (xml error parsing element): is a tag left open or misspelt?"},
+        {"<link", "line 3: is not valid XML (xml error parsing element): is a tag left open or misspelt?"},
         {link_of("a", small_box + "<sphere radius=\"9\"/>"),
          "line 3: <geometry> holds 2 shapes, needs one; give each a <collision> of its own"},
         {link_of("a", small_box) + link_of("b", small_box) +
@@ -326,7 +327,8 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
     const auto xacro = folder.write("husky.urdf.xacro", "");
     CHECK_THROWS_WITH(
         load_robot(xacro.string()),
-        xacro.string() + ": is a xacro file, which is not read; expand it first: xacro husky.urdf.xacro > robot.urdf");
+        xacro.string() +
+            ": is a xacro file, which cannot be read here; expand it first: xacro husky.urdf.xacro > robot.urdf");
 
     CHECK_THROWS_WITH(load_robot((folder / "none.yaml").string()),
                       (folder / "none.yaml").string() +
@@ -463,11 +465,11 @@ TEST_CASE("a robot beyond all measure is refused, a chain longer than the call s
     CHECK(load_robot(folder.write("snake.urdf", chain).string()).bounds().max.x() == Approx(200.5));
     CHECK_THROWS_WITH(load_robot(folder.write("torn.urdf", "<robot name='a'>\n<link name='b'>\n</robot>").string()),
                       (folder / "torn.urdf").string() +
-                          ": line 2: is no valid XML (xml error mismatched element): is a tag left open or misspelt?");
+                          ": line 2: is not valid XML (xml error mismatched element): is a tag left open or misspelt?");
     std::string deep = "<robot name='a'>";
     for (int i = 0; i < 50000; ++i) deep += "<a>";
     CHECK_THROWS_WITH(load_robot(folder.write("deep.urdf", deep).string()),
-                      Catch::Contains("elements may be nested 500 deep"));
+                      Catch::Contains("elements may be nested at most 500 deep"));
     CHECK(load_robot(folder.write("BIG.URDF", "<robot name='a'><link name='l'>" + box + "</link></robot>").string())
               .parts.size() == 1);
 }

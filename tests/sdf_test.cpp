@@ -691,7 +691,7 @@ TEST_CASE("faulty worlds are refused with file, line and element")
         CHECK(has(message, "test.world"));
         for (const std::string& word : words) CHECK(has(message, word));
     };
-    expect("<model name='a'><link></model>", {"line 3", "is no valid XML"});
+    expect("<model name='a'><link></model>", {"line 3", "is not valid XML"});
     expect(ground + "<include><name>x</name></include>", {"line 3: <include>: has no <uri>"});
     expect(model_of("a", "<box><size>1 x 1</size></box>"), {"line 3: <box> <size>: \"x\" is no finite number"});
     expect(model_of("a", "<sphere><radius>1,5</radius></sphere>"),
@@ -714,7 +714,7 @@ TEST_CASE("faulty worlds are refused with file, line and element")
     expect("<population name='crowd'><model_count>3</model_count></population>",
            {"line 3: <population> \"crowd\" is not expanded here"});
     expect("", {"has no models"});
-    CHECK(has(refusal(folder.write("bare.world", "hello")), "is no valid XML"));
+    CHECK(has(refusal(folder.write("bare.world", "hello")), "is not valid XML"));
     CHECK(has(refusal(folder.write("empty.world", "")), "is empty"));
     CHECK(has(refusal(folder.write("other.sdf", "<mujoco/>")), "line 1: <mujoco> stands where"));
     CHECK(has(refusal(folder.write("noversion.sdf", "<sdf><world name='w'/></sdf>")), "line 1: <sdf> has no version"));

@@ -214,7 +214,7 @@ TEST_CASE("a file that is no world, or whose names are taken, is refused with it
             sdf_world(robots, {.uri = "model://cart", .world_name = name, .world_text = text, .world_file = "a.world"});
         });
     };
-    CHECK_THAT(refused("<sdf version='1.6'>\n<world>\n</sdf>"), Contains("a.world: line 2: is no valid XML"));
+    CHECK_THAT(refused("<sdf version='1.6'>\n<world>\n</sdf>"), Contains("a.world: line 2: is not valid XML"));
     CHECK(refused("<robot name='a'/>") == "a.world: has no <sdf> as its outermost element, needs an SDF world");
     CHECK(refused("<sdf version='1.6'><model name='a'/></sdf>") == "a.world: <sdf> has no <world>, needs one");
     CHECK_THAT(refused("<sdf><world name='a'/><world name='b'/></sdf>"), Contains("has several worlds, \"a\", \"b\""));

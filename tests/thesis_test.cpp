@@ -168,12 +168,13 @@ TEST_CASE("a folder that holds anything else is refused, and stays as it was")
     const ProgramRun run = arena(command + "-o out");
     CHECK(run.status == 1);
     CHECK(run.err ==
-          "spawnfield: out: holds notes.txt, which is no part of a thesis result; choose another name or remove it\n");
+          "spawnfield: out: contains notes.txt, which is not part of a thesis result; choose another name or remove "
+          "it\n");
     CHECK(bytes_of(arena / "out/Stats.txt") == "old");
     CHECK(bytes_of(arena / "out/notes.txt") == "mine");
     arena.write("file", "mine");
     CHECK(arena(command + "-o file").err ==
-          "spawnfield: file: exists and is no folder; choose another name or remove it\n");
+          "spawnfield: file: exists and is not a folder; choose another name or remove it\n");
     arena.write("nested/Stats.txt/deep", "mine");
     CHECK(arena(command + "-o nested").status == 1);
     CHECK(bytes_of(arena / "nested/Stats.txt/deep") == "mine");

@@ -142,16 +142,16 @@ TEST_CASE("TIFF images that are damaged or no grey heights are refused with thei
     };
     const std::string wanted = ", needs integers of 8, 16 or 32 bits, or float of 32 or 64";
     check_refused({.bits = 8, .channels = 3, .photometric = PHOTOMETRIC_RGB},
-                  "has 3 channels, needs 1 (grey); gdal_translate -b 1 takes the first");
-    check_refused({.bits = 8, .channels = 2}, "has 2 channels, needs 1 (grey); gdal_translate -b 1 takes the first");
+                  "has 3 channels, needs 1 (grey); extract one with gdal_translate -b 1");
+    check_refused({.bits = 8, .channels = 2}, "has 2 channels, needs 1 (grey); extract one with gdal_translate -b 1");
     check_refused({.bits = 8, .photometric = PHOTOMETRIC_PALETTE}, "has a palette, needs 1 channel (grey)");
-    check_refused({.bits = 64, .format = SAMPLEFORMAT_INT}, "has pixels of 64 bits with sign" + wanted);
+    check_refused({.bits = 64, .format = SAMPLEFORMAT_INT}, "has pixels of 64 bits (signed)" + wanted);
     check_refused({.bits = 4}, "has pixels of 4 bits" + wanted);
     CHECK_THROWS_WITH(read_grey_tiff(write_tiff(folder, {.cols = 90, .rows = 70}), 6299),
                       file + "has 90 x 70 pixels, needs at most 6299");
     check_refused({.format = SAMPLEFORMAT_IEEEFP}, "has pixels of 16-bit float" + wanted);
     check_refused({.orientation = ORIENTATION_BOTLEFT},
-                  "is stored turned or mirrored (orientation 4), needs its upper left corner first (1)");
+                  "is stored rotated or mirrored (orientation 4), needs its upper left corner first (1)");
 
     const std::filesystem::path whole = write_tiff(folder, {.cols = 90, .rows = 70});
     const std::string good = bytes_of(whole);

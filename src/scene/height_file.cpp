@@ -81,15 +81,15 @@ void use_system(HeightFile& found, const CoordinateSystem& system, bool wants_fr
     using Place = CoordinateSystem::Place;
     if (system.height_unit) {
         found.height_unit = *system.height_unit;
-        tell_height_unit(file, found.height_unit, system.name, notices);
+        add_height_unit_notice(file, found.height_unit, system.name, notices);
     }
     if (!wants_frame) return;
     if (system.place == Place::Degrees || system.place == Place::Globe)
-        refuse_globe(file, system.place == Place::Globe, system.name);
+        refuse_unprojected(file, system.place == Place::Globe, system.name);
     found.frame->is_projected = system.place == Place::Plane;
     found.frame->unit = system.unit;
     found.frame->crs = system.name;
-    tell_unit(file, "x and y", system.unit, notices);
+    add_unit_notice(file, "x and y", system.unit, notices);
 }
 
 HeightFile read_ascii_grid(const std::filesystem::path& file, bool wants_frame, std::vector<std::string>& notices)

@@ -149,7 +149,7 @@ HeightmapOptions read_heightmap_options(const YamlMap& map)
     map.only({"file", "size", "cell", "z", "origin", "nodata", "raw"});
     HeightmapOptions options;
     if (map.has("size")) options.size = map.positive_pair("size");
-    if (map.has("cell") && options.size) map.fail("cell", "stands beside size, needs one of them");
+    if (map.has("cell") && options.size) map.fail("cell", "is given together with size, needs only one of them");
     if (map.has("cell") && map.is_list("cell"))
         options.cell = map.positive_pair("cell");
     else if (map.has("cell"))
