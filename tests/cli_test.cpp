@@ -61,7 +61,11 @@ TEST_CASE("every command has help with an example, and the program tells its ver
         const std::size_t example = run.out.find("Example:");
         REQUIRE(example != std::string::npos);
         CHECK(run.out.find("spawnfield " + command + " ", example) != std::string::npos);
-        CHECK_THAT(run.out, Contains("--threads"));
+        const std::size_t group = run.out.find("\nOutput and run:\n");  // common options come before all groups
+        CHECK(run.out.find("\nOptions:\n") < group);
+        CHECK(group < run.out.find("--threads"));
+        std::istringstream help(run.out.substr(0, example));
+        for (std::string line; std::getline(help, line);) CHECK(line.size() <= 120);
     }
     CHECK(run_program(folder, "--help").status == 0);
     const ProgramRun version = run_program(folder, "--version");
@@ -480,7 +484,7 @@ TEST_CASE("what lies off the map, and a layer that it has not, is told of")
     }
     CHECK_THAT(arena("raster map --dims 2 --step 2 --bounds 9,9,60,60" + husky).err, !Contains("notice"));
     const std::string layers =
-        "notice: --layers 2: no cell of the map has so many, the most is 2 layers (0 is the highest)\n";
+        "notice: --layers 2 does not exist: a cell of the map has at most 2 layers (0 is the highest)\n";
     for (const std::string command : {"sample map -n 1", "raster map --dims 2 --step 2", "raster map --dims 3 --step 2",
                                       "heatmap map --step 2 -o a.png"}) {
         INFO(command);
@@ -496,7 +500,7 @@ TEST_CASE("the output of check can be checked again")
     CHECK(arena("check map --poses poses.csv -o once.csv" + husky).status == 0);
     const ProgramRun again = arena("check map --poses once.csv" + husky);
     CHECK(again.out == bytes_of(arena / "once.csv"));
-    CHECK_THAT(again.err, Contains("notice: once.csv: column verdict is replaced by a new one\n"));
+    CHECK_THAT(again.err, Contains("notice: once.csv: the new column verdict replaces the old one\n"));
     arena.write("mixed.csv", "hit,x,verdict,y,z\nlamp,0,\"1,2\",0,0.1\n");
     CHECK(arena("check map --poses mixed.csv" + husky).out ==
           "x,y,z,verdict,ground,height_above,hit\n0,0,0.1,valid,-0.05,0.15000000000000002,\n");

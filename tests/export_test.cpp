@@ -762,7 +762,7 @@ TEST_CASE("export --format glb draws poses of a CSV file and says what is wrong 
           "spawnfield: bad.csv: pose 2: column verdict is \"good\", needs a verdict's name, as valid or collision\n");
     CHECK_FALSE(fs::exists(arena / "bad.glb"));
     CHECK_THAT(arena("export map --format glb -o b.glb" + husky_option).err,
-               Contains("--robot has no effect: without --poses there is nowhere to draw it"));
+               Contains("--robot has no effect: without --poses there is no place to draw it"));
     const auto python = python_with("trimesh");
     if (!python) return;
     CHECK(python_accepts(*python, arena, R"(
@@ -794,18 +794,20 @@ TEST_CASE("export says which option a format needs, takes or refuses, and writes
     refused("--format nav2 -o a.yaml", "--format nav2 needs --robot");
     refused("--format nav2" + husky_option, "--format nav2 needs --out");
     refused("--format nav2 -o -" + husky_option,
-            "--out is \"-\": --format nav2 cannot go to standard output, name a file");
+            "--out is \"-\": --format nav2 cannot go to standard output; give a file name");
     refused("--format nav2 -o a.png" + husky_option,
             "the file's name is \"a.png\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
     refused("--format nav2 --layers all -o a.yaml" + husky_option,
-            "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of nav2 has one value");
+            "--layers is all, needs top, bottom or a number (0 is the highest layer), because a pixel of nav2 has one "
+            "value");
     refused("--format nav2 --resolution 0 -o a.yaml" + husky_option, "--resolution is 0, needs > 0");
     refused("--format ply" + husky_option, "--format ply needs --step");
     refused("--format ply --step 0" + husky_option, "--step is 0, needs > 0");
     refused("--format nav2 --step 1 -o a.yaml" + husky_option, "--step is not for --format nav2; it is for ply");
     refused("--format geotiff --offset 0.2 -o a.tif", "--offset needs --robot");
     refused("--format geotiff --layers all -o a.tif",
-            "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of geotiff has one value");
+            "--layers is all, needs top, bottom or a number (0 is the highest layer), because a pixel of geotiff has "
+            "one value");
     CHECK(arena("export map --format nav3 -o a.yaml" + husky_option).status == 2);
     CHECK(arena("export nowhere --format nav2 -o a.yaml" + husky_option).status == 4);
     CHECK(arena("export map --format nav2 -o none/a.yaml" + husky_option).status == 1);

@@ -113,7 +113,7 @@ TEST_CASE("what check wrote is drawn by verdict, with names")
     CHECK(std::find(texts.begin(), texts.end(), "2") != texts.end());
     const ProgramRun nothing_to_name = heatmap(arena, "-o b.svg --names");
     CHECK(nothing_to_name.status == 2);
-    CHECK(nothing_to_name.err == "spawnfield: --names needs --spawns: it writes the names of spawns\n");
+    CHECK(nothing_to_name.err == "spawnfield: --names needs --spawns, because it writes the names of spawns\n");
 }
 
 TEST_CASE("heat maps are the same bytes at any number of threads")

@@ -136,7 +136,7 @@ TEST_CASE("avoiding at no distance changes no byte, and options that do not fit 
         return run.err;
     };
     CHECK(refused("--avoid a.csv") ==
-          "spawnfield: --avoid needs --avoid-distance M, or a --min-distance > 0, which is its default\n");
+          "spawnfield: --avoid needs --avoid-distance M, or --min-distance > 0 (the default of --avoid-distance)\n");
     CHECK(refused("--avoid-distance 1") == "spawnfield: --avoid-distance needs --avoid FILE\n");
     CHECK(refused("--avoid a.csv --avoid-distance -1") == "spawnfield: --avoid-distance is -1, needs >= 0 m\n");
     CHECK(refused("--avoid a.csv --avoid a.csv --avoid a.csv --avoid-distance 1 --avoid-distance 2") ==
@@ -212,7 +212,7 @@ TEST_CASE("--yaw takes degrees in every command that has it")
     CHECK_THAT(arena("sample map -n 1 --yaw -30deg" + husky_option).out, Contains(",-0.5235987755982988\n"));
     CHECK(arena("experiment map --dims 2 --steps 2 --yaw 90deg -o e" + husky_option).status == 0);
     CHECK_THAT(arena("experiment map --dims 2 --steps 2 --yaw 90grad -o e" + husky_option).err,
-               Contains("--yaw is \"90grad\", needs rad, as 1.57, or degrees, as 90deg\n"));
+               Contains("--yaw is \"90grad\", needs radians such as 1.57 or degrees such as 90deg\n"));
     CHECK(arena("sample map -n 1 --yaw inf" + husky_option).status == 2);
     CHECK(arena("raster map --yaw random" + raster + husky_option).status == 2);
     const std::string hint = "notice: --yaw 90 is more than a turn of 2 pi rad; did you mean degrees? --yaw 90deg\n";
@@ -574,6 +574,6 @@ TEST_CASE("slips in options, values and commands come with what was meant")
     CHECK_THAT(said("export map --format geotif -o a.tif"), Contains("; did you mean geotiff?"));
     CHECK_THAT(said("heatmap map -o a.png --quantity clearence" + box), Contains("; did you mean clearance?"));
     CHECK_THAT(said("raster map --dims 4 --step 1" + box), Contains("\"4\" is not one of 2, 3"));
-    CHECK_THAT(said("smaple map"), Contains("smaple is no command") && Contains("; did you mean sample?"));
+    CHECK_THAT(said("smaple map"), Contains("smaple is not a command") && Contains("; did you mean sample?"));
     CHECK_THAT(said("--vesion"), Contains("--vesion is not an option of spawnfield; did you mean --version?"));
 }

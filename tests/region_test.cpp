@@ -547,5 +547,5 @@ TEST_CASE("the program takes regions and keep-outs, and tells what is odd")
     const ProgramRun degrees = run_program(folder, "sample map" + robot + "-n 5 --region degrees.csv");
     CHECK(degrees.status == 3);
     CHECK_THAT(degrees.err, Contains("--region degrees.csv 7.001, 46.5 to 7.002, 46.501 m lies off the map") &&
-                                Contains("degrees need to become metres"));
+                                Contains("convert them to metres"));
 }

@@ -378,12 +378,12 @@ TEST_CASE("patches lie on the ground below the spawns")
     }
 }
 
-TEST_CASE("the commands of each simulator's page and of the page on floors work as they are written")
+TEST_CASE("the commands of the tour, of each simulator's page and of the page on floors work as they are written")
 {
     const TempFolder folder;  // stands for /tmp and for the source folder
     fs::create_symlink(program_file(), folder / "spawnfield");
     fs::create_symlink(source_folder() + "/maps", folder / "maps");
-    std::vector<fs::path> pages{source_folder() + "/docs/floors.md"};
+    std::vector<fs::path> pages{source_folder() + "/docs/floors.md", source_folder() + "/docs/getting-started.md"};
     for (const auto& page : fs::directory_iterator(source_folder() + "/docs/simulators")) pages.push_back(page.path());
     for (const fs::path& page : pages) {
         std::istringstream text(bytes_of(page));
@@ -392,7 +392,8 @@ TEST_CASE("the commands of each simulator's page and of the page on floors work 
         for (std::string line; std::getline(text, line);) {
             if (line.starts_with("```"))
                 is_code = line == "```" && !is_code;
-            else if (is_code && (line.starts_with("spawnfield ") || line.starts_with("cp ")))
+            else if (is_code &&
+                     (line.starts_with("spawnfield ") || line.starts_with("cp ") || line.starts_with("printf ")))
                 script += line + "\n";
         }
         for (std::size_t at = script.find("/tmp"); at != std::string::npos; at = script.find("/tmp"))
@@ -432,9 +433,9 @@ TEST_CASE("what a simulator would add to a pose, or not know, is refused or told
     CHECK(folder.status == 0);
     CHECK_THAT(folder.out,
                Contains("-sdf -file " + (arena / "plain/model.sdf").string()) && Contains(" -J hinge 0.25"));
-    CHECK(folder.err.find("says nothing about joints") == std::string::npos);
+    CHECK(folder.err.find("does not contain joints") == std::string::npos);
     CHECK_THAT(run("--robot plain --format sdf --joints hinge=0.25").err,
-               Contains("notice: --format sdf says nothing about joints"));
+               Contains("notice: --format sdf does not contain joints"));
     CHECK(run("--robot plain --format sdf --robot-file 'a/$(x)/b.urdf'").status == 2);
 }
 
@@ -451,13 +452,13 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
         return run.err;
     };
     CHECK_THAT(refused("--format ros1-launch", 2),
-               Contains("needs --robot-file FILE") && Contains("box:0.5,0.5,0.5 is neither"));
+               Contains("needs --robot-file FILE") && Contains("box:0.5,0.5,0.5 is not such a file"));
     CHECK_THAT(refused("--format sdf", 2), Contains("needs --robot-uri URI"));
     CHECK_THAT(refused("--format isaaclab", 2), Contains("needs -o FOLDER"));
     CHECK_THAT(refused("--format isaaclab -o isaac", 1), Contains("holds notes.txt"));
     CHECK_THAT(refused("--format isaaclab --tiles 2 -o new", 2), Contains("--tiles is \"2\", needs ROWS,COLS"));
     CHECK_THAT(refused("--format isaaclab --tiles 40,40 -o new", 2), Contains("has no spawn"));
-    CHECK_THAT(refused("--format mujoco --joint-qpos 1,a", 2), Contains("--joint-qpos: \"a\" is no finite number"));
+    CHECK_THAT(refused("--format mujoco --joint-qpos 1,a", 2), Contains("--joint-qpos: \"a\" is not a finite number"));
     CHECK_THAT(refused("--format ros2-launch-py --robot-file none.urdf", 4),
                Contains("none.urdf: does not exist (--robot-file)"));
     CHECK_THAT(refused("--format ros2-launch-py --topic a --robot-file none.urdf", 2),
@@ -471,11 +472,11 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
     CHECK_THAT(refused("--name robot", 2), Contains("gives all 3 robots one name"));
     const ProgramRun idle = arena(query + "--format csv --tiles 1,1 --topic a");
     CHECK(idle.status == 0);
-    CHECK_THAT(idle.err, Contains("notice: --tiles has no effect: --format csv does not ask for it"));
+    CHECK_THAT(idle.err, Contains("notice: --tiles has no effect: --format csv does not use it"));
     CHECK_THAT(idle.err, Contains("notice: --topic has no effect"));
     const ProgramRun thesis = arena(query + "--format thesis --name 'a{i}' -o thesis");
     CHECK(thesis.status == 0);
-    CHECK_THAT(thesis.err, Contains("notice: --name has no effect: --format thesis does not ask for it"));
+    CHECK_THAT(thesis.err, Contains("notice: --name has no effect: --format thesis does not use it"));
     const auto told_relative = [&](const std::string& world, const std::string& out) {
         const ProgramRun run = arena(query + "--format sdf --robot-uri model://a --world " + world + " -o " + out);
         CHECK(run.status == 0);

@@ -7,7 +7,7 @@
 namespace spawnfield::cli {
 
 /// The units of --yaw, for --help.
-inline const std::string yaw_help = "in rad, or in degrees (90deg)";
+inline const std::string yaw_help = "radians, or degrees such as 90deg";
 
 /// Returns --yaw in rad, from "1.57" or "90deg". Prints a notice for radians of more than a turn, which are likely
 /// degrees. Throws ArgumentError.

@@ -116,8 +116,7 @@ void add_export(CLI::App& app, ChosenCommand& chosen)
     command.get_option("--robot")->required(false);
     command.add_option("--format", args->format, "One of the formats below")
         ->required()
-        ->check(one_of(format_names()))
-        ->type_name("TEXT");
+        ->check(one_of(format_names()).description(""));
     command.add_option("--out,-o", args->out, "File to write (default: standard output, if the format allows it)");
     command.add_option("--poses,-p", args->poses,
                        "CSV file of poses, for example from sample or check. Without --name, its column name names the "
@@ -128,7 +127,7 @@ void add_export(CLI::App& app, ChosenCommand& chosen)
     add_ground(
         command, args->ground,
         "Layers that count: top (the default), bottom, N from the top (0 first), or all (only ply, its default)");
-    command.add_option("--yaw", args->yaw, "Yaw of all poses, " + yaw_help + " (default 0)");
+    command.add_option("--yaw", args->yaw, "Yaw of all poses: " + yaw_help + " (default 0)");
     add_verdict_options(command, *args);
     start_group(command, help_group::region);
     command.add_option(

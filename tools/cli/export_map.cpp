@@ -151,7 +151,7 @@ std::vector<ExportFormat> map_formats()
 {
     return {
         {"nav2",
-         "map for map_server of ROS and nav2: -o FILE.yaml, and FILE.pgm beside it; free where --robot can stand",
+         "map for map_server of ROS and nav2: FILE.yaml with FILE.pgm; free where --robot can stand",
          {"--robot", "--out"},
          with(pose_options(), {"--layers", "--z", "--floor", "--resolution"}),
          write_nav2},

@@ -202,7 +202,7 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
                        "`check`) gives their colours (- for standard input)");
     command.add_option(
         "--yaw", args->yaw,
-        "Yaw of all poses, " + yaw_help +
+        "Yaw of all poses: " + yaw_help +
             "; or random: at how many of 16 headings the robot fits (default: that of the spawns, or 0)");
     start_group(command, help_group::picture);
     command.add_flag("--names", args->names,

@@ -431,8 +431,8 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         if (picture_to) write_robot_picture(robot, picture_to->path);
         out = robot_json(robot);
     } else {
-        refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is a scene");
-        refuse(command, {"--verify"}, "is only for maps; " + args.what + " is a scene");
+        refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is not a robot");
+        refuse(command, {"--verify"}, "is only for maps; " + args.what + " is not a map");
         const Scene scene = load_scene(args.what, scene_options(args, args));
         notices(args, scene.notices);
         out = scene_json(scene);

@@ -44,7 +44,7 @@ CLI::Option* add_dims(CLI::App& command, RasterArgs& args)
 void add_raster_query(CLI::App& command, RasterArgs& args)
 {
     add_ground(command, args.ground, "all, top, bottom, or N from the top (0 first; default all)");
-    command.add_option("--yaw", args.yaw, "Yaw of all poses, " + yaw_help + " (default 0)");
+    command.add_option("--yaw", args.yaw, "Yaw of all poses: " + yaw_help + " (default 0)");
     command.add_flag("--snap", args.snap,
                      "3D: each layer gets a pose --offset above it, in place of the lowest step at or above it");
     command.add_flag("--no-height-check", args.no_height_check, "3D: judge only collisions, at every pose");

@@ -218,15 +218,16 @@ void add_common_spawn_options(CLI::App& command, SpawnArgs& args)
     add_map_and_robot(command, args);
     add_draws(command, args.draws);
     command.get_option("--count")->required();
-    command.add_option("--yaw", args.yaw, "Yaw of all spawns, " + yaw_help + ", or random (default 0)");
+    command.add_option("--yaw", args.yaw, "Yaw of all spawns: " + yaw_help + ", or random (default 0)");
     command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
     std::vector<std::string> formats = pose_formats;
     formats.push_back("thesis");
     command
-        .add_option("--format", args.format,
-                    "csv, json, a file for a simulator, or thesis: a folder of Valid_Locations.txt and similar files "
-                    "(default csv)")
-        ->check(one_of(formats));
+        .add_option(
+            "--format", args.format,
+            "csv, json, thesis (a folder of Valid_Locations.txt and similar files), or a file for a simulator: " +
+                CLI::detail::join(std::vector(pose_formats.begin() + 2, pose_formats.end()), ", ") + " (default csv)")
+        ->check(one_of(formats).description(""));
 }
 
 /// Adds the groups that both commands have.
