@@ -162,9 +162,10 @@ TEST_CASE("a part's name that unknown space takes is refused, and unknown withou
     const std::string head = "format: spawnfield-scene/1\nparts:\n",
                       box = "  - {name: 'scan:unknown', label: terrain, box: [1, 1, 1]}\n",
                       scan = "  - {name: scan, octomap: scan.bt, unknown: blocked}\n";
-    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + box + scan)), Contains("is given to another part"));
+    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + box + scan)),
+                      Contains("is already used; rename one of the parts"));
     CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + scan + box)),
-                      Contains("is given to an earlier part too"));
+                      Contains("is also the name of an earlier part"));
     const Scene plain = load_scene(folder.write("a.yaml", head + box), {.unknown = Unknown::Blocked});
     REQUIRE(plain.notices.size() == 1);
     CHECK(plain.notices[0] == (folder / "a.yaml").string() + ": has no OctoMap, so --unknown has no effect");
