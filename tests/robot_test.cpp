@@ -302,9 +302,9 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
         {link_of("a", "<mesh filename=\"flat.obj\"/>"),
          "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
              ": its convex hull has no volume: its points lie in a plane"},
-        {"<link", "line 3: is not valid XML (xml error parsing element): is a tag left open or misspelt?"},
+        {"<link", "line 3: is not valid XML (xml error parsing element): is a tag not closed, or misspelt?"},
         {link_of("a", small_box + "<sphere radius=\"9\"/>"),
-         "line 3: <geometry> holds 2 shapes, needs one; give each a <collision> of its own"},
+         "line 3: <geometry> contains 2 shapes, needs one; give each a <collision> of its own"},
         {link_of("a", small_box) + link_of("b", small_box) +
              "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0\" "
              "quat_xyzw=\"0 0 1 0\"/></joint>",
@@ -464,9 +464,10 @@ TEST_CASE("a robot beyond all measure is refused, a chain longer than the call s
     chain += "<link name='tail'>" + box + "</link><joint name='t' type='fixed'><parent link='l" +
              std::to_string(links) + "'/><child link='tail'/></joint></robot>";
     CHECK(load_robot(folder.write("snake.urdf", chain).string()).bounds().max.x() == Approx(200.5));
-    CHECK_THROWS_WITH(load_robot(folder.write("torn.urdf", "<robot name='a'>\n<link name='b'>\n</robot>").string()),
-                      (folder / "torn.urdf").string() +
-                          ": line 2: is not valid XML (xml error mismatched element): is a tag left open or misspelt?");
+    CHECK_THROWS_WITH(
+        load_robot(folder.write("torn.urdf", "<robot name='a'>\n<link name='b'>\n</robot>").string()),
+        (folder / "torn.urdf").string() +
+            ": line 2: is not valid XML (xml error mismatched element): is a tag not closed, or misspelt?");
     std::string deep = "<robot name='a'>";
     for (int i = 0; i < 50000; ++i) deep += "<a>";
     CHECK_THROWS_WITH(load_robot(folder.write("deep.urdf", deep).string()),

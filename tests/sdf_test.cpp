@@ -701,7 +701,7 @@ TEST_CASE("faulty worlds are refused with file, line and element")
     expect(model_of("a", "<heightmap><uri>a.png</uri><size>4 4 -1</size></heightmap>"),
            {"\"a::l::c\": <heightmap> <size> is -1, needs > 0 and at most 1000 km (line 3)"});
     expect(model_of("a", unit_box + "\n<sphere><radius>1</radius></sphere>"),
-           {"\"a::l::c\": <geometry> holds <box>, <sphere>, needs one shape"});
+           {"\"a::l::c\": <geometry> contains <box>, <sphere>, needs one shape"});
     expect(model_of("a", "<box><size>1 -1 1</size></box>"), {"\"a::l::c\": <box> <size> is -1, needs > 0"});
     expect(model_of("a", "<sphere><radius>0</radius></sphere>"), {"<sphere> <radius> is 0, needs > 0"});
     expect(model_of("a", "<box><size>1 1e12 1</size></box>"), {"<box> <size> is 1e+12, needs > 0 and at most 1000 km"});

@@ -246,7 +246,7 @@ private:
         MeshOptions options;
         options.pose = body.pose;
         options.scale = scale;
-        options.up = 'z';  // Gazebo keeps the axes of the file, whatever its up axis is
+        options.up = 'z';  // Gazebo keeps the axes of the file and ignores its up axis
         options.rules = rules_for(body);
         options.auto_slope = auto_slope;
         append_mesh(scene_, part, mesh, options);

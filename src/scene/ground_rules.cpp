@@ -24,7 +24,7 @@ constexpr std::array other_words{"ceiling",    "wall",      "roof",   "door",   
 constexpr const char* other_rule =
     "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, barrier, rail, cone, post or pole";
 
-/// What a name contains.
+/// The known words that a name contains.
 struct NameWords {
     std::optional<std::size_t> ground;  ///< index into ground_words
     bool is_other = false;              ///< a word begins with one of other_words; then it is not ground

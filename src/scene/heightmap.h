@@ -27,7 +27,7 @@ struct Heightmap {
     std::vector<double> heights;       ///< m, row after row
     Vec3 middle = Vec3::Zero();        ///< of the grid, relative to the part's origin, m
     std::optional<GeoOrigin> origin;   ///< survey coordinates of the part's origin, if the file states its place
-    std::vector<std::string> notices;  ///< what was assumed
+    std::vector<std::string> notices;  ///< about assumptions and missing heights
 };
 
 /// Reads the options from a `heightmap:` key of a scene.yaml, or from a text such as "size: [2, 2], z: [0, 1]" for an

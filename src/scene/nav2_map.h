@@ -14,7 +14,7 @@ struct Nav2Map {
     double resolution = 0;             ///< m, side of a cell
     double x = 0, y = 0, yaw = 0;      ///< pose of the lower left corner of the lower left cell, m, rad
     std::vector<Cell> cells;           ///< row after row, row 0 the uppermost
-    std::vector<std::string> notices;  ///< what was assumed
+    std::vector<std::string> notices;  ///< about defaults and keys that are ignored
 
     Cell cell(int row, int col) const { return cells[std::size_t(row) * std::size_t(cols) + std::size_t(col)]; }
     /// Returns the point, at z = 0, where two lines of the grid cross: row lines 0 (above row 0) .. rows, column lines

@@ -46,8 +46,8 @@ std::string unknown_notice(const octomap::OcTree& tree, const VoxelBox& extent, 
     char text[160];
     std::snprintf(text, sizeof text, "%.6g m3 of its %.6g m3 are unknown (%.1f %%) and ", share * all * voxel,
                   all * voxel, 100 * share);
-    return text + std::string(unknown == Unknown::Blocked ? "count as solid"
-                                                          : "count as free (--unknown blocked makes them solid)");
+    return text + std::string(unknown == Unknown::Blocked ? "are treated as solid"
+                                                          : "are treated as free (--unknown blocked makes them solid)");
 }
 
 }  // namespace
