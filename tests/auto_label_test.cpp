@@ -118,8 +118,8 @@ TEST_CASE("a shell that is inside out is told")
     CHECK_FALSE(scene.has_terrain());
     REQUIRE(scene.notices.size() == 1);
     CHECK(scene.notices[0] ==
-          "\"scan\": no face of its shells looks up and 12 m2 look down, so --auto-label makes "
-          "them obstacles; is the mesh inside out?");
+          "\"scan\": no face of its shells looks up and 12 m2 look down, so --auto-label labels them as obstacle; is "
+          "the mesh inside out?");
 }
 
 TEST_CASE("auto_label in a scene file holds for its part, and the option for parts without a label")
@@ -138,8 +138,9 @@ TEST_CASE("auto_label in a scene file holds for its part, and the option for par
     CHECK(terrain("", by_slope) == Counts{{"floor", 2}, {"cloth", 2}, {"wall", 0}});
     CHECK(terrain(", label: obstacle", by_slope) == Counts{{"floor", 0}, {"cloth", 0}, {"wall", 0}});
     const std::string part = "scene.yaml: part \"a\": ";
-    CHECK_THROWS_WITH(terrain(", label: terrain, auto_label: {slope: 30}"),
-                      Contains(part + "auto_label cannot stand beside label"));
+    CHECK_THROWS_WITH(
+        terrain(", label: terrain, auto_label: {slope: 30}"),
+        Contains(part + "auto_label is given together with label, needs only one of them (labels: is allowed)"));
     CHECK_THROWS_WITH(terrain(", auto_label: {slope: 90}"), Contains("slope is 90, needs > 0 and < 90 degrees"));
     CHECK_THROWS_WITH(terrain(", auto_label: {slope: 0}"), Contains("slope is 0, needs > 0"));
     CHECK_THROWS_WITH(terrain(", auto_label: {}"), Contains("slope is missing"));
@@ -183,7 +184,7 @@ TEST_CASE("in a world what no name makes ground is labelled by its slope, shape 
                                    world_of(model_of("desk", box, "0 0 0 0 0 0") +
                                             model_of("ball", "<sphere><radius>1</radius></sphere>", "9 0 0 0 0 0")));
     CHECK_THAT(load_scene(desk).notices.back(),
-               Contains("so everything is terrain, walls and furniture too. --auto-label slope=30 makes terrain"));
+               Contains("so everything is terrain, also walls and furniture. --auto-label slope=30 labels faces"));
     CHECK(layers_at(load_scene(desk), 9, 0).size() == 1);
     CHECK(layers_at(load_scene(desk, by_slope), 9, 0).empty());
     CHECK(layers_at(load_scene(desk, by_slope), 0.1, 0.1).size() == 1);
@@ -244,7 +245,7 @@ TEST_CASE("in an OctoMap floors and gentle hills are terrain, steep ones, walls 
     CHECK_FALSE(load_scene(file, {.labels = {{"scan", Label::Obstacle}}, .auto_slope = 30 * degree}).has_terrain());
     CHECK_THROWS_WITH(
         load_parts(folder, "  - {name: a, octomap: scan.bt, auto_label: {slope: 30}, rpy: [0.1, 0, 0]}\n"),
-        Contains("needs to be upright to be labelled by slope"));
+        Contains("cannot be labelled by slope; set roll and pitch to 0"));
 }
 
 TEST_CASE("an unlabelled mesh gets a notice with options that can be pasted")
@@ -259,9 +260,9 @@ TEST_CASE("an unlabelled mesh gets a notice with options that can be pasted")
              {.name = "roof", .material = "asphalt", .mesh = moved(hand::rectangle(5, 5), tilted(0, {0, 0, 9}))}}));
     const std::string err = run_program(folder, "info house.obj").err;
     const std::string options = " --label '*ground*=terrain' --label 'floor\\[2]=terrain' --label '*asphalt*=terrain'";
-    CHECK_THAT(err, Contains("notice: house.obj: no label given, so everything is terrain, walls and furniture too. "
-                             "--auto-label slope=30 makes terrain of what looks up and is "
-                             "less steep than 30 degrees, and obstacles of the rest. These names look like ground:" +
+    CHECK_THAT(err, Contains("notice: house.obj: no label is given, so everything is terrain, also walls and "
+                             "furniture. --auto-label slope=30 labels faces that look up and are less steep than 30 "
+                             "degrees as terrain, and the others as obstacle. These names look like ground:" +
                              options + "\n"));
     const ProgramRun pasted = run_program(folder, "info house.obj" + options);
     CHECK(pasted.err.find("matches no") == std::string::npos);
@@ -269,7 +270,7 @@ TEST_CASE("an unlabelled mesh gets a notice with options that can be pasted")
     CHECK_THAT(pasted.out, Contains("node \"floor_lamp\", material \"material\": 2 triangles, z 6 to 6 m, obstacle\n"));
     folder.write("rock.obj", mesh_text::obj(hand::rectangle(5, 5)));
     CHECK_THAT(run_program(folder, "info rock.obj").err,
-               Contains(". --label 'GLOB=terrain' labels by name; `info` lists the names\n"));
+               Contains(". --label 'GLOB=terrain' labels by name (`info` lists the names)\n"));
 }
 
 TEST_CASE("--auto-label is read by bake and info, and refused where it means nothing")

@@ -130,7 +130,7 @@ TEST_CASE("bake passes its options on")
     CHECK(plain.status == 0);
     CHECK(plain.err.empty());
     CHECK_THAT(run_program(folder, "bake a.obj -o map").err,
-               Contains("notice: a.obj: no label given, so everything is terrain"));
+               Contains("notice: a.obj: no label is given, so everything is terrain"));
     CHECK_THAT(run_program(folder, "bake a.obj -o map --bounds 0.8,0.8,0,3,3,1").err,
                Contains("notice: no robot can stand in the bounds 0.8, 0.8, 0 to 3, 3, 1 m: there is no terrain at any "
                         "cell's centre; the scene is "
@@ -248,11 +248,11 @@ TEST_CASE("notices of one kind are printed once, with a count; --json has all")
         for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
         return count;
     };
-    CHECK(lines(run.err, "is not found: it is left out") == 1);
+    CHECK(lines(run.err, "is not found: it is ignored") == 1);
     CHECK_THAT(run.err, Contains("\n  ... and 199 more like it: \"m") && Contains(", ... (`info --json` lists all)\n"));
     CHECK_THAT(run.err, Contains("label \"lost*\" matches no model, link, collision, node or material\n  ... and 1 "
                                  "more like it: \"gone*\"\n"));
-    CHECK_THAT(run.err, Contains("the built-in ground plane stands for it\n"));
+    CHECK_THAT(run.err, Contains("the built-in ground plane replaces it\n"));
     CHECK(lines(run.err, "\n") <= 8);
     CHECK(nlohmann::json::parse(run_program(folder, "info a.world --json").out)["notices"].size() > 200);
     CHECK(run_program(folder, "info a.world --quiet").err.empty());
@@ -268,13 +268,13 @@ TEST_CASE("a world that includes what is not there is refused by the program, an
     const ProgramRun refused = run_program(folder, "bake a.world -o map");
     CHECK(refused.status == 4);
     CHECK(refused.err ==
-          "spawnfield: a.world: 1 model that it includes is not found; name the folder that holds it "
-          "with --model-path, or pass --allow-missing to leave it out:\n"
+          "spawnfield: a.world: 1 model that it includes is not found; give the folder that contains it "
+          "with --model-path, or ignore it with --allow-missing:\n"
           "  line 1: <include> <uri> model://house is not found\n");
     const ProgramRun obstacle = run_program(folder, "bake a.world -o map --allow-missing");
     CHECK(obstacle.status == 4);
     CHECK_THAT(obstacle.err,
-               Contains("nothing is made terrain") && Contains("has no terrain, so no robot can stand anywhere"));
+               Contains("none of it is made terrain") && Contains("has no terrain, so no robot can stand anywhere"));
     const ProgramRun small = run_program(folder, "bake a.world -o map --allow-missing --label 'rock=terrain'");
     CHECK(small.status == 0);
     const std::string tiny = "notice: the map is only 1 x 1 m; is a part of the scene missing or in the wrong unit?\n";

@@ -347,12 +347,14 @@ TEST_CASE("heights that are no data are no terrain")
     const std::filesystem::path plain = write(folder, {.heights = heights});
     const Scene deep = load_scene(plain);
     CHECK(deep.bounds().min.z() == -9999);
-    CHECK(tells(deep, "the lowest height is -9999 m, which often means no data; if so: --heightmap 'nodata: -9999'"));
+    CHECK(tells(
+        deep,
+        "the lowest height is -9999 m, which often means no data; if it does here, give --heightmap 'nodata: -9999'"));
     for (const int system : {8228, 5336})  // feet, depths
         CHECK(tells(
             load_scene(write(folder, {.heights = heights, .keys = keys_of({{1024, 1}, {3072, 26910}, {4096, system}})},
                              "b.tif")),
-            "the lowest value is -9999, which often means no data; if so: --heightmap 'nodata: -9999'"));
+            "the lowest value is -9999, which often means no data; if it does here, give --heightmap 'nodata: -9999'"));
     SceneOptions options;
     options.heightmap = "nodata: -9999";
     check_hole(load_scene(plain, options));
@@ -404,7 +406,7 @@ TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
     check_refused({.scale = {0.001, 0.001, 0}, .tie = {0, 0, 0, -113.5, 48.25, 0}, .keys = {}},
                   "has cells of 0.001 at x -113.4995, y 48.2495, which look like degrees, needs metres; reproject it "
                   "(gdalwarp -t_srs EPSG:32612 "
-                  "IN OUT.tif), or tell its spacing in metres with the key cell");
+                  "IN OUT.tif), or give the spacing in metres with the key cell");
     check_refused(
         {.scale = {}, .tie = {}, .transformation = {2, 0.1, 0, 5, 0, -5, 0, 4, 0, 0, 0, 0, 0, 0, 0, 1}},
         "is rotated against its coordinates (ModelTransformation), needs rows from west to east; gdalwarp turns it");
@@ -438,8 +440,8 @@ TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
                   "-ot Float32 applies them");
     check_refused({.cols = 6}, "has 6 x 1 pixels, needs at least 2 x 2");
     check_refused({.scale = {}, .tie = {}, .keys = {}},
-                  "does not tell its size; --heightmap 'size: [X, Y]' is missing (m from first to last pixel centre; "
-                  "or cell, m between two)");
+                  "does not state its size; give --heightmap 'size: [X, Y]' (m from first to last pixel centre), or "
+                  "cell (m between two pixels)");
 }
 
 TEST_CASE("a spacing that is told is used, and nobody asks where the file lies")
@@ -478,8 +480,9 @@ TEST_CASE("elevation models with one origin lie to each other as in their files"
     CHECK(tells(apart,
                 "part \"e\": x 500007, y 4000005 (EPSG:32611) is at 0, 0 of the scene, but an earlier part has x "
                 "500003, y 4000005 (EPSG:32611) there"));
-    CHECK_THROWS_WITH(load_parts(folder, west + ", size: [1, 1]" + origin + "}\n"),
-                      Contains("heightmap.origin is for a file that tells where it lies, without size and cell"));
+    CHECK_THROWS_WITH(
+        load_parts(folder, west + ", size: [1, 1]" + origin + "}\n"),
+        Contains("heightmap.origin is only for a file that states its place, without the keys size and cell"));
     CHECK_THROWS_WITH(load_parts(folder, west + ", size: [1, 1], cell: 1}}\n"),
                       Contains("heightmap.cell is given together with size, needs only one of them"));
 }
@@ -572,8 +575,8 @@ TEST_CASE("a .prj of degrees is refused, and one that nobody reads is told")
         folder.write("a.prj", text);
         const Scene scene = load_scene(file);
         CHECK(scene.bounds().max.x() == 5);
-        CHECK(
-            tells(scene, "a.prj: is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres"));
+        CHECK(tells(
+            scene, "a.prj: is not a coordinate system (WKT) that PROJ can read; x, y and heights are taken as metres"));
     }
 }
 
@@ -600,12 +603,13 @@ TEST_CASE("grids that make no sense are refused with the line")
         CHECK_THROWS_WITH(load_scene(folder.write("a.asc", text)), start + reason);
     };
     const std::string known =
-        " is neither a number nor a word of an ESRI ASCII grid's header; known: ncols, nrows, xllcorner or xllcenter, "
+        " is neither a number nor a key of an ESRI ASCII grid's header; known keys: ncols, nrows, xllcorner or "
+        "xllcenter, "
         "yllcorner or "
         "yllcenter, cellsize or dx and dy, NODATA_value";
     check_refused("north: 5\n", "line 1: \"north:\"" + known);
     check_refused("ncols 3\nrows 2\n", "line 2: \"rows\"" + known);
-    check_refused(grid_head + "1 2 3\n4 5,5 6\n", "line 7: \"5,5\" is no number");
+    check_refused(grid_head + "1 2 3\n4 5,5 6\n", "line 7: \"5,5\" is not a number");
     check_refused(grid_head + "1 2 3\n4 5 6 7\n",
                   "line 7 has 4 values, needs 3 (ncols): it has more than 6 values, needs 6 (3 x 2)");
     check_refused(grid_head + "1 2\n4 5 6\n", "line 6 has 2 values, needs 3 (ncols): it has 5 values, needs 6 (3 x 2)");
@@ -619,15 +623,15 @@ TEST_CASE("grids that make no sense are refused with the line")
     check_refused("ncols 2.5\nnrows 2\n1", "ncols is 2.5, needs a whole number of 1 or more");
     check_refused("ncols 3\n1 2 3\n", "has no nrows in its header");
     check_refused("ncols 1000000\nnrows 1000000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1",
-                  "has 1000000 x 1000000 cells, needs at most 67108864; gdalwarp -tr makes it coarser, gdal_translate "
-                  "-projwin cuts a part out");
+                  "has 1000000 x 1000000 cells, needs at most 67108864; make it coarser with gdalwarp -tr, or extract "
+                  "a part with gdal_translate -projwin");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nxllcenter 0\nyllcorner 0\ncellsize 1\n1",
                   "has xllcorner and xllcenter, needs one of them");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\ncellsize 1\n1",
                   "has neither yllcorner nor yllcenter in its header, needs one of them");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\n1", "has no cellsize in its header");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 1\n1",
-                  "has one of dx, dy in its header, needs both or cellsize");
+                  "has only one of dx and dy in its header, needs both, or cellsize");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0\n1", "cellsize is 0, needs > 0");
     CHECK_THROWS_WITH(
         load_scene(folder.write("a.asc", "ncols 2\nnrows 2\nxllcorner 8\nyllcorner -46\ncellsize 0.000277\n1 2 3 4\n")),
@@ -659,7 +663,7 @@ TEST_CASE("images and raw numbers need to be told what they are")
     const std::string raw_file = (folder / "a.raw").string() + ": ", wrong = "load_scene: --heightmap: ";
     CHECK_THROWS_WITH(
         load_scene(folder / "a.raw"),
-        raw_file + "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
+        raw_file + "has no header; give its layout with --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M'");
     CHECK_THROWS_WITH(load("a.raw", "raw: {type: float32, rows: 2, cols: 4}, cell: 1"),
                       raw_file + "has 24 bytes, needs 32 (4 x 2 pixels of 4 bytes)");
     CHECK_THROWS_WITH(load("a.raw", "raw: {type: float32, rows: 99999, cols: 99999}, cell: 1"),
@@ -676,9 +680,8 @@ TEST_CASE("images and raw numbers need to be told what they are")
     if (!shared) return;
     CHECK_THROWS_WITH(load_scene(*shared / "dem/river/relief.png"),
                       (*shared / "dem/river/relief.png").string() +
-                          ": tells neither its size nor its heights: --heightmap 'size: [X, Y], z: [LOW, HIGH]' is "
-                          "missing (m from first to last pixel centre, and "
-                          "of values 0 and 65535)");
+                          ": states neither its size nor its heights; give --heightmap 'size: [X, Y], z: [LOW, HIGH]' "
+                          "(m from first to last pixel centre, and m of the values 0 and 65535)");
     std::filesystem::copy_file(*shared / "dem/river/relief.png", folder / "relief.png");
     CHECK(load("relief.png", "size: [49, 36], z: [537.36, 543.81]").bounds().max == Vec3(24.5, 18, 543.81));
 }

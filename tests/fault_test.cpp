@@ -160,7 +160,7 @@ TEST_CASE("every mistake in a scene file is told by file, part, key, value and l
         {"{name: tank, mesh: box.obj, labels: terrain}", "labels is terrain, needs a list (line 4)"},
         {"{name: tank, mesh: box.obj, labels: [{node: a}]}", "labels: label is missing"},
         {"{name: tank, mesh: box.obj, labels: [{label: water}]}",
-         "labels: needs node, material, or both: both must match (line 4)"},
+         "labels: has neither node nor material, needs one of them or both (then both must match) (line 4)"},
         {"{name: tank, mesh: box.obj, labels: [{node: a, label: sea}]}",
          "labels: label is \"sea\", needs one of terrain, obstacle, water, ignore (line 4)"},
         {"{name: tank, mesh: none.obj}",
@@ -177,7 +177,7 @@ TEST_CASE("every mistake in a scene file is told by file, part, key, value and l
           "@/scene.yaml: part 1: sphere is given twice (line 4)");
     CHECK(part_complaint(folder, "tank") == "@/scene.yaml: part 1: is tank, needs a mapping (key: value) (line 4)");
     CHECK(part_complaint(folder, "{name: a, sphere: 1}\n  - {name: a, sphere: 1}") ==
-          "@/scene.yaml: part \"a\": name is given to an earlier part too, needs to be unique (line 5)");
+          "@/scene.yaml: part \"a\": name is also the name of an earlier part, needs to be unique (line 5)");
 }
 
 TEST_CASE("a scene file that is none is told so")
@@ -196,7 +196,7 @@ TEST_CASE("a scene file that is none is told so")
         {"format: spawnfield-scene/1\nparts: {a: 1}\n", "parts is a mapping, needs a list (line 2)"},
         {"format: spawnfield-scene/1\npart: []\n", "part is not a known key; known keys: format, name, parts (line 2)"},
         {"format: spawnfield-scene/1\nparts: [{name: a, label: ignore, sphere: 1}]\n",
-         "has no geometry: all of it is ignored"},
+         "has no geometry: all parts are ignored"},
         {"format: spawnfield-scene/1\nparts: [\n", "line 3: end of sequence flow not found"},
     };
     for (const auto& [text, wanted] : files) {
@@ -206,7 +206,8 @@ TEST_CASE("a scene file that is none is told so")
     CHECK(complaint(folder, [&] { load_scene(folder / "none.yaml"); }) ==
           "@/none.yaml: does not exist; is the path right?");
     CHECK(complaint(folder, [&] { load_scene(folder.path()); }) ==
-          "@: is a folder without model.config and .sdf file, needs to be a model's");
+          "@: is a folder without model.config and without a .sdf file, so it is not a model; give the folder of a "
+          "model, or an SDF file");
     const fs::path good = folder.write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: a, sphere: 1}]\n");
     CHECK(complaint(folder, [&] { load_scene(good, {.up = 'y'}); }) ==
           "load_scene: up and scale are for a bare mesh; give them in @/scene.yaml (keys up, scale)");

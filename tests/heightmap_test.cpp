@@ -166,12 +166,12 @@ TEST_CASE("heightmaps that make no sense are refused by name")
                       used("none.png") + "does not exist; is the path right? (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: text.png, size: [1, 1], z: [0, 1]"),
                       used("text.png") +
-                          "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its "
-                          "layout told with the key raw (line 4)");
+                          "is not PNG, TIFF or an ESRI ASCII grid; convert it to one of them, or give its layout with "
+                          "the key raw (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: photo.jpg, size: [1, 1], z: [0, 1]"),
                       used("photo.jpg") +
-                          "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its "
-                          "layout told with the key raw (line 4)");
+                          "is not PNG, TIFF or an ESRI ASCII grid; convert it to one of them, or give its layout with "
+                          "the key raw (line 4)");
     CHECK_THROWS_WITH(
         load(folder, "file: colour.png, size: [1, 1], z: [0, 1]"),
         used("colour.png") + "has a pixel that is coloured (column 0, row 0), needs only grey, opaque pixels (line 4)");
@@ -180,9 +180,9 @@ TEST_CASE("heightmaps that make no sense are refused by name")
     CHECK_THROWS_WITH(
         load(folder, "file: grey.png, size: [1, 1]"),
         used("grey.png") +
-            "is an integer image; heightmap.z is missing (heights of 0 and of the largest value) (line 4)");
+            "is an integer image; give heightmap.z (heights in m of the value 0 and of the largest value) (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: float.tiff, size: [1, 1], z: [0, 1]"),
-                      used("float.tiff") + "has heights in metres already; heightmap.z must go (line 4)");
+                      used("float.tiff") + "has heights in metres already; remove heightmap.z (line 4)");
     CHECK_THROWS_WITH(
         load(folder, "file: inf.tiff, size: [1, 1]"),
         used("inf.tiff") + "row 1, column 0 is infinite, needs a finite height or NaN (no ground) (line 4)");

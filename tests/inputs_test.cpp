@@ -33,8 +33,8 @@ void make_pipe(const fs::path& file)
 std::string pipe_complaint(const std::string& file)
 {
     return "spawnfield: " + file +
-           ": is a pipe, needs a regular file; write it to one first, or give - (standard input) where the option "
-           "takes it\n";
+           ": is a pipe, needs a regular file; write it to one first, or give - (standard input) if the option accepts "
+           "it\n";
 }
 
 /// A run that must end by itself: a pipe without a writer would keep it waiting.

@@ -182,11 +182,11 @@ TEST_CASE("a mesh in millimetres or on its side gets a notice, a plausible one g
     CHECK(!has(notices("good.obj", {100, 80, 1}, {}), "large"));
     CHECK(!has(notices("good.obj", {100, 80, 1}, {}), "side"));
     CHECK(has(notices("mm.obj", {100000, 80000, 1}, {}),
-              "is 100000 x 80000 x 1 m, which is large: is it in millimetres? --scale 0.001 makes it metres"));
+              "is 100000 x 80000 x 1 m, which is large; is it in millimetres? --scale 0.001 converts it to metres"));
     CHECK(!has(notices("mm.obj", {100000, 80000, 1}, {.scale = 0.001}), "large"));
     CHECK(has(notices("tiny.obj", {0.1, 0.2, 0.01}, {}), "which is small"));
     CHECK(has(notices("lying.obj", {100, 1, 80}, {}),
-              "most of its faces look along y, few up: does it lie on its side? --up y or z"));
+              "most of its faces look along y, few up; does it lie on its side? --up y or z"));
     CHECK(!has(notices("lying.obj", {100, 1, 80}, {.up = 'y'}), "side"));
 }
 
@@ -361,8 +361,8 @@ TEST_CASE("a mesh of more than 1 km with walls gets a notice, hills get none")
     const auto notices = [&](const Vec3& size) {
         return notices_of(load_scene(folder.write("a.obj", mesh_text::obj(hand::box(size)))));
     };
-    CHECK_THAT(notices({12000, 9000, 3000}), Contains("is 12000 x 9000 x 3000 m and has a wall of 3000 m height: is it "
-                                                      "in millimetres? --scale 0.001 makes it metres"));
+    CHECK_THAT(notices({12000, 9000, 3000}), Contains("is 12000 x 9000 x 3000 m and has a wall of 3000 m height; is it "
+                                                      "in millimetres? --scale 0.001 converts it to metres"));
     CHECK_THAT(notices({12000, 9000, 830}), !Contains("millimetres"));  // as high as the highest tower
     CHECK_THAT(notices({12, 9, 3}), !Contains("millimetres"));
     const std::string slope = "v 0 0 0\nv 9000 0 0\nv 0 100 3000\nf 1 2 3\n";

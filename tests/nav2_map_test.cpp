@@ -190,22 +190,21 @@ TEST_CASE("what a map leaves open is told")
     CHECK(notices(usual) == std::vector<std::string>{file + "walls are 2 m high (--wall-height sets it)"});
     const std::vector<std::string> many = notices(
         "resolution: 1\norigin: [0, 0, 0]\nnegate: 1\nmode: raw\nfree_thresh: 0.25\nlayers: 3\n");
-    CHECK(many == std::vector<std::string>{file + "the key layers is not looked at",
-                                           file + "occupied_thresh is missing, taken as 0.65",
+    CHECK(many == std::vector<std::string>{file + "the key layers is unknown and ignored",
+                                           file + "occupied_thresh is missing; the default 0.65 is used",
                                            file + "negate has no effect in mode raw, as in nav2",
                                            file + "walls are 2 m high (--wall-height sets it)"});
     const std::vector<std::string> grey = notices(
         "resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n");
     const std::string free_grey = file + "1 pixels of 205, which map savers write for unknown, are free";
-    CHECK(grey[0] == free_grey + " by free_thresh 0.25 (below 0.196 they are unknown)");
+    CHECK(grey[0] == free_grey + " by free_thresh 0.25 (with free_thresh 0.196 or less they are unknown)");
     write_png(folder, "b.png", cv::Mat(1, 1, CV_8UC4, cv::Scalar(205, 205, 205, 255)));  // with alpha 217.5: 0.147
     const auto of_alpha = [&](const std::string& keys) {
         return load_scene(write_yaml(folder, "b.png", keys)).notices[0];
     };
-    CHECK(
-        of_alpha(usual) ==
-        free_grey +
-            ", as mode trinary counts alpha as a fourth colour (as nav2 does; without the alpha channel they are not)");
+    CHECK(of_alpha(usual) == free_grey +
+                                 ", because mode trinary counts alpha as a fourth colour, as in nav2 (without the "
+                                 "alpha channel they are not free)");
     CHECK(of_alpha("resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n") ==
           grey[0]);
 }
@@ -229,7 +228,7 @@ TEST_CASE("maps that make no sense are refused by file, key and line")
     };
     check_refused("none.pgm", usual, used("none.pgm") + "does not exist; is the path right? (line 1)");
     check_refused("bits.pgm", usual,
-                  used("bits.pgm") + "is neither PGM (P2, P5) nor PNG; a map's image needs to be one of them (line 1)");
+                  used("bits.pgm") + "is not PGM (P2, P5) or PNG; convert the map's image to one of them (line 1)");
     check_refused("giant.pgm", usual, used("giant.pgm") + "has 99999 x 99999 pixels, needs at most 67108864 (line 1)");
     check_refused("over.pgm", usual,
                   used("over.pgm") + "has a pixel of 101, needs at most its largest value 100 (line 1)");

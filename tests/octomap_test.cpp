@@ -139,14 +139,14 @@ TEST_CASE("unknown space is free unless the scene or the caller says blocked, an
     const Scene open = load(folder, "");
     CHECK(open.parts.size() == 1);
     REQUIRE(open.notices.size() == 1);
-    CHECK(open.notices[0] == words + "count as free (--unknown blocked makes them solid)");
+    CHECK(open.notices[0] == words + "are treated as free (--unknown blocked makes them solid)");
     const Scene blocked = load(folder, ", unknown: blocked");
     REQUIRE(blocked.parts.size() == 2);
     CHECK(blocked.parts[1].name == "scan:unknown");
     CHECK(blocked.parts[1].label == Label::Obstacle);
     CHECK(volume_of(blocked, 0) == Approx(4));
     CHECK(volume_of(blocked, 1) == Approx(15.875));
-    CHECK(blocked.notices == std::vector<std::string>{words + "count as solid"});
+    CHECK(blocked.notices == std::vector<std::string>{words + "are treated as solid"});
     const auto file = folder.write("bare.bt", half_seen_bytes());
     CHECK(load_scene(file, {.unknown = Unknown::Blocked}).parts.size() == 2);
     CHECK(load_scene(folder / "scene.yaml", {.unknown = Unknown::Free}).parts.size() == 1);
@@ -162,9 +162,10 @@ TEST_CASE("a part's name that unknown space takes is refused, and unknown withou
     const std::string head = "format: spawnfield-scene/1\nparts:\n",
                       box = "  - {name: 'scan:unknown', label: terrain, box: [1, 1, 1]}\n",
                       scan = "  - {name: scan, octomap: scan.bt, unknown: blocked}\n";
-    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + box + scan)), Contains("is given to another part"));
+    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + box + scan)),
+                      Contains("is already used; rename one of the parts"));
     CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + scan + box)),
-                      Contains("is given to an earlier part too"));
+                      Contains("is also the name of an earlier part"));
     const Scene plain = load_scene(folder.write("a.yaml", head + box), {.unknown = Unknown::Blocked});
     REQUIRE(plain.notices.size() == 1);
     CHECK(plain.notices[0] == (folder / "a.yaml").string() + ": has no OctoMap, so --unknown has no effect");
@@ -297,8 +298,9 @@ TEST_CASE("bake --unknown blocked puts unknown space into the map")
                      blocked = run_program(folder, "bake scan.bt -o blocked --unknown blocked");
     REQUIRE(open.status == 0);
     REQUIRE(blocked.status == 0);
-    CHECK_THAT(open.err, Contains("notice: scan.bt: 15.875 m3 of its 36 m3 are unknown (44.1 %) and count as free"));
-    CHECK_THAT(blocked.err, Contains("(44.1 %) and count as solid"));
+    CHECK_THAT(open.err,
+               Contains("notice: scan.bt: 15.875 m3 of its 36 m3 are unknown (44.1 %) and are treated as free"));
+    CHECK_THAT(blocked.err, Contains("(44.1 %) and are treated as solid"));
     folder.write("poses.csv", "x,y,z\n-1,0,0.1\n1,1,0.1\n");
     CHECK_THAT(run_program(folder, "check open --robot box:0.4,0.4,0.4 --poses poses.csv").out,
                Contains("1,1,0.1,valid"));

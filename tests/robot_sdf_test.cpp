@@ -72,8 +72,8 @@ TEST_CASE("an SDF model is the union of its links' collisions in its own frame, 
     check_bounds(robot.parts[3].bounds(), {4.75, 2.75, 2.25}, {5.25, 3.25, 3.75});
     CHECK(robot.parts[3].name == "rod");
     REQUIRE(robot.notices.size() == 1);
-    CHECK(robot.notices[0] == (folder / "robot.sdf").string() +
-                                  ": the <pose> of model \"test\" does not count: poses are those of its own frame");
+    CHECK(robot.notices[0] ==
+          (folder / "robot.sdf").string() + ": the <pose> of model \"test\" is ignored: poses are in its own frame");
 }
 
 TEST_CASE("frames and nested models add up")
@@ -109,10 +109,12 @@ TEST_CASE("models are included from --model-path, from beside the file, and thro
     check_bounds(robot.bounds(), {-0.5, 1.5, 0.5}, {0.5, 2.5, 1.5});
     // The folder itself; its neighbours are found, being in the folder above.
     check_bounds(load_robot((folder / "lib/axle").string()).bounds(), {-0.5, 1.5, -0.5}, {0.5, 2.5, 0.5});
-    CHECK_THROWS_WITH(load(folder, inside),
-                      Catch::Contains("model://axle") &&
-                          Catch::Contains("; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell") &&
-                          Catch::StartsWith((folder / "robot.sdf").string() + ": "));
+    CHECK_THROWS_WITH(
+        load(folder, inside),
+        Catch::Contains("model://axle") &&
+            Catch::Contains(
+                "; give the folder of the models with --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH") &&
+            Catch::StartsWith((folder / "robot.sdf").string() + ": "));
 }
 
 TEST_CASE("models that include each other without end are refused, the same model twice is not")
@@ -129,8 +131,8 @@ TEST_CASE("models that include each other without end are refused, the same mode
         return std::filesystem::canonical(folder / name / "model.sdf").string();
     };
     CHECK_THROWS_WITH(load_robot((folder / "a").string()),
-                      Catch::Contains("model://a: leads back to itself: " + canonical("a") + " includes " +
-                                      canonical("b") + " includes " + canonical("a")));
+                      Catch::Contains("model://a: includes itself: " + canonical("a") + " includes " + canonical("b") +
+                                      " includes " + canonical("a")));
     folder.write("b/model.sdf", "<sdf version='1.9'><model name='b'>" + link_of("l", collision(small_box)) +
                                     "<!-- <include><uri>model://a</uri></include> --></model></sdf>");
     folder.write("a/model.sdf", "<sdf version='1.9'><model name='a'>" + link_of("l", "") +
@@ -164,12 +166,12 @@ TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
 
     const std::string file = (folder / "robot.sdf").string();
     CHECK_THROWS_WITH(load(folder, all, {.joints = {{"turn", 3}}}),
-                      "load_robot: joint \"turn\" is 3, its limits in " + file + " are -2 to 2 rad");
+                      "load_robot: joint \"turn\" is 3, outside its limits in " + file + ", -2 to 2 rad");
     CHECK_THROWS_WITH(load(folder, all, {.joints = {{"arm", 3}}}),
-                      "load_robot: joint \"arm\" is not in " + file + "; those that move: turn, slide");
+                      "load_robot: joint \"arm\" is not in " + file + "; joints that can be moved: turn, slide");
     const std::string loop = joint("loop", "fixed", "base", "hand", "");
     CHECK_THROWS_WITH(load(folder, all + loop, {.joints = {{"turn", 1}}}),
-                      file + ": joints cannot be given: link \"hand\" hangs on several joints, a closed chain");
+                      file + ": joints cannot be given: link \"hand\" is in a closed chain of joints");
     check_bounds(load(folder, all + loop).bounds(), load(folder, all).bounds().min, load(folder, all).bounds().max);
 }
 
@@ -190,7 +192,7 @@ TEST_CASE("meshes of SDF: scale, submesh, centre, and COLLADA's unit but not its
     check_bounds(bounds("<uri>cm.dae</uri>"), {0, 0, 0}, {0.1, 0.2, 0.3}, 1e-7);
     check_bounds(bounds("<uri>file://" + (folder / "two.obj").string() + "</uri>"), {0, 0, 0}, {5, 6, 7});
     CHECK_THROWS_WITH(bounds("<uri>two.obj</uri><submesh><name>up</name></submesh>"),
-                      Catch::Contains("two.obj: has no submesh \"up\"; it has left, right"));
+                      Catch::Contains("two.obj: has no submesh \"up\"; its nodes are left, right"));
 }
 
 TEST_CASE("an ellipsoid's polyhedron holds it, closely")
@@ -230,7 +232,7 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
     folder.write("flat.obj", mesh_text::obj(hand::rectangle(1, 1)));
     const std::string file = (folder / "robot.sdf").string() + ": ", in_a = file + "link \"a\": collision \"c\": ";
     const std::pair<std::string, std::string> cases[] = {
-        {link_of("a", ""), file + "has no <collision>, needs at least one (<visual> does not count)"},
+        {link_of("a", ""), file + "has no <collision>, needs at least one (<visual> elements are not used)"},
         {link_of("a", collision("<box><size>1 0 1</size></box>")),
          file + "\"a::c\": <box> <size> is 0, needs > 0 and at most 1000 km (line 3)"},
         {link_of("a", collision("<sphere><radius>-1</radius></sphere>")),
@@ -262,7 +264,7 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
         }
     };
     CHECK(refused("<sdf version='1.9'><world name='w'/></sdf>") ==
-          file + "holds a <world>, needs a <model> to be a robot");
+          file + "contains a <world>, needs a <model> to be a robot");
     for (const std::string& text :
          {sdf_of(link_of("a", collision(small_box)) + link_of("a", collision(small_box))), sdf_of("<link"),
           std::string(), sdf_of(link_of("a", collision(small_box), "<pose relative_to='q'/>")),
@@ -272,9 +274,10 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
         CHECK_THAT(refused(text), Catch::StartsWith(file));
     }
     std::filesystem::create_directories(folder / "empty");
-    CHECK_THROWS_WITH(
-        load_robot((folder / "empty").string()),
-        (folder / "empty").string() + ": is a folder without model.config and .sdf file, needs to be a model's");
+    CHECK_THROWS_WITH(load_robot((folder / "empty").string()),
+                      (folder / "empty").string() +
+                          ": is a folder without model.config and without a .sdf file, so it is not a model; give the "
+                          "folder of a model, or an SDF file");
 }
 
 TEST_CASE("every prefix of an SDF robot is read or refused")
@@ -296,7 +299,7 @@ TEST_CASE("an SDF model with an inertia that cannot be is taken, with a notice")
         "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>9</izz></inertia></inertial>";
     const Robot robot = load(folder, link_of("a", inertia + collision(small_box)) + link_of("b", inertia));
     REQUIRE(robot.notices.size() == 1);
-    CHECK_THAT(robot.notices[0], Catch::Contains("invalid inertia") && Catch::Contains("and 1 more such"));
+    CHECK_THAT(robot.notices[0], Catch::Contains("invalid inertia") && Catch::Contains("and 1 more of this kind"));
 }
 
 namespace {

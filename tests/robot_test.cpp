@@ -292,7 +292,7 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
     for (const auto& [text, wanted] : parts) CHECK_THROWS_WITH(load_parts(folder, text), yaml + ": " + wanted);
 
     const std::pair<std::string, std::string> links[] = {
-        {"<link name=\"a\"/>", "has no <collision>, needs at least one (<visual> does not count)"},
+        {"<link name=\"a\"/>", "has no <collision>, needs at least one (<visual> elements are not used)"},
         {link_of("a", "<box size=\"1 0 1\"/>"), "link \"a\": <box size> is 0, needs > 0"},
         {link_of("a", "<sphere radius=\"-0.5\"/>"), "link \"a\": <sphere radius> is -0.5, needs > 0"},
         {link_of("a", "<cylinder radius=\"1\" length=\"0\"/>"), "link \"a\": <cylinder> is 0, needs > 0"},
@@ -302,28 +302,28 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
         {link_of("a", "<mesh filename=\"flat.obj\"/>"),
          "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
              ": its convex hull has no volume: its points lie in a plane"},
-        {"<link", "line 3: is not valid XML (xml error parsing element): is a tag left open or misspelt?"},
+        {"<link", "line 3: is not valid XML (xml error parsing element): is a tag not closed, or misspelt?"},
         {link_of("a", small_box + "<sphere radius=\"9\"/>"),
-         "line 3: <geometry> holds 2 shapes, needs one; give each a <collision> of its own"},
+         "line 3: <geometry> contains 2 shapes, needs one; give each a <collision> of its own"},
         {link_of("a", small_box) + link_of("b", small_box) +
              "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0\" "
              "quat_xyzw=\"0 0 1 0\"/></joint>",
-         "line 5: <origin quat_xyzw> is not read, and a part would stand unturned; write it as rpy"},
+         "line 5: <origin quat_xyzw> cannot be read here; write the rotation as rpy"},
         {link_of("a", small_box) + link_of("b", small_box),
-         "is no valid URDF: Failed to find root link: Two root links found: [a] and [b]"},
+         "is not valid URDF: Failed to find root link: Two root links found: [a] and [b]"},
         {link_of("a", "<box size=\"1 x 1\"/>"),
-         "is no valid URDF: Unable to parse component [x] to a double (while parsing a vector value)"},
+         "is not valid URDF: Unable to parse component [x] to a double (while parsing a vector value)"},
         {link_of("a", "<box size=\"1 nan 1\"/>"),
-         "is no valid URDF: Unable to parse component [nan] to a double (while parsing a vector value)"},
+         "is not valid URDF: Unable to parse component [nan] to a double (while parsing a vector value)"},
         // urdfdom would drop the link's box for this and go on.
         {"<link name=\"a\"><inertial><mass value=\"x\"/></inertial><collision><geometry>" + small_box +
              "</geometry></collision></link>" + link_of("b", small_box) + joint_of("a", "b", "xyz=\"0 0 0\""),
-         "is no valid URDF: Inertial: mass [x] is not a float"},
+         "is not valid URDF: Inertial: mass [x] is not a float"},
     };
     for (const auto& [text, wanted] : links) CHECK_THROWS_WITH(load_urdf(folder, text), xml + ": " + wanted);
 
     CHECK_THROWS_WITH(load_urdf(folder, "<xacro:property name=\"a\" value=\"1\"/>"),
-                      xml + ": holds xacro macros; expand them first: xacro robot.urdf > robot.urdf");
+                      xml + ": contains xacro macros; expand them first: xacro robot.urdf > robot.urdf");
     const auto xacro = folder.write("husky.urdf.xacro", "");
     CHECK_THROWS_WITH(
         load_robot(xacro.string()),
@@ -372,7 +372,7 @@ TEST_CASE("a joint that mimics follows, and is told where that leads out of its 
     check_bounds(robot.parts[1].bounds(), {-0.1, -2.7, -0.3}, {0.1, -2.3, 0.3});
     REQUIRE(robot.notices.size() == 1);
     CHECK(robot.notices[0] == (folder / "robot.urdf").string() +
-                                  ": joint \"b\" stands at -2.5 m, as \"a\" has it, though its limits are -1 to 1 m");
+                                  ": joint \"b\" is at -2.5 m, because it mimics \"a\", outside its limits -1 to 1 m");
 }
 
 TEST_CASE("joints that cannot stand so are refused with what can be given")
@@ -387,11 +387,12 @@ TEST_CASE("joints that cannot stand so are refused with what can be given")
         axis_joint("wheel", "continuous", "base", "d", "xyz=\"0 0 0\"", "0 0 1", "", "<mimic joint=\"turn\"/>") +
         "<link name=\"d\"/>";
     const std::pair<JointPosition, std::string> cases[] = {
-        {{"tern", 0.7}, "joint \"tern\" is not in " + file + "; those that move: turn"},
-        {{"glue", 0}, "joint \"glue\" is fixed in " + file + "; those that move: turn"},
-        {{"free", 0}, "joint \"free\" is of type floating, which cannot be moved by one number; those that move: turn"},
-        {{"wheel", 0}, "joint \"wheel\" follows joint \"turn\"; give that one"},
-        {{"turn", 1.25}, "joint \"turn\" is 1.25, its limits in " + file + " are 0.5 to 1 rad"},
+        {{"tern", 0.7}, "joint \"tern\" is not in " + file + "; joints that can be moved: turn"},
+        {{"glue", 0}, "joint \"glue\" is fixed in " + file + "; joints that can be moved: turn"},
+        {{"free", 0},
+         "joint \"free\" is of type floating, which cannot be moved by one number; joints that can be moved: turn"},
+        {{"wheel", 0}, "joint \"wheel\" mimics joint \"turn\"; give that one instead"},
+        {{"turn", 1.25}, "joint \"turn\" is 1.25, outside its limits in " + file + ", 0.5 to 1 rad"},
         {{"turn", NAN}, "joint \"turn\" is nan, needs a finite number"},
     };
     for (const auto& [joint, wanted] : cases) {
@@ -404,7 +405,7 @@ TEST_CASE("joints that cannot stand so are refused with what can be given")
                       "load_robot: joint \"a\" is given, but box:1,1,1 has no joints");
     const Robot at_zero = load_urdf(folder, robot);
     REQUIRE(at_zero.notices.size() == 1);
-    CHECK(at_zero.notices[0] == file + ": joint \"turn\" stands at 0 rad, though its limits are 0.5 to 1 rad");
+    CHECK(at_zero.notices[0] == file + ": joint \"turn\" is at 0 rad, outside its limits 0.5 to 1 rad");
 }
 
 TEST_CASE("mimics of nothing and of themselves are told")
@@ -417,7 +418,7 @@ TEST_CASE("mimics of nothing and of themselves are told")
                "<link name=\"x\"/>";
     };
     const std::string file = (folder / "robot.urdf").string();
-    CHECK_THROWS_WITH(load_urdf(folder, with_mimic("q")), file + ": joint \"a\" mimics \"q\", which is no joint");
+    CHECK_THROWS_WITH(load_urdf(folder, with_mimic("q")), file + ": joint \"a\" mimics \"q\", which is not a joint");
     CHECK_THROWS_WITH(load_urdf(folder, with_mimic("a")), file + ": joint \"a\" mimics itself");
 }
 
@@ -463,9 +464,10 @@ TEST_CASE("a robot beyond all measure is refused, a chain longer than the call s
     chain += "<link name='tail'>" + box + "</link><joint name='t' type='fixed'><parent link='l" +
              std::to_string(links) + "'/><child link='tail'/></joint></robot>";
     CHECK(load_robot(folder.write("snake.urdf", chain).string()).bounds().max.x() == Approx(200.5));
-    CHECK_THROWS_WITH(load_robot(folder.write("torn.urdf", "<robot name='a'>\n<link name='b'>\n</robot>").string()),
-                      (folder / "torn.urdf").string() +
-                          ": line 2: is not valid XML (xml error mismatched element): is a tag left open or misspelt?");
+    CHECK_THROWS_WITH(
+        load_robot(folder.write("torn.urdf", "<robot name='a'>\n<link name='b'>\n</robot>").string()),
+        (folder / "torn.urdf").string() +
+            ": line 2: is not valid XML (xml error mismatched element): is a tag not closed, or misspelt?");
     std::string deep = "<robot name='a'>";
     for (int i = 0; i < 50000; ++i) deep += "<a>";
     CHECK_THROWS_WITH(load_robot(folder.write("deep.urdf", deep).string()),

@@ -227,7 +227,7 @@ TEST_CASE("an OctoMap is a scene by itself: terrain with a notice, or as its lab
     CHECK(count(plain, Label::Terrain) == 2);
     REQUIRE(plain.notices.size() == 2);
     CHECK_THAT(plain.notices[1], Contains("are unknown"));
-    CHECK_THAT(plain.notices[0], Contains(file.string() + ": no label given, so everything is terrain"));
+    CHECK_THAT(plain.notices[0], Contains(file.string() + ": no label is given, so everything is terrain"));
     check_near(plain.bounds().min, {0, 0, 0});
     check_near(plain.bounds().max, {3, 1, 1});
 
@@ -235,7 +235,7 @@ TEST_CASE("an OctoMap is a scene by itself: terrain with a notice, or as its lab
     CHECK(count(labelled, Label::Obstacle) == 2);
     CHECK(labelled.notices.size() == 1);
     CHECK_THROWS_WITH(load_scene(file, {.labels = {{"*", Label::Ignore}}}),
-                      file.string() + ": has no geometry: all of it is ignored");
+                      file.string() + ": has no geometry: all parts are ignored");
     CHECK_THROWS_AS(load_scene(file, {.scale = 2}), ArgumentError);
     CHECK_THROWS_AS(load_scene(file, {.up = 'y'}), ArgumentError);
 }

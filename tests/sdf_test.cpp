@@ -226,7 +226,7 @@ TEST_CASE("every geometry of SDF has its size")
         CHECK(std::abs(normal.dot(corners[0])) >= 1 - 1e-12);
     }
     CHECK(most > 0);
-    CHECK(has_notice(scene, "1 ellipsoid is a mesh around it, at most 0.0035 m larger"));
+    CHECK(has_notice(scene, "1 ellipsoid is replaced by a mesh around it, at most 0.0035 m larger"));
     CHECK(most <= 0.0035);
     CHECK(scene.pieces.size() >= 6);
 }
@@ -291,7 +291,7 @@ TEST_CASE("a plane is infinite: it goes on beyond the bounds, whatever its drawn
         CHECK((of.map_bounds.min - min).norm() < 1e-9);
         CHECK((of.map_bounds.max - max).norm() < 1e-9);
     };
-    const std::string around = "no <visual> draws it larger than the rest of the world";
+    const std::string around = "no <visual> shows it larger than the rest of the world";
     // The <size> of the collision says nothing, nor does a drawing that is no larger than the rest.
     for (const std::string& unknown :
          {plane(""), drawn("1"), drawn("50"), plane("<sphere><radius>500</radius></sphere>")}) {
@@ -368,12 +368,12 @@ TEST_CASE("an elevation model as <heightmap> keeps its lowest height, and is str
             CHECK(std::abs(layers_at(scene, -6, 8)[0] - (100 + 10 * share)) < 1e-9);
             CHECK(layers_at(scene, 0, 0).empty());  // there is no height
             CHECK(layers_at(scene, -4, 4).size() == 1);
-            CHECK(has_notice(scene, "dem.asc: is taken as an elevation model"));
+            CHECK(has_notice(scene, "dem.asc: is read as an elevation model"));
             CHECK_FALSE(has_notice(scene, "2^n + 1"));
         }
     folder.write("worlds/dem.asc",
                  "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3 4\n1 2 3 4\n1 2 3 4\n");
-    CHECK(has_notice(load("3", "1"), "is 4 x 3 pixels large; Gazebo draws it anew to a square of 2^n + 1"));
+    CHECK(has_notice(load("3", "1"), "is 4 x 3 pixels large; Gazebo resamples it to a square of 2^n + 1"));
 }
 
 TEST_CASE("what SDF does not know, or nothing touches, is told, with the file's own lines")
@@ -390,12 +390,12 @@ TEST_CASE("what SDF does not know, or nothing touches, is told, with the file's 
     CAPTURE(scene.notices);
     CHECK(has_notice(
         scene,
-        "test.world: line 9: /sdf/world[@name=\"test\"]/modle[@name=\"b\"]: is no element that SDF has at this place"));
-    CHECK(has_notice(
-        scene,
-        "model.sdf: line 2: /sdf/model[@name=\"crate\"]/link[@name=\"l\"]/colision[@name=\"d\"]: is no element"));
-    CHECK(has_notice(scene, "collision with name[c] already exists. It is left out"));
-    CHECK(has_notice(scene, "<collision>: 1 without a shape left out"));
+        "test.world: line 9: /sdf/world[@name=\"test\"]/modle[@name=\"b\"]: is not an SDF element at this place"));
+    CHECK(has_notice(scene,
+                     "model.sdf: line 2: /sdf/model[@name=\"crate\"]/link[@name=\"l\"]/colision[@name=\"d\"]: is not "
+                     "an SDF element"));
+    CHECK(has_notice(scene, "collision with name[c] already exists. It is ignored"));
+    CHECK(has_notice(scene, "<collision>: 1 without a shape ignored"));
     CHECK(scene.parts.size() == 3);
     CHECK(has(refusal_of(folder, world, {.strict = true}), "already exists"));
 
@@ -410,17 +410,17 @@ TEST_CASE("what SDF does not know, or nothing touches, is told, with the file's 
         CHECK(zone.parts.size() == 1);
         CHECK(has_notice(
             zone,
-            "<collision>: 1 left out, as by <collide_bitmask> or <collide_without_contact> nothing touches them"));
+            "<collision>: 1 ignored, because nothing touches them (<collide_bitmask> or <collide_without_contact>)"));
     }
     CHECK(with_surface("<collide_bitmask>0x01</collide_bitmask>").parts.size() == 2);
 
     const fs::path both = folder.write("worlds/both.sdf", "<sdf version='1.9'><world name='w'>" + ground +
                                                               "</world>\n" + model_of("beside", unit_box) + "</sdf>");
-    CHECK(has_notice(load_scene(both), "line 2: <model> stands beside <world>: it is left out"));
+    CHECK(has_notice(load_scene(both), "line 2: <model> is beside <world>: it is ignored"));
     folder.write("worlds/wedge.obj", mesh_text::obj(mesh_text::box(Vec3(0, 0, 0), Vec3(1, 1, 1))));
     const Scene lost = load_world(
         folder, ground + model_of("m", "<mesh><uri>wedge.obj</uri><submesh><name>none</name></submesh></mesh>"));
-    CHECK(has_notice(lost, "\"m::l::c\": <submesh> \"none\" is no node of "));
+    CHECK(has_notice(lost, "\"m::l::c\": <submesh> \"none\" is not a node of "));
     CHECK(lost.parts.size() == 1);
 }
 
@@ -551,16 +551,16 @@ TEST_CASE("what is missing is told by its name, and refused where the caller is 
     const Scene scene = load_world(folder, world, {.allow_missing = true});
     CAPTURE(scene.notices);
     CHECK(has_notice(scene,
-                     "test.world: line 3: <include> <uri> model://nowhere is not found (2 includes): it is left out"));
-    CHECK(has_notice(scene, "\"statue::l::c\": model://statue/lost.dae is not found: it is left out"));
-    CHECK(has_notice(scene, "1 model has no collision and is not there for a robot: ghost"));
-    CHECK(has_notice(scene, "<actor>: 1 left out"));
-    CHECK(has_notice(scene, "<road>: 1 left out"));
+                     "test.world: line 3: <include> <uri> model://nowhere is not found (2 includes): it is ignored"));
+    CHECK(has_notice(scene, "\"statue::l::c\": model://statue/lost.dae is not found: it is ignored"));
+    CHECK(has_notice(scene, "1 model has no collision, so robots pass through it: ghost"));
+    CHECK(has_notice(scene, "<actor>: 1 ignored"));
+    CHECK(has_notice(scene, "<road>: 1 ignored"));
     CHECK(scene.parts.size() == 1);
     const std::string strict = refusal_of(
         folder, ground + model_of("statue", "<mesh><uri>model://statue/lost.dae</uri></mesh>"), {.strict = true});
     CHECK(has(strict, "model://statue/lost.dae"));
-    CHECK(has(strict, "--strict does not allow it"));
+    CHECK(has(strict, "--strict does not allow this"));
 }
 
 TEST_CASE("a world with includes that are not found is refused, with all of them")
@@ -576,19 +576,19 @@ TEST_CASE("a world with includes that are not found is refused, with all of them
     const std::string refused = refusal_of(folder, ground + includes);
     CAPTURE(refused);
     CHECK(has(refused,
-              "test.world: 3 models that it includes are not found; name the folder that holds them with "
+              "test.world: 3 models that it includes are not found; give the folder that contains them with "
               "--model-path, download models of Fuel with `gz fuel "
-              "download -u URI`, or pass --allow-missing to leave them out:\n"));
+              "download -u URI`, or ignore them with --allow-missing:\n"));
     CHECK(has(refused, "\n  line 3: <include> <uri> model://desk is not found (2 includes)\n"));
     CHECK(has(refused, "line 5: <include> <uri> https://fuel.gazebosim.org/1.0/Somebody/models/Chair is not found\n"));
     CHECK(has(refused, "model.sdf: line 1: <include> <uri> model://wheel is not found"));
     CHECK(has(refusal_of(folder, ground + "<include><uri>model://desk</uri></include>"),
-              "1 model that it includes is not found; name the folder that holds it with --model-path, or pass"));
+              "1 model that it includes is not found; give the folder that contains it with --model-path, or pass"));
     CHECK(load_world(folder, ground + includes, {.allow_missing = true}).parts.size() == 2);
     // All of them missing: they are named.
     const std::string empty = refusal_of(folder, "<include><uri>model://desk</uri></include>", {.allow_missing = true});
-    CHECK(has(empty, "has no models but those that are missing, so nothing to stand on:\n"));
-    CHECK(has(empty, "model://desk is not found: it is left out"));
+    CHECK(has(empty, "has only models that are missing, so robots cannot stand anywhere:\n"));
+    CHECK(has(empty, "model://desk is not found: it is ignored"));
 }
 
 TEST_CASE("nothing becomes terrain because a file is missing")
@@ -601,7 +601,7 @@ TEST_CASE("nothing becomes terrain because a file is missing")
         const Scene scene = load_world(folder, desk + lost, {.allow_missing = true});
         CAPTURE(lost);
         CHECK_FALSE(scene.has_terrain());
-        CHECK(has_notice(scene, "nothing is made terrain"));
+        CHECK(has_notice(scene, "none of it is made terrain"));
         CHECK(load_world(folder, desk + lost, {.labels = {{"desk", Label::Terrain}}, .allow_missing = true})
                   .has_terrain());
     }
@@ -629,7 +629,7 @@ TEST_CASE("ground_plane and sun are built in, by all of their names, unless they
         CHECK(scene.parts[0].label == Label::Obstacle);
         CHECK(scene.map_bounds.max.x() == 50);  // Gazebo's is drawn 100 x 100 m
         CHECK(layers_at(scene, 99, 0) == std::vector<double>{0});
-        CHECK(has_notice(scene, uri + std::string(" is not on disk; the built-in ground plane stands for it")));
+        CHECK(has_notice(scene, uri + std::string(" is not on disk; the built-in ground plane replaces it")));
     }
     for (const char* const uri :
          {"model://sun", "model://Sun", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Sun",
@@ -693,15 +693,15 @@ TEST_CASE("faulty worlds are refused with file, line and element")
     };
     expect("<model name='a'><link></model>", {"line 3", "is not valid XML"});
     expect(ground + "<include><name>x</name></include>", {"line 3: <include>: has no <uri>"});
-    expect(model_of("a", "<box><size>1 x 1</size></box>"), {"line 3: <box> <size>: \"x\" is no finite number"});
+    expect(model_of("a", "<box><size>1 x 1</size></box>"), {"line 3: <box> <size>: \"x\" is not a finite number"});
     expect(model_of("a", "<sphere><radius>1,5</radius></sphere>"),
-           {"line 3: <sphere> <radius>: \"1,5\" is no finite number"});
+           {"line 3: <sphere> <radius>: \"1,5\" is not a finite number"});
     expect("\n" + model_of("a", "<box><size>1 2 3 4</size></box>"), {"line 4: <box> <size>: has 4 numbers, needs 3"});
     expect(model_of("a", "<cylinder><radius>1</radius></cylinder>"), {"line 3: <cylinder>: has no <length>"});
     expect(model_of("a", "<heightmap><uri>a.png</uri><size>4 4 -1</size></heightmap>"),
            {"\"a::l::c\": <heightmap> <size> is -1, needs > 0 and at most 1000 km (line 3)"});
     expect(model_of("a", unit_box + "\n<sphere><radius>1</radius></sphere>"),
-           {"\"a::l::c\": <geometry> holds <box>, <sphere>, needs one shape"});
+           {"\"a::l::c\": <geometry> contains <box>, <sphere>, needs one shape"});
     expect(model_of("a", "<box><size>1 -1 1</size></box>"), {"\"a::l::c\": <box> <size> is -1, needs > 0"});
     expect(model_of("a", "<sphere><radius>0</radius></sphere>"), {"<sphere> <radius> is 0, needs > 0"});
     expect(model_of("a", "<box><size>1 1e12 1</size></box>"), {"<box> <size> is 1e+12, needs > 0 and at most 1000 km"});
@@ -710,19 +710,19 @@ TEST_CASE("faulty worlds are refused with file, line and element")
     expect(model_of("a", unit_box, "<pose relative_to='nobody'>0 0 0 0 0 0</pose>"), {"nobody"});
     expect(model_of("a", unit_box, "<pose>0 0 0 0 0</pose>"), {"line 3", "pose"});
     expect(model_of("a", unit_box, "<pose>inf 0 0 0 0 0</pose>"),
-           {"line 3: <model> <pose>: \"inf\" is no finite number"});
+           {"line 3: <model> <pose>: \"inf\" is not a finite number"});
     expect("<population name='crowd'><model_count>3</model_count></population>",
-           {"line 3: <population> \"crowd\" is not expanded here"});
+           {"line 3: <population> \"crowd\" cannot be read here"});
     expect("", {"has no models"});
     CHECK(has(refusal(folder.write("bare.world", "hello")), "is not valid XML"));
     CHECK(has(refusal(folder.write("empty.world", "")), "is empty"));
-    CHECK(has(refusal(folder.write("other.sdf", "<mujoco/>")), "line 1: <mujoco> stands where"));
+    CHECK(has(refusal(folder.write("other.sdf", "<mujoco/>")), "line 1: the root element is <mujoco>"));
     CHECK(has(refusal(folder.write("noversion.sdf", "<sdf><world name='w'/></sdf>")), "line 1: <sdf> has no version"));
     CHECK(has(refusal(folder.write("version.sdf", "<sdf version='abc'><world name='w'/></sdf>")),
-              "line 1: <sdf> has version \"abc\", needs such as version=\"1.6\""));
+              "line 1: <sdf> has version \"abc\", needs 1.0 to 2.x, for example version=\"1.6\""));
     const std::string only_lost = refusal(
         folder.write("lost.sdf", world_of(model_of("a", "<mesh><uri>nothere.dae</uri></mesh>"))));
-    CHECK(has(only_lost, "has no geometry: all of it is ignored, missing or without collision"));
+    CHECK(has(only_lost, "has no geometry: all parts are ignored, missing or without collision"));
     CHECK(has(only_lost, "nothere.dae is not found"));
     CHECK(has(refusal(folder.write("two.sdf", "<sdf version='1.9'><world name='a'/><world name='b'/></sdf>")),
               "has 2 worlds, needs one"));
@@ -739,7 +739,7 @@ TEST_CASE("models that include each other in a circle are refused, with the circ
     const std::string message = refusal_of(folder, ground + "<include><uri>model://hen</uri></include>");
     CAPTURE(message);
     CHECK(has(message, "egg/model.sdf: line 2: <include> <uri> model://hen"));
-    CHECK(has(message, "leads back to itself"));
+    CHECK(has(message, "includes itself"));
     CHECK(has(message, "hen/model.sdf includes "));
 }
 
@@ -755,7 +755,7 @@ TEST_CASE("models that include the next one twice, and so on, are refused before
     write_model(folder, "m" + std::to_string(doublings),
                 "<model name='m'><link name='l'>" + collision(unit_box) + "</link></model>");
     CHECK(has(refusal_of(folder, ground + "<include><uri>model://m0</uri></include>"),
-              "is the one with which all includes come to more than 100000"));
+              "makes more than 100000 includes in total"));
 }
 
 TEST_CASE("the real worlds hold what an independent reader finds in them")

@@ -118,7 +118,7 @@ std::optional<double> metres_of(unsigned unit)
 
 /// Maps pixel (col, row) to survey coordinates.
 struct Affine {
-    double x, dx, y, dy;  ///< x + col dx, y - row dy
+    double x, dx, y, dy;  ///< pixel (col, row) is at x + col dx, y - row dy
 };
 
 Affine affine(const GeoTags& tags, const std::string& file)

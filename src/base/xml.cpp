@@ -29,7 +29,7 @@ std::unique_ptr<tinyxml2::XMLDocument> read_xml(const std::filesystem::path& fil
     throw FileError(file.string(),
                     line + "is not valid XML (" + name + ")" +
                         (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED ? ": elements may be nested at most 500 deep"
-                                                                       : ": is a tag left open or misspelt?"));
+                                                                       : ": is a tag not closed, or misspelt?"));
 }
 
 std::string text_of(const Xml& parent, const char* name)

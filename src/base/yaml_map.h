@@ -37,7 +37,7 @@ public:
     Vec3 positive_vector(const std::string& key) const;        ///< three finite numbers > 0
     std::array<double, 2> pair(const std::string& key) const;  ///< two finite numbers
     std::array<double, 2> positive_pair(const std::string& key) const;
-    Vec3 scale() const;                                       ///< `scale`: one number or three, > 0; 1 where absent
+    Vec3 scale() const;                                       ///< `scale`: one number or three, > 0; 1 if it is missing
     std::vector<Vec3> vectors(const std::string& key) const;  ///< a list of three finite numbers each
     YamlMap map(const std::string& key) const;                ///< its errors name the keys as "key.inner"
     YAML::Node list(const std::string& key) const;            ///< throws FileError unless it is a list

@@ -47,7 +47,7 @@ private:
         kind_ = kind;
     }
 
-    /// assimp drops lines that begin with a blank.
+    /// Removes the indentation of a line, because assimp ignores indented lines. Returns where the rest starts.
     std::size_t without_indent(std::size_t start, std::size_t end)
     {
         const std::size_t first = std::min(text_.find_first_not_of(" \t", start), end);
