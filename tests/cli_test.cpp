@@ -157,7 +157,7 @@ TEST_CASE("a bake over a map replaces it, but keeps what others put there; a fol
     arena.write("work/thesis.tex", "years");
     const ProgramRun run = arena("bake " + scene + " -o work");
     CHECK(run.status == 1);
-    CHECK(run.err == "spawnfield: work: exists and is no map; choose another name or remove it\n");
+    CHECK(run.err == "spawnfield: work: exists and is not a map; choose another name or remove it\n");
     CHECK(bytes_of(arena / "work/thesis.tex") == "years");
     CHECK(arena.names() == std::set<std::string>{"map", "work"});
 }
