@@ -8,7 +8,7 @@
 namespace spawnfield {
 namespace {
 
-// Lengths in units: thousandths of the picture's longer side.
+// These lengths are in units. A unit is a thousandth of the picture's longer side.
 constexpr double text_cap = 10.5, small_cap = 9.5, title_cap = 15;  // heights of capital letters
 constexpr double margin = 18, tick_length = 6, gap = 7, column_gap = 30;
 constexpr double bearing_width = 160, bearing_height = 54, longest_scale_bar = 110, caption_line = 25;
@@ -20,7 +20,7 @@ const Colour line = rgb(0x404040);
 
 struct Item {
     double width, height;                            ///< pixels
-    std::function<void(Figure&, cv::Point2d)> draw;  ///< at its upper left corner
+    std::function<void(Figure&, cv::Point2d)> draw;  ///< draws it at its upper left corner
 };
 
 Item entry_item(const LegendEntry& entry, double unit)
@@ -48,7 +48,7 @@ Item symbol_item(const LegendSymbol& symbol, double unit)
             }};
 }
 
-/// The ends of the scale, and the ticks that are not too near to them, with their labels.
+/// Returns the ends of the scale, and the ticks that are not too near to them, with their labels.
 std::vector<std::pair<double, std::string>> bar_labels(const ColourScale& scale, double height, double unit)
 {
     const double apart = 1.6 * small_cap * unit / height * (scale.high - scale.low),
@@ -110,7 +110,7 @@ std::vector<Item> legend_items(const Legend& legend, double unit, double bar_hei
     return items;
 }
 
-/// A legend with its items in their places: one below the other, in a next column where column_height is passed.
+/// A legend with its items in their places: one below the other, in a new column whenever column_height is exceeded.
 struct Panel {
     std::vector<Item> items;
     std::vector<cv::Point2d> places;
@@ -137,7 +137,8 @@ Panel panel_of(const Legend& legend, double unit, double column_height)
     return panel;
 }
 
-/// Three entries, or more where the columns would take more than the width.
+/// Returns the smallest height of the legend's columns, pixels, at which they fit into the width: room for three
+/// entries, or for more.
 double lowest_columns(const Legend& legend, double unit, double width)
 {
     double height = 130;
@@ -154,8 +155,8 @@ double widest_label(const Ticks& ticks, double cap)
     return widest;
 }
 
-/// Ticks at least `apart` pixels from each other, and what `needs` gives; one at least, whatever its label takes.
-/// `scale` is in pixels per metre.
+/// Returns ticks at distances of at least `apart` pixels and at least needs(ticks) pixels. Returns at least one tick,
+/// even if its label is wider than the axis. `scale` is in pixels per metre.
 Ticks axis_ticks(double low, double high, double scale, double apart, const std::function<double(const Ticks&)>& needs)
 {
     RoundStep step = round_up(apart / scale);
@@ -216,29 +217,29 @@ Layout legend_beside(const PictureFrame& frame, const Margins& margins, double u
 Layout legend_below(const PictureFrame& frame, const Margins& margins, double unit)
 {
     const int border = cvRound(margin * unit), right = std::max(margins.right, border);
-    const double width = frame.pixels - margins.left - right, bearing_at = width - bearing_width * unit;
+    const double width = frame.pixels - margins.left - right, bearing_x = width - bearing_width * unit;
     Layout layout;
-    layout.column_height = lowest_columns(frame.legend, unit, bearing_at - column_gap * unit);
+    layout.column_height = lowest_columns(frame.legend, unit, bearing_x - column_gap * unit);
     const double needed = panel_of(frame.legend, unit, layout.column_height).height;
     const int panel_height = cvCeil(std::max(needed, bearing_height * unit)) + border / 2;
     layout.plot = plot_in(frame.view, margins, width, frame.pixels - margins.top - margins.bottom - panel_height);
     layout.panel = {static_cast<double>(margins.left), static_cast<double>(layout.plot.br().y + margins.bottom)};
-    layout.bearing = layout.panel + cv::Point2d(bearing_at, 0);
+    layout.bearing = layout.panel + cv::Point2d(bearing_x, 0);
     layout.size = {margins.left + layout.plot.width + right, layout.plot.br().y + margins.bottom + panel_height};
     return layout;
 }
 
 Layout arrange(const PictureFrame& frame, const Margins& margins, double unit)
 {
-    constexpr double wide = 1.75;  // from here on a legend below leaves more room for the plot
+    constexpr double wide = 1.75;  // wider views have more room for the plot if the legend is below
     const bool is_wide = frame.view.width > wide * frame.view.height;
     Layout layout = is_wide ? legend_below(frame, margins, unit) : legend_beside(frame, margins, unit);
     layout.unit = unit;
     return layout;
 }
 
-/// Height of the title's or caption's capitals. Long lines shrink, then make narrow pictures wider; only what is wider
-/// than any picture is cut.
+/// Returns the height of the capitals of a title or caption, pixels. A long line is made smaller, then a narrow picture
+/// is made wider. Only a line that is still too wide is cut.
 double line_height(const std::string& text, double cap, int width, double unit)
 {
     const double room = width - 2 * margin * unit;
@@ -294,7 +295,7 @@ std::string length_label(RoundStep length)
     return fixed(length.value / 1000, length.value < 2600 && length.value > 2400 ? 1 : 0) + " km";
 }
 
-/// Scale bar, and north arrow to its right. `scale` is in pixels per metre.
+/// Draws the scale bar, and the north arrow to its right. `scale` is in pixels per metre.
 void draw_bearing(Figure& figure, cv::Point2d at, double scale, double unit)
 {
     const double bottom = at.y + (bearing_height - 1) * unit;
@@ -346,7 +347,8 @@ Layout lay_out(const PictureFrame& frame)
     const double head = frame.title.empty() ? 20 : title_cap + 42;
     const int top = cvRound((margin + head + (frame.caption.empty() ? 0 : caption_line)) * unit);
     Margins margins{cvRound(70 * unit), 0, top, cvRound(62 * unit)};
-    // Labels need ticks, ticks the scale, the scale the labels' width: a first guess of that width is close enough.
+    // Labels depend on the ticks, ticks on the scale, and the scale on the labels' width. A first guess of that width
+    // is close enough.
     Layout layout = arrange(frame, margins, unit);
     const double scale = layout.plot.width / frame.view.width, cap = small_cap * unit;
     const Ticks x = x_ticks(frame.view, scale, unit), y = y_ticks(frame.view, scale, unit);

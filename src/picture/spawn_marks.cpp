@@ -31,7 +31,7 @@ bool holds(const Polygon2& outer, const Polygon2& inner)
     return std::all_of(inner.begin(), inner.end(), [&](const Vec2& corner) { return contains(outer, corner); });
 }
 
-/// Outlines of all parts but those that are seen within an earlier one.
+/// Returns the outlines of all parts from above, except those that lie within an earlier outline.
 std::vector<Polygon2> footprint_of(const Robot& robot)
 {
     std::vector<Polygon2> outlines;
@@ -44,15 +44,15 @@ std::vector<Polygon2> footprint_of(const Robot& robot)
     return outlines;
 }
 
-/// From metres in the robot's frame to pixels.
+/// Converts metres in the robot's frame to pixels.
 struct Placement {
-    cv::Point2d at;
-    double yaw, scale;
+    cv::Point2d origin;  ///< place of the robot's origin, pixels
+    double yaw, scale;   ///< rad; pixels per metre
 
     cv::Point2d of(const Vec2& point) const
     {
         const double c = std::cos(yaw), s = std::sin(yaw);
-        return {at.x + scale * (c * point.x() - s * point.y()), at.y - scale * (s * point.x() + c * point.y())};
+        return {origin.x + scale * (c * point.x() - s * point.y()), origin.y - scale * (s * point.x() + c * point.y())};
     }
     std::vector<cv::Point2d> of(const Polygon2& polygon) const
     {
@@ -62,20 +62,20 @@ struct Placement {
     }
 };
 
-/// Black or white, whichever is read better on the colour (ITU-R BT.601 luma).
+/// Returns black or white: the one that is easier to see on the colour (ITU-R BT.601 luma).
 Colour contrast_to(Colour colour)
 {
     return 0.114 * colour[0] + 0.587 * colour[1] + 0.299 * colour[2] < 110 ? white : ink;
 }
 
-/// Where a footprint is too small for a triangle at its front, a line ahead of it shows the heading.
+/// Returns whether a footprint is too small for a triangle at its front. Then a line ahead of it shows the heading.
 bool is_small(const SpawnLook& look)
 {
     constexpr double least_width = 10;  // pixels
     return extent_of(look.footprint).size().minCoeff() * look.scale < least_width;
 }
 
-/// Pixels that this line sticks out.
+/// Returns by how many pixels this line extends beyond the footprint.
 double length_ahead(double unit) { return std::clamp(10 * unit, 3.0, 6.0); }
 
 void draw_heading(Figure& figure, const Placement& placement, const Extent& extent, bool small, double unit,
@@ -94,7 +94,8 @@ void draw_heading(Figure& figure, const Placement& placement, const Extent& exte
                      contrast_to(colour), ink, 0);
 }
 
-// A dark rim in a white one: seen on ground of any colour, also of the mark's own. Half of each line is covered.
+// A dark rim within a white rim can be seen on ground of any colour, even of the mark's own colour. The mark covers
+// half of each line.
 constexpr double rim = 2.4, white_rim = 5;  // units
 
 void draw_footprint(Figure& figure, const SpawnLook& look, const Placement& placement, Colour colour)
@@ -105,7 +106,7 @@ void draw_footprint(Figure& figure, const SpawnLook& look, const Placement& plac
     draw_heading(figure, placement, extent_of(look.footprint), is_small(look), look.unit, colour);
 }
 
-/// Pointing along yaw; more of it is ahead of its centre.
+/// Draws an arrow that points along yaw. The larger part of it is ahead of `centre`.
 void draw_arrow(Figure& figure, cv::Point2d centre, double yaw, const SpawnLook& look, Colour colour)
 {
     if (look.arrow < smallest_arrow) {
@@ -121,7 +122,7 @@ void draw_arrow(Figure& figure, cv::Point2d centre, double yaw, const SpawnLook&
     draw_polygon(figure, corners, colour, ink, 1.4 * look.unit);
 }
 
-/// Farthest point of a mark from its place, pixels.
+/// Returns the distance of a mark's farthest point from its place, pixels.
 double radius_of(const SpawnLook& look)
 {
     double radius = look.footprint.empty() ? std::max(3.0, 0.6 * look.arrow) * look.unit : 0;
@@ -155,7 +156,9 @@ void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d at, double ya
 void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre, Colour colour)
 {
     if (look.footprint.empty()) {
-        const double middle = 0.1 * (look.arrow < smallest_arrow ? 0 : look.arrow);  // of the arrow, ahead of its place
+        const double middle = 0.1 * (look.arrow < smallest_arrow
+                                         ? 0
+                                         : look.arrow);  // distance of the arrow's middle ahead of its place, units
         draw_arrow(figure, {centre.x - middle * look.unit, centre.y}, 0, look, colour);
         return;
     }
