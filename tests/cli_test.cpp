@@ -506,7 +506,8 @@ TEST_CASE("columns that are known but for their case are noticed")
 {
     const Arena arena;
     arena.write("poses.csv", "x,y,z,Yaw\n0,0,0.1,1\n");
-    const std::string yaw = "notice: poses.csv: column Yaw is carried along, not read: names are lower case (yaw)\n";
+    const std::string yaw =
+        "notice: poses.csv: column Yaw is copied but not read, because names of columns are lower case (yaw)\n";
     const ProgramRun run = arena("check map --poses poses.csv" + husky);
     CHECK(run.err.starts_with(yaw));
     CHECK(row(run.out, 0).starts_with("x,y,z,Yaw,verdict"));
