@@ -217,7 +217,7 @@ Image quantity_colours(const Kinds& kinds, const cv::Mat_<float>& values, const 
         for (int col = 0; col < kinds.cols; ++col) {
             const float value = values(row, col);
             const Kind kind = kinds(row, col);
-            colours(row, col) = std::isfinite(value)                  ? scale.at(value)
+            colours(row, col) = std::isfinite(value)                  ? scale.colour(value)
                                 : kind == obstacle || kind == no_pose ? colour_of(kind)
                                                                       : not_valid;
         }

@@ -28,23 +28,23 @@ Item entry_item(const LegendEntry& entry, double unit)
     const double cap = text_cap * unit, small = small_cap * unit, indent = 28 * unit;
     const bool two_lines = !entry.detail.empty();
     const double width = indent + std::max(text_width(entry.name, cap), text_width(entry.detail, small));
-    return {width, (two_lines ? 42 : 27) * unit, [=](Figure& figure, cv::Point2d at) {
-                const cv::Rect swatch(cvRound(at.x), cvRound(at.y), whole(18 * unit),
+    return {width, (two_lines ? 42 : 27) * unit, [=](Figure& figure, cv::Point2d corner) {
+                const cv::Rect swatch(cvRound(corner.x), cvRound(corner.y), whole(18 * unit),
                                       whole((two_lines ? 28 : 14) * unit));
                 fill(figure, swatch, entry.colour);
                 outline(figure, swatch, whole(0.8 * unit), muted);
-                const double first = two_lines ? at.y + cap : at.y + 7 * unit + cap / 2;
-                draw_text(figure, entry.name, {at.x + indent, first}, {cap});
-                draw_text(figure, entry.detail, {at.x + indent, first + 17 * unit}, {small, muted});
+                const double first = two_lines ? corner.y + cap : corner.y + 7 * unit + cap / 2;
+                draw_text(figure, entry.name, {corner.x + indent, first}, {cap});
+                draw_text(figure, entry.detail, {corner.x + indent, first + 17 * unit}, {small, muted});
             }};
 }
 
 Item symbol_item(const LegendSymbol& symbol, double unit)
 {
     const double cap = text_cap * unit, indent = symbol.draw ? (symbol_size + 10) * unit : 0;
-    return {indent + text_width(symbol.name, cap), 27 * unit, [=](Figure& figure, cv::Point2d at) {
-                if (symbol.draw) symbol.draw(figure, {at.x + symbol_size / 2 * unit, at.y + 7 * unit});
-                draw_text(figure, symbol.name, {at.x + indent, at.y + 7 * unit + cap / 2}, {cap});
+    return {indent + text_width(symbol.name, cap), 27 * unit, [=](Figure& figure, cv::Point2d corner) {
+                if (symbol.draw) symbol.draw(figure, {corner.x + symbol_size / 2 * unit, corner.y + 7 * unit});
+                draw_text(figure, symbol.name, {corner.x + indent, corner.y + 7 * unit + cap / 2}, {cap});
             }};
 }
 
@@ -58,11 +58,11 @@ std::vector<std::pair<double, std::string>> bar_labels(const ColourScale& scale,
     for (const double end : {scale.low, scale.high}) {
         std::string text = fixed(end, scale.ticks.decimals + 1);
         for (int i = 0; i < scale.ticks.count; ++i)
-            if (near(scale.ticks.at(i), end, same)) text = scale.ticks.label(i);
+            if (near(scale.ticks.value(i), end, same)) text = scale.ticks.label(i);
         labels.emplace_back(end, text);
     }
     for (int i = 0; i < scale.ticks.count; ++i) {
-        const double tick = scale.ticks.at(i);
+        const double tick = scale.ticks.value(i);
         if (!near(tick, scale.low, apart) && !near(tick, scale.high, apart))
             labels.emplace_back(tick, scale.ticks.label(i));
     }
@@ -74,7 +74,7 @@ void draw_bar(Figure& figure, const cv::Rect& bar, const ColourScale& scale, dou
     const double low = scale.low, high = scale.high;
     Image colours(bar.size());
     for (int row = 0; row < bar.height; ++row)
-        colours.row(row) = scale.at(high + (low - high) * (row + 0.5) / bar.height);
+        colours.row(row) = scale.colour(high + (low - high) * (row + 0.5) / bar.height);
     draw_image(figure, bar.tl(), colours);
     const int thickness = whole(unit), tick = whole(tick_length * unit);
     outline(figure, bar, thickness, line);
@@ -93,12 +93,12 @@ Item scale_item(const ColourScale& scale, double unit, double bar_height)
     double width = std::max(text_width(scale.heading, cap), text_width(scale.detail, small));
     for (const auto& [value, label] : bar_labels(scale, bar_height, unit))
         width = std::max(width, bar_width + (tick_length + gap) * unit + text_width(label, small));
-    return {
-        width, head + bar_height + 18 * unit, [=](Figure& figure, cv::Point2d at) {
-            draw_text(figure, scale.heading, {at.x, at.y + cap}, {cap});
-            draw_text(figure, scale.detail, {at.x, at.y + cap + 17 * unit}, {small, muted});
-            draw_bar(figure, {cvRound(at.x), cvRound(at.y + head), whole(bar_width), whole(bar_height)}, scale, unit);
-        }};
+    return {width, head + bar_height + 18 * unit, [=](Figure& figure, cv::Point2d corner) {
+                draw_text(figure, scale.heading, {corner.x, corner.y + cap}, {cap});
+                draw_text(figure, scale.detail, {corner.x, corner.y + cap + 17 * unit}, {small, muted});
+                draw_bar(figure, {cvRound(corner.x), cvRound(corner.y + head), whole(bar_width), whole(bar_height)},
+                         scale, unit);
+            }};
 }
 
 std::vector<Item> legend_items(const Legend& legend, double unit, double bar_height)
@@ -266,13 +266,13 @@ void draw_axes(Figure& figure, const View& view, const Layout& layout)
     const int thickness = whole(1.2 * unit), tick = whole(tick_length * unit);
     outline(figure, plot, thickness, line);
     for (int i = 0; i < layout.x_ticks.count; ++i) {
-        const double x = plot.x + (layout.x_ticks.at(i) - view.x0) / view.width * plot.width;
+        const double x = plot.x + (layout.x_ticks.value(i) - view.x0) / view.width * plot.width;
         fill(figure, {cvRound(x - thickness / 2.0), plot.br().y, thickness, thickness + tick}, line);
         draw_text(figure, layout.x_ticks.label(i), {x, plot.br().y + tick + gap * unit + cap},
                   {cap, ink, Align::Centre});
     }
     for (int i = 0; i < layout.y_ticks.count; ++i) {
-        const double y = plot.y + (view.y0 + view.height - layout.y_ticks.at(i)) / view.height * plot.height;
+        const double y = plot.y + (view.y0 + view.height - layout.y_ticks.value(i)) / view.height * plot.height;
         fill(figure, {plot.x - thickness - tick, cvRound(y - thickness / 2.0), thickness + tick, thickness}, line);
         draw_text(figure, layout.y_ticks.label(i), {plot.x - tick - gap * unit, y + cap / 2}, {cap, ink, Align::Right});
     }
@@ -296,12 +296,12 @@ std::string length_label(RoundStep length)
 }
 
 /// Draws the scale bar, and the north arrow to its right. `scale` is in pixels per metre.
-void draw_bearing(Figure& figure, cv::Point2d at, double scale, double unit)
+void draw_bearing(Figure& figure, cv::Point2d corner, double scale, double unit)
 {
-    const double bottom = at.y + (bearing_height - 1) * unit;
+    const double bottom = corner.y + (bearing_height - 1) * unit;
     const RoundStep length = round_down(longest_scale_bar * unit / scale);
     const int pixels = whole(length.value * scale), height = whole(6 * unit), thickness = whole(unit);
-    const cv::Rect bar(cvRound(at.x) + thickness, cvRound(bottom) - height, pixels, height);
+    const cv::Rect bar(cvRound(corner.x) + thickness, cvRound(bottom) - height, pixels, height);
     fill(figure, bar, white);
     fill(figure, {bar.x, bar.y, pixels / 2, bar.height}, ink);
     outline(figure, bar, thickness, ink);
@@ -309,7 +309,7 @@ void draw_bearing(Figure& figure, cv::Point2d at, double scale, double unit)
     draw_text(figure, length_label(length), label, {small_cap * unit, ink, Align::Centre});
 
     const double half = 8 * unit, needle = 26 * unit;
-    const cv::Point2d tip(at.x + bearing_width * unit - half - unit, bottom - needle),
+    const cv::Point2d tip(corner.x + bearing_width * unit - half - unit, bottom - needle),
         notch(tip.x, tip.y + 0.75 * needle);
     draw_polygon(figure, {tip, {tip.x - half, bottom}, notch}, ink, ink, unit);
     draw_polygon(figure, {tip, {tip.x + half, bottom}, notch}, white, ink, unit);
@@ -326,7 +326,7 @@ View with_room(View view)
     return {view.x0 - (width - view.width) / 2, view.y0 - (height - view.height) / 2, width, height};
 }
 
-Colour ColourScale::at(double value) const
+Colour ColourScale::colour(double value) const
 {
     const double share = (value - low) / (high - low);
     return ramp[static_cast<std::size_t>(cvRound(std::clamp(share, 0.0, 1.0) * 255))];

@@ -24,7 +24,7 @@ struct ColourScale {
     Ramp ramp;
     double low = ticks.lowest(), high = ticks.highest();
 
-    Colour at(double value) const;  ///< values beyond the scale get the colour of the nearest end
+    Colour colour(double value) const;  ///< values beyond the scale get the colour of the nearest end
 };
 
 /// Returns a scale from low to high with round ticks in between. A range without length is widened by 1.

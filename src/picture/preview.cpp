@@ -110,10 +110,10 @@ Drawing draw_top(const TopView& view, const cv::Mat_<float>& light, const Colour
                 pixel = water_colour;
             } else if (view.has_obstacle(row, col)) {
                 drawing.obstacles = true;
-                pixel = shaded(grey.at(view.solid(row, col)), light(row, col));
+                pixel = shaded(grey.colour(view.solid(row, col)), light(row, col));
             } else if (std::isfinite(view.terrain(row, col))) {
                 drawing.terrain = true;
-                pixel = shaded(heights.at(view.terrain(row, col)), light(row, col));
+                pixel = shaded(heights.colour(view.terrain(row, col)), light(row, col));
             }
         }
     return drawing;

@@ -60,14 +60,14 @@ struct Pane {
     double u0 = 0, v0 = 0;  ///< coordinates of its lower left corner, m
     double scale = 1;       ///< pixels per metre
 
-    cv::Point2d at(double u, double v) const { return {area.x + (u - u0) * scale, area.br().y - (v - v0) * scale}; }
-    cv::Point2d at(const Vec3& point) const { return at(axes.u.dot(point), axes.v.dot(point)); }
+    cv::Point2d pixel(double u, double v) const { return {area.x + (u - u0) * scale, area.br().y - (v - v0) * scale}; }
+    cv::Point2d pixel(const Vec3& point) const { return pixel(axes.u.dot(point), axes.v.dot(point)); }
 };
 
 std::vector<cv::Point2d> on_paper(const Pane& pane, const Polygon2& polygon)
 {
     std::vector<cv::Point2d> out;
-    for (const Vec2& corner : polygon) out.push_back(pane.at(corner.x(), corner.y()));
+    for (const Vec2& corner : polygon) out.push_back(pane.pixel(corner.x(), corner.y()));
     return out;
 }
 
@@ -126,12 +126,12 @@ void draw_grid(Figure& figure, const Pane& pane)
     const Ticks us = ticks_within(pane.u0, pane.u0 + pane.area.width / pane.scale, step);
     const Ticks vs = ticks_within(pane.v0, pane.v0 + pane.area.height / pane.scale, step);
     for (int k = 0; k < us.count; ++k) {
-        const double x = pane.at(us.at(k), 0).x;
+        const double x = pane.pixel(us.value(k), 0).x;
         fill(figure, {cvRound(x - 0.5), pane.area.y, 1, pane.area.height}, grid);
         draw_text(figure, us.label(k), {x, pane.area.br().y + 8 + number_cap}, {number_cap, muted, Align::Centre});
     }
     for (int k = 0; k < vs.count; ++k) {
-        const double y = pane.at(0, vs.at(k)).y;
+        const double y = pane.pixel(0, vs.value(k)).y;
         fill(figure, {pane.area.x, cvRound(y - 0.5), pane.area.width, 1}, grid);
         draw_text(figure, vs.label(k), {pane.area.x - 8.0, y + number_cap / 2}, {number_cap, muted, Align::Right});
     }
@@ -172,13 +172,13 @@ void draw_contact(Figure& figure, cv::Point2d place, bool given)
 
 void draw_contacts(Figure& figure, const Pane& pane, const RobotContacts& contacts)
 {
-    for (const Vec3& contact : contacts.points) draw_contact(figure, pane.at(contact), contacts.given);
+    for (const Vec3& contact : contacts.points) draw_contact(figure, pane.pixel(contact), contacts.given);
 }
 
 /// Draws arrows from the origin along the two axes of the view.
 void draw_axes(Figure& figure, const Pane& pane)
 {
-    const cv::Point2d origin = pane.at(0, 0);
+    const cv::Point2d origin = pane.pixel(0, 0);
     constexpr double length = 46, head = 9;
     const auto arrow = [&](cv::Point2d along, const char* name) {
         const cv::Point2d tip = origin + length * along, side(-along.y, along.x);

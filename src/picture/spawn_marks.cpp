@@ -145,12 +145,12 @@ SpawnLook spawn_look(const Robot* robot, const Layout& layout, double scale, std
     return look;
 }
 
-void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d at, double yaw, Colour colour)
+void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d place, double yaw, Colour colour)
 {
     if (look.footprint.empty())
-        draw_arrow(figure, at, yaw, look, colour);
+        draw_arrow(figure, place, yaw, look, colour);
     else
-        draw_footprint(figure, look, {at, yaw, look.scale}, colour);
+        draw_footprint(figure, look, {place, yaw, look.scale}, colour);
 }
 
 void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre, Colour colour)
@@ -176,19 +176,20 @@ std::size_t write_names(Figure& figure, const SpawnLook& look, const std::vector
     const double cap = std::max(9 * look.unit, 5.0), radius = radius_of(look), away = radius + 0.5 * cap,
                  room = 0.3 * cap;
     std::vector<cv::Rect2d> taken, marks;
-    for (const cv::Point2d& at : places)
-        marks.emplace_back(at.x - 0.7 * radius, at.y - 0.7 * radius, 1.4 * radius, 1.4 * radius);
+    for (const cv::Point2d& place : places)
+        marks.emplace_back(place.x - 0.7 * radius, place.y - 0.7 * radius, 1.4 * radius, 1.4 * radius);
     const auto covers = [](const std::vector<cv::Rect2d>& boxes, const cv::Rect2d& box) {
         return std::any_of(boxes.begin(), boxes.end(),
                            [&](const cv::Rect2d& other) { return (box & other).area() > 0; });
     };
     for (std::size_t i = 0; i < places.size(); ++i) {
         const double width = text_width(names[i], cap);
-        const cv::Point2d& at = places[i];
+        const cv::Point2d& place = places[i];
         // Lower left corners of the text: to the right, to the left, above, below.
         for (const cv::Point2d& corner :
-             {cv::Point2d(at.x + away, at.y + cap / 2), cv::Point2d(at.x - away - width, at.y + cap / 2),
-              cv::Point2d(at.x - width / 2, at.y - away), cv::Point2d(at.x - width / 2, at.y + away + cap)}) {
+             {cv::Point2d(place.x + away, place.y + cap / 2), cv::Point2d(place.x - away - width, place.y + cap / 2),
+              cv::Point2d(place.x - width / 2, place.y - away),
+              cv::Point2d(place.x - width / 2, place.y + away + cap)}) {
             const cv::Rect2d box(corner.x - room, corner.y - cap - room, width + 2 * room, cap + 2 * room);
             if ((box & cv::Rect2d(area)).area() < box.area() || covers(marks, box) || covers(taken, box)) continue;
             draw_text(figure, names[i], corner, {cap, ink, Align::Left, white});

@@ -21,8 +21,8 @@ inline constexpr double least_footprint = 6;  ///< pixels; smallest longer side 
 /// there are many spawns.
 SpawnLook spawn_look(const Robot* robot, const Layout& layout, double scale, std::size_t count);
 
-/// Draws a spawn. `at` is the place of the robot's origin, pixels. yaw turns from x (right) to y (up).
-void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d at, double yaw, Colour colour);
+/// Draws a spawn. `place` is that of the robot's origin, pixels. yaw turns from x (right) to y (up).
+void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d place, double yaw, Colour colour);
 
 /// Draws the same mark around `centre`, as a symbol of the legend.
 void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre, Colour colour);

@@ -39,7 +39,7 @@ RoundStep round_down(double value)
     return times_power(5, exponent - 1);
 }
 
-std::string Ticks::label(int i) const { return fixed(at(i), decimals); }
+std::string Ticks::label(int i) const { return fixed(value(i), decimals); }
 
 Ticks ticks_within(double low, double high, RoundStep step)
 {

@@ -21,9 +21,9 @@ struct Ticks {
     std::int64_t first = 0;  ///< first tick, in steps
     int count = 0;
 
-    double at(int i) const { return static_cast<double>(first + i) * step; }
-    double lowest() const { return at(0); }
-    double highest() const { return at(count - 1); }
+    double value(int i) const { return static_cast<double>(first + i) * step; }
+    double lowest() const { return value(0); }
+    double highest() const { return value(count - 1); }
     std::string label(int i) const;
 };
 

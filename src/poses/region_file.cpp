@@ -291,10 +291,10 @@ public:
         for (int row = 0; row < map.rows; ++row)
             for (int col = 0; col < map.cols; ++col) {
                 if (!is_in(row, col)) continue;
-                if (!is_in(row + 1, col)) at(row + 1, col) |= 1 << east;
-                if (!is_in(row, col + 1)) at(row + 1, col + 1) |= 1 << north;
-                if (!is_in(row - 1, col)) at(row, col + 1) |= 1 << west;
-                if (!is_in(row, col - 1)) at(row, col) |= 1 << south;
+                if (!is_in(row + 1, col)) ways_at(row + 1, col) |= 1 << east;
+                if (!is_in(row, col + 1)) ways_at(row + 1, col + 1) |= 1 << north;
+                if (!is_in(row - 1, col)) ways_at(row, col + 1) |= 1 << west;
+                if (!is_in(row, col - 1)) ways_at(row, col) |= 1 << south;
             }
     }
 
@@ -303,7 +303,7 @@ public:
         Region::Polygon out;
         for (int row = 0; row <= map_.rows; ++row)
             for (int col = 0; col <= map_.cols; ++col)
-                while (at(row, col) != 0) out.push_back(ring_from(row, col));
+                while (ways_at(row, col) != 0) out.push_back(ring_from(row, col));
         return out;
     }
 
@@ -314,7 +314,7 @@ private:
     {
         return row >= 0 && col >= 0 && row < map_.rows && col < map_.cols && map_.at(row, col) == wanted_;
     }
-    std::uint8_t& at(int row, int col)
+    std::uint8_t& ways_at(int row, int col)
     {
         return ways_[std::size_t(row) * std::size_t(map_.cols + 1) + std::size_t(col)];
     }
@@ -324,15 +324,15 @@ private:
         const int first_row = row, first_col = col;
         Ring out;
         int way = east;
-        while ((at(row, col) & 1 << way) == 0) ++way;
+        while ((ways_at(row, col) & 1 << way) == 0) ++way;
         do {
-            at(row, col) = std::uint8_t(at(row, col) & ~(1 << way));
+            ways_at(row, col) = std::uint8_t(ways_at(row, col) & ~(1 << way));
             if (out.empty() || way != last_) out.push_back(map_.corner(row, col).head<2>());
             last_ = way;
             row += way == south ? 1 : way == north ? -1 : 0;
             col += way == east ? 1 : way == west ? -1 : 0;
             for (const int turn : {1, 0, 3})  // left first, then straight on
-                if (const int next = (last_ + turn) % 4; (at(row, col) & 1 << next) != 0) {
+                if (const int next = (last_ + turn) % 4; (ways_at(row, col) & 1 << next) != 0) {
                     way = next;
                     break;
                 }
