@@ -110,14 +110,14 @@ std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path
     return z_range;
 }
 
-/// Returns the progress function of a stage that covers the shares from .. to of the whole progress.
+/// Returns the progress function of one stage: its progress 0 .. 1 becomes from .. to of the whole.
 Progress part_of(const Progress& progress, double from, double to)
 {
     if (!progress) return {};
     return [=](double share) { progress(from + share * (to - from)); };
 }
 
-/// Checks the options and returns a map that has everything but its geometry, its files and what is counted in them.
+/// Checks the options. Returns a map with its names, bounds and resolutions, but without geometry, layers and floors.
 Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& options, BakeReport& report)
 {
     if (!options.allow_no_terrain && !scene.has_terrain())

@@ -193,7 +193,7 @@ Columns::Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surf
     starts_.reserve(count + 1);
     starts_.push_back({});
     if (count == 0) return;
-    // To scan one element costs about a tenth of looking up one column.
+    // Scanning one element costs about a tenth of looking up one column.
     const double elements = geometry.impl().elements_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
                                                           grid.x_of(grid.first_col + grid.cols),
                                                           grid.y_of(grid.first_row + grid.rows));

@@ -15,7 +15,7 @@ namespace {
 constexpr double pad = 1e-8;   // m; wider than touch_tolerance, so a line on an edge finds its triangle
 constexpr int refinement = 4;  // factor between the cell sizes of two consecutive levels
 constexpr double elements_per_tile = 256;
-constexpr double most_tiles_along = 1024;  // one side: otherwise long, narrow scenes would have too many tiles
+constexpr double most_tiles_along = 1024;  // along one side; limits the tiles of long, narrow scenes
 constexpr double refs_per_element = 6;
 constexpr std::size_t tile_alignment = 64;  // of a tile's size, bytes
 

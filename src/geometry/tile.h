@@ -28,8 +28,8 @@ struct Home {
 };
 
 struct TileTriangle {
-    Triangle corners;     ///< indices of the tile's vertices
-    std::uint32_t piece;  ///< index of the tile's piece
+    Triangle corners;     ///< indices in the tile's vertices
+    std::uint32_t piece;  ///< index in the tile's pieces
     Label label;
     Home home;
     std::uint8_t unused;
@@ -213,7 +213,8 @@ private:
     struct AnyHeight {};
 
     /// Calls visit(tile, element) once for each element near the rectangle whose box fulfils meets(box). meets(box)
-    /// must be false for boxes outside the rectangle and outside `heights`, which is an Interval, or AnyHeight.
+    /// must be false for boxes outside the rectangle and outside `heights`, which is an Interval, or AnyHeight for no
+    /// limit.
     template <class Heights, class Meets, class Visit>
     void visit_if(double low_x, double low_y, double high_x, double high_y, const Heights& heights, const Meets& meets,
                   const Visit& visit) const

@@ -82,7 +82,7 @@ Bounds read_bounds(const YamlMap& root)
     Bounds bounds;
     bounds.min = map.vector("min");
     bounds.max = map.vector("max");
-    if (bounds.is_empty()) root.fail("bounds", "has min above max");
+    if (bounds.is_empty()) root.fail("bounds", "has min above max, needs min at most max");
     return bounds;
 }
 

@@ -54,7 +54,7 @@ struct Stretch {
 
 using Profile = std::vector<Stretch>;
 
-/// Extends a profile up to cube `end`. Does nothing if it already reaches that far.
+/// Extends a profile by cubes of this content up to cube `end`. Does nothing if the profile already reaches that far.
 void append(Profile& profile, int end, Content content)
 {
     const int from = profile.empty() ? 0 : profile.back().end;

@@ -24,7 +24,7 @@ struct ObstacleSearch {
 };
 
 /// Returns 1 for each cell of the frame in which an obstacle stands at the height of a robot on the shown layer,
-/// otherwise 0. Looks at the cells' centres in the exact geometry. Row 0 is the largest y. O(elements + cells).
+/// otherwise 0. Looks at the exact geometry at the cells' centres. Row 0 is the largest y. O(elements + cells).
 cv::Mat_<std::uint8_t> obstacle_mask(const Geometry& geometry, const GridFrame& frame, const ObstacleSearch& search);
 
 }  // namespace spawnfield

@@ -40,7 +40,8 @@ Pattern read_pattern(const std::string& option, const std::string& text)
     const bool is_pair = open != std::string::npos && close != std::string::npos && open < close;
     if (!is_pair || !read_place(text.substr(open + 1, close - open - 1), pattern.digits))
         fail(option, text,
-             "has braces that are neither {i} nor {i:03} (the robot's number; with zeros up to 1 to 9 digits)");
+             "has braces that are neither {i} nor {i:03}; {i} is the robot's number, {i:03} has at least 3 digits (1 "
+             "to 9 are allowed)");
     pattern.before = text.substr(0, open);
     pattern.after = text.substr(close + 1);
     pattern.has_number = true;
