@@ -318,8 +318,8 @@ TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
     const ProgramRun full = run_program(desk, sample + ">/dev/full 2>err || (cat err >&2; rm err; exit 1)");
     CHECK(full.status == 1);
     CHECK(full.err == "spawnfield: standard output: cannot be written\n");
-    desk.check({"bake scene.yaml -q -o out", "spawnfield: out: exists and is no map; choose another name or remove it"},
-               1);
+    desk.check(
+        {"bake scene.yaml -q -o out", "spawnfield: out: exists and is not a map; choose another name or remove it"}, 1);
     const std::string raster = "raster map -q --dims 2 --step 1" + husky;
     desk.check({raster + "-o /dev/full --heatmap new.png",
                 "spawnfield: /dev/full: cannot be written: No space left on device"},

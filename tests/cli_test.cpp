@@ -161,7 +161,7 @@ TEST_CASE("a bake over a map replaces it, but keeps what others put there; a fol
     arena.write("work/thesis.tex", "years");
     const ProgramRun run = arena("bake " + scene + " -o work");
     CHECK(run.status == 1);
-    CHECK(run.err == "spawnfield: work: exists and is no map; choose another name or remove it\n");
+    CHECK(run.err == "spawnfield: work: exists and is not a map; choose another name or remove it\n");
     CHECK(bytes_of(arena / "work/thesis.tex") == "years");
     CHECK(arena.names() == std::set<std::string>{"map", "work"});
 }
@@ -510,7 +510,8 @@ TEST_CASE("columns that are known but for their case are noticed")
 {
     const Arena arena;
     arena.write("poses.csv", "x,y,z,Yaw\n0,0,0.1,1\n");
-    const std::string yaw = "notice: poses.csv: column Yaw is carried along, not read: names are lower case (yaw)\n";
+    const std::string yaw =
+        "notice: poses.csv: column Yaw is copied but not read, because names of columns are lower case (yaw)\n";
     const ProgramRun run = arena("check map --poses poses.csv" + husky);
     CHECK(run.err.starts_with(yaw));
     CHECK(row(run.out, 0).starts_with("x,y,z,Yaw,verdict"));

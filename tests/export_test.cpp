@@ -759,7 +759,8 @@ TEST_CASE("export --format glb draws poses of a CSV file and says what is wrong 
     const ProgramRun bad = arena("export map --format glb --poses bad.csv -o bad.glb");
     CHECK(bad.status == 4);
     CHECK(bad.err ==
-          "spawnfield: bad.csv: pose 2: column verdict is \"good\", needs a verdict's name, as valid or collision\n");
+          "spawnfield: bad.csv: pose 2: column verdict is \"good\", needs the name of a verdict, for example valid or "
+          "collision\n");
     CHECK_FALSE(fs::exists(arena / "bad.glb"));
     CHECK_THAT(arena("export map --format glb -o b.glb" + husky_option).err,
                Contains("--robot has no effect: without --poses there is no place to draw it"));
@@ -796,7 +797,7 @@ TEST_CASE("export says which option a format needs, takes or refuses, and writes
     refused("--format nav2 -o -" + husky_option,
             "--out is \"-\": --format nav2 cannot go to standard output; give a file name");
     refused("--format nav2 -o a.png" + husky_option,
-            "the file's name is \"a.png\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
+            "the file's name is \"a.png\", needs the ending .yaml or .yml; the image gets the same name with .pgm");
     refused("--format nav2 --layers all -o a.yaml" + husky_option,
             "--layers is all, needs top, bottom or a number (0 is the highest layer), because a pixel of nav2 has one "
             "value");

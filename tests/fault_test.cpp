@@ -342,7 +342,7 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
     for (const char* const name : {"geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"}) {
         const std::string good = bytes_of(map / name), file = std::string("map/") + name;
         folder.write(file, good.substr(0, good.size() / 2));
-        const std::string cut = "@/" + file + ": has " + std::to_string(good.size() / 2) + " bytes, map.yaml says " +
+        const std::string cut = "@/" + file + ": has " + std::to_string(good.size() / 2) + " bytes, map.yaml lists " +
                                 std::to_string(good.size()) + ": it was cut short or altered; bake the map again";
         CHECK(read() == cut);
         CHECK(complaint(folder, [&] { verify_map(map); }) == cut);
@@ -380,9 +380,10 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
           "@/map/map.yaml: has format version 4, this program reads 2 and 3; bake the map again or use a newer "
           "spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
-    CHECK(read() == "@/map/map.yaml: is no map.yaml of spawnfield (its first line is not `format: spawnfield-map/3`)");
+    CHECK(read() ==
+          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/3`)");
     fs::remove(map / "map.yaml");
-    CHECK(read() == "@/map: is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
+    CHECK(read() == "@/map: is not a map: it has no map.yaml; make a map with `spawnfield bake SCENE -o MAP`");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");
     CHECK(complaint(folder, [&] { read_map(folder / "scene.yaml"); }) ==
           "@/scene.yaml: is a file, and a map is a folder; bake a scene first: spawnfield bake @/scene.yaml -o MAP");
@@ -393,7 +394,7 @@ TEST_CASE("a folder of another program that has a map.yaml too is not replaced")
     const TempFolder folder;
     folder.write("map/map.yaml", "image: map.pgm\nresolution: 0.05\n");  // nav2's
     CHECK(complaint(folder, [&] { bake_small(folder); }) ==
-          "@/map: exists and is no map; choose another name or remove it");
+          "@/map: exists and is not a map; choose another name or remove it");
     CHECK(bytes_of(folder / "map/map.yaml") == "image: map.pgm\nresolution: 0.05\n");
 }
 

@@ -145,7 +145,8 @@ TEST_CASE("what may be a slip of the pen in a poses file is told")
         return out;
     };
     CHECK(notices("id,x,y,z,yaw\n1,2,3,4,5\n").empty());
-    CHECK(notices("x,y,z,Yaw\n1,2,3,4\n") == ": column Yaw is carried along, not read: names are lower case (yaw)\n");
+    CHECK(notices("x,y,z,Yaw\n1,2,3,4\n") ==
+          ": column Yaw is copied but not read, because names of columns are lower case (yaw)\n");
 }
 
 TEST_CASE("verdicts take the place of older ones")

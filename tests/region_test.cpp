@@ -380,11 +380,11 @@ TEST_CASE("GeoJSON of every kind with areas is read")
         R"(},{"type":"Feature","geometry":null},{"type":"Feature","geometry":{"type":"Point","coordinates":[1,1]}}]})");
     check_hole(all);
     CHECK(all.notices == std::vector<std::string>{(folder / "a.geojson").string() +
-                                                  ": 1 point or line left out: points and lines have no area"});
+                                                  ": 1 point or line ignored: points and lines have no area"});
     CHECK(all.name == "a.geojson");
     const Region utm = read(
         R"({"type":"Polygon","crs":{"type":"name","properties":{"name":"EPSG:32611"}},"coordinates":[)" + outer + "]}");
-    CHECK_THAT(utm.notices.at(0), Contains("crs EPSG:32611 is not looked at"));
+    CHECK_THAT(utm.notices.at(0), Contains("crs EPSG:32611 is ignored"));
 }
 
 TEST_CASE("CSV polygons end at empty lines or where their name changes")
@@ -450,39 +450,39 @@ TEST_CASE("regions that make no sense are refused with the place")
                   "$.coordinates[0] has 2 different corners, needs at least 3");
     check_refused("a.json", polygon("[[0,0],[1,1],[2,2],[0,0]]"),
                   "$.coordinates[0] has no area: its corners lie on one line");
-    check_refused("a.json", polygon("[[0,0],[1,\"1\"],[2,2],[0,0]]"), "$.coordinates[0][1] is no position [x, y]");
-    check_refused("a.json", R"({"type":"Polygon"})", "$.coordinates is missing or no list");
-    check_refused("a.json", R"({"type":"Polygon","coordinates":[]})", "$.coordinates is no list of rings");
+    check_refused("a.json", polygon("[[0,0],[1,\"1\"],[2,2],[0,0]]"), "$.coordinates[0][1] is not a position [x, y]");
+    check_refused("a.json", R"({"type":"Polygon"})", "$.coordinates is missing or is not a list");
+    check_refused("a.json", R"({"type":"Polygon","coordinates":[]})", "$.coordinates is not a list of rings");
     check_refused(
         "a.json", R"({"type":"Topology"})",
         "$ has type \"Topology\", needs Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection");
     check_refused("a.json", R"({"type":"FeatureCollection","features":[{"type":"Feature"}]})",
                   "$.features[0].geometry is missing");
     check_refused("a.json", R"({"type":"Point","coordinates":[1,1]})", "has no polygon, only 1 point or line");
-    check_refused("a.json", "[]", "$ is no object");
+    check_refused("a.json", "[]", "$ is not an object");
     std::string deep;
     for (int i = 0; i < 5000; ++i) deep += R"({"type":"GeometryCollection","geometries":[)";
     for (int i = 0; i < 5000; ++i) deep += "]}";
     CHECK_THROWS_WITH(read_region(folder.write("a.json", deep)), Contains("is nested too deep"));
-    CHECK_THROWS_WITH(read_region(folder.write("a.json", "{\"type\":")), Contains("is no JSON"));
+    CHECK_THROWS_WITH(read_region(folder.write("a.json", "{\"type\":")), Contains("is not valid JSON"));
     CHECK_THROWS_WITH(read_region(folder.write("a.json", polygon("[[0,0],[NaN,0],[1,1],[0,0]]"))),
-                      Contains("is no JSON"));
+                      Contains("is not valid JSON"));
     CHECK_THROWS_WITH(read_region(folder.write("a.json", polygon("[[0,0],[1e999,0],[1,1],[0,0]]"))),
-                      Contains("is no JSON"));
+                      Contains("is not valid JSON"));
     check_refused(
         "a.json",
         R"({"type":"Polygon","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:OGC:1.3:CRS84"}},"coordinates":[]})",
-        "has crs urn:ogc:def:crs:OGC:1.3:CRS84, which is degrees; needs metres in the map's frame (ogr2ogr -t_srs "
-        "projects it)");
+        "has crs urn:ogc:def:crs:OGC:1.3:CRS84, which is in degrees; needs metres in the map's frame (ogr2ogr "
+        "-t_srs converts it)");
     check_refused("a.csv", "0,0\n1,0\n\n", "line 1: the polygon has 2 different corners, needs at least 3");
     check_refused("a.csv", "0,0\n1,0\n2,0\n", "line 1: the polygon has no area: its corners lie on one line");
-    check_refused("a.csv", "0,0\n1,x\n2,0\n", "line 2: \"x\" is no finite number");
-    check_refused("a.csv", "0,0\n1,nan\n2,0\n", "line 2: \"nan\" is no finite number");
+    check_refused("a.csv", "0,0\n1,x\n2,0\n", "line 2: \"x\" is not a finite number");
+    check_refused("a.csv", "0,0\n1,nan\n2,0\n", "line 2: \"nan\" is not a finite number");
     check_refused("a.csv", "0,0,0\n", "line 1: has 3 fields, needs x,y (a header line names further ones)");
     check_refused("a.csv", "lon,lat\n", "line 1: has neither numbers x,y nor the names of such columns");
     check_refused("a.csv", "", "has no polygon: x,y of three corners or more are needed");
     check_refused("a.yaml", "format: spawnfield-scene/1\n",
-                  "is no 2D map of nav2 or ROS (keys image, resolution, origin, …)");
+                  "is not a 2D map of nav2 or ROS (keys image, resolution, origin, …)");
     CHECK_THROWS_WITH(read_region(folder / "none.json"),
                       (folder / "none.json").string() + ": does not exist; is the path right?");
     CHECK_THROWS_WITH(read_region(folder.path()), Contains("is a folder, needs a file"));

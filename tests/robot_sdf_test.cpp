@@ -223,7 +223,7 @@ TEST_CASE("an ellipsoid's polyhedron holds it, closely")
     const Robot robot = load(folder, link_of("a", collision("<ellipsoid><radii>1 2 3</radii></ellipsoid>")));
     REQUIRE(robot.notices.size() == 1);
     CHECK_THAT(robot.notices[0],
-               Catch::Contains("its ellipsoid counts as a polyhedron around it, 2.0 % more in volume"));
+               Catch::Contains("its ellipsoid is replaced by a polyhedron around it, with 2.0 % more volume"));
 }
 
 TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and line")
@@ -238,15 +238,15 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
         {link_of("a", collision("<sphere><radius>-1</radius></sphere>")),
          file + "\"a::c\": <sphere> <radius> is -1, needs > 0 and at most 1000 km (line 3)"},
         {link_of("a", collision("<plane><normal>0 0 1</normal></plane>")),
-         in_a + "is a <plane>, which no robot can be made of: it has no end (line 3)"},
+         in_a + "is a <plane>, which a robot cannot have because it is infinite; use a <box> (line 3)"},
         {link_of("a",
                  collision(
                      "<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>1</height></polyline>")),
-         in_a + "is a <polyline>, which robots cannot have here: a box or a mesh does (line 3)"},
+         in_a + "is a <polyline>, which is not supported in robots; use a <box> or a <mesh> (line 3)"},
         {link_of("a", collision("<mesh><uri>none.stl</uri></mesh>")),
-         in_a + "<mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, "
-                "GAZEBO_MODEL_PATH, nor in the folders above the "
-                "file (line 3)"},
+         in_a + "<mesh> none.stl was not found beside the file, in --model-path, in GZ_SIM_RESOURCE_PATH, "
+                "in GAZEBO_MODEL_PATH or in the folders above the file; add its folder to --model-path or fix the URI "
+                "(line 3)"},
         {link_of("a", collision("<mesh><uri>flat.obj</uri></mesh>")),
          in_a + "<mesh> cannot be used: " + (folder / "flat.obj").string() +
              ": its convex hull has no volume: its points lie in a plane (line 3)"},

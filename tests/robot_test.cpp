@@ -82,18 +82,18 @@ TEST_CASE("box:LX,LY,LZ@x,y,z has its centre there")
 TEST_CASE("a box robot that makes no sense is wrong usage, and told why")
 {
     const std::pair<std::string, std::string> cases[] = {
-        {"box:", "\"\" is no finite number"},
+        {"box:", "\"\" is not a finite number"},
         {"box:1,2", "has 2 side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])"},
         {"box:1,2,3,4", "has 4 side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])"},
-        {"box:1,2,x", "\"x\" is no finite number"},
-        {"box:1,2,3m", "\"3m\" is no finite number"},
-        {"box:1,,3", "\"\" is no finite number"},
-        {"box:1,nan,3", "\"nan\" is no finite number"},
-        {"box:1,2,inf", "\"inf\" is no finite number"},
+        {"box:1,2,x", "\"x\" is not a finite number"},
+        {"box:1,2,3m", "\"3m\" is not a finite number"},
+        {"box:1,,3", "\"\" is not a finite number"},
+        {"box:1,nan,3", "\"nan\" is not a finite number"},
+        {"box:1,2,inf", "\"inf\" is not a finite number"},
         {"box:1,0,3", "side length is 0, needs > 0 m"},
         {"box:1,-2,3", "side length is -2, needs > 0 m"},
         {"box:1,2,3@0,0", "has 2 coordinates after @, needs 3"},
-        {"box:1,2,3@0,0,", "\"\" is no finite number"},
+        {"box:1,2,3@0,0,", "\"\" is not a finite number"},
     };
     for (const auto& [robot, wanted] : cases) {
         CHECK_THROWS_AS(load_robot(robot), ArgumentError);
@@ -251,11 +251,12 @@ TEST_CASE("package:// is found by --model-path first, then by looking upward fro
     check_bounds(load_robot(outside.string(), {{folder / "ws"}}).bounds(), {-1, -0.5, -0.5}, {1, 0.5, 0.5});
     check_bounds(load_robot(inside.string(), {{folder / "none", folder / "other"}}).bounds(), {-3, -1.5, -1.5},
                  {3, 1.5, 1.5});
-    CHECK_THROWS_WITH(load_robot(outside.string()),
-                      outside.string() +
-                          ": link \"a\": <mesh> package://my_robot/meshes/hull.stl is found neither beside the file, "
-                          "nor in --model-path, "
-                          "GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file");
+    CHECK_THROWS_WITH(
+        load_robot(outside.string()),
+        outside.string() +
+            ": link \"a\": <mesh> package://my_robot/meshes/hull.stl was not found beside the file, "
+            "in --model-path, in GZ_SIM_RESOURCE_PATH, in GAZEBO_MODEL_PATH or in the folders above the file; "
+            "add its folder to --model-path or fix the URI");
 }
 
 TEST_CASE("file:// and relative mesh names work too; COLLADA's unit counts, its up axis does not")
@@ -297,8 +298,8 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
         {link_of("a", "<sphere radius=\"-0.5\"/>"), "link \"a\": <sphere radius> is -0.5, needs > 0"},
         {link_of("a", "<cylinder radius=\"1\" length=\"0\"/>"), "link \"a\": <cylinder> is 0, needs > 0"},
         {link_of("a", "<mesh filename=\"none.stl\"/>"),
-         "link \"a\": <mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, "
-         "GAZEBO_MODEL_PATH, nor in the folders above the file"},
+         "link \"a\": <mesh> none.stl was not found beside the file, in --model-path, in GZ_SIM_RESOURCE_PATH, "
+         "in GAZEBO_MODEL_PATH or in the folders above the file; add its folder to --model-path or fix the URI"},
         {link_of("a", "<mesh filename=\"flat.obj\"/>"),
          "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
              ": its convex hull has no volume: its points lie in a plane"},
@@ -335,9 +336,10 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
                           ": does not exist; a robot is a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or "
                           "box:LX,LY,LZ[@x,y,z]");
     const auto odd = folder.write("robot.txt", "");
-    CHECK_THROWS_WITH(load_robot(odd.string()), odd.string() +
-                                                    ": is no known robot format, needs a robot.yaml, a .urdf, an SDF "
-                                                    "model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
+    CHECK_THROWS_WITH(load_robot(odd.string()),
+                      odd.string() +
+                          ": is not in a known robot format; a robot is a robot.yaml, a .urdf, an SDF "
+                          "model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
 }
 
 TEST_CASE("joints turn and slide what hangs on them about their own axes")
@@ -441,10 +443,10 @@ TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not kno
     CHECK(*robot.meshes[2].growth() == Approx(0).margin(1e-9));
     const std::string file = (folder / "robot.yaml").string() + ": ";
     REQUIRE(robot.notices.size() == 2);
-    CHECK(robot.notices[0] == file + "\"bend\": l.obj counts as its convex hull, 72 m3, 50 % more than the mesh");
+    CHECK(robot.notices[0] == file + "\"bend\": l.obj is replaced by its convex hull, 72 m3, 50 % more than the mesh");
     CHECK(robot.notices[1] == file +
-                                  "open.obj counts as its convex hull, 1 m3; how much more than the mesh is not known, "
-                                  "as that is not watertight or overlaps itself");
+                                  "open.obj is replaced by its convex hull, 1 m3; the mesh's own volume is unknown, "
+                                  "because the mesh is not watertight or overlaps itself");
 }
 
 TEST_CASE("a robot beyond all measure is refused, a chain longer than the call stack is not")

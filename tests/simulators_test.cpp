@@ -103,7 +103,7 @@ TEST_CASE("bad patterns and names are refused, and the message names them")
     CHECK(refused("husky", 2) == "--name \"husky\" gives all 2 robots one name, needs {i} or {i:03}");
     for (const char* const pattern :
          {"r{", "r}", "r}{", "r{}", "r{j}", "r{i:3}", "r{i:00}", "r{i:012}", "r{i:0x}", "r{i", "r{i:03d}"})
-        CHECK_THAT(refused(pattern, 2), Contains("has braces that are no {i} or {i:03}"));
+        CHECK_THAT(refused(pattern, 2), Contains("has braces that are neither {i} nor {i:03}"));
     CHECK_THAT(refused("r{i}{i}", 2), Contains("has braces twice"));
     CHECK_THAT(refused("", 1), Contains("is empty"));
     CHECK_THAT(refused("a\n{i}", 1), Contains("control character"));
@@ -261,7 +261,7 @@ TEST_CASE("each tile of the terrain has its patches, an empty one is named")
     CHECK(patches.patches_per_tile == 2);  // what lies outside belongs to the nearest tile
     CHECK(patches.flat_patches.size() == 128 + 2 * 1 * 2 * 3 * 4);
     CHECK(message_of([&] { terrain_patches(points, {.rows = 2, .cols = 2, .bounds = grid.bounds}); }) ==
-          "tile 1,1 (row, column, from 0) has no spawn, needs one in each: more spawns, or fewer tiles");
+          "tile 1,1 (row, column, from 0) has no spawn, needs one in each; ask for more spawns or fewer tiles");
     CHECK_FALSE(message_of([&] { terrain_patches(points, {.rows = 0}); }).empty());
     CHECK(terrain_patches({}, grid).patches_per_tile == 0);
 }
@@ -464,7 +464,8 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
     CHECK_THAT(refused("--format ros2-launch-py --topic a --robot-file none.urdf", 2),
                Contains("--topic and --robot-file"));
     CHECK_THAT(refused("--format ros2-launch-py --topic a --name 'a-{i}'", 2), Contains("\"a-1\" has \"-\""));
-    CHECK_THAT(refused("--format sdf --robot-uri model://a --name 'a::{i}'", 2), Contains("which no model's name may"));
+    CHECK_THAT(refused("--format sdf --robot-uri model://a --name 'a::{i}'", 2),
+               Contains("which is not allowed in a model's name"));
     CHECK_THAT(refused("--format sdf --robot-uri model://a --world none.world", 4),
                Contains("none.world: does not exist"));
     CHECK_THAT(refused("--format sdf --robot-uri model://a --world yard.world --world-name meadow", 4),

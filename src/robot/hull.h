@@ -4,12 +4,12 @@
 
 namespace spawnfield {
 
-/// Convex hull of the points, as a robot part in their frame. Throws std::domain_error if it has no volume.
-/// Source: Barber, Dobkin, Huhdanpaa, The Quickhull algorithm for convex hulls, 1996 (libqhull).
+/// Returns the convex hull of the points as a robot part, in the frame of the points. Throws std::domain_error if it
+/// has no volume. Source: Barber, Dobkin, Huhdanpaa, The Quickhull algorithm for convex hulls, 1996 (libqhull).
 RobotPart convex_hull(const std::vector<Vec3>& points);
 
-/// The part with its surface moved outwards by at least margin (m, > 0): hulls by a cube of that half side (Minkowski
-/// sum), so by up to sqrt(3) times as much at corners; all others by their dimensions.
+/// Returns the part with its surface moved outwards by at least `margin` (m, > 0). A hull grows by a cube of that half
+/// side (Minkowski sum), so by up to sqrt(3) * margin at corners. All other shapes grow in their dimensions.
 RobotPart grown(const RobotPart& part, double margin);
 
 }  // namespace spawnfield
