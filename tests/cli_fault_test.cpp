@@ -171,7 +171,7 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"frob map",
          "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap, "
          "export, experiment"},
-        {sample + "-n 5 --seed -1", "--seed: -1 is no whole number from 0 to 18446744073709551615" + hint},
+        {sample + "-n 5 --seed -1", "--seed: -1 is not a whole number from 0 to 18446744073709551615" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);
     for (const std::string arguments :

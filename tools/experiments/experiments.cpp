@@ -57,7 +57,8 @@ void check_same(const std::vector<Run>& runs)
                 to_string(runs[0].mode), (unsigned long long)runs[0].valid, (unsigned long long)runs[0].positions));
 }
 
-/// With the mask so many times, and with FCL at every position; all have to give the same counts.
+/// Runs a raster several times with the mask and several times with FCL at every position. Throws std::runtime_error if
+/// their counts differ.
 std::vector<Run> repeated(const Environment& environment, const Robot& robot, RasterOptions options, const Run& like,
                           int mask_times, int fcl_times)
 {
@@ -87,8 +88,8 @@ RasterOptions benchmark_options(const Settings& settings, int heights)
     return options;
 }
 
-/// Limits of the thesis's rasters and searches. Its counts of test 4 and 6 at 1.5 m and more are those of a square: 1 m
-/// more in y.
+/// Returns the limits of the rasters and searches in the thesis. Its counts for tests 4 and 6 at steps of 1.5 m and
+/// more are those of a square, which is 1 m longer in y.
 Bounds limits(int test, double step)
 {
     if (test % 2 == 1) return {{0, 0, 31}, {500, 500, 124}};
@@ -167,7 +168,8 @@ std::vector<Run> collision_runs(const Settings& settings, const Environment& cub
         append(runs, repeated(environment, robot(settings, figure.robot), options, like, settings.quick ? 2 : 10,
                               settings.quick ? 1 : 3));
         if (runs.back().invalid != runs.back().positions)
-            throw std::runtime_error("test 2: a position without collision");
+            throw std::runtime_error("test 2: " + std::to_string(runs.back().positions - runs.back().invalid) +
+                                     " positions do not collide; every position must");
     }
     return runs;
 }
@@ -183,9 +185,9 @@ std::vector<Run> raster_runs(const Settings& settings, const Districts& district
                 append(runs, repeated(environment_of(districts, test), robot(settings, name),
                                       raster_options(settings, test, step), {.test = test}, settings.quick ? 2 : 5, 1));
                 if (!settings.quick && runs.back().positions != figure.positions)
-                    throw std::runtime_error(tools::formatted("test %d, step %g: %llu positions, needs %llu", test,
-                                                              step, (unsigned long long)runs.back().positions,
-                                                              (unsigned long long)figure.positions));
+                    throw std::runtime_error(tools::formatted(
+                        "test %d, step %g: the raster has %llu positions; the thesis needs %llu", test, step,
+                        (unsigned long long)runs.back().positions, (unsigned long long)figure.positions));
             }
         }
     return runs;
@@ -231,22 +233,22 @@ std::vector<Milestone> milestones(const Settings& settings, const Districts& dis
 
 std::vector<ColumnFinds> column_finds(const Settings& settings, const Environment& low)
 {
-    settings.tell("2D beside 3D");
+    settings.tell("comparing 2D and 3D rasters");
     const CollisionChecker checker(low.map.geometry, robot(settings, "box"));
     std::map<std::pair<double, double>, ColumnFinds> columns;
-    const auto look = [&](const RasterOptions& options, bool ColumnFinds::*found) {
+    const auto add_finds = [&](const RasterOptions& options, bool ColumnFinds::*found) {
         for (const RasterPose& pose : raster(low.map, checker, options).poses)
             columns.try_emplace({pose.y, pose.x}, ColumnFinds{pose.x, pose.y, false, false, false}).first->second.*
                 found |= pose.verdict == Verdict::Valid;
     };
     RasterOptions options = raster_options(settings, 5, settings.quick ? 20 : 2.5);
-    look(options, &ColumnFinds::in_2d);
+    add_finds(options, &ColumnFinds::in_2d);
     options.dims = 3;
-    look(options, &ColumnFinds::in_3d);
+    add_finds(options, &ColumnFinds::in_3d);
     options.snap = true;
-    look(options, &ColumnFinds::in_3d_snapped);
+    add_finds(options, &ColumnFinds::in_3d_snapped);
     std::vector<ColumnFinds> out;
-    for (const auto& [at, finds] : columns) out.push_back(finds);
+    for (const auto& [place, finds] : columns) out.push_back(finds);
     return out;
 }
 

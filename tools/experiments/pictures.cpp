@@ -11,7 +11,8 @@ namespace experiments {
 namespace {
 
 constexpr int case_pixels = 640, map_pixels = 560;
-constexpr double columns_across = 320;  // of the rasters behind the pictures
+constexpr double columns_across =
+    320;  // number of columns across the longer side, in the rasters that the pictures show
 
 struct Case {
     const char* landmark;
@@ -22,7 +23,7 @@ Bounds region_of(const Environment& environment, const std::string& name)
 {
     for (const worlds::Landmark& landmark : environment.landmarks)
         if (landmark.name == name) return landmark.where;
-    throw std::runtime_error("the environment " + environment.name + " has no landmark " + name);
+    throw std::runtime_error("the environment " + environment.name + " has no landmark named " + name);
 }
 
 RasterResult verdicts_in(const Settings& settings, const Environment& environment, const Bounds& bounds, double offset)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plots of the experiments, from the tables that spawnfield_experiments writes.
+"""Draws plots of the experiments from the tables that spawnfield_experiments writes.
 
 plot.py FOLDER reads FOLDER/{runs,thesis,milestones,column_finds}.csv and writes FOLDER/experiments/*.png and *.svg.
 Colours: Okabe, Ito, Color Universal Design, 2008.
@@ -12,14 +12,14 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
-matplotlib.rcParams["svg.hashsalt"] = "spawnfield"  # the same bytes for the same tables
+matplotlib.rcParams["svg.hashsalt"] = "spawnfield"  # gives the same bytes for the same tables
 import matplotlib.pyplot as plt
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 BLUE, ORANGE, GREEN, GREY, BLACK = "#0072B2", "#D55E00", "#009E73", "#BBBBBB", "#000000"
 ENVIRONMENTS = ("low-complexity", "complex")
-BREAK_EVEN = 1.8  # m, of the thesis
+BREAK_EVEN = 1.8  # m; step at which 2D and 3D rasters of the thesis take the same time
 
 
 def read(file):
@@ -35,7 +35,7 @@ def save(figure, folder, name, room_below=0.0):
 
 
 def mean_seconds(rows):
-    """(step, positions, mean seconds) for each step, the smallest first."""
+    """Returns (step, positions, mean seconds) for each step, in ascending order."""
     groups = {}
     for row in rows:
         groups.setdefault((float(row["step"]), int(row["positions"])), []).append(float(row["seconds"]))
@@ -79,7 +79,7 @@ def plot_milestones(milestones, thesis, folder):
 
 
 def plot_columns(finds, folder):
-    """Columns in which each raster finds a place to stand, side by side."""
+    """Draws side by side in which columns each raster finds a place to stand."""
     xs, ys = sorted({float(f["x"]) for f in finds}), sorted({float(f["y"]) for f in finds})
     col, row = {x: i for i, x in enumerate(xs)}, {y: i for i, y in enumerate(ys)}
     names = (("in_2d", "2D"), ("in_3d", "3D"), ("in_3d_snapped", "3D, --snap"))
