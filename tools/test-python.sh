@@ -19,5 +19,6 @@ pip=("$folder/bin/python" -m pip install --no-input --disable-pip-version-check 
 if "${pip[@]}" --requirement "$wanted" >>"$log" 2>&1; then
   cp "$wanted" "$folder/requirements.txt"
 else
-  echo "test-python.sh: the packages of $wanted could not be installed from PyPI, so the tests that need them are skipped; see $log" >&2
+  echo "test-python.sh: the packages of $wanted could not be installed from PyPI, so the tests that need them are" \
+    "skipped; see $log" >&2
 fi

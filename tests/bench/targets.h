@@ -7,7 +7,7 @@ namespace bench {
 /// A row of the table of targets for speed and memory.
 struct TargetRow {
     std::string scene = {}, work = {};
-    int threads = 0;                             ///< 0: has no meaning
+    int threads = 0;                             ///< 0: not applicable
     std::string target = {};                     ///< as text; empty for rows without a target
     double measured = 0;                         ///< median
     std::string unit = {};                       ///< of `measured`: "s", "ms", "ms per 1,000", "MB", "times"
