@@ -1,4 +1,4 @@
-"""Checks files for CARLA, Unreal and Unity: axes and angles, by the rules of these programs, must give the true poses."""
+"""Checks files for CARLA, Unreal and Unity: by the rules of these programs they must give the true poses."""
 import csv
 import json
 import math
