@@ -219,8 +219,10 @@ void Settler::add_towers(const Site& block)
 {
     for (const double x : {-28.0, 0.0, 28.0}) {
         const double y = random_.between(-12, 12);
-        add_building({block.to_world({x, y}), block.quarters + random_.below(2)},
-                     towers_[std::size_t(random_.below(tower_models))]);
+        // Drawn before the call: compilers differ in the order in which they compute arguments.
+        const Model& model = towers_[std::size_t(random_.below(tower_models))];
+        const int quarters = block.quarters + random_.below(2);
+        add_building({block.to_world({x, y}), quarters}, model);
     }
     for (int i = 0; i < 14; ++i) {
         const double x = random_.between(-40, 40), y = random_.between(17, 25) * (i % 2 == 0 ? 1 : -1);
