@@ -335,11 +335,11 @@ TEST_CASE("output that cannot be written ends with status 1, and nothing remains
 TEST_CASE("a summary that cannot be written is reported before all work, and nothing is written")
 {
     const Desk desk;
-    const std::string told = "spawnfield: none/s.json: cannot be written: No such file or directory";
+    const std::string message = "spawnfield: none/s.json: cannot be written: No such file or directory";
     for (const std::string& arguments :
          {std::string("bake scene.yaml -o new"), std::string("info map"), "check map --poses poses.csv -o out" + husky,
           "raster map -o out --dims 2 --step 1" + husky, "sample map -o out -n 1" + husky,
           "search map -o out -n 1" + husky, "heatmap map -o out" + husky,
           "experiment map -o new --dims 2 --steps 1" + husky})
-        desk.check({arguments + " --summary none/s.json", told}, 1);
+        desk.check({arguments + " --summary none/s.json", message}, 1);
 }

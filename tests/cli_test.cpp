@@ -287,8 +287,8 @@ TEST_CASE("info lists the first 60 of many parts")
     std::string text = "format: spawnfield-scene/1\nname: many\nparts:\n";
     for (int i = 1; i <= 63; ++i) text += "  - {name: part" + std::to_string(i) + ", label: terrain, sphere: 1}\n";
     folder.write("scene.yaml", text);
-    const std::string told = run_program(folder, "info scene.yaml").out;
-    CHECK_THAT(told, Contains("\n  part60: sphere, terrain, 1 solid\n  … and 3 more (--json lists all)\n"));
+    const std::string listing = run_program(folder, "info scene.yaml").out;
+    CHECK_THAT(listing, Contains("\n  part60: sphere, terrain, 1 solid\n  … and 3 more (--json lists all)\n"));
     CHECK(nlohmann::json::parse(run_program(folder, "info scene.yaml --json").out)["parts"].size() == 63);
 }
 
@@ -400,12 +400,13 @@ TEST_CASE("fewer spawns than requested end with status 3, and those found are wr
     CHECK(found > 0);
     CHECK(found < 10);
     CHECK_THAT(run.err, Contains(std::to_string(found) + " of 50 spawns"));
-    const auto told = summary(arena / "s.json", "sample");
-    CHECK(told["counts"]["valid"] >= found);
-    CHECK(told["full"] == true);
-    const double mask = told["seconds"]["mask"], exact = told["seconds"]["exact"], query = told["seconds"]["query"];
+    const auto report = summary(arena / "s.json", "sample");
+    CHECK(report["counts"]["valid"] >= found);
+    CHECK(report["full"] == true);
+    const double mask = report["seconds"]["mask"], exact = report["seconds"]["exact"],
+                 query = report["seconds"]["query"];
     CHECK((mask > 0 && exact > 0 && mask + exact <= query));
-    CHECK(told["undecided_area"] == 0.0);
+    CHECK(report["undecided_area"] == 0.0);
     CHECK(nlohmann::json::parse(arena("sample map -n 50 --min-distance 15 --format json" + husky).out)["full"] == true);
     CHECK(arena("search map -n 5 --min-distance 100 --max-failures 50 --summary s.json" + husky).status == 3);
     CHECK_FALSE(summary(arena / "s.json", "search").contains("full"));

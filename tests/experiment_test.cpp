@@ -168,10 +168,10 @@ TEST_CASE("an experiment with searches has the counts of search for each seed")
     const std::string draws =
         "map -n 15 --min-distance 0.5 --max-failures 5000 --bounds -9,-9,-0.1,9,9,1 --yaw 0.3 --keep-out -3,-3,3,3" +
         husky;
-    const nlohmann::json told = summary(arena, "experiment --search --seed 7 --runs 3 -o out " + draws);
-    CHECK(told["command"] == "experiment");
-    CHECK(told["seed"] == 7);
-    CHECK(told["counts"]["valid"] == 45);
+    const nlohmann::json report = summary(arena, "experiment --search --seed 7 --runs 3 -o out " + draws);
+    CHECK(report["command"] == "experiment");
+    CHECK(report["seed"] == 7);
+    CHECK(report["counts"]["valid"] == 45);
     const std::vector<Row> rows = rows_of(arena / "out/experiment.csv");
     REQUIRE(rows.size() == 3);
     std::set<std::string> different;

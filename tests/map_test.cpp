@@ -115,7 +115,7 @@ TEST_CASE("heightmap.png has the top layer, with the range that map.yaml states"
         }
 }
 
-TEST_CASE("a bake is the same bytes at any thread count")
+TEST_CASE("a bake is the same bytes with any number of threads")
 {
     const TempFolder temp;
     bake_training(temp / "1", 1);

@@ -83,7 +83,7 @@ TEST_CASE("gamma and transparency leave PNG pixels as they are")
     CHECK(read_png(folder, {.lines = {0, 1, 2, 0, 3, 4}, .before = chunks}).pixels == Pixels{1, 2, 3, 4});
 }
 
-TEST_CASE("a grey PNG image is read as grey, whatever its colour type")
+TEST_CASE("a grey PNG image is read as grey, with any colour type")
 {
     const TempFolder folder;
     CHECK(read_png(folder, {.colour = 2, .lines = {0, 1, 1, 1, 2, 2, 2, 0, 3, 3, 3, 4, 4, 4}}).pixels ==

@@ -184,7 +184,7 @@ TEST_CASE("columns outside the map are outside")
     CHECK(result.poses.size() == 12);
 }
 
-TEST_CASE("a raster is the same bytes at any thread count")
+TEST_CASE("a raster is the same bytes with any number of threads")
 {
     const TestMap map = map_of(random_scene(4));
     const CollisionChecker checker = checker_of(map, random_robot(4));

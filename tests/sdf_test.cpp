@@ -475,19 +475,19 @@ TEST_CASE("rules decide what is ground, and --label comes first")
     CHECK(counts["name floor*"] == 1);
     CHECK(counts["all else"] == 2);
 
-    const Scene told = load_world(folder, world,
-                                  {.labels = {{"house", Label::Water},
-                                              {"sidewalk_7::*", Label::Ignore},
-                                              {"wall", Label::Terrain},
-                                              {"nothing*", Label::Terrain}}});
-    auto changed = labels(told);
+    const Scene labelled = load_world(folder, world,
+                                      {.labels = {{"house", Label::Water},
+                                                  {"sidewalk_7::*", Label::Ignore},
+                                                  {"wall", Label::Terrain},
+                                                  {"nothing*", Label::Terrain}}});
+    auto changed = labels(labelled);
     CHECK(changed["house::l::wall"] == "water");  // the first rule that matches
     CHECK(changed["house::l::floor_1"] == "water");
     CHECK(changed["Sidewalk_7::l::c"] == "ignore");
     CHECK(changed["ground_plane::l::c"] == "terrain");
-    for (const NameRule& rule : told.rules)  // the rules did not decide what the options decided
+    for (const NameRule& rule : labelled.rules)  // the rules did not decide what the options decided
         if (rule.what == "name sidewalk*" || rule.what == "name floor*") CHECK(rule.count == 0);
-    CHECK(has_notice(told, "label \"nothing*\" matches no model, link, collision, node or material"));
+    CHECK(has_notice(labelled, "label \"nothing*\" matches no model, link, collision, node or material"));
 
     const std::string furniture =
         "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, "
@@ -508,7 +508,7 @@ TEST_CASE("rules decide what is ground, and --label comes first")
     CHECK(has_notice(unnamed, "so everything is terrain"));
 }
 
-TEST_CASE("names are split into words, and walls and ceilings are not ground, whatever else their names contain")
+TEST_CASE("names are split into words, and walls and ceilings are not ground, with any other words in their names")
 {
     const TempFolder folder;
     const auto label_of = [&](const std::string& name, const std::string& link = "link",

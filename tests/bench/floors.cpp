@@ -83,7 +83,7 @@ public:
     }
 
 private:
-    /// Returns whether an inner wall would cross the ramp; there is none then.
+    /// Returns whether a wall is left out because it would cross the ramp.
     static bool is_in_shaft(int i, int j) { return is_wall(i) && i / 4 >= 6 && i / 4 < rooms_x && j < 4; }
 
     std::array<char, 1024> doors_{}, gaps_{};

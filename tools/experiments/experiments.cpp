@@ -147,7 +147,7 @@ std::vector<Run> aerial_runs(const Settings& settings)
     std::vector<Run> runs;
     for (const thesis::Aerial& figure : thesis::aerial()) {
         const int heights = int(figure.positions / 100);
-        settings.tell(tools::formatted("test 1: %d positions", heights * 100));
+        settings.on_step(tools::formatted("test 1: %d positions", heights * 100));
         const Environment empty = empty_environment(heights);
         for (const char* const name : {"box", "hull"})
             append(runs, repeated(empty, robot(settings, name), benchmark_options(settings, heights), {.test = 1},
@@ -160,7 +160,7 @@ std::vector<Run> collision_runs(const Settings& settings, const Environment& cub
 {
     std::vector<Run> runs;
     for (const thesis::Collision& figure : thesis::collision()) {
-        settings.tell(std::string("test 2: ") + figure.robot + " against " + figure.obstacle);
+        settings.on_step(std::string("test 2: ") + figure.robot + " against " + figure.obstacle);
         const Environment& environment = figure.obstacle == std::string("cubes") ? cubes : balls;
         RasterOptions options = benchmark_options(settings, int(environment.map.bounds.max.z()) + 1);
         options.height_check = false;
@@ -180,7 +180,7 @@ std::vector<Run> raster_runs(const Settings& settings, const Districts& district
     for (int test = 3; test <= 6; ++test)
         for (const thesis::Raster& figure : thesis::raster(test)) {
             const double step = settings.quick ? 16 * figure.step : figure.step;
-            settings.tell(tools::formatted("test %d: step %g m", test, step));
+            settings.on_step(tools::formatted("test %d: step %g m", test, step));
             for (const char* const name : {"box", "hull"}) {
                 append(runs, repeated(environment_of(districts, test), robot(settings, name),
                                       raster_options(settings, test, step), {.test = test}, settings.quick ? 2 : 5, 1));
@@ -199,7 +199,7 @@ std::vector<Run> search_runs(const Settings& settings, const Districts& district
     const Robot box = robot(settings, "box");
     for (const int test : {7, 8})
         for (const bool with_distance : {true, false}) {
-            settings.tell(tools::formatted("test %d: %s distance check", test, with_distance ? "with" : "without"));
+            settings.on_step(tools::formatted("test %d: %s distance check", test, with_distance ? "with" : "without"));
             for (int seed = 1; seed <= (settings.quick ? 2 : 20); ++seed)
                 runs.push_back(run_search(environment_of(districts, test), box,
                                           search_options(settings, test, with_distance, seed), test));
@@ -233,7 +233,7 @@ std::vector<Milestone> milestones(const Settings& settings, const Districts& dis
 
 std::vector<ColumnFinds> column_finds(const Settings& settings, const Environment& low)
 {
-    settings.tell("comparing 2D and 3D rasters");
+    settings.on_step("comparing 2D and 3D rasters");
     const CollisionChecker checker(low.map.geometry, robot(settings, "box"));
     std::map<std::pair<double, double>, ColumnFinds> columns;
     const auto add_finds = [&](const RasterOptions& options, bool ColumnFinds::*found) {

@@ -72,7 +72,7 @@ int main(int argc, char** argv)
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;  // 2 means wrong usage, as in spawnfield
     }
-    settings.tell = [](const std::string& what) { std::cerr << what << std::endl; };
+    settings.on_step = [](const std::string& what) { std::cerr << what << std::endl; };
     try {
         run(settings, command);
     } catch (const std::exception& error) {

@@ -53,7 +53,7 @@ Picture draw_case(const Settings& settings, const Environment& environment, cons
 std::vector<Picture> draw_cases(const Settings& settings, const Districts& districts, const Environment& bridge_deck,
                                 const std::filesystem::path& folder)
 {
-    settings.tell("pictures of special cases");
+    settings.on_step("pictures of special cases");
     std::vector<Picture> out;
     for (const Case& shown : {Case{"fountain", "the fountain on the square"}, Case{"lake", "open ground and lake"},
                               Case{"dense_forest", "dense forest"}})
@@ -68,7 +68,7 @@ std::vector<Picture> draw_cases(const Settings& settings, const Districts& distr
 std::vector<Picture> draw_spawns(const Settings& settings, const Districts& districts,
                                  const std::filesystem::path& folder)
 {
-    settings.tell("pictures of random spawns");
+    settings.on_step("pictures of random spawns");
     std::vector<Picture> out;
     for (const int test : {7, 8}) {
         const Environment& environment = test == 7 ? districts.low : districts.complex;

@@ -54,7 +54,7 @@ std::string husky_body()
 Environment environment(const Settings& settings, const std::string& name,
                         const std::function<worlds::World(std::uint64_t)>& make, double resolution)
 {
-    settings.tell(name + ": making, baking");
+    settings.on_step(name + ": making, baking");
     Environment out{.name = name, .map = {}, .seed = 1};
     const std::filesystem::path world_folder = settings.folder / "worlds" / name,
                                 map_folder = settings.folder / "maps" / name;

@@ -15,7 +15,8 @@ struct Settings {
     bool quick = false;  ///< coarse steps and maps, few repetitions: only shows that everything works and that the
                          ///< invariants hold
     int threads = 0;     ///< 0: all cores
-    std::function<void(const std::string&)> tell = [](const std::string&) {};  ///< is called with a text for each step
+    std::function<void(const std::string&)> on_step = [](const std::string&) {
+    };  ///< is called with a text for each step
 };
 
 /// A world that was written, baked and read.

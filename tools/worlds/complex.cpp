@@ -219,7 +219,7 @@ void Settler::add_towers(const Site& block)
 {
     for (const double x : {-28.0, 0.0, 28.0}) {
         const double y = random_.between(-12, 12);
-        // Drawn before the call: compilers differ in the order in which they compute arguments.
+        // These are drawn before the call, because compilers may compute arguments in any order.
         const Model& model = towers_[std::size_t(random_.below(tower_models))];
         const int quarters = block.quarters + random_.below(2);
         add_building({block.to_world({x, y}), quarters}, model);
