@@ -33,7 +33,7 @@ std::vector<double> layers_at(const Scene& scene, double x, double y)
     return column_at(Geometry(scene), x, y).layers;
 }
 
-/// Triangles of terrain, by the names of nodes.
+/// Returns the number of terrain triangles for each name of a node.
 std::map<std::string, std::uint64_t> terrain_of(const Scene& scene)
 {
     std::map<std::string, std::uint64_t> out;
@@ -62,7 +62,7 @@ std::string scan_of(octomap::OcTree& tree)
 
 }  // namespace
 
-TEST_CASE("faces of shells that look up and are less steep than the limit are terrain, the rest obstacle")
+TEST_CASE("faces of shells that point up and are less steep than the limit are terrain, all others are obstacle")
 {
     const TempFolder folder;
     std::vector<mesh_text::Node> nodes;
@@ -80,12 +80,12 @@ TEST_CASE("faces of shells that look up and are less steep than the limit are te
     CHECK(layers_at(scene, 0.1, 0.2) == std::vector<double>{0});
     CHECK(layers_at(scene, 0.1, 9.2).empty());
 
-    // --label comes first, for all that it names.
-    const Scene told = load_scene(
+    // A rule of --label comes first for everything that it names.
+    const Scene labelled = load_scene(
         file, {.labels = {{"slope60", Label::Terrain}, {"slope0", Label::Water}}, .auto_slope = 30 * degree});
-    CHECK(terrain_of(told)["slope60"] == 2);
-    CHECK(terrain_of(told)["slope0"] == 0);
-    CHECK(terrain_of(told)["slope20"] == 2);
+    CHECK(terrain_of(labelled)["slope60"] == 2);
+    CHECK(terrain_of(labelled)["slope0"] == 0);
+    CHECK(terrain_of(labelled)["slope20"] == 2);
 }
 
 TEST_CASE("a filled piece stays filled, and its winding does not matter")
@@ -99,7 +99,7 @@ TEST_CASE("a filled piece stays filled, and its winding does not matter")
         REQUIRE(layers_at(scene, 1.1, 0.4).size() == 1);
         CHECK(std::abs(layers_at(scene, 1.1, 0.4)[0] - 0.7) < 1e-6);
     }
-    // A roof of 40 degrees carries nobody, a wedge of 20 does.
+    // A roof of 40 degrees is not terrain, a wedge of 20 degrees is.
     const auto wedge = [&](double degrees) {
         const double high = 4 * std::tan(degrees * degree);
         const hand::Mesh mesh = moved(hand::extruded({{0, 0}, {4, 0}, {4, high}}, 0, 3),
@@ -110,7 +110,7 @@ TEST_CASE("a filled piece stays filled, and its winding does not matter")
     CHECK(layers_at(wedge(40), 2.1, 1.1).empty());
 }
 
-TEST_CASE("a shell that is inside out is told")
+TEST_CASE("a shell that is inside out gets a notice")
 {
     const TempFolder folder;
     const Scene scene = load_scene(folder.write("scan.obj", mesh_text::obj(hand::flipped(hand::rectangle(4, 3)))),
@@ -122,7 +122,7 @@ TEST_CASE("a shell that is inside out is told")
           "the mesh inside out?");
 }
 
-TEST_CASE("auto_label in a scene file holds for its part, and the option for parts without a label")
+TEST_CASE("auto_label in a scene file applies to its part, and the option applies to parts without a label")
 {
     const TempFolder folder;
     folder.write("a.obj", mesh_text::obj({{.name = "floor", .mesh = hand::rectangle(1, 1)},
@@ -148,7 +148,7 @@ TEST_CASE("auto_label in a scene file holds for its part, and the option for par
                       Contains("auto_label"));
 }
 
-TEST_CASE("in a world what no name makes ground is labelled by its slope, shape by shape")
+TEST_CASE("in a world, shapes that no name makes ground are labelled by their slope, one by one")
 {
     const TempFolder folder;
     const std::string box = "<box><size>2 2 0.2</size></box>",
@@ -163,7 +163,7 @@ TEST_CASE("in a world what no name makes ground is labelled by its slope, shape 
     const Scene scene = load_scene(file, by_slope);
     const double level = 1.1, ramp = 1 + 0.1 / std::cos(0.4);
     CHECK(layers_at(scene, 0.1, 0.1).size() == 1);
-    CHECK(layers_at(scene, 5.1, 0.1).empty());  // a name says that it is no ground
+    CHECK(layers_at(scene, 5.1, 0.1).empty());  // its name excludes it from the ground
     CHECK(layers_at(scene, 10.1, 0.1) == std::vector<double>{level});
     REQUIRE(layers_at(scene, 20, 0).size() == 1);  // 23 degrees
     CHECK(std::abs(layers_at(scene, 20, 0)[0] - ramp) < 1e-9);
@@ -171,7 +171,7 @@ TEST_CASE("in a world what no name makes ground is labelled by its slope, shape 
     CHECK(layers_at(scene, 40.1, 0.1) == std::vector<double>{1});
     CHECK(layers_at(scene, 50.1, 0.1).empty());
     CHECK(layers_at(scene, 60, 0).empty());
-    // A tilted box is a mesh then, of the same size and place, and filled.
+    // A tilted box becomes a filled mesh of the same size at the same place.
     const Scene plain = load_scene(file);
     CHECK((scene.bounds().min - plain.bounds().min).norm() < 1e-9);
     CHECK((scene.bounds().max - plain.bounds().max).norm() < 1e-9);
@@ -179,7 +179,7 @@ TEST_CASE("in a world what no name makes ground is labelled by its slope, shape 
     CHECK(scene.triangles.size() == 24);
     for (const Piece& piece : scene.pieces) CHECK(piece.solid);
 
-    // Without a name for ground: by slope instead of everything.
+    // If no name means ground, labels come from slopes, instead of terrain for everything.
     const auto desk = folder.write("desk.world",
                                    world_of(model_of("desk", box, "0 0 0 0 0 0") +
                                             model_of("ball", "<sphere><radius>1</radius></sphere>", "9 0 0 0 0 0")));
@@ -230,7 +230,7 @@ TEST_CASE("in an OctoMap floors and gentle hills are terrain, steep ones, walls 
     CHECK(steep == 0);
     CHECK(layers_at(scene, middle(5), middle(5)).empty());  // on the post
     CHECK(layers_at(load_scene(file), middle(5), middle(5)).size() == 1);
-    // What was scanned from within: the room is free, above its ceiling all is unknown.
+    // A room that was scanned from inside is free, and everything above its ceiling is unknown.
     octomap::OcTree room(0.1);
     for (int i = 0; i < 12; ++i)
         for (int j = 0; j < 12; ++j)
@@ -241,7 +241,7 @@ TEST_CASE("in an OctoMap floors and gentle hills are terrain, steep ones, walls 
     const Scene labelled = load_scene(scanned, by_slope);
     REQUIRE(layers_at(labelled, middle(6), middle(6)).size() == 1);
     CHECK(std::abs(layers_at(labelled, middle(6), middle(6))[0] - 0.1) < 1e-6);
-    // A rule names it as a whole.
+    // A label rule applies to the OctoMap as a whole.
     CHECK_FALSE(load_scene(file, {.labels = {{"scan", Label::Obstacle}}, .auto_slope = 30 * degree}).has_terrain());
     CHECK_THROWS_WITH(
         load_parts(folder, "  - {name: a, octomap: scan.bt, auto_label: {slope: 30}, rpy: [0.1, 0, 0]}\n"),
@@ -273,7 +273,7 @@ TEST_CASE("an unlabelled mesh gets a notice with options that can be pasted")
                Contains(". --label 'GLOB=terrain' labels by name (`info` lists the names)\n"));
 }
 
-TEST_CASE("--auto-label is read by bake and info, and refused where it means nothing")
+TEST_CASE("bake and info accept --auto-label, and refuse it where it has no meaning")
 {
     const TempFolder folder;
     folder.write("a.obj",

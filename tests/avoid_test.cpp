@@ -51,7 +51,7 @@ bool is_clear(const std::vector<Vec3>& points, double distance, const Vec3& p)
     return is_clear({{"", points, distance}}, p);
 }
 
-/// Two groups of points, anywhere within the map and a little beyond.
+/// Returns two groups of points, anywhere in the map and slightly beyond it.
 std::vector<AvoidedPoints> random_avoided(const Bounds& bounds, Random& random)
 {
     std::vector<AvoidedPoints> out;
@@ -67,12 +67,12 @@ std::vector<AvoidedPoints> random_avoided(const Bounds& bounds, Random& random)
     return out;
 }
 
-/// A list of spawns with the numbers of draws that gave none, by the definitions: one draw after the other, all
-/// distances.
+/// A list of spawns with the numbers of rejected draws, computed from the definitions: one draw after the other, with
+/// all distances.
 struct SlowList {
     std::vector<Vec3> found;
     std::uint64_t draws = 0, near_avoided = 0, too_close = 0;
-    bool gave_up = false;  ///< sample goes on in cells then, of which this knows nothing
+    bool gave_up = false;  ///< then sample continues with cells, which this list does not cover
 };
 
 SlowList slow_search(const Map& map, const CollisionChecker& checker, const SearchOptions& options)
@@ -98,7 +98,7 @@ SlowList slow_search(const Map& map, const CollisionChecker& checker, const Sear
     return out;
 }
 
-/// The draws before sample goes over to cells. `slots` must be at least the layers of any column.
+/// Returns the draws before sample starts to use cells. `slots` must be at least the number of layers of any column.
 SlowList slow_sample(const Map& map, const CollisionChecker& checker, const SampleOptions& options, int slots)
 {
     SlowList out;
@@ -134,7 +134,7 @@ void check_same(const SpawnList& list, const SlowList& slow)
     CHECK(list.too_close == slow.too_close);
 }
 
-/// Positions of a grid at which a spawn could still be added.
+/// Returns the number of grid positions at which a spawn could still be added.
 std::size_t room_left(const Map& map, const CollisionChecker& checker, const SampleOptions& options,
                       const SpawnList& list, int cells)
 {
@@ -157,7 +157,7 @@ std::size_t room_left(const Map& map, const CollisionChecker& checker, const Sam
     return count;
 }
 
-/// A room of 8 x 6 m: a floor of a kind (sheet, box, closed mesh), and walls around it.
+/// Returns a room of 8 x 6 m: a floor of one kind (sheet, box, closed mesh), and walls around it.
 Scene room(int kind)
 {
     Scene scene;
@@ -173,7 +173,7 @@ Scene room(int kind)
     return scene;
 }
 
-/// Points over all of the room, `step` apart, but none in a disc of 1.2 m around the gap.
+/// Returns points all over the room, `step` apart, except in a disc of 1.2 m around the gap.
 std::vector<Vec3> grid_points(double step, const Vec3& gap)
 {
     std::vector<Vec3> out;
@@ -217,13 +217,13 @@ TEST_CASE("no spawn is nearer to an avoided point than its distance, in random s
     CHECK(near > 300);
 }
 
-TEST_CASE("search and sample with avoided points are their definitions, draw by draw")
+TEST_CASE("search and sample with avoided points follow their definitions, draw by draw")
 {
     std::size_t found = 0, near = 0, close = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         CAPTURE(seed);
         TestMap map = map_of(random_scene(seed));
-        map.layers = 16;  // at least those of any column, so that sample never starts over
+        map.layers = 16;  // at least as many as in any column, so that sample never starts again
         const CollisionChecker checker = checker_of(map, random_robot(seed));
         Random random{seed + 50};
         SearchOptions options;
@@ -307,7 +307,7 @@ TEST_CASE("a second robot finds no room where the first has filled the map, and 
     CHECK(room_left(map, checker, options, second, 300) == 0);
 }
 
-TEST_CASE("avoided points at no distance, or far away, change no byte")
+TEST_CASE("avoided points with distance 0, or far away, change no byte")
 {
     const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
@@ -327,7 +327,7 @@ TEST_CASE("avoided points at no distance, or far away, change no byte")
     }
 }
 
-TEST_CASE("avoiding gives the same bytes at any number of threads")
+TEST_CASE("avoided points give the same bytes with any number of threads")
 {
     const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
@@ -344,7 +344,7 @@ TEST_CASE("avoiding gives the same bytes at any number of threads")
            many.undecided_area == one.undecided_area));
 }
 
-TEST_CASE("distances and points that are no numbers are refused")
+TEST_CASE("distances and points that are not numbers are refused")
 {
     const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());

@@ -8,7 +8,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What the program must say after `spawnfield `: the whole of standard error, but for the usage hint.
+/// What the program must print after `spawnfield `: all of standard error except the usage hint.
 struct Refusal {
     std::string arguments, message;
 };
@@ -45,7 +45,7 @@ public:
         CHECK(names() == before_);
     }
 
-    /// Further files of a test belong to the desk.
+    /// Adds further files of a test to the files that must not change.
     void remember() { before_ = names(); }
 
 private:
@@ -62,7 +62,7 @@ const std::string hint = "\nRun with --help for more information.";
 
 }  // namespace
 
-TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
+TEST_CASE("wrong usage ends with status 2, and the message names option, value and limit")
 {
     const Desk desk;
     const std::string raster = "raster map -o out --dims 2 --step 1" + husky,
@@ -174,7 +174,7 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"frob map",
          "spawnfield: frob is not a command; the commands are bake, info, check, raster, search, sample, heatmap, "
          "export, experiment"},
-        {sample + "-n 5 --seed -1", "--seed: -1 is no whole number from 0 to 18446744073709551615" + hint},
+        {sample + "-n 5 --seed -1", "--seed: -1 is not a whole number from 0 to 18446744073709551615" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);
     for (const std::string arguments :
@@ -194,7 +194,7 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
     desk.check_untouched();
 }
 
-TEST_CASE("refused input ends with 4, and says which file, place, value and limit; no output is touched")
+TEST_CASE("refused input ends with status 4, and the message names file, place, value and limit; no output changes")
 {
     Desk desk;
     desk.write("no_terrain.yaml", "format: spawnfield-scene/1\nparts: [{name: b, sphere: 1}]\n");
@@ -257,7 +257,7 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
     for (const Refusal& refusal : refusals) desk.check(refusal, 4);
 }
 
-TEST_CASE("a damaged map is refused by every command, with the file named")
+TEST_CASE("every command refuses a damaged map and names the file")
 {
     Desk desk;
     const std::string queries[] = {"info map",
@@ -306,7 +306,7 @@ TEST_CASE("a damaged map is refused by every command, with the file named")
                    4);
 }
 
-TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
+TEST_CASE("output that cannot be written ends with status 1, and nothing remains of it")
 {
     const Desk desk;
     const std::string sample = "sample map -n 1 -q" + husky;
@@ -337,14 +337,14 @@ TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
                1);
 }
 
-TEST_CASE("a summary that cannot be written is told before all work, and nothing is written")
+TEST_CASE("a summary that cannot be written is reported before all work, and nothing is written")
 {
     const Desk desk;
-    const std::string told = "spawnfield: none/s.json: cannot be written: No such file or directory";
+    const std::string message = "spawnfield: none/s.json: cannot be written: No such file or directory";
     for (const std::string& arguments :
          {std::string("bake scene.yaml -o new"), std::string("info map"), "check map --poses poses.csv -o out" + husky,
           "raster map -o out --dims 2 --step 1" + husky, "sample map -o out -n 1" + husky,
           "search map -o out -n 1" + husky, "heatmap map -o out" + husky,
           "experiment map -o new --dims 2 --steps 1" + husky})
-        desk.check({arguments + " --summary none/s.json", told}, 1);
+        desk.check({arguments + " --summary none/s.json", message}, 1);
 }

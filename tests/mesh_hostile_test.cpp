@@ -13,7 +13,7 @@ using namespace spawnfield;
 
 namespace {
 
-/// What reading the bytes as a mesh says, without the file's name: "" if it reads them.
+/// Returns the error message of reading the bytes as a mesh, without the name of the file; "" if it can be read.
 std::string complaint(const TempFolder& folder, const std::string& name, const std::string& bytes)
 {
     const std::filesystem::path file = folder.write(name, bytes);
@@ -34,8 +34,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(at, from.size(), to);
 }
 
-/// A file cut at every step-th byte, and with that byte altered, is read or refused by name, and never the end of the
-/// program.
+/// Checks that a file that is cut at every step-th byte, or has that byte altered, is read or refused by name, and
+/// never ends the program.
 void check_harmed(const TempFolder& folder, const std::string& name, const std::string& good, std::size_t step = 1)
 {
     for (std::size_t at = 0; at < good.size(); at += step) {
@@ -54,7 +54,7 @@ const std::string ply_head =
     "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
 const std::string ply_square = ply_head + "0 0 0\n4 0 0\n4 3 0\n0 3 0\n3 0 1 2\n3 0 2 3\n";
 
-/// One triangle; `nodes` stand in the scene beside the node that holds it.
+/// Returns a COLLADA text with one triangle. `nodes` are added to the scene beside the node that has it.
 std::string collada(const std::string& nodes = "", const std::string& library = "")
 {
     return "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
@@ -76,7 +76,7 @@ std::string collada(const std::string& nodes = "", const std::string& library = 
            "</visual_scene></library_visual_scenes>\n<scene><instance_visual_scene url=\"#vs\"/></scene></COLLADA>\n";
 }
 
-/// One triangle in meshes[0]; `nodes` and the scene's nodes as JSON.
+/// Returns a glTF text with one triangle in meshes[0]. `nodes` and the nodes of the scene are JSON.
 std::string gltf(const std::string& nodes, const std::string& scene = "0", const std::string& more = "")
 {
     return "{\"asset\": {\"version\": \"2.0\"}, " + more + "\"scene\": 0, \"scenes\": [{\"nodes\": [" + scene +
@@ -99,8 +99,7 @@ std::string bytes_of_value(T value, bool big)
     return big ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
 }
 
-/// The square with a quad for a face, colours among the coordinates, and an element that is no concern of ours before
-/// both.
+/// Returns the square as binary PLY with one quad, colours among the coordinates, and an unrelated element before both.
 std::string binary_square(bool big, const std::string& line_end = "\n")
 {
     std::string head = std::string("ply|format binary_") + (big ? "big" : "little") +
@@ -121,7 +120,7 @@ std::string binary_square(bool big, const std::string& line_end = "\n")
 
 }  // namespace
 
-TEST_CASE("JSON that does not end as glTF does is not guessed at")
+TEST_CASE("JSON without the end of a glTF file is refused")
 {
     const TempFolder folder;
     CHECK_THROWS_WITH(
@@ -130,7 +129,7 @@ TEST_CASE("JSON that does not end as glTF does is not guessed at")
             ": cannot be read as a mesh: it contains JSON, but \".geojson\" is not an extension of glTF (.gltf, .glb)");
 }
 
-TEST_CASE("PLY is read in text and in either order of bytes, whatever else it holds")
+TEST_CASE("PLY is read as text and in both byte orders, with any additional elements")
 {
     const TempFolder folder;
     const auto bounds = [&](const std::string& bytes) {
@@ -151,7 +150,7 @@ TEST_CASE("PLY is read in text and in either order of bytes, whatever else it ho
         }
 }
 
-TEST_CASE("a strip of a PLY file has a triangle for each corner after its second, all turned the same way")
+TEST_CASE("a strip of a PLY file has a triangle for each corner after its second, all with the same orientation")
 {
     const TempFolder folder;
     const std::string strips =
@@ -222,7 +221,7 @@ TEST_CASE("PLY files are read or refused wherever they are cut or altered")
     check_harmed(folder, "a.ply", binary_square(true));
 }
 
-TEST_CASE("COLLADA nodes that hold themselves, stand too deep or come to too many are refused")
+TEST_CASE("COLLADA nodes that contain themselves, are nested too deep or are too many are refused")
 {
     const TempFolder folder;
     const auto said = [&](const std::string& nodes, const std::string& library = "") {
@@ -237,7 +236,7 @@ TEST_CASE("COLLADA nodes that hold themselves, stand too deep or come to too man
     CHECK(said(instance(1), node(1, instance(2)) + node(2, node(3, instance(1)))) ==
           "line 11: <node> \"n1\" contains itself through <instance_node>; remove the circle");
     CHECK(said("<node id=\"a\" name=\"n1\">" + instance(1) + "</node>", node(1, "")) ==
-          "");  // the library's node, not the one of that name
+          "");  // the id refers to the node of the library, not to the one with that name
     CHECK(said("<node id=\"a\" name=\"n1\">" + instance(1) + "</node>") ==
           "line 14: <node> \"n1\" contains itself through <instance_node>; remove the circle");
     const auto chain = [&](int length, int times) {
@@ -262,7 +261,7 @@ TEST_CASE("COLLADA nodes that hold themselves, stand too deep or come to too man
     CHECK(complaint(folder, "a.zae", "PK").starts_with("is a packed COLLADA file"));
 }
 
-TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by line and element")
+TEST_CASE("numbers of COLLADA that are invalid, too few or too many are refused by line and element")
 {
     const TempFolder folder;
     CHECK(complaint(folder, "a.dae", collada()) == "");
@@ -319,7 +318,7 @@ TEST_CASE("numbers of COLLADA that are none, too few or too many are refused by 
           "line 9: <p> has 2 numbers, needs 1 for each corner and 3 corners or more");
 }
 
-TEST_CASE("a COLLADA unit that is no length is refused")
+TEST_CASE("a COLLADA unit that is not a length is refused")
 {
     const TempFolder folder;
     for (const char* bad : {"0", "-1", "abc", "nan", "", "1,5", "1e999"})
@@ -337,7 +336,7 @@ TEST_CASE("COLLADA files are read or refused wherever they are cut or altered")
                          "<node id=\"l\"><instance_geometry url=\"#g\"/></node>"));
 }
 
-TEST_CASE("glTF nodes that are no trees, and JSON that is nested too deep, are refused")
+TEST_CASE("glTF nodes that are not trees, and JSON that is nested too deep, are refused")
 {
     const TempFolder folder;
     const auto said = [&](const std::string& nodes, const std::string& scene = "0") {
@@ -383,7 +382,7 @@ TEST_CASE("glTF nodes that are no trees, and JSON that is nested too deep, are r
     CHECK(complaint(folder, "a.glb", binary + json.substr(1)).starts_with("ends within its JSON ("));
 }
 
-TEST_CASE("glTF primitives that repeat their accessors to no end are refused")
+TEST_CASE("glTF primitives that repeat their accessors too often are refused")
 {
     const TempFolder folder;
     const std::string primitive = "{\"attributes\": {\"POSITION\": 0}, \"indices\": 1}";
@@ -408,7 +407,7 @@ TEST_CASE("glTF files are read or refused wherever they are cut or altered")
     check_harmed(folder, "a.gltf", gltf("{\"children\": [1, 2]}, {\"mesh\": 0}, {\"mesh\": 0}"));
 }
 
-TEST_CASE("few bytes that come to too many triangles are refused")
+TEST_CASE("a small file with too many triangles is refused")
 {
     const TempFolder folder;
     std::string text = collada(), numbers, sizes, indices;  // 300 triangles in each of 400000 nodes

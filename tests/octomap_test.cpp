@@ -22,8 +22,8 @@ using Catch::Contains;
 
 namespace {
 
-/// Voxels of 0.25 m. A floor over x, y of -2 .. 2 with its top at z = 0; free space up to z = 2 where x < 0, and a free
-/// column at the far corner of the other half, which is unknown else.
+/// Returns a tree with voxels of 0.25 m: a floor over x and y of -2 .. 2 with its top at z = 0, and free space up to z
+/// = 2 where x < 0. The other half is unknown, except for a free column at its far corner.
 template <class Tree>
 Tree half_seen()
 {
@@ -94,7 +94,7 @@ double volume_of(const Scene& scene, std::uint32_t part)
 
 }  // namespace
 
-TEST_CASE("unknown boxes fill just what the tree does not know of its extent, once")
+TEST_CASE("unknown boxes fill exactly the unknown space in the extent of the tree, once")
 {
     const unsigned seed = GENERATE(range(1u, 6u));
     const octomap::OcTree tree = random_tree(seed);
@@ -105,7 +105,7 @@ TEST_CASE("unknown boxes fill just what the tree does not know of its extent, on
         CHECK(box.volume() > 0);
         sum += box.volume();
     }
-    CHECK(sum == extent.volume() - known_volume(tree));  // so none overlap, by what follows
+    CHECK(sum == extent.volume() - known_volume(tree));  // together with the check below: no boxes overlap
     double x = 0, y = 0, z = 0;
     auto& changeable = const_cast<octomap::OcTree&>(tree);
     changeable.getMetricMin(x, y, z);
@@ -126,13 +126,13 @@ TEST_CASE("unknown boxes fill just what the tree does not know of its extent, on
             }
 }
 
-TEST_CASE("boxes of unknown space are few: those of a half with one free column")
+TEST_CASE("unknown space needs few boxes: here a half with one free column")
 {
     const octomap::OcTree tree = half_seen<octomap::OcTree>();
     CHECK(unknown_boxes(tree, known_extent(tree)).size() <= 8);
 }
 
-TEST_CASE("unknown space is free unless the scene or the caller says blocked, and a notice tells how much there is")
+TEST_CASE("unknown space is free unless the scene or the caller makes it blocked, and a notice states its volume")
 {
     const TempFolder folder;
     const std::string words = (folder / "scan.bt").string() + ": 15.875 m3 of its 36 m3 are unknown (44.1 %) and ";
@@ -155,7 +155,7 @@ TEST_CASE("unknown space is free unless the scene or the caller says blocked, an
                           ": part \"scan\": unknown is \"solid\", needs one of free, blocked (line 3)");
 }
 
-TEST_CASE("a part's name that unknown space takes is refused, and unknown without an OctoMap told")
+TEST_CASE("a part must not have the name of unknown space, and unknown without an OctoMap gets a notice")
 {
     const TempFolder folder;
     folder.write("scan.bt", half_seen_bytes());
@@ -173,15 +173,16 @@ TEST_CASE("a part's name that unknown space takes is refused, and unknown withou
                       Contains("unknown is not a known key"));
 }
 
-TEST_CASE("a robot that is partly in unknown space collides with it where that is blocked")
+TEST_CASE("a robot that is partly in unknown space collides if that is blocked")
 {
     const TempFolder folder;
     const Robot robot = load_robot("box:0.4,0.4,0.4");
-    const std::vector<Pose> poses = {{{-1, 0, 0.1}, Mat3::Identity()},     // all in what was seen free
-                                     {{-0.1, 0, 0.1}, Mat3::Identity()},   // half of it beyond x = 0
-                                     {{-0.21, 0, 0.1}, Mat3::Identity()},  // 1 cm before
-                                     {{1, 1, 0.5}, Mat3::Identity()},      // in unknown space
-                                     {{-1, 0, 1.9}, Mat3::Identity()}};    // out of the top, where nothing blocks
+    const std::vector<Pose> poses = {
+        {{-1, 0, 0.1}, Mat3::Identity()},     // completely in free space
+        {{-0.1, 0, 0.1}, Mat3::Identity()},   // half of it beyond x = 0
+        {{-0.21, 0, 0.1}, Mat3::Identity()},  // 1 cm before unknown space
+        {{1, 1, 0.5}, Mat3::Identity()},      // in unknown space
+        {{-1, 0, 1.9}, Mat3::Identity()}};    // reaches beyond the top, where nothing is blocked
     const auto verdicts = [&](const std::string& more) {
         const TestMap map = map_of(load(folder, more));
         const CollisionChecker checker = checker_of(map, robot);
@@ -199,7 +200,7 @@ TEST_CASE("a robot that is partly in unknown space collides with it where that i
     }
     REQUIRE(blocked[1].hit);
     CHECK(blocked[1].hit->part == 1);
-    // Over the top of unknown space it is the ground, and no terrain.
+    // Above unknown space the ground is unknown space, which is not terrain.
     const TestMap map = map_of(load(folder, ", unknown: blocked"));
     const CollisionChecker checker = checker_of(map, robot);
     CHECK(check_poses(map, checker, {{{1, 1, 2.1}, Mat3::Identity()}}, {})[0].verdict == Verdict::OffTerrain);
@@ -237,7 +238,7 @@ TEST_CASE("with unknown space blocked the mask and the independent decision stil
     CHECK(decided > 200);
 }
 
-TEST_CASE("OctoMaps with colours or times hold the same as plain ones")
+TEST_CASE("OctoMaps with colours or times have the same contents as plain ones")
 {
     const TempFolder folder;
     auto coloured = half_seen<octomap::ColorOcTree>();
@@ -309,7 +310,7 @@ TEST_CASE("bake --unknown blocked puts unknown space into the map")
     CHECK(run_program(folder, "bake scan.bt -o other --unknown solid").status == 2);
 }
 
-TEST_CASE("the corridor's unknown space is a sane number of boxes")
+TEST_CASE("the unknown space of the corridor is a reasonable number of boxes")
 {
     const auto shared = shared_scenes();
     if (!shared) return;

@@ -32,7 +32,7 @@ Ring star(Draw& draw, const Vec2& centre, double radius, int corners)
     return out;
 }
 
-/// Corners anywhere, so that it crosses itself.
+/// Returns a ring with random corners, which crosses itself.
 Ring tangle(Draw& draw, int corners)
 {
     Ring out;
@@ -60,7 +60,8 @@ std::vector<Region> random_regions(Draw& draw)
     return out;
 }
 
-/// Even-odd upwards, where the index goes sideways; nothing near an edge.
+/// Returns whether p is in a region, by the even-odd rule with a ray upwards (the index uses sideways rays); nothing
+/// near an edge.
 std::optional<bool> slow_contains(const std::vector<Region>& regions, const Vec2& p)
 {
     bool in_any = false;
@@ -110,7 +111,7 @@ const Region triangle = region_of({{{{-3, -3}, {4, -2}, {0, 4}}}});
 
 }  // namespace
 
-TEST_CASE("a point is in a region as the even-odd rule says, counted another way")
+TEST_CASE("a point is in a region by the even-odd rule, counted in another way")
 {
     std::size_t in = 0, out = 0;
     for (int round = 0; round < 150; ++round) {
@@ -124,7 +125,7 @@ TEST_CASE("a point is in a region as the even-odd rule says, counted another way
             REQUIRE(index.contains(p) == *wanted);
             ++(*wanted ? in : out);
         }
-        for (const Region& region : regions)  // edges belong to it
+        for (const Region& region : regions)  // edges belong to the region
             for (const Region::Polygon& polygon : region.polygons)
                 for (const Ring& ring : polygon)
                     for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -137,7 +138,7 @@ TEST_CASE("a point is in a region as the even-odd rule says, counted another way
     CHECK(out > 5000);
 }
 
-TEST_CASE("rectangles that miss or fill a region are known to")
+TEST_CASE("rectangles outside or completely inside a region are recognised")
 {
     std::size_t missed = 0, covered = 0, clear = 0;
     for (int round = 0; round < 150; ++round) {
@@ -185,7 +186,7 @@ TEST_CASE("a comb of long teeth and a million corners take little memory and tim
     CHECK(index.contains({0.07, -0.5}));
 }
 
-TEST_CASE("regions are united, keep-outs taken away, and edges are of both")
+TEST_CASE("regions are united, keep-outs are removed, and edges belong to both")
 {
     Area area;
     area.within = {box_region(0, 0, 2, 2), box_region(1, 1, 3, 3)};
@@ -216,7 +217,7 @@ TEST_CASE("samples are uniform by area over the region, and nowhere else")
     REQUIRE(list.spawns.size() == 20000);
     CHECK(list.off_area > 0);
     const AreaIndex index(area);
-    // Cells of 0.5 m, with their shares of the area by fine points.
+    // Cells of 0.5 m with their shares of the area, counted with fine points.
     std::vector<double> observed(400, 0), share(400, 0);
     const auto bin = [](double x, double y) { return std::size_t((y + 5) / 0.5) * 20 + std::size_t((x + 5) / 0.5); };
     double total = 0;
@@ -246,10 +247,10 @@ TEST_CASE("samples are uniform by area over the region, and nowhere else")
     chi_square += (rest_observed - rest_expected) * (rest_observed - rest_expected) / rest_expected;
     CAPTURE(chi_square, bins);
     CHECK(std::abs(chi_square - bins) <
-          3.3 * std::sqrt(2.0 * bins));  // bins degrees of freedom: 0.1 % of honest runs are outside
+          3.3 * std::sqrt(2.0 * bins));  // `bins` degrees of freedom; 0.1 % of correct runs are outside
 }
 
-TEST_CASE("a region that is full is proven so, and the same bytes at any number of threads")
+TEST_CASE("a full region is proven full, with the same bytes with any number of threads")
 {
     const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
@@ -268,7 +269,7 @@ TEST_CASE("a region that is full is proven so, and the same bytes at any number 
         CHECK(spawns_csv(many) == spawns_csv(one));
         CHECK((many.draws == one.draws && many.off_area == one.off_area && many.counts == one.counts));
     }
-    // Nothing can be added, by dense probing.
+    // Dense probing shows that nothing can be added.
     const AreaIndex index(area);
     std::size_t probes = 0;
     for (double y = -3; y <= 9; y += 0.05)
@@ -286,7 +287,7 @@ TEST_CASE("a region that is full is proven so, and the same bytes at any number 
     CHECK(probes > 5000);
 }
 
-TEST_CASE("a sliver of a ten-thousandth of the map is sampled as well, and an empty region is proven empty")
+TEST_CASE("a sliver of a ten-thousandth of the map is sampled, too, and an empty region is proven empty")
 {
     const TestMap map = floor_map(200);
     const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.2,0.2"));
@@ -306,7 +307,7 @@ TEST_CASE("a sliver of a ten-thousandth of the map is sampled as well, and an em
     CHECK(nothing.is_full);
 }
 
-TEST_CASE("a raster in a region is the whole one's columns that lie in it")
+TEST_CASE("a raster in a region has the columns of the whole raster that are in the region")
 {
     const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
@@ -338,7 +339,7 @@ TEST_CASE("a raster in a region is the whole one's columns that lie in it")
     CHECK(same);
 }
 
-TEST_CASE("a search in a region finds only there, and ends")
+TEST_CASE("a search in a region finds spawns only there, and ends")
 {
     const TestMap map = training_map();
     const CollisionChecker checker = checker_of(map, husky());
@@ -437,7 +438,7 @@ TEST_CASE("a nav2 map is the region of its free cells, or a keep-out of its occu
     }
 }
 
-TEST_CASE("regions that make no sense are refused with the place")
+TEST_CASE("invalid regions are refused with the place")
 {
     const TempFolder folder;
     const auto check_refused = [&](const std::string& name, const std::string& text, const std::string& reason) {
@@ -488,7 +489,7 @@ TEST_CASE("regions that make no sense are refused with the place")
     CHECK_THROWS_WITH(read_region(folder.path()), Contains("is a folder, needs a file"));
 }
 
-TEST_CASE("regions that are cut short are read or refused, whatever the byte")
+TEST_CASE("regions that are cut at any byte are read or refused")
 {
     const TempFolder folder;
     folder.write("a.pgm", "P5\n3 2\n255\n\xfe\xfe\x01\xfe\xcd\x02");
@@ -513,7 +514,7 @@ TEST_CASE("regions that are cut short are read or refused, whatever the byte")
     CHECK(good >= 2);
 }
 
-TEST_CASE("the program takes regions and keep-outs, and tells what is odd")
+TEST_CASE("the program accepts regions and keep-outs, and gives notices about unusual ones")
 {
     const TempFolder folder;
     folder.write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: floor, label: terrain, plane: [20, 20]}]\n");
@@ -527,7 +528,7 @@ TEST_CASE("the program takes regions and keep-outs, and tells what is odd")
     CHECK_THAT(run.err, Contains(" off the region;"));
     const std::string json = bytes_of(folder / "s.json");
     CHECK_THAT(json, Contains("\"region\": [\n      \"a.geojson\"") && Contains("\"keep_out\": [\n      \"out.csv\""));
-    // A box alone is as it always was.
+    // A single box gives the output of earlier versions.
     const ProgramRun box = run_program(folder, "sample map" + robot + "-n 5 --region -3,-3,4,4");
     CHECK(box.status == 0);
     CHECK(box.err.find("off the region") == std::string::npos);

@@ -52,7 +52,7 @@ const std::string small_box = "<box><size>0.2 0.4 0.6</size></box>";
 
 }  // namespace
 
-TEST_CASE("an SDF model is the union of its links' collisions in its own frame, whatever its <pose>")
+TEST_CASE("an SDF model is the union of the collisions of its links in its own frame, independent of its <pose>")
 {
     const TempFolder folder;
     const Robot robot = load(
@@ -107,7 +107,7 @@ TEST_CASE("models are included from --model-path, from beside the file, and thro
     REQUIRE(robot.parts.size() == 1);
     CHECK(robot.parts[0].name == "axle::w::rim");
     check_bounds(robot.bounds(), {-0.5, 1.5, 0.5}, {0.5, 2.5, 1.5});
-    // The folder itself; its neighbours are found, being in the folder above.
+    // The folder itself is loaded. Its neighbours are found because they are in the same folder above.
     check_bounds(load_robot((folder / "lib/axle").string()).bounds(), {-0.5, 1.5, -0.5}, {0.5, 2.5, 0.5});
     CHECK_THROWS_WITH(
         load(folder, inside),
@@ -141,7 +141,7 @@ TEST_CASE("models that include each other without end are refused, the same mode
     CHECK(load_robot((folder / "a").string()).parts.size() == 2);
 }
 
-TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
+TEST_CASE("SDF joints move the links behind them, and the canonical link does not move")
 {
     const TempFolder folder;
     const std::string turn = joint("turn", "revolute", "base", "arm",
@@ -157,7 +157,7 @@ TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
     const Robot robot = load(folder, all, {.joints = {{"turn", std::numbers::pi / 2}, {"slide", 1}}});
     CHECK(robot.parts[1].centre().isApprox(Vec3(1, 2, 1), 1e-9));
     CHECK(load(folder, all).parts[1].centre().isApprox(Vec3(3, 0, 0), 1e-9));
-    // Seen from the hand it is the base that moves.
+    // In the frame of the hand, the base moves.
     const Robot seen = load(
         folder, hand_link + arm + link_of("base", collision("<sphere><radius>0.1</radius></sphere>")) + turn + slide,
         {.joints = {{"turn", std::numbers::pi / 2}}});
@@ -175,7 +175,7 @@ TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
     check_bounds(load(folder, all + loop).bounds(), load(folder, all).bounds().min, load(folder, all).bounds().max);
 }
 
-TEST_CASE("meshes of SDF: scale, submesh, centre, and COLLADA's unit but not its up axis")
+TEST_CASE("meshes of SDF use scale, submesh, centre and COLLADA's unit, but not its up axis")
 {
     const TempFolder folder;
     folder.write("two.obj", mesh_text::obj({{.name = "left", .mesh = mesh_text::box({0, 0, 0}, {1, 1, 1})},
@@ -195,7 +195,7 @@ TEST_CASE("meshes of SDF: scale, submesh, centre, and COLLADA's unit but not its
                       Catch::Contains("two.obj: has no submesh \"up\"; its nodes are left, right"));
 }
 
-TEST_CASE("an ellipsoid's polyhedron holds it, closely")
+TEST_CASE("the polyhedron of an ellipsoid contains it, with little extra space")
 {
     const Vec3 radii(1, 0.5, 0.25);
     const Pose pose{Vec3(1, 2, 3), rotation_from_rpy(0.3, -0.4, 2)};
@@ -226,7 +226,7 @@ TEST_CASE("an ellipsoid's polyhedron holds it, closely")
                Catch::Contains("its ellipsoid is replaced by a polyhedron around it, with 2.0 % more volume"));
 }
 
-TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and line")
+TEST_CASE("an SDF robot that cannot be used is refused by file, link, collision and line")
 {
     const TempFolder folder;
     folder.write("flat.obj", mesh_text::obj(hand::rectangle(1, 1)));
@@ -292,7 +292,7 @@ TEST_CASE("every prefix of an SDF robot is read or refused")
     }
 }
 
-TEST_CASE("an SDF model with an inertia that cannot be is taken, with a notice")
+TEST_CASE("an SDF model with an impossible inertia is accepted, with a notice")
 {
     const TempFolder folder;
     const std::string inertia =
@@ -339,7 +339,7 @@ double volume_of(const std::vector<RobotPart>& parts)
     return sum;
 }
 
-/// A ring of square section around z: radii 0.6 and 1, height 0.3.
+/// Returns a ring with a square section around z: radii 0.6 and 1, height 0.3.
 std::vector<Corners> ring(int segments)
 {
     std::vector<Corners> out;
@@ -360,9 +360,9 @@ std::vector<Corners> ring(int segments)
 
 }  // namespace
 
-TEST_CASE("an L comes apart into its two boxes, and no further")
+TEST_CASE("an L is split into its two boxes, and no further")
 {
-    // One closed surface of extruded outline.
+    // One closed surface: the extruded outline.
     const std::vector<std::array<double, 2>> outline = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 3}, {0, 3}};
     std::vector<Corners> l;
     for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -387,7 +387,7 @@ TEST_CASE("an L comes apart into its two boxes, and no further")
 
 TEST_CASE("a convex mesh stays one part") { CHECK(convex_split({triangles_of(hand::box({1, 2, 3}))}, 8).size() == 1); }
 
-TEST_CASE("parts of a ring hold its surface and its inside, and the more the closer")
+TEST_CASE("the parts of a ring contain its surface and its inside, and more parts fit more closely")
 {
     const Mat3 turn = GENERATE(Mat3(Mat3::Identity()), rotation_from_rpy(0.4, 0.7, 1.1));
     auto mesh = ring(24);
@@ -417,7 +417,7 @@ TEST_CASE("parts of a ring hold its surface and its inside, and the more the clo
     CHECK(before < 1.4 * std::numbers::pi * (1 - 0.36) * 0.3);
 }
 
-TEST_CASE("two boxes apart come apart without what lies between; a hole in one leaves its surface held")
+TEST_CASE("two separate boxes are split without the space between; a hole in one leaves its surface covered")
 {
     const auto one = triangles_of(hand::box({1, 1, 1}));
     auto other = triangles_of(hand::box({1, 1, 1}), {10, 3, 0});
@@ -431,9 +431,9 @@ TEST_CASE("two boxes apart come apart without what lies between; a hole in one l
         for (const Vec3& point : {t[0], t[1], t[2], Vec3((t[0] + t[1] + t[2]) / 3)}) CHECK(is_held(open, point));
 }
 
-TEST_CASE("a solid cut along all three axes keeps what lies at the planes' crossing")
+TEST_CASE("a solid that is cut along all three axes keeps the place where the planes cross")
 {
-    // A cross of three beams: its middle is a corner of eight boxes, and on no surface.
+    // A cross of three beams. Its middle is a corner of eight boxes, and is not on a surface.
     std::vector<SurfacePiece> beams;
     for (const Vec3& size : {Vec3(4, 1, 1), Vec3(1, 4, 1), Vec3(1, 1, 4)})
         beams.push_back(triangles_of(hand::box(size)));
@@ -454,7 +454,7 @@ TEST_CASE("a solid cut along all three axes keeps what lies at the planes' cross
     CHECK(volume_of(convex_split(beams, 7)) < 10.6);
 }
 
-TEST_CASE("mesh parts are a robot's parts, by the name of its link, and their number has limits")
+TEST_CASE("mesh parts become robot parts with the name of their link, and their number has limits")
 {
     const TempFolder folder;
     folder.write("two.obj", mesh_text::obj({{.name = "left", .mesh = mesh_text::box({0, 0, 0}, {1, 1, 1})},

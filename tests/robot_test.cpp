@@ -79,7 +79,7 @@ TEST_CASE("box:LX,LY,LZ@x,y,z has its centre there")
     check_bounds(load_robot("box:1,2,3@0,0,1e-1").bounds(), {-0.5, -1, -1.4}, {0.5, 1, 1.6});
 }
 
-TEST_CASE("a box robot that makes no sense is wrong usage, and told why")
+TEST_CASE("an invalid box robot is wrong usage, with the reason")
 {
     const std::pair<std::string, std::string> cases[] = {
         {"box:", "\"\" is not a finite number"},
@@ -101,7 +101,7 @@ TEST_CASE("a box robot that makes no sense is wrong usage, and told why")
     }
 }
 
-TEST_CASE("robot.yaml holds boxes, spheres, cylinders, capsules and contacts")
+TEST_CASE("robot.yaml can have boxes, spheres, cylinders, capsules and contacts")
 {
     const TempFolder folder;
     const Robot robot = load_parts(
@@ -122,17 +122,17 @@ TEST_CASE("robot.yaml holds boxes, spheres, cylinders, capsules and contacts")
     CHECK(robot.parts[1].centre() == Vec3(2, 0, 0));
 }
 
-TEST_CASE("the Husky of maps/robots is the thesis's")
+TEST_CASE("the Husky of maps/robots is the one of the thesis")
 {
     const Robot robot = load_robot((std::filesystem::path(source_folder()) / "maps/robots/husky.yaml").string());
     check_bounds(robot.bounds(), {-0.495, -0.335, 0}, {0.495, 0.335, 0.39});
     CHECK(robot.contacts.size() == 4);
 }
 
-TEST_CASE("a robot's mesh becomes its convex hull: scaled, turned up, turned, moved")
+TEST_CASE("the mesh of a robot becomes its convex hull, with scale, up axis, rotation and position")
 {
     const TempFolder folder;
-    // An L of two boxes: the hull bridges the corner.
+    // An L of two boxes. The hull fills the inner corner.
     folder.write("l.obj", mesh_text::obj({{.name = "a", .mesh = mesh_text::box({0, 0, 0}, {4, 1, 1})},
                                           {.name = "b", .mesh = mesh_text::box({0, 1, 0}, {1, 3, 1})}}));
     const Robot robot = load_parts(folder, "  - {mesh: l.obj, scale: 0.5, xyz: [10, 0, 0], rpy_deg: [0, 0, 90]}\n");
@@ -140,7 +140,7 @@ TEST_CASE("a robot's mesh becomes its convex hull: scaled, turned up, turned, mo
     const RobotPart& hull = robot.parts[0];
     CHECK(hull.shape.kind == ShapeKind::Hull);
     check_bounds(hull.bounds(), {10 - 1.5, 0, 0}, {10, 2, 0.5});
-    CHECK(hull.hull_vertices.size() == 10);  // of 16 corners four lie in walls of the hull and two are shared
+    CHECK(hull.hull_vertices.size() == 10);  // of 16 corners four are inside faces of the hull and two are shared
     double volume = 0;
     for (const auto& f : hull.hull_faces) {
         const Vec3 a = hull.hull_vertices[std::size_t(f[0])] - hull.centre(),
@@ -149,12 +149,12 @@ TEST_CASE("a robot's mesh becomes its convex hull: scaled, turned up, turned, mo
         CHECK(a.dot(b.cross(c)) >= 0);  // counterclockwise from outside
         volume += a.dot(b.cross(c)) / 6;
     }
-    // Area of (0,0) (4,0) (4,1) (1,3) (0,3) is 9.
+    // The area of (0,0) (4,0) (4,1) (1,3) (0,3) is 9.
     CHECK(volume == Approx(9 * 0.125));
     check_bounds(load_parts(folder, "  - {mesh: l.obj, up: y}\n").bounds(), {0, -1, 0}, {4, 0, 3});
 }
 
-TEST_CASE("the hull of a cloud of points holds them all, and its corners are among them")
+TEST_CASE("the hull of a cloud of points contains all of them, and its corners are some of them")
 {
     std::vector<Vec3> points;
     for (int i = 0; i < 500; ++i) points.emplace_back(std::sin(i * 1.1), std::sin(i * 1.7 + 1), std::sin(i * 2.3 + 2));
@@ -170,20 +170,20 @@ TEST_CASE("the hull of a cloud of points holds them all, and its corners are amo
     CHECK(farthest < 1e-9);
     for (const Vec3& vertex : hull.hull_vertices)
         CHECK(std::find(points.begin(), points.end(), vertex) != points.end());
-    std::set<std::pair<int, int>> edges;  // closed: each edge once in each direction
+    std::set<std::pair<int, int>> edges;  // a closed hull has each edge once in each direction
     for (const auto& f : hull.hull_faces)
         for (std::size_t i = 0; i < 3; ++i) CHECK(edges.insert({f[i], f[(i + 1) % 3]}).second);
     for (const auto& [from, to] : edges) CHECK(edges.count({to, from}) == 1);
 }
 
-TEST_CASE("a grown hull holds the margin on every side")
+TEST_CASE("a grown hull keeps the margin on every side")
 {
     const hand::Mesh cube = hand::box({1, 2, 3});
     const RobotPart hull = grown(convex_hull(cube.vertices), 0.1);
     check_bounds(hull.bounds(), {-0.6, -1.1, -1.6}, {0.6, 1.1, 1.6});
 }
 
-TEST_CASE("a URDF is the union of its links' collision shapes at zero joints")
+TEST_CASE("a URDF is the union of the collision shapes of its links with all joints at zero")
 {
     const TempFolder folder;
     const Robot robot = load_urdf(folder, link_of("base", small_box, "xyz=\"0 0 1\"") +
@@ -193,7 +193,7 @@ TEST_CASE("a URDF is the union of its links' collision shapes at zero joints")
                                               link_of("ball", "<sphere radius=\"0.5\"/>") +
                                               joint_of("base", "ball", "xyz=\"0 3 0\""));
     CHECK(robot.name == "test");
-    REQUIRE(robot.parts.size() == 2);  // never what is only seen
+    REQUIRE(robot.parts.size() == 2);  // visual shapes do not count
     check_bounds(robot.parts[0].bounds(), {-0.1, -0.2, 0.7}, {0.1, 0.2, 1.3});
     check_bounds(robot.parts[1].bounds(), {-0.5, 2.5, -0.5}, {0.5, 3.5, 0.5});
 }
@@ -211,7 +211,7 @@ TEST_CASE("several collisions of one link all count")
     check_bounds(robot.bounds(), {-0.5, -1, -1}, {6, 1, 1});
 }
 
-TEST_CASE("origins add up along a chain of joints, whatever their type and limits")
+TEST_CASE("origins add up along a chain of joints of any type and limits")
 {
     const TempFolder folder;
     const std::string type = GENERATE("fixed", "revolute", "continuous", "prismatic");
@@ -221,8 +221,8 @@ TEST_CASE("origins add up along a chain of joints, whatever their type and limit
             "<link name=\"arm\"/>" + joint_of("arm", "hand", "xyz=\"2 0 0\" rpy=\"1.5707963267948966 0 0\"", type) +
             link_of("hand", small_box, "xyz=\"0 0 3\" rpy=\"0 0 0\""));
     REQUIRE(robot.parts.size() == 1);
-    // hand frame: x is the base's y, y its z, z its x. Its origin is at (1, 2, 0), the box's centre 3 further along its
-    // z.
+    // In the frame of the hand, x is the base's y, y its z, and z its x. Its origin is at (1, 2, 0), and the centre of
+    // the box is 3 further along its z.
     const Pose& pose = robot.parts[0].shape.pose;
     const Vec3 centre = Vec3(1, 2, 0) + 3 * Vec3::UnitX();
     CHECK(pose.position.isApprox(centre, 1e-12));
@@ -259,7 +259,7 @@ TEST_CASE("package:// is found by --model-path first, then by looking upward fro
             "add its folder to --model-path or fix the URI");
 }
 
-TEST_CASE("file:// and relative mesh names work too; COLLADA's unit counts, its up axis does not")
+TEST_CASE("file:// and relative mesh names work, too; COLLADA's unit applies, its up axis does not")
 {
     const TempFolder folder;
     const auto file = folder.write(
@@ -269,7 +269,7 @@ TEST_CASE("file:// and relative mesh names work too; COLLADA's unit counts, its 
                      {0.1, 0.2, 0.3}, 1e-7);
 }
 
-TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
+TEST_CASE("a robot that cannot be used is refused by file, place, value and limit")
 {
     const TempFolder folder;
     folder.write("flat.obj", mesh_text::obj(hand::rectangle(1, 1)));
@@ -316,7 +316,7 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
          "is not valid URDF: Unable to parse component [x] to a double (while parsing a vector value)"},
         {link_of("a", "<box size=\"1 nan 1\"/>"),
          "is not valid URDF: Unable to parse component [nan] to a double (while parsing a vector value)"},
-        // urdfdom would drop the link's box for this and go on.
+        // urdfdom alone would drop the box of the link because of this, and continue.
         {"<link name=\"a\"><inertial><mass value=\"x\"/></inertial><collision><geometry>" + small_box +
              "</geometry></collision></link>" + link_of("b", small_box) + joint_of("a", "b", "xyz=\"0 0 0\""),
          "is not valid URDF: Inertial: mass [x] is not a float"},
@@ -342,7 +342,7 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
                           "model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
 }
 
-TEST_CASE("joints turn and slide what hangs on them about their own axes")
+TEST_CASE("joints rotate and move the links behind them, about their own axes")
 {
     const TempFolder folder;
     const std::string arm = "<link name=\"base\"/>" +
@@ -351,7 +351,7 @@ TEST_CASE("joints turn and slide what hangs on them about their own axes")
                             axis_joint("slide", "prismatic", "arm", "hand", "xyz=\"1 0 0\"", "1 0 0",
                                        "lower=\"-1\" upper=\"0.5\"") +
                             link_of("hand", small_box);
-    // The arm points along y from (1, 0, 0); the hand slides out along it.
+    // The arm points along y from (1, 0, 0), and the hand slides along it.
     const Robot robot = load_urdf(folder, arm, {.joints = {{"turn", std::numbers::pi / 2}, {"slide", 0.5}}});
     check_bounds(robot.bounds(), {1 - 0.2, 1.5 - 0.1, -0.3}, {1 + 0.2, 1.5 + 0.1, 0.3});
     check_bounds(load_urdf(folder, arm).bounds(), {2 - 0.1, -0.2, -0.3}, {2 + 0.1, 0.2, 0.3});
@@ -359,7 +359,7 @@ TEST_CASE("joints turn and slide what hangs on them about their own axes")
     CHECK(robot.notices.empty());
 }
 
-TEST_CASE("a joint that mimics follows, and is told where that leads out of its limits")
+TEST_CASE("a joint that mimics another follows it, with a notice if that exceeds its limits")
 {
     const TempFolder folder;
     const std::string limits = "lower=\"-1\" upper=\"1\"";
@@ -377,7 +377,7 @@ TEST_CASE("a joint that mimics follows, and is told where that leads out of its 
                                   ": joint \"b\" is at -2.5 m, because it mimics \"a\", outside its limits -1 to 1 m");
 }
 
-TEST_CASE("joints that cannot stand so are refused with what can be given")
+TEST_CASE("impossible joint positions are refused with the allowed values")
 {
     const TempFolder folder;
     const std::string limits = "lower=\"0.5\" upper=\"1\"", file = (folder / "robot.urdf").string();
@@ -410,7 +410,7 @@ TEST_CASE("joints that cannot stand so are refused with what can be given")
     CHECK(at_zero.notices[0] == file + ": joint \"turn\" is at 0 rad, outside its limits 0.5 to 1 rad");
 }
 
-TEST_CASE("mimics of nothing and of themselves are told")
+TEST_CASE("joints that mimic nothing or themselves get a notice")
 {
     const TempFolder folder;
     const auto with_mimic = [&](const std::string& of) {
@@ -424,7 +424,7 @@ TEST_CASE("mimics of nothing and of themselves are told")
     CHECK_THROWS_WITH(load_urdf(folder, with_mimic("a")), file + ": joint \"a\" mimics itself");
 }
 
-TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not known")
+TEST_CASE("a notice states how much larger the hull is than its mesh, or that this is unknown")
 {
     const TempFolder folder;
     hand::Mesh open = mesh_text::box({0, 0, 0}, {1, 1, 1});
@@ -449,7 +449,7 @@ TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not kno
                                   "because the mesh is not watertight or overlaps itself");
 }
 
-TEST_CASE("a robot beyond all measure is refused, a chain longer than the call stack is not")
+TEST_CASE("a far too large robot is refused, a chain longer than the call stack is not")
 {
     CHECK_THROWS_WITH(load_robot("box:1e10,1,1"),
                       "box:1e10,1,1: reaches 5e+09 m from its origin, needs at most 1000 "
@@ -478,7 +478,7 @@ TEST_CASE("a robot beyond all measure is refused, a chain longer than the call s
               .parts.size() == 1);
 }
 
-TEST_CASE("real robots have the bounds that their sources tell")
+TEST_CASE("real robots have the bounds that their sources document")
 {
     const auto shared = shared_scenes();
     if (!shared) return;
