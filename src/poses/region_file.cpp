@@ -310,7 +310,7 @@ private:
 
     bool is_in(int row, int col) const
     {
-        return row >= 0 && col >= 0 && row < map_.rows && col < map_.cols && map_.at(row, col) == wanted_;
+        return row >= 0 && col >= 0 && row < map_.rows && col < map_.cols && map_.cell(row, col) == wanted_;
     }
     std::uint8_t& at(int row, int col)
     {
