@@ -430,7 +430,7 @@ TEST_CASE("a nav2 map is the region of its free cells, or a keep-out of its occu
             for (int col = 0; col < cols; ++col) {
                 const Vec2 low = map.corner(row + 1, col).head<2>(), high = map.corner(row, col + 1).head<2>(),
                            left = map.corner(row, col).head<2>();
-                const bool wanted = map.at(row, col) ==
+                const bool wanted = map.cell(row, col) ==
                                     (cells == MapCells::Free ? Nav2Map::Cell::Free : Nav2Map::Cell::Occupied);
                 REQUIRE(index.contains((low + high) / 2) == wanted);
                 REQUIRE(index.contains(0.98 * left + 0.01 * (low + high)) == wanted);
