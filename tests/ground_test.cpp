@@ -391,7 +391,7 @@ TEST_CASE("all commands respect --z and --floor, so a picture or a map of one fl
         {"--floor 3", "--floor is 3; the map has 3 floors: 0 at 0 m, 1 at 3 m, 2 at 6 m"},
         {"--floor 1 --z 0:2", "--floor and --z (or six numbers for a box) both limit heights; give one of them"},
         {"--z 2", "--z is \"2\", needs LOW:HIGH in m, for example 5:8 or 5:"},
-        {"--z 3:2", "--z is \"3:2\": the lower height comes first"},
+        {"--z 3:2", "--z is \"3:2\"; give the lower height first"},
         {"--z 0:2 --region=0,0,0,1,1,1", "--z and the six numbers of --region both limit heights; give one of them"},
         {"--offset up", "--offset: \"up\""}};
     for (const auto& [options, message] : refusals) {

@@ -166,8 +166,7 @@ std::vector<ExportFormat> map_formats()
          with(pose_options(), {"--layers", "--z", "--floor", "--bounds"}),
          write_ply},
         {"glb",
-         "the scene by labels, with a marker at each pose of --poses: the shape of --robot, coloured by a column "
-         "verdict",
+         "the scene by labels, with a marker at each of --poses: --robot, in the colour of a column verdict",
          {},
          {"--robot", "--model-path", "--joints", "--mesh-parts", "--poses"},
          write_glb},

@@ -59,7 +59,7 @@ ZRange parse_z(const std::string& option, const std::string& text)
     ZRange z;
     if (colon > 0) z.low = parse_numbers(option, text.substr(0, colon))[0];
     if (colon + 1 < text.size()) z.high = parse_numbers(option, text.substr(colon + 1))[0];
-    if (!(z.low <= z.high)) throw ArgumentError(option + " is \"" + text + "\": the lower height comes first");
+    if (!(z.low <= z.high)) throw ArgumentError(option + " is \"" + text + "\"; give the lower height first");
     return z;
 }
 
@@ -98,7 +98,7 @@ Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map)
     out.min.z() = first_finite(heights.low, bounds.is_empty() ? heights.low : bounds.min.z(), map.bounds.min.z());
     out.max.z() = first_finite(heights.high, bounds.is_empty() ? heights.high : bounds.max.z(), map.bounds.max.z());
     if (!(out.min.z() <= out.max.z()))
-        throw ArgumentError("--z lies off the map, which is z " + number(map.bounds.min.z()) + " to " +
+        throw ArgumentError("--z is outside the map, whose heights are " + number(map.bounds.min.z()) + " to " +
                             number(map.bounds.max.z()) + " m");
     return out;
 }

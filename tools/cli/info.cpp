@@ -463,8 +463,7 @@ void add_info(CLI::App& app, ChosenCommand& chosen)
     command.add_flag("--json", args->json, "Print JSON");
     command.add_option("--picture", args->picture,
                        "Picture of a robot to write (.png, .svg or .pdf): from above, from the side and from the front "
-                       "(- for standard "
-                       "output)");
+                       "(- for standard output)");
     command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
     add_label_options(command, *args);
     add_model_path(command, *args);

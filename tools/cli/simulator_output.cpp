@@ -206,8 +206,7 @@ void SimulatorOutput::notice_joints() const
     if (target_.reading.joints.empty() || has_joints) return;
     notice(common_, "--format " + target_.format +
                         " does not contain joints: the robots start with joints at 0, not at the positions of "
-                        "--joints; set them in "
-                        "the simulator" +
+                        "--joints; set them in the simulator" +
                         (is("mujoco") ? ", or with --joint-qpos" : ""));
 }
 
