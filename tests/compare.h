@@ -11,8 +11,8 @@ struct Tally {
     std::size_t asked = 0;                 ///< exact checks of the exhaustive run
     std::size_t exact = 0;                 ///< exact checks of the run with the mask
     spawnfield::VerdictCounts verdicts{};  ///< of the exhaustive run
-    std::size_t proven_valid = 0,
-                proven_collision = 0;  ///< poses that the mask proved, without an exact check; only counted by of_check
+    /// Poses that the mask proved, without an exact check; only of_check counts them.
+    std::size_t proven_valid = 0, proven_collision = 0;
     std::size_t differences = 0;
     std::string first;  ///< the first difference: query, pose, both verdicts
 

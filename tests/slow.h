@@ -46,8 +46,8 @@ Column column(const spawnfield::Scene& scene, double x, double y);
 std::vector<double> layers(const spawnfield::Scene& scene, double x, double y);
 
 struct Decision {
-    std::optional<spawnfield::Verdict>
-        verdict;                   ///< nothing if the verdict, or the piece of the ground, changes within margin
+    /// Nothing if the verdict, or the piece of the ground, changes within margin.
+    std::optional<spawnfield::Verdict> verdict;
     std::optional<double> ground;  ///< z, m; nothing if there is no ground
 };
 
