@@ -478,7 +478,7 @@ TEST_CASE("missing options and options that a format cannot use are reported bef
     const ProgramRun thesis = arena(query + "--format thesis --name 'a{i}' -o thesis");
     CHECK(thesis.status == 0);
     CHECK_THAT(thesis.err, Contains("notice: --name has no effect: --format thesis does not use it"));
-    const auto told_relative = [&](const std::string& world, const std::string& out) {
+    const auto warns_of_relative_paths = [&](const std::string& world, const std::string& out) {
         const ProgramRun run = arena(query + "--format sdf --robot-uri model://a --world " + world + " -o " + out);
         CHECK(run.status == 0);
         return run.err.find("are relative to this file") != std::string::npos;
