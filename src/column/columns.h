@@ -33,8 +33,9 @@ inline std::span<const double> heights_within(std::span<const double> heights, c
     return heights.subspan(first, end - first);
 }
 
-/// Returns the top of the highest obstacle that overlaps the range, if it is higher than the highest of the column's
-/// `layers` or if there are no layers.
+/// Returns the top of the highest span that overlaps the range, if it is higher than the highest of `layers` or if
+/// there are no layers. `layers` are the column's layers within the range. Such a span is an obstacle there, even if it
+/// is terrain, whose top is then above the range.
 inline std::optional<double> obstacle_above(const ColumnView& column, std::span<const double> layers, const ZRange& z)
 {
     for (const Span& span : column.spans) {
