@@ -290,7 +290,7 @@ TEST_CASE("numbers of COLLADA that are invalid, too few or too many are refused 
     CHECK(said("count=\"9\"", "count=\"8\"") ==
           "line 5: <float_array> has count 8, but contains 9; is the file damaged?");
     CHECK(said("stride=\"3\"", "stride=\"4\"") ==
-          "line 6: <accessor> takes 11 values (offset + (count - 1) stride + params) of \"#a\", which has 9");
+          "line 6: <accessor> needs 11 values (offset + (count - 1) stride + params) of \"#a\", which has 9");
     CHECK(said("0 0 0 1</matrix>", "0 0 1</matrix>") == "line 13: <matrix> has 15 numbers, needs 16");
     CHECK(said("0 0 0 1</matrix>", "0 0 0 1e</matrix>") ==
           "line 13: <matrix> has \"1e\", needs numbers with spaces between");
@@ -364,7 +364,7 @@ TEST_CASE("glTF nodes that are not trees, and JSON that is nested too deep, are 
     CHECK(said(chain(500)) == "");
     CHECK(said(chain(20000)) == "nodes[500] is nested more than 500 deep; merge nodes");
     const std::string twice = replaced(gltf("{\"mesh\": 0}"), "\"meshes\"", "\"nodes\": [], \"meshes\"");
-    CHECK(complaint(folder, "a.gltf", twice) == "has \"nodes\" twice, needs it once");
+    CHECK(complaint(folder, "a.gltf", twice) == "has the key \"nodes\" twice, needs it once");
     const auto nested = [](int depth) {
         return "\"extras\": " + std::string(depth, '[') + std::string(depth, ']') + ", ";
     };

@@ -582,7 +582,7 @@ TEST_CASE("a world with includes that are not found is refused, with a list of a
     CHECK(has(refused, "line 5: <include> <uri> https://fuel.gazebosim.org/1.0/Somebody/models/Chair is not found\n"));
     CHECK(has(refused, "model.sdf: line 1: <include> <uri> model://wheel is not found"));
     CHECK(has(refusal_of(folder, ground + "<include><uri>model://desk</uri></include>"),
-              "1 model that it includes is not found; give the folder that contains it with --model-path, or pass"));
+              "1 model that it includes is not found; give the folder that contains it with --model-path, or"));
     CHECK(load_world(folder, ground + includes, {.allow_missing = true}).parts.size() == 2);
     // If all of them are missing, the message lists them.
     const std::string empty = refusal_of(folder, "<include><uri>model://desk</uri></include>", {.allow_missing = true});

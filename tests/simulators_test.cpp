@@ -455,7 +455,7 @@ TEST_CASE("missing options and options that a format cannot use are reported bef
                Contains("needs --robot-file FILE") && Contains("box:0.5,0.5,0.5 is not such a file"));
     CHECK_THAT(refused("--format sdf", 2), Contains("needs --robot-uri URI"));
     CHECK_THAT(refused("--format isaaclab", 2), Contains("needs -o FOLDER"));
-    CHECK_THAT(refused("--format isaaclab -o isaac", 1), Contains("holds notes.txt"));
+    CHECK_THAT(refused("--format isaaclab -o isaac", 1), Contains("contains notes.txt"));
     CHECK_THAT(refused("--format isaaclab --tiles 2 -o new", 2), Contains("--tiles is \"2\", needs ROWS,COLS"));
     CHECK_THAT(refused("--format isaaclab --tiles 40,40 -o new", 2), Contains("has no spawn"));
     CHECK_THAT(refused("--format mujoco --joint-qpos 1,a", 2), Contains("--joint-qpos: \"a\" is not a finite number"));

@@ -146,7 +146,7 @@ Robot read_model_robot(const std::filesystem::path& file_or_folder, const RobotO
     robot.notices = std::move(model.notices);
     for (const CollisionBody& body : model.bodies) append_body(robot, body, paths, file.string(), options.mesh_parts);
     if (robot.parts.empty())
-        throw FileError(file.string(), "has no <collision>, needs at least one (<visual> does not count)");
+        throw FileError(file.string(), "has no <collision>, needs at least one (<visual> elements are not used)");
     return robot;
 }
 
