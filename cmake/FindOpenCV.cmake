@@ -1,5 +1,5 @@
-# Finds the OpenCV modules that are asked for (core, imgproc, imgcodecs), each from its own Debian package
-# (libopencv-core-dev, …). OpenCV's own OpenCVConfig.cmake is only in libopencv-dev, which brings 250 more packages.
+# Finds OpenCV modules (core, imgproc, imgcodecs), each from its own Debian package (libopencv-core-dev, …). OpenCV's
+# own OpenCVConfig.cmake is only in libopencv-dev, which installs 250 more packages.
 #
 # Sets OpenCV_FOUND and defines an imported target for each component: opencv_core, opencv_imgproc, …
 find_path(OpenCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4)

@@ -1,4 +1,4 @@
-# What every target of this project is compiled with.
+# Compiler settings of every target of this project.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -7,14 +7,15 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # ccache takes precompiled headers only with these two freedoms, which our sources do not notice (no __TIME__).
+  # ccache can use precompiled headers only with these two settings. They have no effect on our sources, which do not
+  # use __TIME__.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
-# Headers take most of the compile time: with SPAWNFIELD_UNITY, the source files of a folder share one translation unit.
-# They see each other's unnamed namespaces then, about which two warnings are off; the dev preset compiles each file
-# alone, with all warnings.
-option(SPAWNFIELD_UNITY "Compile the source files of a folder at once: a quicker first build" ON)
+# Headers take most of the compile time. With SPAWNFIELD_UNITY the source files of a folder form one translation unit,
+# in which they also see the unnamed namespaces of each other. Two warnings about that are off. The dev preset compiles
+# each file alone, with all warnings.
+option(SPAWNFIELD_UNITY "Compile the source files of a folder together, so that the first build is faster" ON)
 function(compile_by_folder target)
   if(NOT SPAWNFIELD_UNITY)
     return()
@@ -28,31 +29,32 @@ function(compile_by_folder target)
   endforeach()
 endfunction()
 
-# Asserts stay on in optimised builds; a fused multiply-add would be another number (same bytes on every machine).
+# Asserts stay on in optimised builds.
 string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
 string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
 
-# Any x86 processor since 2009 counts bits and rounds in one instruction; the results are the same.
+# Every x86 processor since 2009 can count bits and round in one instruction. The results are the same.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  set(SPAWNFIELD_ARCH x86-64-v2 CACHE STRING "What -march is given; empty: the compiler's own default")
+  set(SPAWNFIELD_ARCH x86-64-v2 CACHE STRING "Value of -march=; empty for the default of the compiler")
 endif()
 if(SPAWNFIELD_ARCH)
   add_compile_options(-march=${SPAWNFIELD_ARCH})
 endif()
 
+# -ffp-contract=off: a fused multiply-add would give other numbers, and so other bytes on some machines.
 add_library(spawnfield_options INTERFACE)
 target_compile_options(spawnfield_options INTERFACE
   -ffp-contract=off -Wall -Wextra -Wconversion -Wno-sign-conversion
   $<IF:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>,$<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>,-Wshadow>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # gcc 12 warns about std::string + std::string (GCC bug 105329)
   $<$<BOOL:${SPAWNFIELD_WERROR}>:-Werror>)
-# Eigen's own asserts cost more than ours and find nothing after the debug tests.
+# Eigen's asserts cost more than ours. They stay on in debug builds, whose tests are enough to find such errors.
 target_compile_definitions(spawnfield_options INTERFACE $<$<NOT:$<CONFIG:Debug>>:EIGEN_NO_DEBUG>)
 if(SPAWNFIELD_SANITIZE)
   add_compile_options(-fsanitize=${SPAWNFIELD_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${SPAWNFIELD_SANITIZE})
-  # Instrumented code makes gcc 12 warn of its own <regex>.
+  # In instrumented code gcc 12 warns about its own <regex>.
   target_compile_options(spawnfield_options INTERFACE -Wno-maybe-uninitialized)
   if(SPAWNFIELD_SANITIZE MATCHES "undefined")
     add_compile_options(-fno-sanitize-recover=undefined)

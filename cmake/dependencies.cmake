@@ -1,4 +1,4 @@
-# Debian packages; tools/install-dependencies.sh names them.
+# All of these are Debian packages; tools/install-dependencies.sh lists them.
 list(APPEND CMAKE_MODULE_PATH ${PROJECT_SOURCE_DIR}/cmake)
 find_package(Threads REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
@@ -28,5 +28,5 @@ pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 
 set(SPAWNFIELD_PRIVATE_LIBRARIES
   fcl PkgConfig::ccd octomap octomath assimp::assimp opencv_core opencv_imgproc yaml-cpp tinyxml2::tinyxml2
-  nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF ZLIB::ZLIB ${HPDF_LIBRARY} TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate
-  Threads::Threads)
+  nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF ZLIB::ZLIB ${HPDF_LIBRARY} TBB::tbb PkgConfig::urdfdom
+  PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate Threads::Threads)

@@ -1,5 +1,5 @@
 # Debian packages that only the tests need; `tools/install-dependencies.sh --tests` installs them. If one is missing,
-# SPAWNFIELD_TESTS=ON ends with an error, and AUTO leaves the tests out.
+# SPAWNFIELD_TESTS=ON ends with an error, and AUTO builds without tests.
 find_package(Catch2 QUIET)
 find_package(OpenCV QUIET COMPONENTS core imgproc imgcodecs)
 set(missing "")

@@ -24,7 +24,7 @@ std::string described(const Pose& pose, Verdict fast, Verdict slow)
     return out.str();
 }
 
-/// Judges poses the fast way and by the tests' own decision.
+/// Judges poses with check and with the independent decision, and counts where the two differ.
 void compare(const TestMap& map, const Robot& robot, const std::vector<Pose>& poses, Tally& tally)
 {
     const Judge judge(map, robot);
@@ -123,7 +123,7 @@ TEST_CASE("a larger robot never gains a valid pose")
 TEST_CASE("a mirrored scene mirrors the verdicts")
 {
     const TestMap map = training_map();
-    Scene mirrored = map.scene;  // y to -y: boxes and balls are their own mirror images
+    Scene mirrored = map.scene;  // y becomes -y; boxes and balls are their own mirror images
     for (Primitive& primitive : mirrored.primitives) {
         primitive.shape.pose.position.y() *= -1;
         const Mat3 flip = Vec3(1, -1, 1).asDiagonal();

@@ -9,7 +9,7 @@
 inline const std::string training_scene = "'" + source_folder() + "/maps/training/scene.yaml'";
 inline const std::string husky_option = " --robot '" + source_folder() + "/maps/robots/husky.yaml' ";
 
-/// Names of what a folder holds.
+/// Returns the names of the entries of a folder.
 inline std::set<std::string> names_in(const std::filesystem::path& folder)
 {
     std::set<std::string> out;
@@ -17,7 +17,7 @@ inline std::set<std::string> names_in(const std::filesystem::path& folder)
     return out;
 }
 
-/// A folder with a copy of one baked arena in `map`, in which the program runs.
+/// A folder with a copy of the baked training arena in `map`. The program runs in this folder.
 class Arena : public TempFolder {
 public:
     Arena() { std::filesystem::copy(baked() / "map", *this / "map"); }

@@ -11,10 +11,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file as its makers ship it, and how a robot is to stand there.
+/// A file as its makers publish it, and how a robot should stand there.
 struct Case {
     std::string file;
-    double offset;  ///< m of the robot's origin above its layer
+    double offset;  ///< m, height of the robot's origin above its layer
     std::vector<LabelRule> labels = {};
     double resolution = 0.25;
 };
@@ -46,7 +46,8 @@ const std::vector<Case>& cases()
     return all;
 }
 
-/// What of a scene can matter near a place: whole pieces and primitives whose boxes reach there, seen from above.
+/// Returns the part of a scene that matters near a place: whole pieces and primitives whose boxes reach there, seen
+/// from above.
 Scene near(const Scene& scene, const Vec3& place, double reach)
 {
     const auto is_near = [&](const Bounds& box) {
@@ -57,7 +58,7 @@ Scene near(const Scene& scene, const Vec3& place, double reach)
     out.parts = scene.parts;
     out.vertices = scene.vertices;
     for (const Piece& piece : scene.pieces) {
-        // Sheets give up their far triangles; solids do not, as lines through them count crossings.
+        // Far triangles of sheets are left out. Solids stay whole, because lines through them count crossings.
         const auto box_of = [&](std::uint32_t first, std::uint32_t count) {
             Bounds box;
             for (std::uint32_t t = first; t < first + count; ++t)
@@ -83,7 +84,7 @@ Scene near(const Scene& scene, const Vec3& place, double reach)
 
 }  // namespace
 
-TEST_CASE("200 spawns in each shared world, as it is shipped, are valid by the independent decision")
+TEST_CASE("200 spawns in each shared world, as its makers publish it, are valid by the independent decision")
 {
     const auto folder = shared_scenes();
     if (!folder) return;
@@ -107,7 +108,7 @@ TEST_CASE("200 spawns in each shared world, as it is shipped, are valid by the i
         }
         CAPTURE(decided);
         CHECK(wrong == 0);
-        CHECK(decided >= 150);  // the rest lie too near to a limit for a decision by other means
+        CHECK(decided >= 150);  // the others are too close to a limit for the independent decision
         std::cout << item.file << ": " << list.spawns.size() << " spawns, " << decided << " decided\n";
     }
 }

@@ -33,7 +33,7 @@ std::vector<double> layers_at(const Scene& scene, double x, double y)
     return column_at(Geometry(scene), x, y).layers;
 }
 
-/// Triangles of terrain, by the names of nodes.
+/// Returns the number of terrain triangles for each name of a node.
 std::map<std::string, std::uint64_t> terrain_of(const Scene& scene)
 {
     std::map<std::string, std::uint64_t> out;
@@ -62,7 +62,7 @@ std::string scan_of(octomap::OcTree& tree)
 
 }  // namespace
 
-TEST_CASE("faces of shells that look up and are less steep than the limit are terrain, the rest obstacle")
+TEST_CASE("faces of shells that point up and are less steep than the limit are terrain, all others are obstacle")
 {
     const TempFolder folder;
     std::vector<mesh_text::Node> nodes;
@@ -80,12 +80,12 @@ TEST_CASE("faces of shells that look up and are less steep than the limit are te
     CHECK(layers_at(scene, 0.1, 0.2) == std::vector<double>{0});
     CHECK(layers_at(scene, 0.1, 9.2).empty());
 
-    // --label comes first, for all that it names.
-    const Scene told = load_scene(
+    // A rule of --label comes first for everything that it names.
+    const Scene labelled = load_scene(
         file, {.labels = {{"slope60", Label::Terrain}, {"slope0", Label::Water}}, .auto_slope = 30 * degree});
-    CHECK(terrain_of(told)["slope60"] == 2);
-    CHECK(terrain_of(told)["slope0"] == 0);
-    CHECK(terrain_of(told)["slope20"] == 2);
+    CHECK(terrain_of(labelled)["slope60"] == 2);
+    CHECK(terrain_of(labelled)["slope0"] == 0);
+    CHECK(terrain_of(labelled)["slope20"] == 2);
 }
 
 TEST_CASE("a filled piece stays filled, and its winding does not matter")
@@ -99,7 +99,7 @@ TEST_CASE("a filled piece stays filled, and its winding does not matter")
         REQUIRE(layers_at(scene, 1.1, 0.4).size() == 1);
         CHECK(std::abs(layers_at(scene, 1.1, 0.4)[0] - 0.7) < 1e-6);
     }
-    // A roof of 40 degrees carries nobody, a wedge of 20 does.
+    // A roof of 40 degrees is not terrain, a wedge of 20 degrees is.
     const auto wedge = [&](double degrees) {
         const double high = 4 * std::tan(degrees * degree);
         const hand::Mesh mesh = moved(hand::extruded({{0, 0}, {4, 0}, {4, high}}, 0, 3),
@@ -110,7 +110,7 @@ TEST_CASE("a filled piece stays filled, and its winding does not matter")
     CHECK(layers_at(wedge(40), 2.1, 1.1).empty());
 }
 
-TEST_CASE("a shell that is inside out is told")
+TEST_CASE("a shell that is inside out gets a notice")
 {
     const TempFolder folder;
     const Scene scene = load_scene(folder.write("scan.obj", mesh_text::obj(hand::flipped(hand::rectangle(4, 3)))),
@@ -118,11 +118,11 @@ TEST_CASE("a shell that is inside out is told")
     CHECK_FALSE(scene.has_terrain());
     REQUIRE(scene.notices.size() == 1);
     CHECK(scene.notices[0] ==
-          "\"scan\": no face of its shells looks up and 12 m2 look down, so --auto-label makes "
-          "them obstacles; is the mesh inside out?");
+          "\"scan\": no face of its shells looks up and 12 m2 look down, so --auto-label labels them as obstacle; is "
+          "the mesh inside out?");
 }
 
-TEST_CASE("auto_label in a scene file holds for its part, and the option for parts without a label")
+TEST_CASE("auto_label in a scene file applies to its part, and the option applies to parts without a label")
 {
     const TempFolder folder;
     folder.write("a.obj", mesh_text::obj({{.name = "floor", .mesh = hand::rectangle(1, 1)},
@@ -138,8 +138,9 @@ TEST_CASE("auto_label in a scene file holds for its part, and the option for par
     CHECK(terrain("", by_slope) == Counts{{"floor", 2}, {"cloth", 2}, {"wall", 0}});
     CHECK(terrain(", label: obstacle", by_slope) == Counts{{"floor", 0}, {"cloth", 0}, {"wall", 0}});
     const std::string part = "scene.yaml: part \"a\": ";
-    CHECK_THROWS_WITH(terrain(", label: terrain, auto_label: {slope: 30}"),
-                      Contains(part + "auto_label cannot stand beside label"));
+    CHECK_THROWS_WITH(
+        terrain(", label: terrain, auto_label: {slope: 30}"),
+        Contains(part + "auto_label is given together with label, needs only one of them (labels: is allowed)"));
     CHECK_THROWS_WITH(terrain(", auto_label: {slope: 90}"), Contains("slope is 90, needs > 0 and < 90 degrees"));
     CHECK_THROWS_WITH(terrain(", auto_label: {slope: 0}"), Contains("slope is 0, needs > 0"));
     CHECK_THROWS_WITH(terrain(", auto_label: {}"), Contains("slope is missing"));
@@ -147,7 +148,7 @@ TEST_CASE("auto_label in a scene file holds for its part, and the option for par
                       Contains("auto_label"));
 }
 
-TEST_CASE("in a world what no name makes ground is labelled by its slope, shape by shape")
+TEST_CASE("in a world, shapes that no name makes ground are labelled by their slope, one by one")
 {
     const TempFolder folder;
     const std::string box = "<box><size>2 2 0.2</size></box>",
@@ -162,7 +163,7 @@ TEST_CASE("in a world what no name makes ground is labelled by its slope, shape 
     const Scene scene = load_scene(file, by_slope);
     const double level = 1.1, ramp = 1 + 0.1 / std::cos(0.4);
     CHECK(layers_at(scene, 0.1, 0.1).size() == 1);
-    CHECK(layers_at(scene, 5.1, 0.1).empty());  // a name says that it is no ground
+    CHECK(layers_at(scene, 5.1, 0.1).empty());  // its name excludes it from the ground
     CHECK(layers_at(scene, 10.1, 0.1) == std::vector<double>{level});
     REQUIRE(layers_at(scene, 20, 0).size() == 1);  // 23 degrees
     CHECK(std::abs(layers_at(scene, 20, 0)[0] - ramp) < 1e-9);
@@ -170,7 +171,7 @@ TEST_CASE("in a world what no name makes ground is labelled by its slope, shape 
     CHECK(layers_at(scene, 40.1, 0.1) == std::vector<double>{1});
     CHECK(layers_at(scene, 50.1, 0.1).empty());
     CHECK(layers_at(scene, 60, 0).empty());
-    // A tilted box is a mesh then, of the same size and place, and filled.
+    // A tilted box becomes a filled mesh of the same size at the same place.
     const Scene plain = load_scene(file);
     CHECK((scene.bounds().min - plain.bounds().min).norm() < 1e-9);
     CHECK((scene.bounds().max - plain.bounds().max).norm() < 1e-9);
@@ -178,12 +179,12 @@ TEST_CASE("in a world what no name makes ground is labelled by its slope, shape 
     CHECK(scene.triangles.size() == 24);
     for (const Piece& piece : scene.pieces) CHECK(piece.solid);
 
-    // Without a name for ground: by slope instead of everything.
+    // If no name means ground, labels come from slopes, instead of terrain for everything.
     const auto desk = folder.write("desk.world",
                                    world_of(model_of("desk", box, "0 0 0 0 0 0") +
                                             model_of("ball", "<sphere><radius>1</radius></sphere>", "9 0 0 0 0 0")));
     CHECK_THAT(load_scene(desk).notices.back(),
-               Contains("so everything is terrain, walls and furniture too. --auto-label slope=30 makes terrain"));
+               Contains("so everything is terrain, also walls and furniture. --auto-label slope=30 labels faces"));
     CHECK(layers_at(load_scene(desk), 9, 0).size() == 1);
     CHECK(layers_at(load_scene(desk, by_slope), 9, 0).empty());
     CHECK(layers_at(load_scene(desk, by_slope), 0.1, 0.1).size() == 1);
@@ -229,7 +230,7 @@ TEST_CASE("in an OctoMap floors and gentle hills are terrain, steep ones, walls 
     CHECK(steep == 0);
     CHECK(layers_at(scene, middle(5), middle(5)).empty());  // on the post
     CHECK(layers_at(load_scene(file), middle(5), middle(5)).size() == 1);
-    // What was scanned from within: the room is free, above its ceiling all is unknown.
+    // A room that was scanned from inside is free, and everything above its ceiling is unknown.
     octomap::OcTree room(0.1);
     for (int i = 0; i < 12; ++i)
         for (int j = 0; j < 12; ++j)
@@ -240,11 +241,11 @@ TEST_CASE("in an OctoMap floors and gentle hills are terrain, steep ones, walls 
     const Scene labelled = load_scene(scanned, by_slope);
     REQUIRE(layers_at(labelled, middle(6), middle(6)).size() == 1);
     CHECK(std::abs(layers_at(labelled, middle(6), middle(6))[0] - 0.1) < 1e-6);
-    // A rule names it as a whole.
+    // A label rule applies to the OctoMap as a whole.
     CHECK_FALSE(load_scene(file, {.labels = {{"scan", Label::Obstacle}}, .auto_slope = 30 * degree}).has_terrain());
     CHECK_THROWS_WITH(
         load_parts(folder, "  - {name: a, octomap: scan.bt, auto_label: {slope: 30}, rpy: [0.1, 0, 0]}\n"),
-        Contains("needs to be upright to be labelled by slope"));
+        Contains("cannot be labelled by slope; set roll and pitch to 0"));
 }
 
 TEST_CASE("an unlabelled mesh gets a notice with options that can be pasted")
@@ -259,9 +260,9 @@ TEST_CASE("an unlabelled mesh gets a notice with options that can be pasted")
              {.name = "roof", .material = "asphalt", .mesh = moved(hand::rectangle(5, 5), tilted(0, {0, 0, 9}))}}));
     const std::string err = run_program(folder, "info house.obj").err;
     const std::string options = " --label '*ground*=terrain' --label 'floor\\[2]=terrain' --label '*asphalt*=terrain'";
-    CHECK_THAT(err, Contains("notice: house.obj: no label given, so everything is terrain, walls and furniture too. "
-                             "--auto-label slope=30 makes terrain of what looks up and is "
-                             "less steep than 30 degrees, and obstacles of the rest. These names look like ground:" +
+    CHECK_THAT(err, Contains("notice: house.obj: no label is given, so everything is terrain, also walls and "
+                             "furniture. --auto-label slope=30 labels faces that look up and are less steep than 30 "
+                             "degrees as terrain, and the others as obstacle. These names look like ground:" +
                              options + "\n"));
     const ProgramRun pasted = run_program(folder, "info house.obj" + options);
     CHECK(pasted.err.find("matches no") == std::string::npos);
@@ -269,10 +270,10 @@ TEST_CASE("an unlabelled mesh gets a notice with options that can be pasted")
     CHECK_THAT(pasted.out, Contains("node \"floor_lamp\", material \"material\": 2 triangles, z 6 to 6 m, obstacle\n"));
     folder.write("rock.obj", mesh_text::obj(hand::rectangle(5, 5)));
     CHECK_THAT(run_program(folder, "info rock.obj").err,
-               Contains(". --label 'GLOB=terrain' labels by name; `info` lists the names\n"));
+               Contains(". --label 'GLOB=terrain' labels by name (`info` lists the names)\n"));
 }
 
-TEST_CASE("--auto-label is read by bake and info, and refused where it means nothing")
+TEST_CASE("bake and info accept --auto-label, and refuse it where it has no meaning")
 {
     const TempFolder folder;
     folder.write("a.obj",

@@ -37,7 +37,7 @@ bool is_clear(const std::vector<Vec3>& points, double distance, const Vec3& p)
     return is_clear({{"", points, distance}}, p);
 }
 
-/// Two groups of points, anywhere within the map and a little beyond.
+/// Returns two groups of points, anywhere in the map and slightly beyond it.
 std::vector<AvoidedPoints> random_avoided(const Bounds& bounds, Random& random)
 {
     std::vector<AvoidedPoints> out;
@@ -53,12 +53,12 @@ std::vector<AvoidedPoints> random_avoided(const Bounds& bounds, Random& random)
     return out;
 }
 
-/// A list of spawns with the numbers of draws that gave none, by the definitions: one draw after the other, all
-/// distances.
+/// A list of spawns with the numbers of rejected draws, computed from the definitions: one draw after the other, with
+/// all distances.
 struct SlowList {
     std::vector<Vec3> found;
     std::uint64_t draws = 0, near_avoided = 0, too_close = 0;
-    bool gave_up = false;  ///< sample goes on in cells then, of which this knows nothing
+    bool gave_up = false;  ///< then sample continues with cells, which this list does not cover
 };
 
 SlowList slow_search(const Judge& judge, const SearchOptions& options)
@@ -86,7 +86,7 @@ SlowList slow_search(const Judge& judge, const SearchOptions& options)
     return out;
 }
 
-/// The draws before sample goes over to cells. `slots` must be at least the layers of any column.
+/// Returns the draws before sample starts to use cells. `slots` must be at least the number of layers of any column.
 SlowList slow_sample(const Judge& judge, const SampleOptions& options, int slots)
 {
     const Judge exhaustive = at_any_height(judge);
@@ -124,7 +124,7 @@ void check_same(const SpawnList& list, const SlowList& slow)
     CHECK(list.too_close == slow.too_close);
 }
 
-/// Positions of a grid at which a spawn could still be added.
+/// Returns the number of grid positions at which a spawn could still be added.
 std::size_t room_left(const Judge& judge, const SampleOptions& options, const SpawnList& list, int cells)
 {
     const Judge exhaustive = at_any_height(judge);
@@ -147,7 +147,7 @@ std::size_t room_left(const Judge& judge, const SampleOptions& options, const Sp
     return count;
 }
 
-/// A room of 8 x 6 m: a floor of a kind (sheet, box, closed mesh), and walls around it.
+/// Returns a room of 8 x 6 m: a floor of one kind (sheet, box, closed mesh), and walls around it.
 Scene room(int kind)
 {
     Scene scene;
@@ -163,7 +163,7 @@ Scene room(int kind)
     return scene;
 }
 
-/// Points over all of the room, `step` apart, but none in a disc of 1.2 m around the gap.
+/// Returns points all over the room, `step` apart, except in a disc of 1.2 m around the gap.
 std::vector<Vec3> grid_points(double step, const Vec3& gap)
 {
     std::vector<Vec3> out;
@@ -204,13 +204,13 @@ TEST_CASE("no spawn is nearer to an avoided point than its distance, in random s
     CHECK(near > 300);
 }
 
-TEST_CASE("search and sample with avoided points are their definitions, draw by draw")
+TEST_CASE("search and sample with avoided points follow their definitions, draw by draw")
 {
     std::size_t found = 0, near = 0, close = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         CAPTURE(seed);
         TestMap map = map_of(random_scene(seed));
-        map.layers = 16;  // at least those of any column, so that sample never starts over
+        map.layers = 16;  // at least as many as in any column, so that sample never starts again
         const Judge judge(map, random_robot(seed));
         Random random{seed + 50};
         SearchOptions options{
@@ -290,7 +290,7 @@ TEST_CASE("a second robot finds no room where the first has filled the map, and 
     CHECK(room_left(judge, options, second, 300) == 0);
 }
 
-TEST_CASE("avoided points at no distance, or far away, change no byte")
+TEST_CASE("avoided points with distance 0, or far away, change no byte")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -307,7 +307,7 @@ TEST_CASE("avoided points at no distance, or far away, change no byte")
     }
 }
 
-TEST_CASE("avoiding gives the same bytes at any number of threads")
+TEST_CASE("avoided points give the same bytes with any number of threads")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -324,7 +324,7 @@ TEST_CASE("avoiding gives the same bytes at any number of threads")
            many.undecided_area == one.undecided_area));
 }
 
-TEST_CASE("distances and points that are no numbers are refused")
+TEST_CASE("distances and points that are not numbers are refused")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());

@@ -1,6 +1,6 @@
 #pragma once
 
-// Debian 12 has Catch2 v2 (one header), Ubuntu 24.04 v3.
+// Debian 12 has Catch2 v2 (a single header), Ubuntu 24.04 has v3.
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
 using Catch::Approx;

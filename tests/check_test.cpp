@@ -25,7 +25,7 @@ std::string attribute(const XMLElement& element, const char* name)
     return value;
 }
 
-/// The cases of a JUnit file, whose counts are those that its two outer elements state.
+/// Returns the cases of a JUnit file. Checks that the counts in its two outer elements are right.
 std::vector<Case> cases_of(const std::string& junit)
 {
     tinyxml2::XMLDocument document;
@@ -54,7 +54,7 @@ std::vector<Case> cases_of(const std::string& junit)
     return out;
 }
 
-/// Whether a strict XML reader, Python's expat, takes the file.
+/// Returns whether a strict XML reader (Python's expat) accepts the file.
 bool is_strict_xml(const std::filesystem::path& file)
 {
     const std::string script = "import sys, xml.etree.ElementTree as tree; tree.parse(sys.argv[1])";
@@ -97,7 +97,7 @@ TEST_CASE("check --require-valid ends with status 3 if a pose is not valid, and 
     CHECK(all.err.find("--require-valid") == std::string::npos);
 }
 
-TEST_CASE("check --require-valid says why each of the first five poses is not valid, and how many follow")
+TEST_CASE("check --require-valid prints why each of the first five poses is not valid, and how many follow")
 {
     const Arena arena;
     arena.write("poses.csv", header + start + away + sky + cube + wall + ",7,-7,0.1,0\n" + wall + lake);
@@ -116,7 +116,7 @@ TEST_CASE("check --require-valid says why each of the first five poses is not va
           "spawnfield: --require-valid: 1 of 1 pose is not valid:\n  pose 1: aerial: no ground below the origin\n");
 }
 
-TEST_CASE("check --require-valid leaves the statuses of other failures as they are")
+TEST_CASE("check --require-valid does not change the exit status of other failures")
 {
     const Arena arena;
     arena.write("poses.csv", header + wall);
@@ -155,7 +155,7 @@ TEST_CASE("check --format junit has a test case for each pose, with its verdict 
     CHECK_THAT(arena(command + "--collision octree").out, Contains("message=\"collision with occupancy\""));
 }
 
-TEST_CASE("JUnit names are unique: the column name, or else the pose's number")
+TEST_CASE("JUnit names are unique: from the column name, or else the number of the pose")
 {
     const Arena arena;
     arena.write("poses.csv", "name,x,y,z\na,0,3,0.1\n,0,3,0.1\na,0,3,0.1\nb,0,3,0.1\n");
@@ -172,7 +172,7 @@ TEST_CASE("JUnit names are unique: the column name, or else the pose's number")
     CHECK(cases[1].name == "pose 2");
 }
 
-TEST_CASE("reports hold hostile names: XML and JSON stay valid")
+TEST_CASE("reports with hostile names are valid XML and JSON")
 {
     const TempFolder folder;
     folder.write("scene.yaml",
@@ -249,7 +249,7 @@ TEST_CASE("check --format json has each pose with its verdict, ground, hit and t
     CHECK(more["settings"]["collision"] == "octree");
 }
 
-TEST_CASE("reports of many poses, written in several pieces, are whole")
+TEST_CASE("reports of many poses, which are written in several pieces, are complete")
 {
     const Arena arena;
     std::string text = header;

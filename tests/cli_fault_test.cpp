@@ -8,7 +8,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What the program must say after `spawnfield `: the whole of standard error, but for the usage hint.
+/// What the program must print after `spawnfield `: all of standard error except the usage hint.
 struct Refusal {
     std::string arguments, message;
 };
@@ -45,7 +45,7 @@ public:
         CHECK(names() == before_);
     }
 
-    /// Further files of a test belong to the desk.
+    /// Adds further files of a test to the files that must not change.
     void remember() { before_ = names(); }
 
 private:
@@ -62,7 +62,7 @@ const std::string hint = "\nRun with --help for more information.";
 
 }  // namespace
 
-TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
+TEST_CASE("wrong usage ends with status 2, and the message names option, value and limit")
 {
     const Desk desk;
     const std::string raster = "raster map -o out --dims 2 --step 1" + husky,
@@ -74,8 +74,9 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"bake", "scene is required" + hint},
         {"bake scene.yaml", "--out is required" + hint},
         {"check map --poses poses.csv -o out", "--robot is required" + hint},
-        {"check map --poses poses.csv -o out --robot ''", "--robot: is empty: is a shell's variable not set?" + hint},
-        {"bake scene.yaml -o ''", "--out: is empty: is a shell's variable not set?" + hint},
+        {"check map --poses poses.csv -o out --robot ''",
+         "--robot: is empty; is a variable of the shell not set?" + hint},
+        {"bake scene.yaml -o ''", "--out: is empty; is a variable of the shell not set?" + hint},
         {sample + " -n 3 --offset 1e300", "spawnfield: --offset is 1e+300, needs at most 1e7 m"},
         {"bake scene.yaml -o new --bounds -1e300,0,0,1,1,1",
          "spawnfield: --bounds is -1e+300, needs numbers between -1e7 and 1e7, m"},
@@ -84,9 +85,9 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"raster map -o out --dims 2 --step 0" + husky, "spawnfield: --step is 0, needs > 0"},
         {"raster map -o out --dims 3 --step 1 --step-z 0" + husky, "spawnfield: --step-z is 0, needs > 0"},
         {raster + "--layers low",
-         "spawnfield: --layers is \"low\", needs all, top, bottom or a number from 0 (the highest) on"},
+         "spawnfield: --layers is \"low\", needs all, top, bottom or a number (0 is the highest layer)"},
         {raster + "--bounds 0,0,-1,5",
-         "spawnfield: --bounds: x1 is -1, needs at least x0: the lower corner comes first"},
+         "spawnfield: --bounds: x1 is -1, needs at least x0; give the lower corner first"},
         {raster + "--bounds 0,0,1",
          "spawnfield: --bounds has 3 numbers, needs 6: x0,y0,z0,x1,y1,z1 (or 4: x0,y0,x1,y1)"},
         {"raster map -o out --dims 3 --step 1 --bounds 0,0,1,1" + husky,
@@ -100,35 +101,37 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
          "spawnfield: --max-slope is inf, needs > 0 and < 90 degrees"},
         {"heatmap map -o out --max-slope -5" + husky, "spawnfield: --max-slope is -5, needs > 0 and < 90 degrees"},
         {raster + "--yaw inf", "spawnfield: --yaw is inf, needs a finite number, rad"},
-        {raster + "--offset inf", "spawnfield: --offset: \"inf\" is no finite number"},
-        {raster + "--write-aerial", "spawnfield: --write-aerial is for --dims 3: in 2D poses stand on their layers"},
+        {raster + "--offset inf", "spawnfield: --offset: \"inf\" is not a finite number"},
+        {raster + "--write-aerial",
+         "spawnfield: --write-aerial is only for --dims 3: in 2D each pose stands on a layer"},
         {"raster map -o out --dims 2 --step 0.00001" + husky,
          "spawnfield: columns is 640001600001, needs at most 2147483647; take a larger step"},
         {raster3 + "--write-aerial --layers top",
-         "spawnfield: --write-aerial needs --layers all: aerial poses are above no layer"},
+         "spawnfield: --write-aerial needs --layers all: aerial poses do not belong to a layer"},
         {raster + "--no-height-check",
-         "spawnfield: --no-height-check is for --dims 3: in 2D poses stand on their layers"},
-        {raster + "--snap", "spawnfield: --snap is for --dims 3: in 2D poses stand on their layers"},
+         "spawnfield: --no-height-check is only for --dims 3: in 2D each pose stands on a layer"},
+        {raster + "--snap", "spawnfield: --snap is only for --dims 3: in 2D each pose stands on a layer"},
         {raster3 + "--snap --no-height-check",
-         "spawnfield: --snap needs the height check: --no-height-check looks for collisions alone"},
+         "spawnfield: --snap and --no-height-check do not go together: without the height check there is no layer to "
+         "snap to"},
         {raster3 + "--snap --offset 0.6 --max-height 0.5",
          "spawnfield: --offset is 0.6, needs 0 .. --max-height (0.5 "
-         "m) with --snap: poses on their layers would be aerial"},
+         "m) with --snap; otherwise poses on layers would be aerial"},
         {sample + "-n 0", "spawnfield: -n is 0, needs >= 1"},
         {sample + "-n 5 --min-distance -1", "spawnfield: --min-distance is -1, needs >= 0 m"},
         {sample + "-n 5 --yaw north",
-         "spawnfield: --yaw is \"north\", needs rad, as 1.57, or degrees, as 90deg, or random"},
+         "spawnfield: --yaw is \"north\", needs radians such as 1.57 or degrees such as 90deg, or random"},
         {sample + "-n 5 --region 1,1,0,0",
-         "spawnfield: --region: x1 is 0, needs at least x0: the lower corner comes first"},
+         "spawnfield: --region: x1 is 0, needs at least x0; give the lower corner first"},
         {search + "-n 5 --max-failures 0", "spawnfield: --max-failures is 0, needs >= 1"},
         {search + "-n 5 --max-failures 9 --bounds 0,0,5,1,1,4",
-         "spawnfield: --bounds: z1 is 4, needs at least z0: the lower corner comes first"},
+         "spawnfield: --bounds: z1 is 4, needs at least z0; give the lower corner first"},
         {"sample map -o out -n 5 --robot box:1,0,1", "spawnfield: robot \"box:1,0,1\": side length is 0, needs > 0 m"},
         {"sample map -o out -n 5 --robot box:1,1",
          "spawnfield: robot \"box:1,1\": has 2 side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])"},
         {"bake scene.yaml -o new --resolution 0", "spawnfield: --resolution is 0, needs > 0"},
         {"bake scene.yaml -o new --bounds 0,0,0,1,1,-1",
-         "spawnfield: --bounds: z1 is -1, needs at least z0: the lower corner comes first"},
+         "spawnfield: --bounds: z1 is -1, needs at least z0; give the lower corner first"},
         {"bake scene.yaml -o new --label a=grass",
          "spawnfield: --label is \"a=grass\", needs GLOB=terrain, GLOB=obstacle, GLOB=water or GLOB=ignore"},
         {"bake scene.yaml -o new --scale 2",
@@ -136,20 +139,20 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
         {"bake scene.yaml -o new --scale 0", "spawnfield: --scale is 0, needs > 0"},
         {"bake scene.yaml -o new --resolution 0.00001",
          "spawnfield: columns at a cell of 1e-05 m is 6.4e+11, needs at most 1e+08; take a coarser resolution"},
-        {"info map --up y", "spawnfield: --up is for a scene; map is a map's folder"},
-        {"info map --model-path .", "spawnfield: --model-path is for a scene or a robot; map is a map's folder"},
-        {"info map --picture new.png", "spawnfield: --picture is for a robot; map is a map's folder"},
-        {"info scene.yaml --joints a=1", "spawnfield: --joints is for a robot; scene.yaml is none"},
+        {"info map --up y", "spawnfield: --up is only for scenes; map is a map"},
+        {"info map --model-path .", "spawnfield: --model-path is only for scenes and robots; map is a map"},
+        {"info map --picture new.png", "spawnfield: --picture is only for robots; map is a map"},
+        {"info scene.yaml --joints a=1", "spawnfield: --joints is only for robots; scene.yaml is not a robot"},
         {"info box:1,1,1 --joints a=1", "spawnfield: joint \"a\" is given, but box:1,1,1 has no joints"},
         {sample + "-n 5 --joints elbow",
-         "spawnfield: --joints: \"elbow\" is no joint, needs name=value[,name=value…], rad or m"},
-        {sample + "-n 5 --joints elbow=1,wrist=x", "spawnfield: --joints: wrist: \"x\" is no finite number"},
-        {"info scene.yaml --verify", "spawnfield: --verify is for a map folder; scene.yaml is none"},
-        {"info box:1,1,1 --scale 1", "spawnfield: --scale is for a scene; box:1,1,1 is a robot"},
-        {experiment + "--dims 2", "spawnfield: --steps is required, as 0.5:2:0.5 (or --search)"},
-        {experiment + "--steps 1", "spawnfield: --dims is required, 2 or 3 (or --search)"},
+         "spawnfield: --joints: \"elbow\" is not a joint; write name=value[,name=value…] in rad or m"},
+        {sample + "-n 5 --joints elbow=1,wrist=x", "spawnfield: --joints: wrist: \"x\" is not a finite number"},
+        {"info scene.yaml --verify", "spawnfield: --verify is only for maps; scene.yaml is not a map"},
+        {"info box:1,1,1 --scale 1", "spawnfield: --scale is only for scenes; box:1,1,1 is a robot"},
+        {experiment + "--dims 2", "spawnfield: --steps is missing; give for example --steps 0.5:2:0.5, or --search"},
+        {experiment + "--steps 1", "spawnfield: --dims is missing; give --dims 2, --dims 3 or --search"},
         {experiment + "--dims 2 --steps 0.5:2", "spawnfield: --steps is \"0.5:2\", needs FROM:TO:BY or one number, m"},
-        {experiment + "--dims 2 --steps 0.5:two:1", "spawnfield: --steps: \"two\" is no finite number"},
+        {experiment + "--dims 2 --steps 0.5:two:1", "spawnfield: --steps: \"two\" is not a finite number"},
         {experiment + "--dims 2 --steps 0", "spawnfield: --steps is 0, needs > 0"},
         {experiment + "--dims 2 --steps 0:2:1", "spawnfield: --steps: FROM is 0, needs > 0"},
         {experiment + "--dims 2 --steps 1:2:0", "spawnfield: --steps: BY is 0, needs > 0"},
@@ -160,18 +163,18 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
          "spawnfield: --steps-z has 2 steps, needs 1 or as many as --steps: 3"},
         {experiment + "--dims 2 --steps 1 --runs 0", "spawnfield: --runs is 0, needs >= 1"},
         {experiment + "--dims 2 --steps 1 --snap",
-         "spawnfield: --snap is for --dims 3: in 2D poses stand on their layers"},
+         "spawnfield: --snap is only for --dims 3: in 2D each pose stands on a layer"},
         {experiment + "--dims 2 --steps 1 -n 5", "spawnfield: -n needs --search"},
-        {experiment + "--search", "spawnfield: --search needs -n, the spawns wanted"},
-        {experiment + "--search -n 5 --steps 1", "spawnfield: --steps is for rasters, not for --search"},
+        {experiment + "--search", "spawnfield: --search needs -n, the number of spawns"},
+        {experiment + "--search -n 5 --steps 1", "spawnfield: --steps is only for rasters, not for --search"},
         {experiment + "--search -n 5 --bounds 0,0,1,1",
          "spawnfield: --bounds has 4 numbers, needs 6: x0,y0,z0,x1,y1,z1"},
         {experiment + "--search -n 5 --max-failures 0", "spawnfield: --max-failures is 0, needs >= 1"},
         {"experiment map --dims 2 --steps 1" + husky, "--out is required" + hint},
         {"frob map",
-         "spawnfield: frob is no command, needs one of bake, info, check, raster, search, sample, heatmap, "
+         "spawnfield: frob is not a command; the commands are bake, info, check, raster, search, sample, heatmap, "
          "export, experiment"},
-        {sample + "-n 5 --seed -1", "--seed: -1 is no whole number from 0 to 18446744073709551615" + hint},
+        {sample + "-n 5 --seed -1", "--seed: -1 is not a whole number from 0 to 18446744073709551615" + hint},
     };
     for (const Refusal& refusal : refusals) desk.check(refusal, 2);
     for (const std::string arguments :
@@ -191,7 +194,7 @@ TEST_CASE("wrong usage ends with 2, and says which option, value and limit")
     desk.check_untouched();
 }
 
-TEST_CASE("refused input ends with 4, and says which file, place, value and limit; no output is touched")
+TEST_CASE("refused input ends with status 4, and the message names file, place, value and limit; no output changes")
 {
     Desk desk;
     desk.write("no_terrain.yaml", "format: spawnfield-scene/1\nparts: [{name: b, sphere: 1}]\n");
@@ -214,7 +217,7 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
          "spawnfield: no_terrain.yaml: has no terrain, so no robot can stand anywhere; label a part `terrain` "
          "(--label 'GLOB=terrain') or pass --allow-no-terrain"},
         {"bake typo.yaml -o map",
-         "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
+         "spawnfield: typo.yaml: part \"b\": spere is not a known key; known keys: " + keys + " (line 3)"},
         {"bake label.yaml -o new",
          "spawnfield: label.yaml: part \"b\": label is \"lava\", needs one of terrain, "
          "obstacle, water, ignore (line 3)"},
@@ -225,7 +228,8 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
         {"check map --poses upper.csv -o out" + husky,
          "spawnfield: upper.csv: line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw; there is X, but "
          "names are lower case"},
-        {"info typo.yaml", "spawnfield: typo.yaml: part \"b\": spere is no known key; known: " + keys + " (line 3)"},
+        {"info typo.yaml",
+         "spawnfield: typo.yaml: part \"b\": spere is not a known key; known keys: " + keys + " (line 3)"},
         {"info none", "spawnfield: none: does not exist; is the path right?"},
         {"info endless.yaml", "spawnfield: endless.yaml: is a device, needs a regular file"},
         {"bake endless.yaml -o new", "spawnfield: endless.yaml: is a device, needs a regular file"},
@@ -253,7 +257,7 @@ TEST_CASE("refused input ends with 4, and says which file, place, value and limi
     for (const Refusal& refusal : refusals) desk.check(refusal, 4);
 }
 
-TEST_CASE("a damaged map is refused by every command, with the file named")
+TEST_CASE("every command refuses a damaged map and names the file")
 {
     Desk desk;
     const std::string queries[] = {"info map",
@@ -302,7 +306,7 @@ TEST_CASE("a damaged map is refused by every command, with the file named")
                    4);
 }
 
-TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
+TEST_CASE("output that cannot be written ends with status 1, and nothing remains of it")
 {
     const Desk desk;
     const std::string sample = "sample map -n 1 -q" + husky;
@@ -314,32 +318,33 @@ TEST_CASE("what cannot be written ends with 1, and nothing is left of it")
     const ProgramRun full = run_program(desk, sample + ">/dev/full 2>err || (cat err >&2; rm err; exit 1)");
     CHECK(full.status == 1);
     CHECK(full.err == "spawnfield: standard output: cannot be written\n");
-    desk.check({"bake scene.yaml -q -o out", "spawnfield: out: exists and is no map; choose another name or remove it"},
-               1);
+    desk.check(
+        {"bake scene.yaml -q -o out", "spawnfield: out: exists and is not a map; choose another name or remove it"}, 1);
     const std::string raster = "raster map -q --dims 2 --step 1" + husky;
     desk.check({raster + "-o /dev/full --heatmap new.png",
                 "spawnfield: /dev/full: cannot be written: No space left on device"},
                1);
     desk.check({"experiment map -q --dims 2 --steps 1 -o out" + husky,
-                "spawnfield: out: exists and is no folder; choose another name or remove it"},
+                "spawnfield: out: exists and is not a folder; choose another name or remove it"},
                1);
-    desk.check({"experiment map -q --dims 2 --steps 1 -o map" + husky,
-                "spawnfield: map: holds bounds.bin, which is no part of a former experiment; choose another name or "
-                "remove it"},
-               1);
+    desk.check(
+        {"experiment map -q --dims 2 --steps 1 -o map" + husky,
+         "spawnfield: map: contains bounds.bin, which is not part of a former experiment; choose another name or "
+         "remove it"},
+        1);
     desk.check({raster + "-o new.csv --heatmap none/new.png",
                 "spawnfield: none/new.png: cannot be written: No such file or directory"},
                1);
 }
 
-TEST_CASE("a summary that cannot be written is told before all work, and nothing is written")
+TEST_CASE("a summary that cannot be written is reported before all work, and nothing is written")
 {
     const Desk desk;
-    const std::string told = "spawnfield: none/s.json: cannot be written: No such file or directory";
+    const std::string message = "spawnfield: none/s.json: cannot be written: No such file or directory";
     for (const std::string& arguments :
          {std::string("bake scene.yaml -o new"), std::string("info map"), "check map --poses poses.csv -o out" + husky,
           "raster map -o out --dims 2 --step 1" + husky, "sample map -o out -n 1" + husky,
           "search map -o out -n 1" + husky, "heatmap map -o out" + husky,
           "experiment map -o new --dims 2 --steps 1" + husky})
-        desk.check({arguments + " --summary none/s.json", told}, 1);
+        desk.check({arguments + " --summary none/s.json", message}, 1);
 }

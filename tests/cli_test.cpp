@@ -19,7 +19,7 @@ const std::vector<std::string> commands = {"bake",   "info",    "check",  "raste
 
 std::size_t lines(const std::string& text) { return std::size_t(std::count(text.begin(), text.end(), '\n')); }
 
-/// The header's names of a CSV text with the fields of one row, counted from 1.
+/// Returns the names in the header of a CSV text, followed by the fields of one row, counted from 1.
 std::string row(const std::string& csv, std::size_t number)
 {
     std::istringstream stream(csv);
@@ -28,7 +28,7 @@ std::string row(const std::string& csv, std::size_t number)
     return line;
 }
 
-/// The summary has all that DESIGN.md names.
+/// Reads a summary, and checks that it has all documented entries.
 nlohmann::json summary(const fs::path& file, const std::string& command)
 {
     const auto json = nlohmann::json::parse(bytes_of(file));
@@ -51,7 +51,7 @@ nlohmann::json summary(const fs::path& file, const std::string& command)
 
 }  // namespace
 
-TEST_CASE("every command has help with an example, and the program tells its version")
+TEST_CASE("every command has help with an example, and the program prints its version")
 {
     const TempFolder folder;
     for (const std::string& command : commands) {
@@ -61,7 +61,11 @@ TEST_CASE("every command has help with an example, and the program tells its ver
         const std::size_t example = run.out.find("Example:");
         REQUIRE(example != std::string::npos);
         CHECK(run.out.find("spawnfield " + command + " ", example) != std::string::npos);
-        CHECK_THAT(run.out, Contains("--threads"));
+        const std::size_t group = run.out.find("\nOutput and run:\n");  // common options come before all groups
+        CHECK(run.out.find("\nOptions:\n") < group);
+        CHECK(group < run.out.find("--threads"));
+        std::istringstream help(run.out.substr(0, example));
+        for (std::string line; std::getline(help, line);) CHECK(line.size() <= 120);
     }
     CHECK(run_program(folder, "--help").status == 0);
     const ProgramRun version = run_program(folder, "--version");
@@ -69,7 +73,7 @@ TEST_CASE("every command has help with an example, and the program tells its ver
     CHECK(version.out == spawnfield::version() + "\n");
 }
 
-TEST_CASE("every example works after README's steps, and leaves their files as they are")
+TEST_CASE("every example works after the steps of the README, and does not change their files")
 {
     const TempFolder folder;  // stands for /tmp and for the source folder
     fs::create_symlink(program_file(), folder / "spawnfield");
@@ -86,7 +90,7 @@ TEST_CASE("every example works after README's steps, and leaves their files as t
     for (const char* const name : {"poses.csv", "spawns.csv", "raster.csv"}) CHECK(bytes_of(folder / name) == "mine");
 }
 
-TEST_CASE("bake writes a map, tells what it made, and its summary")
+TEST_CASE("bake writes a map, prints what it made, and writes its summary")
 {
     const TempFolder folder;
     const ProgramRun run = run_program(folder, "bake " + scene + " -o deep/map --resolution 0.25 --summary s.json");
@@ -101,7 +105,7 @@ TEST_CASE("bake writes a map, tells what it made, and its summary")
     for (const char* stage : {"geometry", "terrain", "occupancy"}) CHECK(json["seconds"].at(stage) >= 0.0);
 }
 
-TEST_CASE("bake passes its options on")
+TEST_CASE("bake passes its options to the library")
 {
     const TempFolder folder;
     folder.write("a.obj", "o road\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no house\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 4 5 6\n");
@@ -114,8 +118,8 @@ TEST_CASE("bake passes its options on")
     CHECK(map.bounds.min == spawnfield::Vec3(-1, -4, -1));
     CHECK(map.bounds.max == spawnfield::Vec3(3, 1, 5));
     CHECK(map.occupancy_resolution == 0.5);
-    const spawnfield::Column column = column_at(map.geometry, 0.2,
-                                                -0.1);  // y is up and twice as large: upright triangles
+    // With y up and twice the size, the triangles are upright.
+    const spawnfield::Column column = column_at(map.geometry, 0.2, -0.1);
     CHECK(column.spans.empty());
     CHECK(map.geometry.labels()[std::size_t(spawnfield::Label::Terrain)].triangles == 1);
     CHECK(map.geometry.labels()[std::size_t(spawnfield::Label::Obstacle)].triangles == 1);
@@ -126,7 +130,7 @@ TEST_CASE("bake passes its options on")
     CHECK(plain.status == 0);
     CHECK(plain.err.empty());
     CHECK_THAT(run_program(folder, "bake a.obj -o map").err,
-               Contains("notice: a.obj: no label given, so everything is terrain"));
+               Contains("notice: a.obj: no label is given, so everything is terrain"));
     CHECK_THAT(run_program(folder, "bake a.obj -o map --bounds 0.8,0.8,0,3,3,1").err,
                Contains("notice: no robot can stand in the bounds 0.8, 0.8, 0 to 3, 3, 1 m: there is no terrain at any "
                         "cell's centre; the scene is "
@@ -135,7 +139,7 @@ TEST_CASE("bake passes its options on")
     CHECK(run_program(folder, "bake a.obj -o map --label '*=obstacle' --allow-no-terrain").status == 0);
 }
 
-TEST_CASE("a bake over a map replaces it, but keeps what others put there; a folder that is no map stays as it is")
+TEST_CASE("a bake over a map replaces it but keeps foreign files; a folder that is not a map stays as it is")
 {
     const Arena arena;
     const std::string before = bytes_of(arena / "map/map.yaml");
@@ -157,12 +161,12 @@ TEST_CASE("a bake over a map replaces it, but keeps what others put there; a fol
     arena.write("work/thesis.tex", "years");
     const ProgramRun run = arena("bake " + scene + " -o work");
     CHECK(run.status == 1);
-    CHECK(run.err == "spawnfield: work: exists and is no map; choose another name or remove it\n");
+    CHECK(run.err == "spawnfield: work: exists and is not a map; choose another name or remove it\n");
     CHECK(bytes_of(arena / "work/thesis.tex") == "years");
     CHECK(arena.names() == std::set<std::string>{"map", "work"});
 }
 
-TEST_CASE("info tells of maps, scenes and robots, in words or JSON")
+TEST_CASE("info describes maps, scenes and robots, as text or JSON")
 {
     const Arena arena;
     const auto map = nlohmann::json::parse(arena("info map --json --verify").out);
@@ -186,7 +190,7 @@ TEST_CASE("info tells of maps, scenes and robots, in words or JSON")
     summary(arena / "s.json", "info");
 }
 
-TEST_CASE("info says of a house with a face missing that it is a shell")
+TEST_CASE("info reports that a house with a missing face is a shell")
 {
     const TempFolder folder;
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n", faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\n";
@@ -199,8 +203,7 @@ TEST_CASE("info says of a house with a face missing that it is a shell")
     CHECK_THAT(run_program(folder, "info map").out, Contains(" m, 1 layer; voxels of "));
 }
 
-TEST_CASE(
-    "info lists nodes and materials of meshes with their triangles and heights, those of the most triangles first")
+TEST_CASE("info lists nodes and materials of meshes with triangles and heights, those with the most triangles first")
 {
     const TempFolder folder;
     folder.write("a.obj",
@@ -229,7 +232,7 @@ TEST_CASE(
     CHECK(nlohmann::json::parse(run_program(folder, "info many.obj --json").out)["parts"][0]["names"].size() == 63);
 }
 
-TEST_CASE("notices of one kind are printed once, with a count; --json has all")
+TEST_CASE("notices of one kind are printed once, with a count; --json contains all of them")
 {
     const TempFolder folder;
     std::string models = "<include><uri>model://ground_plane</uri></include>";
@@ -244,17 +247,17 @@ TEST_CASE("notices of one kind are printed once, with a count; --json has all")
         for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
         return count;
     };
-    CHECK(lines(run.err, "is not found: it is left out") == 1);
+    CHECK(lines(run.err, "is not found: it is ignored") == 1);
     CHECK_THAT(run.err, Contains("\n  ... and 199 more like it: \"m") && Contains(", ... (`info --json` lists all)\n"));
     CHECK_THAT(run.err, Contains("label \"lost*\" matches no model, link, collision, node or material\n  ... and 1 "
                                  "more like it: \"gone*\"\n"));
-    CHECK_THAT(run.err, Contains("the built-in ground plane stands for it\n"));
+    CHECK_THAT(run.err, Contains("the built-in ground plane replaces it\n"));
     CHECK(lines(run.err, "\n") <= 8);
     CHECK(nlohmann::json::parse(run_program(folder, "info a.world --json").out)["notices"].size() > 200);
     CHECK(run_program(folder, "info a.world --quiet").err.empty());
 }
 
-TEST_CASE("a world that includes what is not there is refused by the program, and a map of 1 x 1 m gets a notice")
+TEST_CASE("the program refuses a world with missing includes, and a map of 1 x 1 m gets a notice")
 {
     const TempFolder folder;
     folder.write("a.world",
@@ -264,13 +267,13 @@ TEST_CASE("a world that includes what is not there is refused by the program, an
     const ProgramRun refused = run_program(folder, "bake a.world -o map");
     CHECK(refused.status == 4);
     CHECK(refused.err ==
-          "spawnfield: a.world: 1 model that it includes is not found; name the folder that holds it "
-          "with --model-path, or pass --allow-missing to leave it out:\n"
+          "spawnfield: a.world: 1 model that it includes is not found; give the folder that contains it "
+          "with --model-path, or ignore it with --allow-missing:\n"
           "  line 1: <include> <uri> model://house is not found\n");
     const ProgramRun obstacle = run_program(folder, "bake a.world -o map --allow-missing");
     CHECK(obstacle.status == 4);
     CHECK_THAT(obstacle.err,
-               Contains("nothing is made terrain") && Contains("has no terrain, so no robot can stand anywhere"));
+               Contains("none of it is made terrain") && Contains("has no terrain, so no robot can stand anywhere"));
     const ProgramRun small = run_program(folder, "bake a.world -o map --allow-missing --label 'rock=terrain'");
     CHECK(small.status == 0);
     const std::string tiny = "notice: the map is only 1 x 1 m; is a part of the scene missing or in the wrong unit?\n";
@@ -288,12 +291,12 @@ TEST_CASE("info lists the first 60 of many parts")
     std::string text = "format: spawnfield-scene/1\nname: many\nparts:\n";
     for (int i = 1; i <= 63; ++i) text += "  - {name: part" + std::to_string(i) + ", label: terrain, sphere: 1}\n";
     folder.write("scene.yaml", text);
-    const std::string told = run_program(folder, "info scene.yaml").out;
-    CHECK_THAT(told, Contains("\n  part60: sphere, terrain, 1 solid\n  … and 3 more (--json lists all)\n"));
+    const std::string listing = run_program(folder, "info scene.yaml").out;
+    CHECK_THAT(listing, Contains("\n  part60: sphere, terrain, 1 solid\n  … and 3 more (--json lists all)\n"));
     CHECK(nlohmann::json::parse(run_program(folder, "info scene.yaml --json").out)["parts"].size() == 63);
 }
 
-TEST_CASE("check adds verdicts to the poses it is given, on standard output or into a file")
+TEST_CASE("check adds verdicts to its poses, on standard output or in a file")
 {
     const Arena arena;
     arena.write("poses.csv",
@@ -326,7 +329,7 @@ TEST_CASE("check adds verdicts to the poses it is given, on standard output or i
     CHECK(row(voxels.out, 5).ends_with(",occupancy"));
 }
 
-TEST_CASE("raster writes each column's layers, and its counts are those of the rows")
+TEST_CASE("raster writes the layers of each column, and its counts are those of the rows")
 {
     const Arena arena;
     const ProgramRun run = arena("raster map --dims 2 --step 0.5 --offset 0.5 --bounds -10,-10,10,10 --summary s.json" +
@@ -350,7 +353,7 @@ TEST_CASE("raster writes each column's layers, and its counts are those of the r
     CHECK(arena("raster map --dims 2 --step 1 --layers 7" + husky).out == "x,y,z,yaw,layer,verdict\n");
 }
 
-TEST_CASE("raster --snap gives each layer its pose, --offset above it")
+TEST_CASE("raster --snap gives each layer a pose at --offset above it")
 {
     const Arena arena;
     const std::string command = "raster map --dims 3 --step 2 --step-z 2.5 --bounds -10,-10,-0.1,10,10,5 ";
@@ -366,7 +369,7 @@ TEST_CASE("raster --snap gives each layer its pose, --offset above it")
                Contains("notice: at --offset 0.25 m the robot collides with all flat ground"));
 }
 
-TEST_CASE("sample and search find what they are asked for, the same at any thread count")
+TEST_CASE("sample and search find as many spawns as requested, the same with any number of threads")
 {
     const Arena arena;
     for (const std::string command : {"sample map -n 40 --min-distance 0.5 --yaw random --seed 9",
@@ -392,7 +395,7 @@ TEST_CASE("sample and search find what they are asked for, the same at any threa
     CHECK(json["undecided_area"] == 0.0);
 }
 
-TEST_CASE("fewer spawns than asked for end with 3, and those found are written")
+TEST_CASE("fewer spawns than requested end with status 3, and those found are written")
 {
     const Arena arena;
     const ProgramRun run = arena("sample map -n 50 --min-distance 15 -o spawns.csv --summary s.json" + husky);
@@ -401,18 +404,19 @@ TEST_CASE("fewer spawns than asked for end with 3, and those found are written")
     CHECK(found > 0);
     CHECK(found < 10);
     CHECK_THAT(run.err, Contains(std::to_string(found) + " of 50 spawns"));
-    const auto told = summary(arena / "s.json", "sample");
-    CHECK(told["counts"]["valid"] >= found);
-    CHECK(told["full"] == true);
-    const double mask = told["seconds"]["mask"], exact = told["seconds"]["exact"], query = told["seconds"]["query"];
+    const auto report = summary(arena / "s.json", "sample");
+    CHECK(report["counts"]["valid"] >= found);
+    CHECK(report["full"] == true);
+    const double mask = report["seconds"]["mask"], exact = report["seconds"]["exact"],
+                 query = report["seconds"]["query"];
     CHECK((mask > 0 && exact > 0 && mask + exact <= query));
-    CHECK(told["undecided_area"] == 0.0);
+    CHECK(report["undecided_area"] == 0.0);
     CHECK(nlohmann::json::parse(arena("sample map -n 50 --min-distance 15 --format json" + husky).out)["full"] == true);
     CHECK(arena("search map -n 5 --min-distance 100 --max-failures 50 --summary s.json" + husky).status == 3);
     CHECK_FALSE(summary(arena / "s.json", "search").contains("full"));
 }
 
-TEST_CASE("an option that has no effect is told of, and changes nothing")
+TEST_CASE("an option that has no effect gets a notice, and changes nothing")
 {
     const Arena arena;
     const std::array<std::string, 2> idle[] = {{"raster map --dims 2 --step 2", "--step-z 1"},
@@ -430,7 +434,7 @@ TEST_CASE("an option that has no effect is told of, and changes nothing")
                Contains("notice: --max-slope has no effect: "));
 }
 
-TEST_CASE("--max-slope asks every command how valid poses stand, and without it nobody is asked")
+TEST_CASE("with --max-slope every command examines how valid poses stand, without it none does")
 {
     const TempFolder folder;
     folder.write("scene.yaml",
@@ -465,7 +469,7 @@ TEST_CASE("--max-slope asks every command how valid poses stand, and without it 
     CHECK(json["counts"].contains("unstable"));
 }
 
-TEST_CASE("what lies off the map, and a layer that it has not, is told of")
+TEST_CASE("bounds beyond the map, and a layer that it does not have, get a notice")
 {
     const Arena arena;
     const std::string off = " 50, 50 to 60, 60 m lies off the map, which is -10.1, -10.1 to 10.1, 10.1 m\n";
@@ -480,7 +484,7 @@ TEST_CASE("what lies off the map, and a layer that it has not, is told of")
     }
     CHECK_THAT(arena("raster map --dims 2 --step 2 --bounds 9,9,60,60" + husky).err, !Contains("notice"));
     const std::string layers =
-        "notice: --layers 2: no cell of the map has so many, the most is 2 layers (0 is the highest)\n";
+        "notice: --layers 2 does not exist: a cell of the map has at most 2 layers (0 is the highest)\n";
     for (const std::string command : {"sample map -n 1", "raster map --dims 2 --step 2", "raster map --dims 3 --step 2",
                                       "heatmap map --step 2 -o a.png"}) {
         INFO(command);
@@ -496,17 +500,18 @@ TEST_CASE("the output of check can be checked again")
     CHECK(arena("check map --poses poses.csv -o once.csv" + husky).status == 0);
     const ProgramRun again = arena("check map --poses once.csv" + husky);
     CHECK(again.out == bytes_of(arena / "once.csv"));
-    CHECK_THAT(again.err, Contains("notice: once.csv: column verdict is replaced by a new one\n"));
+    CHECK_THAT(again.err, Contains("notice: once.csv: the new column verdict replaces the old one\n"));
     arena.write("mixed.csv", "hit,x,verdict,y,z\nlamp,0,\"1,2\",0,0.1\n");
     CHECK(arena("check map --poses mixed.csv" + husky).out ==
           "x,y,z,verdict,ground,height_above,hit\n0,0,0.1,valid,-0.05,0.15000000000000002,\n");
 }
 
-TEST_CASE("columns that are known but for their case are noticed")
+TEST_CASE("columns whose names differ from known ones only in case get a notice")
 {
     const Arena arena;
     arena.write("poses.csv", "x,y,z,Yaw\n0,0,0.1,1\n");
-    const std::string yaw = "notice: poses.csv: column Yaw is carried along, not read: names are lower case (yaw)\n";
+    const std::string yaw =
+        "notice: poses.csv: column Yaw is copied but not read, because names of columns are lower case (yaw)\n";
     const ProgramRun run = arena("check map --poses poses.csv" + husky);
     CHECK(run.err.starts_with(yaw));
     CHECK(row(run.out, 0).starts_with("x,y,z,Yaw,verdict"));
@@ -522,7 +527,7 @@ TEST_CASE("heatmap draws a picture")
     CHECK(std::max(picture.cols, picture.rows) == 400);
 }
 
-TEST_CASE("--quiet silences all but errors")
+TEST_CASE("--quiet silences everything except errors")
 {
     const Arena arena;
     arena.write("poses.csv", "x,y,z\n0,0,0.1\n");
@@ -563,7 +568,7 @@ TEST_CASE("a link is written through, and stays a link")
     CHECK(std::distance(fs::directory_iterator(arena / "far"), {}) == 1);
 }
 
-TEST_CASE("Ctrl-C ends long work with 130 and leaves old files as they were")
+TEST_CASE("Ctrl-C ends long work with status 130 and does not change old files")
 {
     const Arena arena;
     arena.write("out.csv", "old");
@@ -577,7 +582,7 @@ TEST_CASE("Ctrl-C ends long work with 130 and leaves old files as they were")
         INFO(arguments);
         const bool is_bake = arguments.starts_with("bake");
         const ProgramRun run = interrupt_program(arena, arguments, 1.0,
-                                                 is_bake ? "HUP" : "INT");  // a lost terminal is the same
+                                                 is_bake ? "HUP" : "INT");  // a closed terminal counts like Ctrl-C
         CHECK(run.status == 130);
         CHECK(run.err == "spawnfield: interrupted; nothing was written\n");
         CHECK(bytes_of(arena / "out.csv") == "old");

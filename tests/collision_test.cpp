@@ -25,7 +25,7 @@ Robot round_robot(ShapeKind kind, const Vec3& size, const Vec3& centre)
     return {"round", {part}, {}, {}};
 }
 
-Robot hull_robot()  // a square pyramid, point down
+Robot hull_robot()  // a square pyramid with its tip down
 {
     RobotPart part;
     part.shape.kind = ShapeKind::Hull;
@@ -36,7 +36,7 @@ Robot hull_robot()  // a square pyramid, point down
 
 }  // namespace
 
-TEST_CASE("a touching pair collides, and 1e-5 m of room is free, for all robots on sheets and boxes of all sizes")
+TEST_CASE("a touching pair collides, and a gap of 1e-5 m is free, for all robots on sheets and boxes of all sizes")
 {
     const std::vector<Robot> robots = {load_robot("box:0.99,0.67,0.39"),
                                        round_robot(ShapeKind::Sphere, {0.3, 0, 0}, {0, 0, 0.3}),
@@ -69,7 +69,7 @@ TEST_CASE("a touching pair collides, and 1e-5 m of room is free, for all robots 
             }
 }
 
-TEST_CASE("a triangle without width is the line that it is, wherever rounding has its normal point")
+TEST_CASE("a triangle without width acts as a line, in whichever direction rounding turns its normal")
 {
     const Vec3 a(-0.62318147753626363, 0.06041809955604549, 0.16091240120913852),
         b(0.15029675587186375, 0.17413353081724381, -0.21990618847556576);
@@ -84,7 +84,7 @@ TEST_CASE("a triangle without width is the line that it is, wherever rounding ha
             const Geometry geometry(scene);
             for (std::size_t r = 0; r < robots.size(); ++r) {
                 const CollisionChecker checker(geometry, robots[r]);
-                const double reach = r == 1 ? 1.0 : 0.065;  // from the line, at which the round ones touch
+                const double reach = r == 1 ? 1.0 : 0.065;  // distance from the line at which the round robots touch
                 const Vec3 up = Vec3::UnitZ() - (b - a).normalized().z() * (b - a).normalized();
                 for (const double share : {0.1, 0.5, 0.7}) {
                     const Vec3 foot = a + share * (b - a);
@@ -99,7 +99,7 @@ TEST_CASE("a triangle without width is the line that it is, wherever rounding ha
         }
 }
 
-TEST_CASE("a closed house is solid, the same house with a face missing is a shell")
+TEST_CASE("a closed house is solid, the same house with a missing face is a shell")
 {
     Scene closed, open;
     hand::add_mesh(closed, Label::Obstacle, hand::box({6, 6, 4}));
@@ -134,7 +134,7 @@ TEST_CASE("each convex part of a robot counts, and the space between them is fre
     CHECK_FALSE(checker.is_free({{0, 1, 0}, rotation_from_rpy(0, 0, std::numbers::pi / 2)}));
 }
 
-TEST_CASE("the hit is the first part in the scene's order, be it triangles or a primitive")
+TEST_CASE("the hit is the first part in the order of the scene, either triangles or a primitive")
 {
     Scene scene;
     hand::add_mesh(scene, Label::Water, hand::box({9, 9, 9}));  // collides with nothing
@@ -151,7 +151,7 @@ TEST_CASE("the hit is the first part in the scene's order, be it triangles or a 
     CHECK_FALSE(checker.find_hit({{3, 3, 2}, Mat3::Identity()}));
 }
 
-TEST_CASE("against the occupancy tree a pose is free where no occupied voxel is")
+TEST_CASE("with the occupancy tree a pose is free if it meets no occupied voxel")
 {
     const TestMap map = training_map();
     const auto tree = std::make_shared<const OccupancyTree>(build_occupancy(map.geometry, map.bounds, 0.1));
@@ -161,7 +161,7 @@ TEST_CASE("against the occupancy tree a pose is free where no occupied voxel is"
     for (const Pose& pose : random_poses(map.scene, 5, 3000)) {
         if (!map.bounds.contains_xy(pose.position.x(), pose.position.y(), -1)) continue;
         const bool voxel_free = voxels.is_free(pose), exact_free = exact.is_free(pose);
-        CHECK((exact_free || !voxel_free));  // voxels hold all that is solid
+        CHECK((exact_free || !voxel_free));  // voxels cover everything that is solid
         both_free += voxel_free;
         only_exact += exact_free && !voxel_free;
     }
@@ -169,7 +169,7 @@ TEST_CASE("against the occupancy tree a pose is free where no occupied voxel is"
     CHECK(only_exact < both_free / 3);
 }
 
-TEST_CASE("what is found in a box of space is what the rectangle below it holds at these heights, in tall tiles too")
+TEST_CASE("a search in a box finds what the rectangle below it has at these heights, in tall tiles, too")
 {
     const Geometry geometry(worlds::benchmark_balls(60).scene);
     std::size_t found = 0;

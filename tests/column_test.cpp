@@ -37,7 +37,7 @@ TEST_CASE("a bridge has a layer on it and one under it")
     CHECK(column(scene, 20, 0).layers.empty());
 }
 
-TEST_CASE("a line along the edge of a box belongs to it, of a primitive as of a mesh")
+TEST_CASE("a line along the edge of a box belongs to the box, both for a primitive and for a mesh")
 {
     Scene primitive, mesh;
     hand::add_shape(primitive, Label::Terrain, box_at({2, 4, 1}, {0.1, 0.2, 0.3}));
@@ -72,14 +72,14 @@ TEST_CASE("intervals of stacked and sunken terrain are joined")
     Scene scene;
     hand::add_shape(scene, Label::Terrain, box_at({4, 4, 1}, {0, 0, 0.5}));
     hand::add_shape(scene, Label::Terrain, box_at({2, 2, 1}, {0, 0, 1.5}));         // stands on it
-    hand::add_shape(scene, Label::Terrain, box_at({1, 1, 0.5}, {1.5, 1.5, 0.5}));   // is sunk in it
-    hand::add_shape(scene, Label::Obstacle, box_at({1, 1, 1}, {-1.5, -1.5, 1.5}));  // stands on it too
+    hand::add_shape(scene, Label::Terrain, box_at({1, 1, 0.5}, {1.5, 1.5, 0.5}));   // is sunk into it
+    hand::add_shape(scene, Label::Obstacle, box_at({1, 1, 1}, {-1.5, -1.5, 1.5}));  // stands on it, too
     CHECK(column(scene, 0, 0).layers == Heights{2});
     CHECK(column(scene, 1.5, 1.5).layers == Heights{1});
     CHECK(column(scene, -1.6, -1.6).layers == Heights{1});  // under the obstacle
-    CHECK(ground(scene, {0, 0, 1.2})->height == 1);         // single pieces count for the ground
+    CHECK(ground(scene, {0, 0, 1.2})->height == 1);         // the ground belongs to a single piece
     CHECK_FALSE(ground(scene, {-1.6, -1.6, 2.5})->terrain);
-    CHECK_FALSE(ground(scene, {1.5, 1.5, 0.2}));  // inside the hill: none
+    CHECK_FALSE(ground(scene, {1.5, 1.5, 0.2}));  // inside the hill there is no ground
 }
 
 TEST_CASE("terrain wins over an obstacle at the same height")
@@ -91,7 +91,7 @@ TEST_CASE("terrain wins over an obstacle at the same height")
     CHECK(ground(scene, {0, 0.1, 1})->part == 1);
 }
 
-TEST_CASE("each crossing of a sheet is a layer unless only its upper side counts")
+TEST_CASE("each crossing of a sheet is a layer, unless only its upper side counts")
 {
     for (const bool up : {false, true}) {
         Scene scene;
@@ -118,7 +118,7 @@ TEST_CASE("a line through a common edge or corner of a sheet gives one layer")
     }
 }
 
-TEST_CASE("columns through round bodies end where their equations say")
+TEST_CASE("columns through round bodies end where the equations of the bodies end")
 {
     Scene scene;
     Shape ball;
@@ -145,7 +145,7 @@ TEST_CASE("columns through round bodies end where their equations say")
     CHECK(column(scene, 10, 2.1).layers.empty());
 }
 
-TEST_CASE("water is the crossings of a sheet and the top of a solid, and collides with nothing")
+TEST_CASE("water surfaces are the crossings of a sheet and the top of a solid, and water collides with nothing")
 {
     Scene scene;
     hand::add_shape(scene, Label::Terrain, box_at({10, 10, 1}, {0, 0, -0.5}));
@@ -163,7 +163,7 @@ TEST_CASE("water is the crossings of a sheet and the top of a solid, and collide
     CHECK(Judge(map, robot, {.max_water_depth = 0.4}).check(pose).verdict == Verdict::Submerged);
 }
 
-TEST_CASE("a mesh filled by wish is inside under its lowest crossing")
+TEST_CASE("a mesh that is filled on request is solid below its lowest crossing")
 {
     Scene scene;  // a box without its bottom
     const hand::Mesh open = hand::without(hand::box({2, 2, 2}), 8, 1);

@@ -218,8 +218,10 @@ Bounds crop_near(const TestMap& map, Random& random, double step, int cols)
     const Vec3 near = face ? scene.vertices[scene.triangles[pick][0]]
                            : scene.primitives[pick - scene.triangles.size()].shape.pose.position;
     Bounds crop;
-    const bool beyond = random.chance(0.15);  // the map's bounds: else only where it is wider than they are
-    for (int axis = 0; axis < 2; ++axis) {    // on the raster's own lattice, so that a step of a cell stays on it
+    // The crop may extend beyond the bounds of the map; if not, it does so only where it is wider than they are.
+    const bool beyond = random.chance(0.15);
+    // The crop starts on the lattice of the raster, so that steps of one cell stay on the lattice.
+    for (int axis = 0; axis < 2; ++axis) {
         const double low = map.bounds.min[axis], room = map.bounds.max[axis] - low - step * (cols - 1);
         double shift = near[axis] - low - step * cols * random.between(0.2, 0.8);
         if (!beyond) shift = std::clamp(shift, 0.0, std::max(0.0, room));

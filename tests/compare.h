@@ -3,17 +3,18 @@
 #include "exact.h"
 #include "hard_scene.h"
 
-/// Queries asked twice, with the mask and exhaustively, and what came of it.
+/// Functions that ask queries twice, with the mask and exhaustively, and compare the answers.
 namespace compare {
 
 struct Tally {
-    std::size_t poses = 0;                               ///< or spawns
-    std::size_t asked = 0;                               ///< by the exhaustive way, of the collision checker
-    std::size_t exact = 0;                               ///< with the mask
-    spawnfield::VerdictCounts verdicts;                  ///< of the exhaustive way
-    std::size_t proven_valid = 0, proven_collision = 0;  ///< without an exact check, where each pose tells
+    std::size_t poses = 0;             ///< or spawns
+    std::size_t asked = 0;             ///< exact checks of the exhaustive run
+    std::size_t exact = 0;             ///< exact checks of the run with the mask
+    spawnfield::VerdictCounts verdicts;  ///< of the exhaustive run
+    /// Poses that the mask proved, without an exact check; only of_check counts them.
+    std::size_t proven_valid = 0, proven_collision = 0;
     std::size_t differences = 0;
-    std::string first;  ///< difference: query, pose, both verdicts
+    std::string first;  ///< the first difference: query, pose, both verdicts
 
     void add(const Tally& other);
 };
@@ -33,7 +34,7 @@ Tally of_check(const TwoJudges& judges, const std::vector<spawnfield::Pose>& pos
 Tally of_sample(const TwoJudges& judges, const spawnfield::SampleOptions& options);
 Tally of_search(const TwoJudges& judges, const spawnfield::SearchOptions& options);
 
-/// All queries of a case, a few hundred poses each.
+/// The results of all queries of a case, with a few hundred poses each.
 struct CaseTally {
     Tally raster_2d, raster_3d, collisions, check, sample, search, snap;
 
@@ -43,16 +44,18 @@ struct CaseTally {
 
 CaseTally of_case(const HardCase& hard);
 
-/// The exhaustive check beside the tests' own decision (slow.h), which knows no FCL, where that one can tell: with
-/// verdicts of that one. Nothing for scenes with meshes filled in spite of their holes, of which it knows nothing.
+/// Compares the exhaustive check with the independent decision of the tests (slow.h), which does not use FCL, at the
+/// poses where that one is certain; counts the verdicts of that one. Returns an empty tally for scenes that have filled
+/// meshes with holes, which slow.h does not support.
 Tally independently(const HardCase& hard);
 
 TestMap map_of_case(const HardCase& hard);
 
-/// cols x cols columns `step` apart, around something of the scene; with the heights that matter there.
+/// Returns bounds of cols x cols columns, `step` apart, near something in the scene, with all heights of the map.
 spawnfield::Bounds crop_near(const TestMap& map, Random& random, double step, int cols);
 
-/// Poses at which verdicts change: offset above layers of the crop, some turned, tilted or shifted by a little.
+/// Returns poses at which verdicts change: at the offset above layers of the crop, some of them rotated, tilted or
+/// shifted a little.
 std::vector<spawnfield::Pose> standing_poses(const TestMap& map, const HardCase& hard, const spawnfield::Bounds& crop,
                                              std::size_t count);
 

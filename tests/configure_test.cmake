@@ -1,21 +1,22 @@
-# Configures the project as if a package of the tests were missing: ON has to name it and say what to do, AUTO has to
-# leave the tests out, OFF has to ask for nothing.
+# Configures the project as if a package of the tests were missing. ON must name the package and say what to do, AUTO
+# must build without the tests, and OFF must need no package.
 function(configure tests expected_status expected_text)
   execute_process(
     COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK} -G ${GENERATOR} --fresh -DSPAWNFIELD_TESTS=${tests}
       -DCMAKE_DISABLE_FIND_PACKAGE_Catch2=ON
     RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)
   string(REGEX REPLACE "[ \n]+" " " out "${out}")
-  string(FIND "${out}" "${expected_text}" at)
-  if(NOT status EQUAL expected_status OR at EQUAL -1)
-    message(FATAL_ERROR "SPAWNFIELD_TESTS=${tests}: exits with ${status}, needs ${expected_status} and the text "
-      "\"${expected_text}\" in: ${out}")
+  string(FIND "${out}" "${expected_text}" position)
+  if(NOT status EQUAL expected_status OR position EQUAL -1)
+    message(FATAL_ERROR "SPAWNFIELD_TESTS=${tests}: cmake ended with status ${status}, needs ${expected_status} and "
+      "the text \"${expected_text}\" in: ${out}")
   endif()
 endfunction()
 
 function(expect_no_tests tests)
   if(EXISTS ${WORK}/tests/CTestTestfile.cmake)
-    message(FATAL_ERROR "SPAWNFIELD_TESTS=${tests} configures the tests")
+    message(FATAL_ERROR "SPAWNFIELD_TESTS=${tests} must not configure the tests, but "
+      "${WORK}/tests/CTestTestfile.cmake exists")
   endif()
 endfunction()
 

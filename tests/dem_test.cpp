@@ -23,7 +23,7 @@ constexpr double hole = std::numeric_limits<double>::quiet_NaN();
 using Doubles = std::vector<double>;
 using Keys = std::vector<std::uint16_t>;
 
-/// GeoKeys, each with its value in the directory itself.
+/// Returns GeoKeys whose values are in the directory itself.
 Keys keys_of(const std::vector<std::pair<int, int>>& entries)
 {
     Keys keys{1, 1, 0, std::uint16_t(entries.size())};
@@ -33,7 +33,8 @@ Keys keys_of(const std::vector<std::pair<int, int>>& entries)
 
 const Keys utm = keys_of({{1024, 1}, {1025, 1}, {3072, 32611}, {3076, 9001}});
 
-/// A GeoTIFF of 3 x 2 float heights 1 .. 6 whose upper left corner is 500000, 4000010, cells of 2 x 5 m.
+/// A GeoTIFF with 3 x 2 float heights of 1 .. 6. Its upper left corner is at 500000, 4000010, and its cells are 2 x 5
+/// m.
 struct GeoFile {
     std::uint32_t cols = 3;
     Doubles heights{1, 2, 3, 4, 5, 6};
@@ -105,7 +106,7 @@ double height(const Scene& scene, double x, double y)
     return column.layers[0];
 }
 
-/// The scene's 0, 0 in the survey's coordinates.
+/// Checks the survey coordinates of the point 0, 0 of the scene.
 void check_origin(const Scene& scene, double x, double y, const std::string& crs)
 {
     REQUIRE(scene.origin);
@@ -114,7 +115,7 @@ void check_origin(const Scene& scene, double x, double y, const std::string& crs
     CHECK(scene.origin->crs == crs);
 }
 
-bool tells(const Scene& scene, const std::string& text)
+bool has_notice(const Scene& scene, const std::string& text)
 {
     return std::any_of(scene.notices.begin(), scene.notices.end(),
                        [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
@@ -125,7 +126,7 @@ const std::string grid_head = "ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 400
 
 }  // namespace
 
-TEST_CASE("a GeoTIFF by itself is terrain around 0, 0, and the scene knows where that is")
+TEST_CASE("a GeoTIFF as a scene is terrain around 0, 0, and the scene stores the survey coordinates of that point")
 {
     const TempFolder folder;
     const Scene scene = load_scene(write(folder, {}));
@@ -135,15 +136,15 @@ TEST_CASE("a GeoTIFF by itself is terrain around 0, 0, and the scene knows where
     CHECK(scene.triangles.size() == 4);
     CHECK(scene.bounds().min == Vec3(-2, -2.5, 1));
     CHECK(scene.bounds().max == Vec3(2, 2.5, 6));
-    CHECK(height(scene, -2, 2.5) == 1);  // the north-western one
+    CHECK(height(scene, -2, 2.5) == 1);  // the north-western pixel
     CHECK(height(scene, 2, 2.5) == 3);
     CHECK(height(scene, -2, -2.5) == 4);
     check_origin(scene, 500003, 4000005, "EPSG:32611");
-    CHECK(tells(scene, "x 500003, y 4000005 (EPSG:32611) is at 0, 0 of the scene"));
+    CHECK(has_notice(scene, "x 500003, y 4000005 (EPSG:32611) is at 0, 0 of the scene"));
     CHECK(scene.notices.size() == 1);
 }
 
-TEST_CASE("pixels are areas with their heights in the middle, or points with them at the corner")
+TEST_CASE("pixels are areas with their heights in the middle, or points with their heights at the corner")
 {
     const TempFolder folder;
     const Keys points = keys_of({{1024, 1}, {1025, 2}, {3072, 32611}, {3076, 9001}});
@@ -167,12 +168,12 @@ TEST_CASE("heights of all kinds of pixels are metres")
     const Scene whole = load_scene(
         write(folder, {.heights = {7, 6, 5, 40000, 5, 6}, .bits = 16, .format = SAMPLEFORMAT_UINT}));
     CHECK(height(whole, -2, -2.5) == 40000);
-    CHECK(tells(whole, "heights are whole numbers, taken as metres"));
+    CHECK(has_notice(whole, "heights are whole numbers, taken as metres"));
     SceneOptions options{.heightmap = "z: [0, 65.535]"};
     CHECK(height(load_scene(folder / "a.tif", options), -2, -2.5) == Approx(40));
 }
 
-TEST_CASE("feet become metres, and it is told")
+TEST_CASE("feet become metres, with a notice")
 {
     const TempFolder folder;
     const Scene feet = load_scene(
@@ -182,8 +183,8 @@ TEST_CASE("feet become metres, and it is told")
     CHECK(feet.bounds().max.z() == Approx(6 * 0.3048));
     check_origin(feet, 500003, 4000005, "EPSG:2225");
     CHECK(feet.origin->unit == foot);
-    CHECK(tells(feet, "x and y are in units of 0.304800609601"));
-    CHECK(tells(feet, "heights are in units of 0.3048 m"));
+    CHECK(has_notice(feet, "x and y are in units of 0.304800609601"));
+    CHECK(has_notice(feet, "heights are in units of 0.3048 m"));
 
     Keys own = keys_of({{1024, 1}, {3076, 32767}});
     own[3] = 3;
@@ -192,16 +193,17 @@ TEST_CASE("feet become metres, and it is told")
 
     const Scene unknown = load_scene(write(folder, {.keys = keys_of({{1024, 1}})}));
     CHECK(unknown.bounds().max.x() == 2);
-    CHECK(tells(unknown, "does not tell the unit of x and y, which are taken as metres"));
+    CHECK(has_notice(unknown, "does not state the unit of x and y; they are taken as metres"));
     CHECK(load_scene(write(folder, {.metadata = item + "ft</Item></GDALMetadata>"})).bounds().max.z() ==
           Approx(6 * 0.3048));
     CHECK(load_scene(write(folder, {.metadata = item + "metre</Item></GDALMetadata>"})).bounds().max.z() == 6);
 }
 
-TEST_CASE("the unit of x and y is that of the EPSG code where no key tells it, and nothing is assumed")
+TEST_CASE("without a key for the unit, x and y have the unit of the EPSG code, and nothing is assumed")
 {
     const TempFolder folder;
-    // As GDAL 3.6 writes EPSG:2263+6360 and, with GEOTIFF_VERSION=1.1, EPSG:2263: units as gdalinfo tells them.
+    // Files like those of GDAL 3.6 for EPSG:2263+6360 and, with GEOTIFF_VERSION=1.1, for EPSG:2263. Units are those
+    // that gdalinfo prints.
     const auto [code, unit] = GENERATE(std::pair{2263, 1200.0 / 3937}, std::pair{2222, 0.3048}, std::pair{25832, 1.0},
                                        std::pair{3035, 1.0}, std::pair{2193, 1.0}, std::pair{3167, 20.116756},
                                        std::pair{7405, 1.0});
@@ -210,13 +212,13 @@ TEST_CASE("the unit of x and y is that of the EPSG code where no key tells it, a
     CHECK(scene.bounds().max.x() == Approx(2 * unit).epsilon(1e-12));
     CHECK(scene.bounds().max.y() == Approx(2.5 * unit).epsilon(1e-12));
     check_origin(scene, 500003, 4000005, "EPSG:" + std::to_string(code));
-    CHECK_FALSE(tells(scene, "taken as metres"));
-    CHECK(tells(scene, "x and y are in units of ") == (unit != 1));
-    // A key of its own wins, as with GDAL.
+    CHECK_FALSE(has_notice(scene, "taken as metres"));
+    CHECK(has_notice(scene, "x and y are in units of ") == (unit != 1));
+    // A key for the unit takes precedence, as in GDAL.
     CHECK(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, code}, {3076, 9001}})})).bounds().max.x() == 2);
 }
 
-TEST_CASE("heights have the unit of their vertical system's EPSG code")
+TEST_CASE("heights have the unit of the EPSG code of their vertical system")
 {
     const TempFolder folder;
     const auto [code, unit] = GENERATE(std::pair{8228, 0.3048}, std::pair{6360, 1200.0 / 3937}, std::pair{5703, 1.0},
@@ -226,11 +228,11 @@ TEST_CASE("heights have the unit of their vertical system's EPSG code")
     CHECK(scene.bounds().max.x() == 2);
     CHECK(scene.bounds().min.z() == Approx(unit).epsilon(1e-12));
     CHECK(scene.bounds().max.z() == Approx(6 * unit).epsilon(1e-12));
-    CHECK(tells(scene, "heights are in units of ") == (unit != 1));
+    CHECK(has_notice(scene, "heights are in units of ") == (unit != 1));
     CHECK(scene.notices.size() == (unit == 1 ? 1 : 2));
 }
 
-TEST_CASE("where the units of heights disagree the first that GDAL takes counts, and it is told")
+TEST_CASE("if the units of heights disagree, the first in the order of GDAL counts, with a notice")
 {
     const TempFolder folder;
     const bool by_band = GENERATE(false, true);
@@ -238,20 +240,21 @@ TEST_CASE("where the units of heights disagree the first that GDAL takes counts,
     const Scene scene = load_scene(
         write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}, {4099, 9001}}), .metadata = metadata}));
     CHECK(scene.bounds().max.z() == Approx(by_band ? 6 : 6 * 1200.0 / 3937));
-    CHECK(tells(scene, by_band ? "says that heights are in units of 1 m by \"m\", and of 0.30480060960121924 m by "
-                                 "EPSG:6360 (VerticalGeoKey); they are taken by the first"
-                               : "m by EPSG:6360 (VerticalGeoKey), and of 1 m by 9001 (VerticalUnitsGeoKey); they are "
-                                 "taken by the first"));
-    CHECK_FALSE(tells(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}}),
-                                                .metadata = item + "ft</Item></GDALMetadata>"})),
-                      "says that"));
-    // A system that nobody knows does no harm where the unit is told.
+    CHECK(has_notice(
+        scene, by_band
+                   ? "heights are in units of 1 m by \"m\", but of 0.30480060960121924 m by "
+                     "EPSG:6360 (VerticalGeoKey); the first is used"
+                   : "m by EPSG:6360 (VerticalGeoKey), but of 1 m by 9001 (VerticalUnitsGeoKey); the first is used"));
+    CHECK_FALSE(has_notice(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 6360}}),
+                                                     .metadata = item + "ft</Item></GDALMetadata>"})),
+                           "says that"));
+    // An unknown vertical system does not matter if the unit is given.
     CHECK(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 26910}, {4096, 5199}, {4099, 9002}})}))
               .bounds()
               .max.z() == Approx(6 * 0.3048));
 }
 
-TEST_CASE("depths are heights turned round, and it is told")
+TEST_CASE("depths become negative heights, with a notice")
 {
     const TempFolder folder;
     const GeoFile geo{.heights = {1, 2, -9999, 4, 5, 6},
@@ -262,11 +265,11 @@ TEST_CASE("depths are heights turned round, and it is told")
     CHECK(scene.bounds().max.z() == -1);
     CHECK(height(scene, -2, 2.5) == -1);
     CHECK(scene.triangles.size() == 3);
-    CHECK(tells(scene,
-                "has depths by EPSG:5336 (VerticalGeoKey), which counts downwards; the heights are their negatives"));
+    CHECK(has_notice(
+        scene, "its values are depths (EPSG:5336 (VerticalGeoKey) counts downwards); heights are their negatives"));
 }
 
-TEST_CASE("tiles are in the same unit whichever way they tell it")
+TEST_CASE("tiles have the same unit in whichever way they state it")
 {
     const TempFolder folder;
     write(folder, {.keys = keys_of({{1024, 1}, {3072, 2263}, {3076, 9003}})}, "w.tif");
@@ -274,10 +277,10 @@ TEST_CASE("tiles are in the same unit whichever way they tell it")
     const std::string origin = ", origin: [500005, 4000005]}}\n";
     const Scene scene = load_parts(folder, "  - {name: w, label: terrain, heightmap: {file: w.tif" + origin +
                                                "  - {name: e, label: terrain, heightmap: {file: e.tif" + origin);
-    CHECK_FALSE(tells(scene, "an earlier part"));
+    CHECK_FALSE(has_notice(scene, "an earlier part"));
 }
 
-TEST_CASE("EPSG codes that tell no unit are refused with what to do")
+TEST_CASE("EPSG codes without a unit are refused, with advice")
 {
     const TempFolder folder;
     const auto check_refused = [&](int code, const std::string& reason) {
@@ -285,22 +288,22 @@ TEST_CASE("EPSG codes that tell no unit are refused with what to do")
                           (folder / "a.tif").string() + ": " + reason);
     };
     check_refused(4326,
-                  "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where "
-                  "CODE is a projection in metres such "
-                  "as the UTM zone's");
+                  "has coordinates in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs "
+                  "EPSG:CODE, where "
+                  "CODE is a projection in metres, such as that of the UTM zone");
     CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 4978}})})),
                       Contains("(geocentric, EPSG:4978)"));
     for (const int code : {30000, 5703})  // none, heights alone
         check_refused(
             code,
             "is in EPSG:" + std::to_string(code) +
-                ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives "
-                "it another, or tell its spacing in metres with the key cell");
+                ", which PROJ does not know as a projection, so its unit is unknown; give it another with gdal_edit.py "
+                "-a_srs, or give the spacing in metres with the key cell");
     SceneOptions options{.heightmap = "cell: 3"};
     CHECK(load_scene(folder / "a.tif", options).bounds().max.x() == 3);
 }
 
-TEST_CASE("words of the survey are told where it has no EPSG code")
+TEST_CASE("without an EPSG code the scene keeps the description of the survey")
 {
     const TempFolder folder;
     Keys keys = keys_of({{1024, 1}, {3072, 32767}, {3076, 9001}});
@@ -309,7 +312,7 @@ TEST_CASE("words of the survey are told where it has no EPSG code")
     check_origin(load_scene(write(folder, {.keys = keys, .ascii = "no|my \1plan|more|"})), 500003, 4000005, "my plan");
 }
 
-TEST_CASE("heights that are no data are no terrain")
+TEST_CASE("no-data heights are not terrain")
 {
     const TempFolder folder;
     const auto check_hole = [&](const Scene& scene) {
@@ -317,17 +320,17 @@ TEST_CASE("heights that are no data are no terrain")
         CHECK_FALSE(has_ground(scene, 1.9, 2.4));
         CHECK(has_ground(scene, 1.9, -2.4));
         CHECK(scene.bounds().max.z() == 6);
-        CHECK(tells(scene, "1 of 6 heights are missing"));
+        CHECK(has_notice(scene, "1 of 6 heights are missing"));
     };
     const Doubles heights{1, 2, -9999, 4, 5, 6};
     check_hole(load_scene(write(folder, {.heights = heights, .no_data = "-9999"})));
     check_hole(load_scene(
         write(folder, {.heights = heights, .bits = 16, .format = SAMPLEFORMAT_INT, .no_data = " -9999.0 "})));
     check_hole(load_scene(write(folder, {.heights = {1, 2, hole, 4, 5, 6}, .no_data = "nan"})));
-    // Text and pixel differ by rounding: GDAL writes the float's decimals, others fewer.
+    // Text and pixel differ by rounding: GDAL writes all decimals of the float, other programs write fewer.
     check_hole(
         load_scene(write(folder, {.heights = {1, 2, -3.4028234663852886e38, 4, 5, 6}, .no_data = "-3.4028235e+38"})));
-    // A value that no float holds was stored as infinite; a double holds it.
+    // A value beyond the range of float was stored as infinity; a double can store it.
     constexpr double infinite = std::numeric_limits<double>::infinity();
     const GeoFile beyond{.heights = {1, 2, -infinite, 4, 5, 6}, .no_data = "-1e+100"};
     check_hole(load_scene(write(folder, beyond)));
@@ -346,19 +349,21 @@ TEST_CASE("heights that are no data are no terrain")
     const std::filesystem::path plain = write(folder, {.heights = heights});
     const Scene deep = load_scene(plain);
     CHECK(deep.bounds().min.z() == -9999);
-    CHECK(tells(deep, "the lowest height is -9999 m, which often means no data; if so: --heightmap 'nodata: -9999'"));
+    CHECK(has_notice(
+        deep,
+        "the lowest height is -9999 m, which often means no data; if it does here, give --heightmap 'nodata: -9999'"));
     for (const int system : {8228, 5336})  // feet, depths
-        CHECK(tells(
+        CHECK(has_notice(
             load_scene(write(folder, {.heights = heights, .keys = keys_of({{1024, 1}, {3072, 26910}, {4096, system}})},
                              "b.tif")),
-            "the lowest value is -9999, which often means no data; if so: --heightmap 'nodata: -9999'"));
+            "the lowest value is -9999, which often means no data; if it does here, give --heightmap 'nodata: -9999'"));
     SceneOptions options{.heightmap = "nodata: -9999"};
     check_hole(load_scene(plain, options));
     CHECK_THROWS_WITH(load_scene(write(folder, {.heights = {0, 0, 0, 0, 0, 0}, .no_data = "0"})),
                       (folder / "a.tif").string() + ": has no heights: every pixel is NaN or no-data");
 }
 
-TEST_CASE("values are values where 0 is white, but of a plain picture white is high")
+TEST_CASE("where 0 is white a GeoTIFF keeps its values, but in a plain picture white is high")
 {
     const TempFolder folder;
     const Doubles heights{1, 2, 65535, 4, 5, 6};
@@ -379,66 +384,67 @@ TEST_CASE("values are values where 0 is white, but of a plain picture white is h
     picture.keys = {};
     options.heightmap = "cell: 1, z: [0, 655.35]";
     const Scene white = load_scene(write(folder, picture), options);
-    CHECK(white.triangles.size() == 3);  // no-data is as it is stored
+    CHECK(white.triangles.size() == 3);  // no-data is compared with the stored value
     CHECK(white.bounds().max.z() == Approx(655.34));
     CHECK(height(white, -1, 0.5) == Approx(655.34));
 }
 
-TEST_CASE("GeoTIFFs that cannot be taken as metres are refused with what to do")
+TEST_CASE("GeoTIFFs that cannot be converted to metres are refused, with advice")
 {
     const TempFolder folder;
     const std::string start = (folder / "a.tif").string() + ": ";
     const std::string known_units =
-        ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units m or ft says which they "
-        "are";
+        ", needs metres (9001), kilometres (9036) or feet (9002, 9003); set the unit with gdal_edit.py -units m or ft";
     const auto check_refused = [&](const GeoFile& geo, const std::string& reason) {
         CHECK_THROWS_WITH(load_scene(write(folder, geo)), start + reason);
     };
     check_refused({.keys = keys_of({{1024, 2}, {2048, 4326}})},
-                  "is in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where "
-                  "CODE is a projection in metres "
-                  "such as the UTM zone's");
+                  "has coordinates in degrees (geographic, EPSG:4326), needs metres; reproject it: gdalwarp -t_srs "
+                  "EPSG:CODE, where "
+                  "CODE is a projection in metres, such as that of the UTM zone");
     CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 3}})})), Contains("geocentric"));
     check_refused({.scale = {0.001, 0.001, 0}, .tie = {0, 0, 0, -113.5, 48.25, 0}, .keys = {}},
                   "has cells of 0.001 at x -113.4995, y 48.2495, which look like degrees, needs metres; reproject it "
                   "(gdalwarp -t_srs EPSG:32612 "
-                  "IN OUT.tif), or tell its spacing in metres with the key cell");
+                  "IN OUT.tif), or give the spacing in metres with the key cell");
     check_refused(
         {.scale = {}, .tie = {}, .transformation = {2, 0.1, 0, 5, 0, -5, 0, 4, 0, 0, 0, 0, 0, 0, 0, 1}},
-        "is rotated against its coordinates (ModelTransformation), needs rows from west to east; gdalwarp makes it so");
+        "is rotated against its coordinates (ModelTransformation), needs rows from west to east; gdalwarp turns it");
     check_refused(
         {.scale = {}, .tie = {}, .transformation = {2, 0, 0, 5, 0, 5, 0, 4, 0, 0, 0, 0, 0, 0, 0, 1}},
-        "has a pixel scale of 2, -5, needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
+        "has a pixel scale of 2, -5, needs > 0: rows from west to east, the northern one first; gdalwarp turns it");
     check_refused({.scale = {}},
                   "has 1 tie points and no pixel scale (ModelPixelScale), needs one of each, or a ModelTransformation; "
-                  "gdalwarp makes it so");
+                  "gdalwarp writes them");
     check_refused(
         {.scale = {0, 5, 0}},
-        "has a pixel scale of 0, 5, needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
-    check_refused({.tie = {0, 0, 0, hole, 5, 0}}, "has a place or pixel scale that is not finite");
-    check_refused({.keys = keys_of({{1024, 1}, {3076, 9005}})},
-                  "has x and y in unit 9005 (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet "
-                  "(9002, 9003); reproject it with gdalwarp -t_srs");
+        "has a pixel scale of 0, 5, needs > 0: rows from west to east, the northern one first; gdalwarp turns it");
+    check_refused({.tie = {0, 0, 0, hole, 5, 0}}, "has a position or pixel scale that is not finite");
+    check_refused(
+        {.keys = keys_of({{1024, 1}, {3076, 9005}})},
+        "has x and y in the unit 9005 (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet "
+        "(9002, 9003); reproject it with gdalwarp -t_srs");
     check_refused({.keys = keys_of({{1024, 1}, {3076, 9001}, {4099, 9010}})},
-                  "has heights in unit 9010 (VerticalUnitsGeoKey)" + known_units);
+                  "has heights in the unit 9010 (VerticalUnitsGeoKey)" + known_units);
     check_refused({.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 5199}})},
-                  "has heights in unit EPSG:5199 (VerticalGeoKey)" + known_units);
+                  "has heights in the unit EPSG:5199 (VerticalGeoKey)" + known_units);
     check_refused(
         {.keys = keys_of({{1024, 1}, {3072, 32611}, {4096, 3855}}), .metadata = item + "cm</Item></GDALMetadata>"},
-        "has heights in unit \"cm\"" + known_units);
+        "has heights in the unit \"cm\"" + known_units);
     check_refused({.keys = keys_of({{1024, 1}, {1025, 5}})},
                   "has GTRasterTypeGeoKey 5, needs 1 (pixels are areas) or 2 (points)");
-    check_refused({.keys = {1, 1, 0, 2, 1024, 0, 1, 1}}, "has a GeoKeyDirectory that is cut short");
+    check_refused({.keys = {1, 1, 0, 2, 1024, 0, 1, 1}}, "has an incomplete GeoKeyDirectory; is it cut short?");
     check_refused({.no_data = "none"}, "has a GDAL_NODATA of \"none\", needs a number");
     check_refused({.metadata = "<Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.1</Item>"},
-                  "has heights with a scale of 0.1, needs plain ones; gdal_translate -unscale -ot Float32 makes them");
+                  "has heights with a scale of 0.1, needs heights without scale and offset; gdal_translate -unscale "
+                  "-ot Float32 applies them");
     check_refused({.cols = 6}, "has 6 x 1 pixels, needs at least 2 x 2");
     check_refused({.scale = {}, .tie = {}, .keys = {}},
-                  "does not tell its size; --heightmap 'size: [X, Y]' is missing (m from first to last pixel centre; "
-                  "or cell, m between two)");
+                  "does not state its size; give --heightmap 'size: [X, Y]' (m from first to last pixel centre), or "
+                  "cell (m between two pixels)");
 }
 
-TEST_CASE("a spacing that is told is used, and nobody asks where the file lies")
+TEST_CASE("a given spacing is used, and the position of the file is ignored")
 {
     const TempFolder folder;
     write(folder, {.keys = keys_of({{1024, 2}})});
@@ -450,12 +456,12 @@ TEST_CASE("a spacing that is told is used, and nobody asks where the file lies")
     CHECK(load_scene(folder / "a.tif", options).bounds().max == Vec3(10, 5, 6));
 }
 
-TEST_CASE("elevation models with one origin lie to each other as in their files")
+TEST_CASE("elevation models with one common origin keep their relative positions")
 {
     const TempFolder folder;
     write(folder, {}, "west.tif");
     write(folder, {.heights = {3, 30, 31, 6, 60, 61}, .tie = {0, 0, 0, 500004, 4000010, 0}},
-          "east.tif");  // shares a column of pixels
+          "east.tif");  // shares a column of pixels with west.tif
     const std::string west = "  - {name: w, label: terrain, heightmap: {file: west.tif",
                       east = "  - {name: e, label: terrain, heightmap: {file: east.tif";
     const std::string origin = ", origin: [500005, 4000005]}";
@@ -465,21 +471,22 @@ TEST_CASE("elevation models with one origin lie to each other as in their files"
     CHECK(column_at(Geometry(joined), -2, 2.5).layers == Doubles{2});
     CHECK(column_at(Geometry(joined), 2, 2.5).layers == Doubles{30});
     check_origin(joined, 500005, 4000005, "EPSG:32611");
-    CHECK_FALSE(tells(joined, "an earlier part"));
+    CHECK_FALSE(has_notice(joined, "an earlier part"));
     const Scene moved = load_parts(folder, west + "}, xyz: [10, 20, 0]}\n");
     check_origin(moved, 499993, 3999985, "EPSG:32611");
     CHECK_FALSE(load_parts(folder, west + "}, rpy_deg: [0, 0, 90]}\n").origin);
     const Scene apart = load_parts(folder, west + "}}\n" + east + "}}\n");
-    CHECK(tells(apart,
-                "part \"e\": x 500007, y 4000005 (EPSG:32611) is at 0, 0 of the scene, but an earlier part has x "
-                "500003, y 4000005 (EPSG:32611) there"));
-    CHECK_THROWS_WITH(load_parts(folder, west + ", size: [1, 1]" + origin + "}\n"),
-                      Contains("heightmap.origin is for a file that tells where it lies, without size and cell"));
+    CHECK(has_notice(apart,
+                     "part \"e\": x 500007, y 4000005 (EPSG:32611) is at 0, 0 of the scene, but an earlier part has x "
+                     "500003, y 4000005 (EPSG:32611) there"));
+    CHECK_THROWS_WITH(
+        load_parts(folder, west + ", size: [1, 1]" + origin + "}\n"),
+        Contains("heightmap.origin is only for a file that states its place, without the keys size and cell"));
     CHECK_THROWS_WITH(load_parts(folder, west + ", size: [1, 1], cell: 1}}\n"),
-                      Contains("heightmap.cell stands beside size, needs one of them"));
+                      Contains("heightmap.cell is given together with size, needs only one of them"));
 }
 
-TEST_CASE("an ESRI ASCII grid is read whatever its header's case and order")
+TEST_CASE("an ESRI ASCII grid is read with any case and order of its header")
 {
     const TempFolder folder;
     const std::string text = GENERATE(
@@ -499,7 +506,7 @@ TEST_CASE("an ESRI ASCII grid is read whatever its header's case and order")
 
 namespace {
 
-/// As GDAL 3.6 writes them beside an ESRI ASCII grid, but for the parameters that no unit hangs on.
+/// The text that GDAL 3.6 writes beside an ESRI ASCII grid, without the parameters that have no effect on units.
 const std::string gcs_of_prj =
     "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],PRIMEM[\"Greenwich\","
     "0.0],"
@@ -525,7 +532,7 @@ const std::string survey_foot = "\"US survey foot\",0.304800609601219";
 
 }  // namespace
 
-TEST_CASE("a .prj beside a grid tells its units")
+TEST_CASE("a .prj file beside a grid gives its units")
 {
     const TempFolder folder;
     const std::filesystem::path file = folder.write("a.asc", grid_head + "1 2 3\n4 5 6\n");
@@ -537,21 +544,21 @@ TEST_CASE("a .prj beside a grid tells its units")
     CHECK(feet.bounds().max.z() == 6);
     check_origin(feet, 500007.5, 4000005, "Plan");
     CHECK(feet.origin->unit == Approx(foot));
-    CHECK(tells(feet, "a.asc: x and y are in units of 0.30480060960121"));
+    CHECK(has_notice(feet, "a.asc: x and y are in units of 0.30480060960121"));
     folder.write(name, prj("\"Meter\",1.0") + vertical_prj("1.0", survey_foot));
     const Scene high = load_scene(file);
     CHECK(high.bounds().max.x() == 5);
     CHECK(high.bounds().max.z() == Approx(6 * foot));
-    CHECK(tells(high, "a.asc: heights are in units of 0.30480060960121"));
+    CHECK(has_notice(high, "a.asc: heights are in units of 0.30480060960121"));
     folder.write(name, prj("\"Meter\",1.0") + vertical_prj("-1.0", "\"Meter\",1.0"));
     const Scene deep = load_scene(file);
     CHECK(deep.bounds().min.z() == -6);
-    CHECK(tells(deep, "has depths by Plan + Ups"));
+    CHECK(has_notice(deep, "its values are depths (Plan + Ups"));
     folder.write(name, prj("\"Meter\",1.0"));
     CHECK(load_scene(file).notices.size() == 1);  // where it lies
 }
 
-TEST_CASE("a .prj of degrees is refused, and one that nobody reads is told")
+TEST_CASE("a .prj file with degrees is refused, and one that cannot be understood gets a notice")
 {
     const TempFolder folder;
     const std::filesystem::path file = folder.write("a.asc", grid_head + "1 2 3\n4 5 6\n");
@@ -559,20 +566,20 @@ TEST_CASE("a .prj of degrees is refused, and one that nobody reads is told")
     CHECK_THROWS_WITH(
         load_scene(file),
         file.string() +
-            ": is in degrees (geographic, WGS 84), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE "
-            "is a projection in metres such as the UTM zone's");
+            ": has coordinates in degrees (geographic, WGS 84), needs metres; reproject it: gdalwarp -t_srs "
+            "EPSG:CODE, where CODE is a projection in metres, such as that of the UTM zone");
     SceneOptions options{.heightmap = "cell: 3"};
     CHECK(load_scene(file, options).bounds().max.x() == 3);
     for (const std::string text : {"Projection UTM\nZone 33\nUnits METERS\n", "", "PROJCS[\"Plan\""}) {
         folder.write("a.prj", text);
         const Scene scene = load_scene(file);
         CHECK(scene.bounds().max.x() == 5);
-        CHECK(
-            tells(scene, "a.prj: is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres"));
+        CHECK(has_notice(
+            scene, "a.prj: is not a coordinate system (WKT) that PROJ can read; x, y and heights are taken as metres"));
     }
 }
 
-TEST_CASE("cells of a grid may be longer one way, and holes are -9999 or what it says")
+TEST_CASE("cells of a grid may be rectangles, and holes are -9999 or the value in the header")
 {
     const TempFolder folder;
     const Scene scene = load_scene(
@@ -581,13 +588,13 @@ TEST_CASE("cells of a grid may be longer one way, and holes are -9999 or what it
     CHECK(scene.bounds().max.y() == 2);
     CHECK(scene.triangles.size() == 3);
     CHECK(load_scene(folder.write("a.asc", grid_head + "NODATA_value 0\n0 2 3\n4 5 6\n")).triangles.size() ==
-          2);  // the split runs through this corner
+          2);  // the diagonal runs through this corner
     CHECK(load_scene(folder.write("a.asc", grid_head + "NODATA_value 0\n1 2 nan\n4 5 6\n")).triangles.size() == 3);
     CHECK(load_scene(folder.write("a.asc", grid_head + "NODATA_value 0\n1 2 -9999\n4 5 6\n")).bounds().min.z() ==
           -9999);
 }
 
-TEST_CASE("grids that make no sense are refused with the line")
+TEST_CASE("invalid grids are refused with the line")
 {
     const TempFolder folder;
     const std::string start = (folder / "a.asc").string() + ": ";
@@ -595,12 +602,13 @@ TEST_CASE("grids that make no sense are refused with the line")
         CHECK_THROWS_WITH(load_scene(folder.write("a.asc", text)), start + reason);
     };
     const std::string known =
-        " is neither a number nor a word of an ESRI ASCII grid's header; known: ncols, nrows, xllcorner or xllcenter, "
+        " is neither a number nor a key of an ESRI ASCII grid's header; known keys: ncols, nrows, xllcorner or "
+        "xllcenter, "
         "yllcorner or "
         "yllcenter, cellsize or dx and dy, NODATA_value";
     check_refused("north: 5\n", "line 1: \"north:\"" + known);
     check_refused("ncols 3\nrows 2\n", "line 2: \"rows\"" + known);
-    check_refused(grid_head + "1 2 3\n4 5,5 6\n", "line 7: \"5,5\" is no number");
+    check_refused(grid_head + "1 2 3\n4 5,5 6\n", "line 7: \"5,5\" is not a number");
     check_refused(grid_head + "1 2 3\n4 5 6 7\n",
                   "line 7 has 4 values, needs 3 (ncols): it has more than 6 values, needs 6 (3 x 2)");
     check_refused(grid_head + "1 2\n4 5 6\n", "line 6 has 2 values, needs 3 (ncols): it has 5 values, needs 6 (3 x 2)");
@@ -614,22 +622,22 @@ TEST_CASE("grids that make no sense are refused with the line")
     check_refused("ncols 2.5\nnrows 2\n1", "ncols is 2.5, needs a whole number of 1 or more");
     check_refused("ncols 3\n1 2 3\n", "has no nrows in its header");
     check_refused("ncols 1000000\nnrows 1000000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1",
-                  "has 1000000 x 1000000 cells, needs at most 67108864; gdalwarp -tr makes it coarser, gdal_translate "
-                  "-projwin cuts a part out");
+                  "has 1000000 x 1000000 cells, needs at most 67108864; make it coarser with gdalwarp -tr, or extract "
+                  "a part with gdal_translate -projwin");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nxllcenter 0\nyllcorner 0\ncellsize 1\n1",
                   "has xllcorner and xllcenter, needs one of them");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\ncellsize 1\n1",
                   "has neither yllcorner nor yllcenter in its header, needs one of them");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\n1", "has no cellsize in its header");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 1\n1",
-                  "has one of dx, dy in its header, needs both or cellsize");
+                  "has only one of dx and dy in its header, needs both, or cellsize");
     check_refused("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0\n1", "cellsize is 0, needs > 0");
     CHECK_THROWS_WITH(
         load_scene(folder.write("a.asc", "ncols 2\nnrows 2\nxllcorner 8\nyllcorner -46\ncellsize 0.000277\n1 2 3 4\n")),
         Contains("which look like degrees") && Contains("EPSG:32732"));
 }
 
-TEST_CASE("images and raw numbers need to be told what they are")
+TEST_CASE("images and raw numbers need options that describe them")
 {
     const TempFolder folder;
     const auto load = [&](const std::string& name, const std::string& keys) {
@@ -653,7 +661,7 @@ TEST_CASE("images and raw numbers need to be told what they are")
     const std::string raw_file = (folder / "a.raw").string() + ": ", wrong = "load_scene: --heightmap: ";
     CHECK_THROWS_WITH(
         load_scene(folder / "a.raw"),
-        raw_file + "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
+        raw_file + "has no header; give its layout with --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M'");
     CHECK_THROWS_WITH(load("a.raw", "raw: {type: float32, rows: 2, cols: 4}, cell: 1"),
                       raw_file + "has 24 bytes, needs 32 (4 x 2 pixels of 4 bytes)");
     CHECK_THROWS_WITH(load("a.raw", "raw: {type: float32, rows: 99999, cols: 99999}, cell: 1"),
@@ -663,21 +671,20 @@ TEST_CASE("images and raw numbers need to be told what they are")
     CHECK_THROWS_WITH(load("a.raw", "raw: {type: uint8, rows: 2.5, cols: 3}"),
                       Contains("raw.rows is 2.5, needs a whole number up to 67108864"));
     CHECK_THROWS_WITH(load("a.raw", "size: 3"), Contains("size is 3, needs a list"));
-    CHECK_THROWS_WITH(load("a.raw", "sise: [1, 1]"), Contains("sise is no known key"));
+    CHECK_THROWS_WITH(load("a.raw", "sise: [1, 1]"), Contains("sise is not a known key"));
     CHECK_THROWS_WITH(load("a.raw", "size: [1, 1"), Contains("needs keys such as size: [513, 513], z: [0, 75]"));
 
     const auto shared = shared_scenes();
     if (!shared) return;
     CHECK_THROWS_WITH(load_scene(*shared / "dem/river/relief.png"),
                       (*shared / "dem/river/relief.png").string() +
-                          ": tells neither its size nor its heights: --heightmap 'size: [X, Y], z: [LOW, HIGH]' is "
-                          "missing (m from first to last pixel centre, and "
-                          "of values 0 and 65535)");
+                          ": states neither its size nor its heights; give --heightmap 'size: [X, Y], z: [LOW, HIGH]' "
+                          "(m from first to last pixel centre, and m of the values 0 and 65535)");
     std::filesystem::copy_file(*shared / "dem/river/relief.png", folder / "relief.png");
     CHECK(load("relief.png", "size: [49, 36], z: [537.36, 543.81]").bounds().max == Vec3(24.5, 18, 543.81));
 }
 
-TEST_CASE("nobody asks whether an elevation model is in millimetres or lies on its side")
+TEST_CASE("an elevation model gets no notice about millimetres or a wrong up axis")
 {
     const TempFolder folder;
     const Scene steep = load_scene(folder.write("a.asc", grid_head + "0 0 0\n900 900 900\n"));
@@ -688,7 +695,7 @@ TEST_CASE("nobody asks whether an elevation model is in millimetres or lies on i
     CHECK(load_parts(folder, "  - {name: a, label: terrain, heightmap: {file: a.asc, cell: 0.001}}\n").notices.empty());
 }
 
-TEST_CASE("an elevation model by itself takes labels, but nothing that is for meshes")
+TEST_CASE("an elevation model as a scene takes labels, but no options for meshes")
 {
     const TempFolder folder;
     const std::filesystem::path file = folder.write("Ground.asc", grid_head + "1 2 3\n4 5 6\n");
@@ -697,7 +704,7 @@ TEST_CASE("an elevation model by itself takes labels, but nothing that is for me
     options.labels = {{"road", Label::Obstacle}};
     const Scene idle = load_scene(file, options);
     CHECK(idle.parts[0].label == Label::Terrain);
-    CHECK(tells(idle, "label \"road\" matches no node, material or part; there are Ground"));
+    CHECK(has_notice(idle, "label \"road\" matches no node, material or part; there are Ground"));
     options = {};
     options.scale = 2;
     CHECK_THROWS_WITH(load_scene(file, options), "load_scene: up and scale are for a mesh; " + file.string() +
@@ -708,7 +715,7 @@ TEST_CASE("an elevation model by itself takes labels, but nothing that is for me
                       Contains("--heightmap is for an elevation model by itself"));
 }
 
-TEST_CASE("elevation models that are cut short are read or refused, whatever the byte")
+TEST_CASE("elevation models that are cut at any byte are read or refused")
 {
     const TempFolder folder;
     const std::string tiff = bytes_of(
@@ -724,7 +731,7 @@ TEST_CASE("elevation models that are cut short are read or refused, whatever the
         }
     }
     CHECK(read >= 1);
-    for (std::size_t at = 0; at < bytes.size(); ++at) {  // and a byte that is wrong
+    for (std::size_t at = 0; at < bytes.size(); ++at) {  // and with one wrong byte
         std::string changed = bytes;
         changed[at] = char(changed[at] ^ 0x15);
         try {
@@ -734,7 +741,7 @@ TEST_CASE("elevation models that are cut short are read or refused, whatever the
     }
 }
 
-TEST_CASE("the river's grid is the terrain of its scene")
+TEST_CASE("the grid of the river is the terrain of its scene")
 {
     const auto shared = shared_scenes();
     if (!shared) return;
@@ -768,7 +775,7 @@ TEST_CASE("the gully has terrain exactly where its grid has heights")
     const auto at = [&](int row, int col) { return z[std::size_t(row) * cols + std::size_t(col)]; };
     for (int row = 0; row + 1 < rows; ++row)
         for (int col = 0; col + 1 < cols; ++col) {
-            // The middles of the two triangles: below and above the diagonal from the upper left corner.
+            // The middles of the two triangles, below and above the diagonal from the upper left corner.
             const double x = (col - 21) * 3.0, y = (44 - row) * 3.0;
             const auto check_triangle = [&](double u, double v, double a, double b, double c) {
                 const Column column = column_at(geometry, x + 3 * u, y - 3 * v);
@@ -781,7 +788,7 @@ TEST_CASE("the gully has terrain exactly where its grid has heights")
         }
 }
 
-TEST_CASE("the Moon's corners are as high as its pixels, in its polar plane")
+TEST_CASE("the corners of the Moon model have the heights of its pixels, in its polar plane")
 {
     const auto shared = shared_scenes();
     if (!shared) return;
@@ -790,14 +797,15 @@ TEST_CASE("the Moon's corners are as high as its pixels, in its polar plane")
     check_origin(moon, -53750 + 16.5 * cell, -51050 - 16.5 * cell, "Moon2000_npole");
     CHECK(moon.bounds().max.x() == Approx(half).epsilon(1e-12));
     const Geometry geometry(moon);
-    const auto check_height = [&](int row, int col, double wanted) {  // a hair inside, as the outermost lie on the edge
+    // Slightly inside, because the outermost points are on the edge.
+    const auto check_height = [&](int row, int col, double wanted) {
         const double x = (col - 16) * cell, y = (16 - row) * cell;
         const Column column = column_at(geometry, std::clamp(x, -half + 1e-9, half - 1e-9),
                                         std::clamp(y, -half + 1e-9, half - 1e-9));
         REQUIRE(column.layers.size() == 1);
         CHECK(column.layers[0] == Approx(wanted).margin(1e-6));
     };
-    // As GDAL (rasterio 1.4) reads them.
+    // The heights that GDAL reads (rasterio 1.4).
     check_height(0, 0, -206.0089111328125);
     check_height(0, 32, -208.593994140625);
     check_height(32, 0, -205.8878936767578);
@@ -805,7 +813,7 @@ TEST_CASE("the Moon's corners are as high as its pixels, in its polar plane")
     check_height(5, 20, -207.89031982421875);
 }
 
-TEST_CASE("a map keeps where its elevation model lies, and info tells it")
+TEST_CASE("a map stores the survey position of its elevation model, and info prints it")
 {
     const TempFolder folder;
     folder.write(

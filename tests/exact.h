@@ -2,9 +2,9 @@
 
 #include "test_map.h"
 
-// What the tests of exactness need to know of the free-space mask, in one place.
+// Functions with which the tests of exactness use the free-space mask.
 
-/// A scene with a mask of this resolution. Poses beyond the bounds are `outside`, solids there still count.
+/// Returns a map with a mask of this resolution. Poses beyond the bounds are `outside`, but solids there still collide.
 inline TestMap map_at(spawnfield::Scene scene, double resolution, const spawnfield::Bounds& bounds = {})
 {
     return map_of(std::move(scene), resolution, bounds);

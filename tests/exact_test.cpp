@@ -12,20 +12,20 @@
 
 using namespace spawnfield;
 
-// Every query with the free-space mask gives the very verdicts of the exhaustive one, pose by pose.
+// With the free-space mask every query gives exactly the verdicts of the exhaustive query, pose by pose.
 
 namespace {
 
 #if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 constexpr std::uint64_t scene_count = 300;
 #else
-constexpr std::uint64_t scene_count = 40;  // unoptimised or watched, the same would take many minutes
+constexpr std::uint64_t scene_count = 40;  // 300 would take many minutes without optimisation or with a sanitizer
 #endif
 
-/// Counts are asked for of all scenes together: each kind of answer must have been at stake.
+/// Counts are checked only over all scenes together. Then every kind of answer must have occurred.
 constexpr bool all_scenes = scene_count >= 300;
 
-/// That some were proven, and some not: or the comparison compared nothing.
+/// Checks that some poses were proven and some were not; without both, the comparison would mean nothing.
 void check_shares(const compare::Tally& tally, double least_proven)
 {
     if (!all_scenes) return;
@@ -51,17 +51,17 @@ void print(const char* what, const compare::Tally& tally)
     std::cout << " " << tally.exact << " of " << tally.asked << " checked exactly\n";
 }
 
-/// In the order of another raster's poses.
+/// Compares poses in the order of the other raster.
 bool earlier(const RasterPose& a, const RasterPose& b)
 {
     return std::tuple(a.y, a.x, -a.z) < std::tuple(b.y, b.x, -b.z);
 }
 
 struct Change {
-    std::size_t valid = 0, other = 0, lost = 0, gained = 0;  ///< lost, gained: valid poses
+    std::size_t valid = 0, other = 0, lost = 0, gained = 0;  ///< lost and gained count valid poses
 };
 
-/// What becomes of each pose's verdict. The poses must be the same up to rounding.
+/// Counts how the verdict of each pose changes. The poses must be the same up to rounding.
 Change change(const std::vector<RasterPose>& before, const std::vector<RasterPose>& after)
 {
     Change out;
@@ -75,7 +75,8 @@ Change change(const std::vector<RasterPose>& before, const std::vector<RasterPos
     return out;
 }
 
-/// Steps of 2^-6 m multiples from such a place on: mirrored, all columns fall on each other to the last digit.
+/// Returns a raster with steps that are multiples of 2^-6 m, from a place with such coordinates. After mirroring, all
+/// columns have exactly the same coordinates.
 RasterOptions dyadic_raster(const TestMap& map, const HardCase& hard)
 {
     Random random{hard.seed + 3};
@@ -103,7 +104,7 @@ std::size_t valid_count(const std::vector<RasterPose>& poses)
                                      [](const RasterPose& pose) { return pose.verdict == Verdict::Valid; }));
 }
 
-/// A scene of the shared folder with Husky, and a mask of about a million columns.
+/// Returns a case with a shared scene, the Husky, and a mask of about a million columns.
 HardCase real_case(const std::filesystem::path& file)
 {
     HardCase out;
@@ -125,7 +126,7 @@ std::vector<std::filesystem::path> scene_files(const std::filesystem::path& fold
     return files;
 }
 
-/// 2D across the map, 3D around every hundredth of the poses.
+/// Compares a 2D raster across the map, and 3D rasters around every hundredth pose.
 compare::Tally real_rasters(const TestMap& map, const compare::TwoJudges& judges, const std::vector<Pose>& poses)
 {
     compare::Tally tally;
@@ -186,10 +187,11 @@ TEST_CASE("every query gives the exhaustive verdicts, pose by pose, in random ha
     check_shares(all.snap, 0.2);
     check_shares(all.collisions, 0.1);
     check_shares(all.check, 0.1);
-    if (all_scenes) CHECK(all.check.proven_valid > 1000);  // what a blocked pose collides with takes an exact check
+    if (all_scenes)
+        CHECK(all.check.proven_valid > 1000);  // naming the part that a blocked pose hits needs an exact check
 }
 
-TEST_CASE("hard scenes hold all that scenes are made of, and robots all kinds of parts")
+TEST_CASE("hard scenes contain everything that scenes can contain, and their robots have all kinds of parts")
 {
     std::set<std::string> features, kinds;
     std::set<ShapeKind> shapes;
@@ -254,7 +256,7 @@ TEST_CASE("with the mask a larger robot never gains a valid pose")
     if (all_scenes) CHECK((kept > 5000 && lost > 1000));
 }
 
-TEST_CASE("a finer mask changes no verdict, only how many poses it leaves to the exact check")
+TEST_CASE("a finer mask changes no verdict, only the number of exact checks")
 {
     std::size_t valid = 0;
     std::uint64_t fine_checks = 0, coarse_checks = 0;
@@ -325,7 +327,7 @@ TEST_CASE("with the mask a scene moved by whole metres keeps its verdicts")
     if (all_scenes) CHECK((valid > 3000 && other > 3000));
 }
 
-TEST_CASE("the mask never says free where a yaw of the set collides, nor blocked where one is free")
+TEST_CASE("the mask never proves a pose free if a yaw of the set collides, nor blocked if a yaw is free")
 {
     compare::Tally all;
     std::size_t lies = 0, proven_for_all_yaws = 0;
@@ -367,7 +369,7 @@ TEST_CASE("the mask never says free where a yaw of the set collides, nor blocked
                proven_for_all_yaws > 2000));
 }
 
-TEST_CASE("with a mask that is made on first use, rasters are the same bytes at any thread count")
+TEST_CASE("with a mask that is made on first use, rasters are the same bytes with any number of threads")
 {
     for (std::uint64_t seed = 1; seed <= scene_count / 10; ++seed) {
         const HardCase hard = hard_case(seed);

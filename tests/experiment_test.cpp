@@ -15,7 +15,7 @@ namespace {
 
 const std::string& husky = husky_option;
 
-/// What a run of the program says in its summary.
+/// Returns the summary of a run of the program.
 nlohmann::json summary(const Arena& arena, const std::string& arguments)
 {
     CHECK(arena(arguments + " --summary .s.json").status == 0);
@@ -48,7 +48,7 @@ std::vector<Row> rows_of(const fs::path& file)
     return out;
 }
 
-/// Cells of the rows of the only table.
+/// Returns the cells of all rows of the only table in a file.
 std::vector<std::vector<std::string>> table_of(const fs::path& file)
 {
     std::istringstream stream(bytes_of(file));
@@ -65,7 +65,7 @@ std::vector<std::vector<std::string>> table_of(const fs::path& file)
     return out;
 }
 
-/// A run's row has what the command's own summary tells.
+/// Checks that the row of a run agrees with the summary of the single command.
 void check_counts(const Row& row, const nlohmann::json& summary)
 {
     CAPTURE(row.at("run"), row.at("step"), row.at("step_z"));
@@ -77,7 +77,7 @@ void check_counts(const Row& row, const nlohmann::json& summary)
 
 }  // namespace
 
-TEST_CASE("an experiment of rasters has the counts of raster at each step, run after run")
+TEST_CASE("an experiment with rasters has the counts of raster for each step, in every run")
 {
     const Arena arena;
     const std::string options[] = {"--dims 2 --offset 0.3 --yaw 0.4",
@@ -106,7 +106,7 @@ TEST_CASE("an experiment of rasters has the counts of raster at each step, run a
     }
 }
 
-TEST_CASE("steps up are one for all, or as many as those across")
+TEST_CASE("--steps-z has one step for all, or one for each of --steps")
 {
     const Arena arena;
     const auto pairs = [&](const std::string& steps) {
@@ -128,8 +128,7 @@ TEST_CASE("steps up are one for all, or as many as those across")
               .err.starts_with("notice: --steps-z has no effect: "));
 }
 
-TEST_CASE(
-    "an experiment's table has a row per step with mean and sample variance of the times, and says what was run where")
+TEST_CASE("the report of an experiment has a row per step with mean and sample variance, and names command and machine")
 {
     const Arena arena;
     CHECK(arena("experiment map --dims 2 --steps 1:2:1 --runs 4 -o out --threads 2" + husky).status == 0);
@@ -160,19 +159,19 @@ TEST_CASE(
     CHECK_THAT(text, Contains("- spawnfield " + spawnfield::version() + " on "));
     CHECK_THAT(text, Contains("hash " + spawnfield::read_map(arena / "map").hash));
     CHECK(arena("experiment map --dims 2 --steps 1 -o out" + husky).status == 0);
-    CHECK(table_of(arena / "out/experiment.md")[1].back().empty());  // of one run
+    CHECK(table_of(arena / "out/experiment.md")[1].back().empty());  // one run has no variance
 }
 
-TEST_CASE("an experiment of searches has the counts of search at each seed")
+TEST_CASE("an experiment with searches has the counts of search for each seed")
 {
     const Arena arena;
     const std::string draws =
         "map -n 15 --min-distance 0.5 --max-failures 5000 --bounds -9,-9,-0.1,9,9,1 --yaw 0.3 --keep-out -3,-3,3,3" +
         husky;
-    const nlohmann::json told = summary(arena, "experiment --search --seed 7 --runs 3 -o out " + draws);
-    CHECK(told["command"] == "experiment");
-    CHECK(told["seed"] == 7);
-    CHECK(told["counts"]["valid"] == 45);
+    const nlohmann::json report = summary(arena, "experiment --search --seed 7 --runs 3 -o out " + draws);
+    CHECK(report["command"] == "experiment");
+    CHECK(report["seed"] == 7);
+    CHECK(report["counts"]["valid"] == 45);
     const std::vector<Row> rows = rows_of(arena / "out/experiment.csv");
     REQUIRE(rows.size() == 3);
     std::set<std::string> different;
@@ -192,7 +191,7 @@ TEST_CASE("an experiment of searches has the counts of search at each seed")
     CHECK(rows_of(arena / "out/experiment.csv").size() == 2);
 }
 
-TEST_CASE("an experiment replaces a former one, and no other folder")
+TEST_CASE("an experiment replaces an earlier experiment, but no other folder")
 {
     const Arena arena;
     const std::string command = "experiment map --dims 2 --steps 2 -o out" + husky;
@@ -204,8 +203,9 @@ TEST_CASE("an experiment replaces a former one, and no other folder")
     arena.write("out/experiment.md", "old");
     const ProgramRun run = arena(command);
     CHECK(run.status == 1);
-    CHECK(run.err ==
-          "spawnfield: out: holds notes.txt, which is no part of a former experiment; choose another name or remove "
-          "it\n");
+    CHECK(
+        run.err ==
+        "spawnfield: out: contains notes.txt, which is not part of a former experiment; choose another name or remove "
+        "it\n");
     CHECK(bytes_of(arena / "out/experiment.md") == "old");
 }

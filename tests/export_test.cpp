@@ -23,8 +23,8 @@ using namespace spawnfield;
 
 namespace {
 
-/// A box of terrain with a deck of terrain above half of it, a block on the deck, a crate on the floor, a pool, and no
-/// terrain beyond x = 3.
+/// Returns a map with a box of terrain, a deck of terrain above half of it, a block on the deck, a crate on the floor
+/// and a pool. Beyond x = 3 there is no terrain.
 TestMap deck_map()
 {
     const TempFolder folder;
@@ -48,7 +48,7 @@ struct Nav2Map {
     int negate;
     cv::Mat_<std::uint8_t> pixels;
 
-    /// As map_server decides: 100, 0 or -1, at a point of the ground.
+    /// Returns 100, 0 or -1 at a point of the ground, as map_server decides.
     int occupancy_at(double x, double y) const
     {
         const int col = int(std::floor((x - x0) / resolution)), from_below = int(std::floor((y - y0) / resolution));
@@ -81,14 +81,14 @@ Nav2Map read_nav2(const fs::path& yaml)
     return map;
 }
 
-/// A GeoTIFF as libtiff reads it.
+/// A GeoTIFF, as libtiff reads it.
 struct GeoTiff {
     std::vector<HeightImage> bands;
     std::vector<double> scale, tiepoint;
     std::vector<std::uint16_t> keys;
     std::string metadata, no_data;
 
-    /// The one with this description.
+    /// Returns the band with this description.
     const HeightImage& band(const std::string& name) const
     {
         std::smatch found;
@@ -97,7 +97,7 @@ struct GeoTiff {
         return bands.at(std::stoul(found[1]));
     }
     bool has(const std::string& name) const { return metadata.find(">" + name + "<") != std::string::npos; }
-    /// Of a point of the ground, by scale and tiepoint.
+    /// Returns the value at a point of the ground, found by scale and tiepoint.
     float at(const std::string& name, double x, double y) const
     {
         const int col = int(std::floor((x - tiepoint[3]) / scale[0])),
@@ -162,8 +162,8 @@ bool same(const HeightImage& a, const HeightImage& b)
            std::equal(a.values.begin(), a.values.end(), b.values.begin(), [](float x, float y) { return same(x, y); });
 }
 
-/// A Python that reads our files back with this package; nothing if that is not installed (ctest reports the test
-/// read_back_packages as skipped then).
+/// Returns a Python that has this package and can read our files back; nothing if it is not installed (then ctest
+/// reports the test read_back_packages as skipped).
 std::optional<std::string> python_with(const std::string& package)
 {
     const std::string python = "'" + python_file() + "'";
@@ -172,7 +172,7 @@ std::optional<std::string> python_with(const std::string& package)
     return std::nullopt;
 }
 
-/// Runs a script with the file as its argument; it fails by an exception.
+/// Runs a script with the file as its argument. Returns false if the script ends with an exception.
 bool python_accepts(const std::string& python, const TempFolder& folder, const std::string& script,
                     const fs::path& file)
 {
@@ -188,7 +188,7 @@ std::string glb_bytes(const Map& map, const GlbMarkers& markers = {}, int thread
     return bytes;
 }
 
-/// The JSON chunk, with the chunks' sizes checked.
+/// Returns the JSON chunk, after a check of the sizes of all chunks.
 nlohmann::json glb_json(const std::string& bytes)
 {
     const auto word = [&](std::size_t at) {
@@ -203,7 +203,7 @@ nlohmann::json glb_json(const std::string& bytes)
     return nlohmann::json::parse(bytes.substr(20, word(12)));
 }
 
-/// As the project's own reader sees it.
+/// Loads a GLB with the project's own reader.
 Scene load_glb(const TempFolder& folder, const std::string& bytes)
 {
     SceneOptions options{.labels = {{"terrain", Label::Terrain},
@@ -213,7 +213,8 @@ Scene load_glb(const TempFolder& folder, const std::string& bytes)
     return load_scene(folder.write("a.glb", bytes), options);
 }
 
-/// Triangles with their labels whatever their order and first corner; those without area, which readers drop, left out.
+/// Returns triangles with their labels, independent of their order and of their first corner. Leaves out triangles
+/// without area, which readers drop.
 std::multiset<std::array<double, 10>> triangles_of(const Scene& scene)
 {
     std::multiset<std::array<double, 10>> out;
@@ -236,7 +237,7 @@ RasterOptions on_layer(LayerChoice layers, double offset = 0.1, double yaw = 0)
     return {.offset = offset, .yaw = yaw, .layers = layers};
 }
 
-/// The verdict at a point by the tests' own way through the column; nothing where there is no such layer.
+/// Returns the verdict at a point, computed by the test itself from the column; nothing if there is no such layer.
 std::optional<Verdict> verdict_at(const Judge& judge, const RasterOptions& options, double x, double y)
 {
     const Column column = column_at(judge.map().geometry, x, y);
@@ -251,7 +252,7 @@ std::optional<Verdict> verdict_at(const Judge& judge, const RasterOptions& optio
 
 }  // namespace
 
-TEST_CASE("an image of verdicts holds the verdict at each cell's centre, on the layer that was chosen")
+TEST_CASE("an image of verdicts has the verdict at the centre of each cell, on the chosen layer")
 {
     const TestMap map = deck_map();
     const Judge judge(map, small_box);
@@ -277,9 +278,9 @@ TEST_CASE("an image of verdicts holds the verdict at each cell's centre, on the 
     }
 }
 
-TEST_CASE("an image of verdicts is the same in strips far from the origin, and at any number of threads")
+TEST_CASE("an image of verdicts is the same in strips far from the origin, and with any number of threads")
 {
-    const TempFolder folder;  // more rows than a strip has, at coordinates where steps are rounded
+    const TempFolder folder;  // the map has more rows than a strip, at coordinates where steps are rounded
     const TestMap map = map_of(
         load_scene(folder.write("scene.yaml",
                                 "format: spawnfield-scene/1\nparts:\n"
@@ -294,15 +295,15 @@ TEST_CASE("an image of verdicts is the same in strips far from the origin, and a
     options.threads = 7;
     CHECK(verdict_image(judge, frame, options).verdicts == one.verdicts);
     CHECK(std::count(one.verdicts.begin(), one.verdicts.end(), VerdictImage::no_pose) ==
-          0);  // rounding costs no row or column
+          0);  // rounding loses no row or column
 }
 
-TEST_CASE("a nav2 map says of each point what the verdict at its cell's centre says")
+TEST_CASE("a nav2 map has at each point the value of the verdict at the centre of the cell")
 {
     const TestMap map = deck_map();
     const Judge judge(map, small_box);
     const RasterOptions options = on_layer({LayerChoice::Kind::Top, 0});
-    const GridFrame frame = frame_around(map.bounds, 0.23);  // the last cells stick out of the bounds
+    const GridFrame frame = frame_around(map.bounds, 0.23);  // the last cells reach beyond the bounds
     const TempFolder folder;
     write_nav2_map(verdict_image(judge, frame, options), folder / "deck.yaml", {"a deck\nimage: wrong.pgm"});
     const Nav2Map read = read_nav2(folder / "deck.yaml");
@@ -321,11 +322,11 @@ TEST_CASE("a nav2 map says of each point what the verdict at its cell's centre s
     CHECK(read.occupancy_at(-3.5, 1) == 100);  // the block
     CHECK(read.occupancy_at(-3.5, -1) == 0);   // the deck
     CHECK(read.occupancy_at(2, -2) == 100);    // the pool
-    CHECK(read.occupancy_at(2, 2) == 0);       // the floor: x and y are not turned or mirrored
+    CHECK(read.occupancy_at(2, 2) == 0);       // the floor: x and y are not rotated or mirrored
     CHECK(read.occupancy_at(4.5, 0) == -1);    // the post, where there is no terrain
 }
 
-TEST_CASE("names of nav2 images that YAML would misread are quoted, and other endings are refused")
+TEST_CASE("names of nav2 images that YAML would misread are quoted, and other extensions are refused")
 {
     const TempFolder folder;
     const VerdictImage image{{0, 0, 1, 1, 1}, {std::uint8_t(Verdict::Valid)}, {}, 0};
@@ -336,7 +337,7 @@ TEST_CASE("names of nav2 images that YAML would misread are quoted, and other en
     CHECK(names_in(folder.path()).size() == 2);
 }
 
-TEST_CASE("files that are committed together appear all or none")
+TEST_CASE("of files that are committed together, all appear or none")
 {
     const TempFolder folder;
     folder.write("a", "old a");
@@ -360,7 +361,7 @@ TEST_CASE("files that are committed together appear all or none")
     CHECK(names_in(folder.path()) == std::set<std::string>{"a", "c"});
 }
 
-TEST_CASE("export --format nav2 writes the pair, the same bytes at any number of threads")
+TEST_CASE("export --format nav2 writes both files, the same bytes with any number of threads")
 {
     const Arena arena;
     REQUIRE(arena("export map --format nav2 --offset 0.2 --layers bottom -o one.yaml --threads 1 --summary s.json" +
@@ -380,7 +381,7 @@ TEST_CASE("export --format nav2 writes the pair, the same bytes at any number of
     CHECK(read_nav2(arena / "coarse.yaml").resolution == 0.5);
 }
 
-TEST_CASE("a GeoTIFF's bands hold what stands in the column at each cell's centre, read by libtiff")
+TEST_CASE("the bands of a GeoTIFF have the values of the column at the centre of each cell, as libtiff reads them")
 {
     const TestMap map = deck_map();
     const Judge judge(map, small_box);
@@ -416,7 +417,7 @@ TEST_CASE("a GeoTIFF's bands hold what stands in the column at each cell's centr
             const float expected = verdict == VerdictImage::no_pose ? NAN : float(verdict);
             if (!same(codes(row, col), expected)) FAIL("verdict at " << row << ", " << col);
         }
-    CHECK(read.at("elevation", -3, -1) == float(2.1));  // x and y are not turned or mirrored
+    CHECK(read.at("elevation", -3, -1) == float(2.1));  // x and y are not rotated or mirrored
     CHECK(std::isnan(read.at("elevation", 4.5, 0)));
     CHECK(read.at("layers", 4.5, 0) == 0);
     CHECK(read.at("clearance", -3, -1) == Approx(1.9));  // under the deck
@@ -432,7 +433,7 @@ TEST_CASE("a GeoTIFF's bands hold what stands in the column at each cell's centr
     CHECK(top.at("clearance", -3.5, 1) == 0);        // its block
 }
 
-TEST_CASE("a GeoTIFF tells a ramp's slope, also at the rim")
+TEST_CASE("a GeoTIFF has the slope of a ramp, also at the rim")
 {
     const TempFolder folder;
     const TestMap map = map_of(
@@ -445,7 +446,7 @@ TEST_CASE("a GeoTIFF tells a ramp's slope, also at the rim")
     for (const float slope : read.band("slope").values) CHECK(slope == Approx(expected).epsilon(1e-4));
 }
 
-TEST_CASE("a GeoTIFF's slopes see the neighbours beyond the edge of a tile")
+TEST_CASE("the slopes of a GeoTIFF use neighbours beyond the edge of a tile")
 {
     const TestMap map = deck_map();
     const TempFolder folder;
@@ -464,7 +465,7 @@ TEST_CASE("a GeoTIFF's slopes see the neighbours beyond the edge of a tile")
     CHECK((slopes(row, 254) == 0 && slopes(row, 255) > 80 && slopes(row, 256) > 80 && slopes(row, 257) == 0));
 }
 
-TEST_CASE("a GeoTIFF lies where the survey says, if that names its coordinates by a code")
+TEST_CASE("a GeoTIFF is at its survey coordinates, if the survey has an EPSG code")
 {
     TestMap map = deck_map();
     map.origin = GeoOrigin{500000.25, 4100000.5, 1, "EPSG:32611"};
@@ -492,7 +493,7 @@ TEST_CASE("a GeoTIFF lies where the survey says, if that names its coordinates b
         CHECK(read_geotiff(folder / name).at("elevation", -3, -1) == float(2.1));
 }
 
-TEST_CASE("export --format geotiff writes the same bytes at any number of threads")
+TEST_CASE("export --format geotiff writes the same bytes with any number of threads")
 {
     const Arena arena;
     const std::string command = "export map --format geotiff --resolution 0.05" + husky_option;  // 2 x 2 tiles
@@ -506,7 +507,7 @@ TEST_CASE("export --format geotiff writes the same bytes at any number of thread
     CHECK(read.at("water", 7, -7) == float(1.45));
 }
 
-TEST_CASE("GDAL sees a GeoTIFF's bands, transform, units and no-data")
+TEST_CASE("GDAL reads the bands, transform, units and no-data of a GeoTIFF")
 {
     const auto python = python_with("rasterio");
     if (!python) return;
@@ -531,9 +532,9 @@ with rasterio.open(sys.argv[1]) as d:
                          arena / "a.tif"));
 }
 
-TEST_CASE("a PLY has the raster's poses as points, to the bit, coloured as in heat maps")
+TEST_CASE("a PLY has the poses of the raster as points, bit by bit, with the colours of heat maps")
 {
-    const TempFolder folder;  // far off: float would be half a metre wrong
+    const TempFolder folder;  // far from the origin, where float would be wrong by half a metre
     const TestMap map = map_of(
         load_scene(folder.write("scene.yaml",
                                 "format: spawnfield-scene/1\nparts:\n"
@@ -573,7 +574,7 @@ TEST_CASE("a PLY has the raster's poses as points, to the bit, coloured as in he
     CHECK(wrong == 0);
 }
 
-TEST_CASE("export --format ply writes to a file or to standard output, the same bytes at any number of threads")
+TEST_CASE("export --format ply writes to a file or to standard output, the same bytes with any number of threads")
 {
     const Arena arena;
     const std::string command = "export map --format ply --step 0.5 --offset 0.5" + husky_option;
@@ -602,14 +603,15 @@ TEST_CASE("a GLB that is loaded again has the same triangles with the same label
     const std::uint64_t seed = GENERATE(range(0, 12));
     Scene scene = random_scene(seed);
     scene.primitives.clear();
-    for (Vec3& vertex : scene.vertices) vertex = (1024 * vertex).array().round() / 1024;  // so that float32 keeps them
+    // Rounded so that float32 stores them exactly.
+    for (Vec3& vertex : scene.vertices) vertex = (1024 * vertex).array().round() / 1024;
     scene = shifted(scene, Vec3(500000, -4500000, 3000));
     const TestMap map = map_of(scene);
     const TempFolder folder;
     CHECK(triangles_of(load_glb(folder, glb_bytes(map))) == triangles_of(map.scene));
 }
 
-TEST_CASE("solids in a GLB are closed, hold their place and most of their volume")
+TEST_CASE("solids in a GLB are closed, at their place, and have nearly their volume")
 {
     const TempFolder folder;
     const auto [shape, volume] = GENERATE(
@@ -630,7 +632,7 @@ TEST_CASE("solids in a GLB are closed, hold their place and most of their volume
     const Pose& pose = map.scene.primitives[0].shape.pose;
     for (const Triangle& t : read.triangles)
         six_volumes += read.vertices[t[0]].dot(read.vertices[t[1]].cross(read.vertices[t[2]]));
-    for (const Vec3& vertex : read.vertices) {  // each lies on the surface
+    for (const Vec3& vertex : read.vertices) {  // each vertex is on the surface
         Vec3 p = (pose.rotation.transpose() * (vertex - pose.position)).cwiseAbs();
         const std::string kind = shape;
         if (kind.starts_with("box"))
@@ -644,14 +646,14 @@ TEST_CASE("solids in a GLB are closed, hold their place and most of their volume
         off = std::max(off, p.cwiseAbs().maxCoeff());
     }
     CHECK(off < 1e-6);
-    CHECK(six_volumes / 6 <= volume + 1e-5);  // and outside is outside
+    CHECK(six_volumes / 6 <= volume + 1e-5);  // the polyhedron is inside the solid
     CHECK(six_volumes / 6 > 0.98 * volume);
     const Bounds bounds = read.bounds(), expected = map.scene.bounds();
     CHECK((bounds.min - expected.min).cwiseAbs().maxCoeff() < 0.02);
     CHECK((bounds.max - expected.max).cwiseAbs().maxCoeff() < 0.02);
 }
 
-TEST_CASE("a GLB's markers stand at their poses and look where they look, coloured by verdict")
+TEST_CASE("the markers of a GLB have the positions and directions of their poses, coloured by verdict")
 {
     const TestMap map = map_of(
         shifted(load_scene(training_scene.substr(1, training_scene.size() - 2)), Vec3(500000, 0, 20)));
@@ -660,7 +662,7 @@ TEST_CASE("a GLB's markers stand at their poses and look where they look, colour
     markers.poses = {{Vec3(500001.125, -2.5, 20.1), rotation_from_rpy(0, 0, 2)},
                      {Vec3(499999, 3, 21), rotation_from_rpy(0.3, -0.2, -3)}};
     markers.verdicts = {Verdict::Valid, Verdict::Collision};
-    markers.names = {"first", "the \"second\" \xff"};  // quotes, and what is no UTF-8
+    markers.names = {"first", "the \"second\" \xff"};  // quotes, and bytes that are not UTF-8
     const GlbMarkers bare{markers.poses, {}, {}, nullptr};
     for (const Robot* of : {&robot, static_cast<const Robot*>(nullptr)}) {
         markers.robot = of;
@@ -679,7 +681,7 @@ TEST_CASE("a GLB's markers stand at their poses and look where they look, colour
             if (m == 0) CHECK(node["name"] == "first");
             const auto& t = node["translation"];
             const Vec3 place(t[0].get<double>() + 500000, -t[2].get<double>(),
-                             t[1].get<double>() + 20);  // back to z up
+                             t[1].get<double>() + 20);  // z is up again
             CHECK((place - markers.poses[m].position).norm() < 1e-9);
             const auto& r = node["rotation"];
             const Eigen::Quaterniond q(r[3].get<double>(), r[0].get<double>(), r[1].get<double>(), r[2].get<double>());
@@ -701,7 +703,7 @@ TEST_CASE("a GLB's markers stand at their poses and look where they look, colour
     }
 }
 
-TEST_CASE("a map that is baked from a GLB gives nearly all the same verdicts")
+TEST_CASE("a map that is baked from a GLB gives nearly the same verdicts everywhere")
 {
     const TestMap map = training_map();
     const TempFolder folder;
@@ -712,11 +714,11 @@ TEST_CASE("a map that is baked from a GLB gives nearly all the same verdicts")
                        after = verdict_image(Judge(again, husky()), frame, options);
     std::size_t other = 0;
     for (std::size_t c = 0; c < before.verdicts.size(); ++c) other += before.verdicts[c] != after.verdicts[c];
-    CHECK(other < before.verdicts.size() / 200);  // round solids are polygons, and numbers are float32
+    CHECK(other < before.verdicts.size() / 200);  // round solids became polyhedra, and numbers float32
     CHECK(glb_bytes(map, {}, 1) == glb_bytes(map, {}, 5));
 }
 
-TEST_CASE("real scenes are the same after a GLB")
+TEST_CASE("real scenes are the same after export to GLB")
 {
     const auto scenes = shared_scenes();
     if (!scenes) return;
@@ -727,7 +729,7 @@ TEST_CASE("real scenes are the same after a GLB")
         const Scene read = load_glb(folder, glb_bytes(map));
         const LabelCounts before = map.scene.count_labels(), after = read.count_labels();
         for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water}) {
-            const auto& [triangles, primitives] = before[std::size_t(label)];  // boxes all of them
+            const auto& [triangles, primitives] = before[std::size_t(label)];  // all primitives are boxes
             const double expected = double(triangles + 12 * primitives);
             CHECK(double(after[std::size_t(label)].triangles) <= expected);
             CHECK(double(after[std::size_t(label)].triangles) >= 0.999 * expected);  // some have no area in float32
@@ -738,7 +740,7 @@ TEST_CASE("real scenes are the same after a GLB")
     }
 }
 
-TEST_CASE("export --format glb draws poses of a CSV file and says what is wrong with it")
+TEST_CASE("export --format glb draws poses of a CSV file, and reports errors in the file")
 {
     const Arena arena;
     arena.write("poses.csv", "name,x,y,z,yaw\na,0,3,0.1,0\nb,-6.5,-5,0.1,1\n");
@@ -754,10 +756,11 @@ TEST_CASE("export --format glb draws poses of a CSV file and says what is wrong 
     const ProgramRun bad = arena("export map --format glb --poses bad.csv -o bad.glb");
     CHECK(bad.status == 4);
     CHECK(bad.err ==
-          "spawnfield: bad.csv: pose 2: column verdict is \"good\", needs a verdict's name, as valid or collision\n");
+          "spawnfield: bad.csv: pose 2: column verdict is \"good\", needs the name of a verdict, for example valid or "
+          "collision\n");
     CHECK_FALSE(fs::exists(arena / "bad.glb"));
     CHECK_THAT(arena("export map --format glb -o b.glb" + husky_option).err,
-               Contains("--robot has no effect: without --poses there is nowhere to draw it"));
+               Contains("--robot has no effect: without --poses there is no place to draw it"));
     const auto python = python_with("trimesh");
     if (!python) return;
     CHECK(python_accepts(*python, arena, R"(
@@ -774,7 +777,7 @@ assert abs(place[:3, 3] - (0, 0.1, -3)).max() < 1e-6 and s.geometry[geometry].is
                          arena / "a.glb"));
 }
 
-TEST_CASE("export says which option a format needs, takes or refuses, and writes nothing then")
+TEST_CASE("export names the option that a format needs or refuses, and then writes nothing")
 {
     const Arena arena;
     const std::set<std::string> before = arena.names();
@@ -789,18 +792,20 @@ TEST_CASE("export says which option a format needs, takes or refuses, and writes
     refused("--format nav2 -o a.yaml", "--format nav2 needs --robot");
     refused("--format nav2" + husky_option, "--format nav2 needs --out");
     refused("--format nav2 -o -" + husky_option,
-            "--out is \"-\": --format nav2 cannot go to standard output, name a file");
+            "--out is \"-\": --format nav2 cannot go to standard output; give a file name");
     refused("--format nav2 -o a.png" + husky_option,
-            "the file's name is \"a.png\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
+            "the file's name is \"a.png\", needs the ending .yaml or .yml; the image gets the same name with .pgm");
     refused("--format nav2 --layers all -o a.yaml" + husky_option,
-            "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of nav2 has one value");
+            "--layers is all, needs top, bottom or a number (0 is the highest layer), because a pixel of nav2 has one "
+            "value");
     refused("--format nav2 --resolution 0 -o a.yaml" + husky_option, "--resolution is 0, needs > 0");
     refused("--format ply" + husky_option, "--format ply needs --step");
     refused("--format ply --step 0" + husky_option, "--step is 0, needs > 0");
     refused("--format nav2 --step 1 -o a.yaml" + husky_option, "--step is not for --format nav2; it is for ply");
     refused("--format geotiff --offset 0.2 -o a.tif", "--offset needs --robot");
     refused("--format geotiff --layers all -o a.tif",
-            "--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of geotiff has one value");
+            "--layers is all, needs top, bottom or a number (0 is the highest layer), because a pixel of geotiff has "
+            "one value");
     CHECK(arena("export map --format nav3 -o a.yaml" + husky_option).status == 2);
     CHECK(arena("export nowhere --format nav2 -o a.yaml" + husky_option).status == 4);
     CHECK(arena("export map --format nav2 -o none/a.yaml" + husky_option).status == 1);

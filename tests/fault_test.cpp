@@ -22,7 +22,7 @@ namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
-/// What the call throws, with @ for the folder: "" if nothing, "…?" if it is none of the library's errors.
+/// Returns what the call throws, with @ for the folder: "" if nothing, "…?" if it is not an error of the library.
 template <class Call>
 std::string complaint(const TempFolder& folder, const Call& call)
 {
@@ -49,7 +49,7 @@ std::string part_complaint(const TempFolder& folder, const std::string& part)
     return complaint(folder, [&] { load_parts(folder, "  - " + part + "\n"); });
 }
 
-/// A small map with a floor, a ball and a mesh, and the file that it was baked from.
+/// Bakes a small map with a floor, a ball and a mesh.
 void bake_small(const TempFolder& folder)
 {
     folder.write("house.obj", mesh_text::obj(hand::without(hand::box({1, 1, 1}), 0, 2)));
@@ -61,7 +61,8 @@ void bake_small(const TempFolder& folder)
     bake(scene, folder / "scene.yaml", folder / "map", options);
 }
 
-/// A good file cut at every step-th byte, or with that byte altered, gives a result or a FileError.
+/// Checks that a good file gives a result or a FileError if it is cut at every step-th byte, or if that byte is
+/// altered.
 enum class Harm { Cut, CutAndAltered };
 template <class Read>
 void check_harmed(const TempFolder& folder, const std::string& name, const std::string& good, std::size_t step,
@@ -91,7 +92,7 @@ void check_harmed(const TempFolder& folder, const std::string& name, const std::
 
 }  // namespace
 
-TEST_CASE("a scene that lies beyond where distances are exact is refused with its part")
+TEST_CASE("a scene beyond the range of exact distances is refused, and the part is named")
 {
     const TempFolder folder;
     const auto refused = [&](const std::string& part) {
@@ -113,7 +114,7 @@ TEST_CASE("a scene that lies beyond where distances are exact is refused with it
                       (folder / "a.yaml").string() + ": cannot be reached: Too many levels of symbolic links");
 }
 
-TEST_CASE("every mistake in a scene file is told by file, part, key, value and limit")
+TEST_CASE("every mistake in a scene file is reported with file, part, key, value and limit")
 {
     const TempFolder folder;
     folder.write("box.obj", mesh_text::obj(hand::box({1, 1, 1})));
@@ -122,7 +123,7 @@ TEST_CASE("every mistake in a scene file is told by file, part, key, value and l
         {"{name: tank, capsule: {radius: 1, length: 0}}", "capsule.length is 0, needs > 0 (line 4)"},
         {"{name: tank, cylinder: {radius: 1}}", "cylinder.length is missing"},
         {"{name: tank, cylinder: {radius: 1, length: 1, height: 1}}",
-         "cylinder.height is no known key; known: radius, length (line 4)"},
+         "cylinder.height is not a known key; known keys: radius, length (line 4)"},
         {"{name: tank, cylinder: 3}", "cylinder is 3, needs a mapping (key: value) (line 4)"},
         {"{name: tank, box: [1, 1, 0]}", "box has 0, needs > 0 (line 4)"},
         {"{name: tank, box: [1, -1, 1]}", "box has -1, needs > 0 (line 4)"},
@@ -139,12 +140,13 @@ TEST_CASE("every mistake in a scene file is told by file, part, key, value and l
         {"{name: tank, sphere: 1, xyz: [0, 0, .nan]}", "xyz is .nan, needs a finite number (line 4)"},
         {"{name: tank, sphere: 1, xyz: [0, 0]}", "xyz has 2 numbers, needs 3 (line 4)"},
         {"{name: tank, sphere: 1, rpy: [0, 0, 0], rpy_deg: [0, 0, 0]}",
-         "rpy_deg stands beside rpy, needs one of them (line 4)"},
+         "rpy_deg is given together with rpy, needs only one of them (line 4)"},
         {"{name: tank, sphere: 1, colour: red}",
-         "colour is no known key; known: name, label, xyz, rpy, rpy_deg, sphere (line 4)"},
+         "colour is not a known key; known keys: name, label, xyz, rpy, rpy_deg, sphere (line 4)"},
         {"{name: tank, sphere: 1, sides: up}",
-         "sides is no known key; known: name, label, xyz, rpy, rpy_deg, sphere (line 4)"},
-        {"{name: tank, sphere: 1, box: [1, 1, 1]}", "sphere stands beside box, needs one geometry per part (line 4)"},
+         "sides is not a known key; known keys: name, label, xyz, rpy, rpy_deg, sphere (line 4)"},
+        {"{name: tank, sphere: 1, box: [1, 1, 1]}",
+         "sphere is given together with box, needs one geometry per part (line 4)"},
         {"{name: tank, label: terrain}",
          "has no geometry, needs one of box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap (line 4)"},
         {"{name: tank, sphere: 1, label: grass}",
@@ -158,13 +160,13 @@ TEST_CASE("every mistake in a scene file is told by file, part, key, value and l
         {"{name: tank, mesh: box.obj, labels: terrain}", "labels is terrain, needs a list (line 4)"},
         {"{name: tank, mesh: box.obj, labels: [{node: a}]}", "labels: label is missing"},
         {"{name: tank, mesh: box.obj, labels: [{label: water}]}",
-         "labels: needs node, material, or both: both must match (line 4)"},
+         "labels: has neither node nor material, needs one of them or both (then both must match) (line 4)"},
         {"{name: tank, mesh: box.obj, labels: [{node: a, label: sea}]}",
          "labels: label is \"sea\", needs one of terrain, obstacle, water, ignore (line 4)"},
         {"{name: tank, mesh: none.obj}",
          "mesh cannot be used: @/none.obj: does not exist; is the path right? (line 4)"},
         {"{name: tank, mesh: .}", "mesh cannot be used: @/.: is a folder, needs a file (line 4)"},
-        {"{name: tank, mesh: [a]}", "mesh is a list, needs a text (line 4)"},
+        {"{name: tank, mesh: [a]}", "mesh is a list, needs text (line 4)"},
         {"{name: tank, octomap: none.bt}",
          "octomap cannot be used: @/none.bt: does not exist; is the path right? (line 4)"},
     };
@@ -175,10 +177,10 @@ TEST_CASE("every mistake in a scene file is told by file, part, key, value and l
           "@/scene.yaml: part 1: sphere is given twice (line 4)");
     CHECK(part_complaint(folder, "tank") == "@/scene.yaml: part 1: is tank, needs a mapping (key: value) (line 4)");
     CHECK(part_complaint(folder, "{name: a, sphere: 1}\n  - {name: a, sphere: 1}") ==
-          "@/scene.yaml: part \"a\": name is given to an earlier part too, needs to be unique (line 5)");
+          "@/scene.yaml: part \"a\": name is also the name of an earlier part, needs to be unique (line 5)");
 }
 
-TEST_CASE("a scene file that is none is told so")
+TEST_CASE("a file that is not a scene file is refused with the reason")
 {
     const TempFolder folder;
     const std::pair<std::string, std::string> files[] = {
@@ -192,9 +194,9 @@ TEST_CASE("a scene file that is none is told so")
         {"format: spawnfield-scene/1\n", "parts is missing"},
         {"format: spawnfield-scene/1\nparts: []\n", "parts is empty, needs at least one part (line 2)"},
         {"format: spawnfield-scene/1\nparts: {a: 1}\n", "parts is a mapping, needs a list (line 2)"},
-        {"format: spawnfield-scene/1\npart: []\n", "part is no known key; known: format, name, parts (line 2)"},
+        {"format: spawnfield-scene/1\npart: []\n", "part is not a known key; known keys: format, name, parts (line 2)"},
         {"format: spawnfield-scene/1\nparts: [{name: a, label: ignore, sphere: 1}]\n",
-         "has no geometry: all of it is ignored"},
+         "has no geometry: all parts are ignored"},
         {"format: spawnfield-scene/1\nparts: [\n", "line 3: end of sequence flow not found"},
     };
     for (const auto& [text, wanted] : files) {
@@ -204,7 +206,8 @@ TEST_CASE("a scene file that is none is told so")
     CHECK(complaint(folder, [&] { load_scene(folder / "none.yaml"); }) ==
           "@/none.yaml: does not exist; is the path right?");
     CHECK(complaint(folder, [&] { load_scene(folder.path()); }) ==
-          "@: is a folder without model.config and .sdf file, needs to be a model's");
+          "@: is a folder without model.config and without a .sdf file, so it is not a model; give the folder of a "
+          "model, or an SDF file");
     const fs::path good = folder.write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: a, sphere: 1}]\n");
     CHECK(complaint(folder, [&] { load_scene(good, {.up = 'y'}); }) ==
           "load_scene: up and scale are for a bare mesh; give them in @/scene.yaml (keys up, scale)");
@@ -213,7 +216,7 @@ TEST_CASE("a scene file that is none is told so")
           "load_scene: scale is nan, needs > 0 m per unit");
 }
 
-TEST_CASE("meshes that are empty, not finite, or none at all are refused by name")
+TEST_CASE("meshes that are empty, not finite or not meshes are refused by name")
 {
     const TempFolder folder;
     const auto mesh_complaint = [&](const std::string& name, const std::string& bytes) {
@@ -234,7 +237,7 @@ TEST_CASE("meshes that are empty, not finite, or none at all are refused by name
           "@/a.obj: node \"hill\": a vertex is (0, inf, 0), needs finite coordinates");
 }
 
-TEST_CASE("options out of their limits are refused by function, argument, value and limit")
+TEST_CASE("options beyond their limits are refused with function, argument, value and limit")
 {
     const TempFolder folder;
     const TestMap map = training_map();
@@ -267,7 +270,7 @@ TEST_CASE("options out of their limits are refused by function, argument, value 
           }) == "raster: bounds.min.y is nan, needs a finite number, m");
     CHECK(raster_complaint([](auto& o) {
               o.bounds = {{0, 0, 1}, {1, 1, 0}};
-          }).empty());  // two dimensions leave z aside
+          }).empty());  // in two dimensions z has no effect
     CHECK(raster_complaint([](auto& o) {
               o.dims = 3;
               o.bounds = {{0, 0, 1}, {1, 1, 0}};
@@ -292,7 +295,7 @@ TEST_CASE("options out of their limits are refused by function, argument, value 
     CHECK(complaint(folder, [&] { search(judge, search_options); }) == "search: max_failures is 0, needs >= 1");
 }
 
-TEST_CASE("an error about an argument can be told without the function")
+TEST_CASE("an error about an argument can be printed without the function")
 {
     CHECK(std::string(ArgumentError("raster", "step", 0, "> 0 m").message()) == "step is 0, needs > 0 m");
     CHECK(std::string(ArgumentError("raster", "needs dims 3").message()) == "needs dims 3");
@@ -309,7 +312,7 @@ TEST_CASE("a bake refuses bad options and a scene without terrain, and makes no 
         const std::string what = complaint(folder,
                                            [&] { bake(scene, folder / "scene.yaml", folder / "map", options); });
         CHECK_FALSE(fs::exists(folder / "map"));
-        CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);  // the scene file alone
+        CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);  // only the scene file
         return what;
     };
     CHECK(bake_complaint(floor, [](auto& o) { o.resolution = -0.1; }) ==
@@ -335,7 +338,7 @@ TEST_CASE("a bake refuses bad options and a scene without terrain, and makes no 
           "--allow-no-terrain");
 }
 
-TEST_CASE("a map folder that is cut short, altered, newer or no map at all is refused, and the file is named")
+TEST_CASE("a map folder that is cut short, altered, newer or not a map is refused, and the file is named")
 {
     const TempFolder folder;
     bake_small(folder);
@@ -345,7 +348,7 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
     for (const char* const name : {"geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"}) {
         const std::string good = bytes_of(map / name), file = std::string("map/") + name;
         folder.write(file, good.substr(0, good.size() / 2));
-        const std::string cut = "@/" + file + ": has " + std::to_string(good.size() / 2) + " bytes, map.yaml says " +
+        const std::string cut = "@/" + file + ": has " + std::to_string(good.size() / 2) + " bytes, map.yaml lists " +
                                 std::to_string(good.size()) + ": it was cut short or altered; bake the map again";
         CHECK(read() == cut);
         CHECK(complaint(folder, [&] { verify_map(map); }) == cut);
@@ -358,7 +361,7 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
                                     ": differs from its checksum in map.yaml: it was altered; bake the map again";
         CHECK(complaint(folder, [&] { verify_map(map); }) == altered);
         if (std::string(name) == "geometry.bin") {
-            const Map harmed = read_map(map);  // what is not touched is not read
+            const Map harmed = read_map(map);  // tiles that are not used are not read
             CHECK(complaint(folder, [&] { column_at(harmed.geometry, 0.1, 0.2); }) ==
                   "@/map/geometry.bin: is damaged (the checksum of a tile differs); bake the map again");
         }
@@ -383,20 +386,21 @@ TEST_CASE("a map folder that is cut short, altered, newer or no map at all is re
           "@/map/map.yaml: has format version 4, this program reads 2 and 3; bake the map again or use a newer "
           "spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
-    CHECK(read() == "@/map/map.yaml: is no map.yaml of spawnfield (its first line is not `format: spawnfield-map/3`)");
+    CHECK(read() ==
+          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/3`)");
     fs::remove(map / "map.yaml");
-    CHECK(read() == "@/map: is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
+    CHECK(read() == "@/map: is not a map: it has no map.yaml; make a map with `spawnfield bake SCENE -o MAP`");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");
     CHECK(complaint(folder, [&] { read_map(folder / "scene.yaml"); }) ==
           "@/scene.yaml: is a file, and a map is a folder; bake a scene first: spawnfield bake @/scene.yaml -o MAP");
 }
 
-TEST_CASE("a folder of another program that has a map.yaml too is not replaced")
+TEST_CASE("a folder of another program that also has a map.yaml is not replaced")
 {
     const TempFolder folder;
-    folder.write("map/map.yaml", "image: map.pgm\nresolution: 0.05\n");  // nav2's
+    folder.write("map/map.yaml", "image: map.pgm\nresolution: 0.05\n");  // a file of nav2
     CHECK(complaint(folder, [&] { bake_small(folder); }) ==
-          "@/map: exists and is no map; choose another name or remove it");
+          "@/map: exists and is not a map; choose another name or remove it");
     CHECK(bytes_of(folder / "map/map.yaml") == "image: map.pgm\nresolution: 0.05\n");
 }
 
@@ -408,7 +412,8 @@ TEST_CASE("geometry.bin and map.yaml give a result or a FileError wherever they 
     check_harmed(folder, "map/geometry.bin", bytes_of(map / "geometry.bin"), 7, [&](const fs::path& file) {
         const std::string bytes = bytes_of(file);
         if (bytes.size() < 24) return;
-        const Geometry geometry = open_geometry(file, head_checksum(bytes));  // as if map.yaml said so
+        // The checksum is the one that map.yaml would have.
+        const Geometry geometry = open_geometry(file, head_checksum(bytes));
         column_at(geometry, 0.1, 0.2);
     });
     check_harmed(folder, "map/map.yaml", bytes_of(map / "map.yaml"), 3, [&](const fs::path&) { read_map(map); });
@@ -440,7 +445,7 @@ TEST_CASE("input files give a result or a FileError wherever they are cut or alt
     check_harmed(folder, "grey.png", bytes_of(folder / "grey.png"), 1, [&](const fs::path&) {
         const Scene scene = load_parts(folder,
                                        "  - {name: a, heightmap: {file: grey.png, size: [1, 1], z: [0, 255]}}\n");
-        CHECK(scene.bounds().min.z() == 7);  // the whole picture or none
+        CHECK(scene.bounds().min.z() == 7);  // either the whole picture or an error
         CHECK(scene.triangles.size() == 128);
     });
     check_harmed(
@@ -460,7 +465,7 @@ TEST_CASE("input files give a result or a FileError wherever they are cut or alt
                  [](const fs::path& file) { load_robot(file.string()); });
 }
 
-TEST_CASE("a geometry file whose indices lead nowhere is refused, checksums or not")
+TEST_CASE("a geometry file with invalid indices is refused, even if its checksums are right")
 {
     const TempFolder folder;
     const Scene scene = load_parts(folder, "  - {name: a, label: terrain, plane: [1, 1]}\n  - {name: b, sphere: 1}\n");
@@ -471,7 +476,7 @@ TEST_CASE("a geometry file whose indices lead nowhere is refused, checksums or n
         changed.parts = geometry.impl().parts;
         changed.levels = geometry.impl().levels;
         std::string tiles(geometry.impl().bytes.view);
-        TileEntry* entry = nullptr;  // of the tile with the triangles and the sphere
+        TileEntry* entry = nullptr;  // the tile with the triangles and the sphere
         for (TileEntry& tile : changed.levels[0].tiles)
             if (tile.size > 0) entry = &tile;
         char* const tile = tiles.data() + entry->offset;

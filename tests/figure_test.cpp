@@ -12,7 +12,7 @@ using namespace spawnfield;
 
 namespace {
 
-/// A figure with a mark of each kind: 60 x 40 pixels.
+/// Returns a figure of 60 x 40 pixels with a mark of each kind.
 Figure each_mark()
 {
     Figure figure{{60, 40}, {}};
@@ -56,21 +56,21 @@ std::vector<std::uint8_t> from_base64(const std::string& text)
 
 }  // namespace
 
-TEST_CASE("marks are painted in their order, cut to the clip")
+TEST_CASE("marks are painted in their order, and cut at the clip rectangle")
 {
     const Image image = paint(each_mark());
     CHECK(image.size() == cv::Size(60, 40));
     CHECK(image(0, 0) == white);
     CHECK(image(5, 5) == rgb(0x336699));
     CHECK(image(14, 5) == rgb(0xff0000));
-    CHECK(image(10, 22) == rgb(0x00ff00));  // in the clip
-    CHECK(image(10, 30) == white);          // beyond it
+    CHECK(image(10, 22) == rgb(0x00ff00));  // inside the clip rectangle
+    CHECK(image(10, 30) == white);          // outside it
     CHECK(image(2, 22) == white);
     CHECK(image(22, 42) == rgb(0x0000ff));
     CHECK(image(10, 50) == rgb(0x123456));
 }
 
-TEST_CASE("an SVG has each mark as an element, texts as texts, and the image in full")
+TEST_CASE("an SVG has each mark as an element, texts as text, and the complete image")
 {
     tinyxml2::XMLDocument document;
     const std::string text = svg_of(each_mark());
@@ -94,15 +94,15 @@ TEST_CASE("an SVG has each mark as an element, texts as texts, and the image in 
     CHECK(pixels(0, 19) == rgb(0x336699));
 }
 
-TEST_CASE("a PDF is one page with texts and paths, and tells no date")
+TEST_CASE("a PDF is one page with texts and paths, and has no date")
 {
     const std::string pdf = pdf_of(each_mark()), page = pdf_page(pdf);
     CHECK(pdf.starts_with("%PDF-"));
     CHECK(pdf.find("Date") == std::string::npos);
     CHECK_THAT(pdf, Contains("/MediaBox [ 0 0 43.2 28.8 ]"));
     CHECK_THAT(page, Contains("(a \\074 b & c) Tj"));
-    CHECK_THAT(page, Contains("20 40 m\n40 40 l\n40 10 l\n20 10 l\nh\n"));  // y up, from below
-    CHECK_THAT(page, Contains("5 25 20 10 re\nW\nn\n"));                    // the clip
+    CHECK_THAT(page, Contains("20 40 m\n40 40 l\n40 10 l\n20 10 l\nh\n"));  // y points up, from the lower edge
+    CHECK_THAT(page, Contains("5 25 20 10 re\nW\nn\n"));                    // the clip rectangle
     CHECK(page.find(" rg\n") != std::string::npos);
 }
 
@@ -112,14 +112,14 @@ TEST_CASE("figures are the same bytes each time")
     CHECK(pdf_of(each_mark()) == pdf_of(each_mark()));
 }
 
-TEST_CASE("PDFs hold thousands of marks, and pages as large as pictures can be")
+TEST_CASE("PDFs can have thousands of marks, and pages as large as the largest pictures")
 {
     Figure figure{{16000, 16000}, {}};
     for (int k = 0; k < 20000; ++k) draw_dot(figure, {k * 0.8, 8000}, 2, white, ink, 1);
     CHECK(pdf_of(figure).size() > 10000);
 }
 
-TEST_CASE("a file's ending says its format, and others are refused")
+TEST_CASE("the extension of a file selects its format, and other extensions are refused")
 {
     CHECK(picture_format("a.png") == PictureFormat::Png);
     CHECK(picture_format("folder.x/a.SVG") == PictureFormat::Svg);

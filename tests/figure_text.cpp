@@ -40,10 +40,11 @@ std::vector<std::string> svg_texts(const std::string& svg)
 
 std::string pdf_page(const std::string& pdf)
 {
-    for (std::size_t at = pdf.find("stream\r\n"); at != std::string::npos; at = pdf.find("stream\r\n", at + 1)) {
-        const std::size_t start = at + 8, end = pdf.find("endstream", start);
+    for (std::size_t stream = pdf.find("stream\r\n"); stream != std::string::npos;
+         stream = pdf.find("stream\r\n", stream + 1)) {
+        const std::size_t start = stream + 8, end = pdf.find("endstream", start);
         const std::string content = inflated(pdf.substr(start, end - start));
         if (content.find(" cm\n") != std::string::npos) return content;
     }
-    throw std::runtime_error("no page in the PDF");
+    throw std::runtime_error("the PDF has no page content");
 }

@@ -13,14 +13,14 @@
 using namespace spawnfield;
 using enum Verdict;
 
-// How a robot would stand, where max_slope asks for it.
+// Tests of how a robot stands on the ground, which queries examine if max_slope is set.
 
 namespace {
 
 #if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 constexpr std::uint64_t scene_count = 60;
 #else
-constexpr std::uint64_t scene_count = 10;  // unoptimised or watched, the same would take many minutes
+constexpr std::uint64_t scene_count = 10;  // 60 would take many minutes without optimisation or with a sanitizer
 #endif
 constexpr bool all_scenes = scene_count >= 60;
 
@@ -45,7 +45,7 @@ Scene floor_scene()
     return scene;
 }
 
-/// Open ground that rises towards +x.
+/// Returns open ground that rises towards +x.
 Scene slope_scene(double degrees)
 {
     Scene scene;
@@ -54,7 +54,8 @@ Scene slope_scene(double degrees)
     return scene;
 }
 
-/// The mask's and the exhaustive verdict of one pose, which are the same; max_slope in degrees.
+/// Returns the verdict of one pose, after a check that the mask and the exhaustive query agree. max_slope is in
+/// degrees.
 Verdict verdict_of(const Scene& scene, const Robot& robot, const Pose& pose, double max_slope)
 {
     const TestMap map = map_of(scene);
@@ -66,7 +67,7 @@ Verdict verdict_of(const Scene& scene, const Robot& robot, const Pose& pose, dou
     return verdict;
 }
 
-/// A box on wheels whose contacts are as far from its origin.
+/// Returns a box robot whose contacts are at this distance from its origin.
 Robot robot_on(double x, double y)
 {
     Robot robot = load_robot("box:0.99,0.67,0.39");
@@ -82,7 +83,7 @@ Robot robot_of(const Shape& shape)
     return robot;
 }
 
-/// Farthest point of a polygon in a direction.
+/// Returns how far a polygon reaches in a direction.
 double extent(const Polygon2& polygon, const Vec2& direction)
 {
     double out = -off;
@@ -90,7 +91,7 @@ double extent(const Polygon2& polygon, const Vec2& direction)
     return out;
 }
 
-/// The hard case of a seed with some limit, and every other robot on contacts of its own.
+/// Returns the hard case of a seed with some limit of slope. Every second robot has its own contacts.
 HardCase case_with_limit(std::uint64_t seed, const HardOptions& hard_options = {})
 {
     HardCase hard = hard_case(seed, hard_options);
@@ -115,13 +116,13 @@ bool is_footing(Verdict verdict) { return verdict == Steep || verdict == Unstabl
 
 }  // namespace
 
-TEST_CASE("a robot stands on the corners of what is low of it, unless its file tells its contacts")
+TEST_CASE("a robot stands on the corners of its lowest parts, unless its file lists contacts")
 {
     const std::vector<Vec3> box = contacts_of(load_robot("box:1,0.6,0.4"));
     REQUIRE(box.size() == 4);
     for (const Vec3& contact : box) CHECK(contact.cwiseAbs().isApprox(Vec3(0.5, 0.3, 0.02), 1e-12));
 
-    // Corners that lie on a line but for rounding are none, on either side.
+    // Points that are on a line except for rounding are not corners, on either side.
     Robot cart;
     for (const double x : {-0.256, 0.256})
         for (const double y : {-0.285, 0.285})
@@ -136,7 +137,7 @@ TEST_CASE("a robot stands on the corners of what is low of it, unless its file t
     CHECK(extent(ball, {0, -1}) == Approx(std::sqrt(0.25 - 0.48 * 0.48)));
     const Polygon2 disc = lowest_footprint(robot_of({ShapeKind::Cylinder, {0.2, 0.1, 0}, pose_at(0, 0, 0.05)}));
     CHECK(extent(disc, {0.6, 0.8}) == Approx(0.2).epsilon(0.01));
-    CHECK(extent(disc, Vec2(1, 1).normalized()) < 0.21);  // round robots have no corners to hang over with
+    CHECK(extent(disc, Vec2(1, 1).normalized()) < 0.21);  // round robots have no corners that could hang over an edge
     const Polygon2 wheel = lowest_footprint(
         robot_of({ShapeKind::Cylinder, {0.165, 0.1, 0}, pose_at(0, 0.3, 0.165, 0, M_PI / 2)}));
     CHECK(extent(wheel, {1, 0}) == Approx(std::sqrt(0.165 * 0.165 - 0.145 * 0.145)).epsilon(0.03));
@@ -148,7 +149,7 @@ TEST_CASE("a robot stands on the corners of what is low of it, unless its file t
 
     Robot raised = load_robot("box:1,0.6,0.4@0,0,0.3");
     raised.parts.push_back(load_robot("box:0.2,0.2,0.2").parts[0]);
-    CHECK(extent(lowest_footprint(raised), {1, 0}) == Approx(0.1));  // the body is too high to carry it
+    CHECK(extent(lowest_footprint(raised), {1, 0}) == Approx(0.1));  // the body is too high to be a support
 
     CHECK(contacts_of(robot_on(0.2, 0.3)) == robot_on(0.2, 0.3).contacts);
     Robot bicycle = load_robot("box:1,0.6,0.4");
@@ -182,7 +183,7 @@ TEST_CASE("footprints of low parts are those of dense samples")
     }
 }
 
-TEST_CASE("on level ground a robot stands at any limit, and leaning a little too")
+TEST_CASE("on level ground a robot stands with any limit, also if it leans a little")
 {
     for (const Robot& robot :
          {husky(), load_robot("box:0.99,0.67,0.39"), robot_of({ShapeKind::Sphere, {0.3, 0, 0}, pose_at(0, 0, 0.3)})})
@@ -192,11 +193,11 @@ TEST_CASE("on level ground a robot stands at any limit, and leaning a little too
         }
     CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.1, 0.3), off) == Valid);
     CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.7, 0.3, M_PI / 2), 20) ==
-          Unstable);  // on its side: two contacts above two
+          Unstable);  // it lies on its side, with two contacts above the other two
     CHECK(verdict_of(floor_scene(), husky(), pose_at(1, 2, 0.7, 0.3, M_PI / 2), off) == Valid);
 }
 
-TEST_CASE("a slope is steep above the limit, at the limit it is not, whichever way the robot looks")
+TEST_CASE("a slope above the limit is steep, a slope at the limit is not, whichever way the robot faces")
 {
     for (const double slope : {5.0, 10.0, 20.0, 40.0})
         for (const double limit : {1.0, 5.0, 9.9, 10.0, 19.0, 20.0, 30.0, 45.0, 80.0})
@@ -211,7 +212,7 @@ TEST_CASE("a slope is steep above the limit, at the limit it is not, whichever w
     CHECK(verdict_of(slope_scene(60), own, pose_at(0, 0, 0.5, 0.4), 61) == Valid);
 }
 
-TEST_CASE("a robot that stands as its slope lies is asked about the slope all the same")
+TEST_CASE("the slope also counts for a robot that is tilted like its slope")
 {
     const Pose along = pose_at(0, 0, 0.2, 0, 0, -rad(20));
     CHECK(verdict_of(slope_scene(20), husky(), along, 25) == Valid);
@@ -236,13 +237,13 @@ TEST_CASE("on a beam between its wheels, on a pillar and over an edge a robot is
     CHECK(verdict_of(scene, load_robot("box:0.31,0.31,1"), pose_at(1.15, 0, 5.1), limit) == Unstable);
 
     CHECK(verdict_of(scene, husky(), pose_at(8.7, 0, 5.1), limit) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 5.1), limit) == Unstable);             // both front wheels over
-    CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), limit) == Unstable);  // one of them
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 5.1), limit) == Unstable);  // both front wheels are over the edge
+    CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), limit) == Unstable);  // one of them is
     CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), 80) == Unstable);
     CHECK(verdict_of(scene, husky(), pose_at(6, 0, 0.1), limit) == Valid);  // below the deck
     CHECK(verdict_of(scene, husky(), pose_at(9.6, 9.6, 0.1, 1), limit) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(9.7, 9.6, 0.1, 1), limit) == Unstable);  // the end of the world
-    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 7), limit) == Aerial);           // the first that applies
+    CHECK(verdict_of(scene, husky(), pose_at(9.7, 9.6, 0.1, 1), limit) == Unstable);  // the scene ends there
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 7), limit) == Aerial);           // the first verdict that applies
 }
 
 TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is not")
@@ -250,27 +251,27 @@ TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is no
     Scene scene = floor_scene();
     add_box(scene, {-8, -3, 0}, {8, -0.2, 0.1}, Label::Obstacle);
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 20) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 9) == Unstable);  // 9.9 degrees: no slope, an edge
+    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 9) ==
+          Unstable);  // 9.9 degrees, but this is an edge and not a slope
     Scene bench = floor_scene();
     hand::add_mesh(bench, Label::Obstacle, hand::moved(hand::rectangle(4, 2), {Vec3(0, -1.2, 0.4), Mat3::Identity()}),
                    {.kind = "plane"});
     CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), off) == Valid);
-    CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), 20) == Unstable);  // it would come down on it
+    CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), 20) == Unstable);  // a wheel would come down on it
     CHECK(verdict_of(bench, load_robot("box:0.6,0.5,0.2"), pose_at(0, -1, 0.1), 20) == Valid);  // below it
 }
 
-TEST_CASE("a sunk solid and a stack are one, and a thin crack under the origin does not matter")
+TEST_CASE("sunken and stacked solids count as one, and a thin crack under the origin does not matter")
 {
     Scene scene = floor_scene();
     add_box(scene, {-3, -3, -0.5}, {3, 3, 0.05});                  // a plate sunk into the floor
-    add_box(scene, {-3, -3, 0.05}, {3, 3, 0.1}, Label::Obstacle);  // and one upon it
-    add_box(scene, {-0.1, -0.1, 0.1}, {0.1, 0.1, 0.13});           // terrain to stand above
+    add_box(scene, {-3, -3, 0.05}, {3, 3, 0.1}, Label::Obstacle);  // and one on top of it
+    add_box(scene, {-0.1, -0.1, 0.1}, {0.1, 0.1, 0.13});           // terrain below the origin
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 10) == Valid);
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 1) == Unstable);  // 3 cm lower than the ground
 }
 
-TEST_CASE(
-    "frames, rails and pillars of a bridge that is terrain throughout are found out, its deck and the ground are not")
+TEST_CASE("on a bridge that is terrain as a whole, frames, rails and pillars are unstable; deck and ground are not")
 {
     Scene scene = floor_scene();
     const auto boxes = [](std::initializer_list<std::pair<Vec3, Vec3>> all) {
@@ -324,14 +325,14 @@ TEST_CASE("a limit out of its range is wrong usage, named with its value and lim
     }
 }
 
-TEST_CASE("a footing only takes valid poses, fewer the larger the limit, and takes no further exact check")
+TEST_CASE("footings only remove valid poses, fewer with a larger limit, and need no additional exact checks")
 {
     std::size_t steep = 0, unstable = 0, valid = 0, changed = 0, regained = 0;
     for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
         const HardCase hard = case_with_limit(seed);
         const TestMap map = compare::map_of_case(hard);
         const RasterOptions options = raster_options(map, hard, 40);
-        std::vector<RasterResult> results;  // from no limit to ever smaller ones
+        std::vector<RasterResult> results;  // from no limit to smaller and smaller limits
         for (const double limit : {off, 1.5, 1.0, 0.6, 0.35, 0.2, 0.1, 0.01}) {
             results.push_back(raster(Judge(map, hard.robot, {.max_slope = limit}), options));
         }
@@ -353,7 +354,7 @@ TEST_CASE("a footing only takes valid poses, fewer the larger the limit, and tak
     if (all_scenes) CHECK((steep > 1000 && unstable > 1000 && valid > 1000));
 }
 
-TEST_CASE("a mirrored scene mirrors footings")
+TEST_CASE("a mirrored scene mirrors the footings")
 {
     std::size_t footings = 0, valid = 0, differences = 0;
     for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
@@ -428,7 +429,7 @@ TEST_CASE("with footings every query gives the exhaustive verdicts in random har
     CHECK(all.collisions.verdicts[Unstable] + all.collisions.verdicts[Steep] == 0);
 }
 
-TEST_CASE("samples stand, and footings are the same bytes at any number of threads")
+TEST_CASE("samples have a footing, and footings are the same bytes with any number of threads")
 {
     for (std::uint64_t seed = 1; seed <= scene_count / 10; ++seed) {
         const HardCase hard = case_with_limit(seed);
@@ -453,7 +454,7 @@ TEST_CASE("samples stand, and footings are the same bytes at any number of threa
     }
 }
 
-TEST_CASE("where all is too steep, a sample gives none, and calls nothing full that is not proven")
+TEST_CASE("where everything is too steep, sample finds nothing, and reports nothing as full without a proof")
 {
     const TestMap map = map_of(slope_scene(20));
     const Robot robot = load_robot("box:0.4,0.4,0.3");

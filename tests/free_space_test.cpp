@@ -13,7 +13,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// The cell of a level that holds (x, y): its tile and its number there.
+/// The cell of a level that contains (x, y): its tile and its index there.
 struct CellAt {
     BoundsTile tile;
     std::uint32_t cell;
@@ -29,7 +29,7 @@ CellAt cell_at(const SolidBounds& bounds, std::size_t level, double x, double y)
             row % BoundsTile::side * BoundsTile::side + col % BoundsTile::side};
 }
 
-/// Whether z may be solid by the bounds.
+/// Returns whether z may be solid according to the bounds.
 bool may_be_solid(const CellAt& at, double z)
 {
     if (at.tile.head == nullptr || z > at.tile.height(at.tile.tops[at.cell])) return false;
@@ -56,7 +56,7 @@ Shape box_at(const Vec3& size, const Vec3& centre)
 
 }  // namespace
 
-TEST_CASE("bounds of every level hold all that is solid anywhere in their cells")
+TEST_CASE("the bounds of every level contain everything that is solid in their cells")
 {
     std::size_t solid_points = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -78,7 +78,7 @@ TEST_CASE("bounds of every level hold all that is solid anywhere in their cells"
     CHECK(solid_points > 50000);
 }
 
-TEST_CASE("a cell's top is as high as a ball over it, to the tile's step and not more")
+TEST_CASE("the top of a cell is as high as a ball over it, at most one height step of the tile higher")
 {
     Scene scene;
     Shape ball;
@@ -98,17 +98,17 @@ TEST_CASE("a cell's top is as high as a ball over it, to the tile's step and not
         }
 }
 
-TEST_CASE("cells that hold nothing say so")
+TEST_CASE("empty cells are marked as empty")
 {
     const TestMap map = map_of(floor_scene(), 0.5, {Vec3(-10, -10, 0), Vec3(10, 10, 1)});
     for (double x = -9.75; x < 10; x += 0.5)
         for (double y = -9.75; y < 10; y += 0.5) {
-            const bool near = std::abs(x) < 5.3 && std::abs(y) < 5.3;  // a touching cell holds the edge
+            const bool near = std::abs(x) < 5.3 && std::abs(y) < 5.3;  // a cell that touches the edge counts, too
             CHECK(may_be_solid(cell_at(map.solid_bounds, 0, x, y), 0) == near);
         }
 }
 
-TEST_CASE("a robot over a floor is free, in it blocked, and at its height undecided")
+TEST_CASE("a robot above a floor is free, inside it blocked, and exactly on it a candidate")
 {
     const TestMap map = map_of(floor_scene(), 0.05);
     const FreeSpace space(map.solid_bounds, load_robot("box:0.6,0.4,0.3"));
@@ -117,7 +117,7 @@ TEST_CASE("a robot over a floor is free, in it blocked, and at its height undeci
         CHECK(space.proof_of({0.123, -0.4, 5}, yaw) == Proof::Free);
         CHECK(space.proof_of({0.123, -0.4, -0.1}, yaw) == Proof::Blocked);
         CHECK(space.proof_of({0.123, -0.4, 0}, yaw) == Proof::Candidate);
-        CHECK(space.proof_of({20, 0, 0}, yaw) == Proof::Free);  // nothing of the scene lies beyond the map
+        CHECK(space.proof_of({20, 0, 0}, yaw) == Proof::Free);  // the scene has nothing beyond the map
     }
     CHECK(space.proof_at_every_yaw({0.1, 0.1, 0.01}) == Proof::Free);
     CHECK(space.proof_at_every_yaw({0.1, 0.1, -0.1}) == Proof::Blocked);
@@ -125,7 +125,7 @@ TEST_CASE("a robot over a floor is free, in it blocked, and at its height undeci
     CHECK(space.proof_of(Pose{{0, 0, 0.05}, rotation_from_rpy(0.3, 0.2, 1)}) == Proof::Candidate);
 }
 
-TEST_CASE("parts of a robot count by themselves, and what hangs above them too")
+TEST_CASE("each part of a robot counts by itself, and so does what hangs above it")
 {
     Scene scene = floor_scene();
     hand::add_shape(scene, Label::Obstacle, box_at({2, 2, 0.2}, {0, 0, 1}));  // a roof from 0.9 to 1.1
@@ -139,12 +139,12 @@ TEST_CASE("parts of a robot count by themselves, and what hangs above them too")
     masted.parts.push_back(load_robot("box:0.17,0.17,1.2@-0.2,0,0.6").parts[0]);
     const FreeSpace space(map.solid_bounds, masted);
     CHECK(space.proof_of({0, 0, 0.05}, 0) == Proof::Blocked);
-    CHECK(space.proof_of({1.1, 0, 0.05}, 0) == Proof::Blocked);  // the mast reaches under the roof's edge at x = 1
+    CHECK(space.proof_of({1.1, 0, 0.05}, 0) == Proof::Blocked);  // the mast reaches below the edge of the roof at x = 1
     CHECK(space.proof_of({1.4, 0, 0.05}, 0) == Proof::Free);     // body and mast are clear
     CHECK(space.proof_of({-1.15, 0, 0.05}, 0) == Proof::Free);   // the body is under the roof, the mast beside it
 }
 
-TEST_CASE("a map that is smaller than its scene proves nothing beyond its rim")
+TEST_CASE("a map that is smaller than its scene proves nothing beyond its edge")
 {
     Scene scene = floor_scene();
     hand::add_shape(scene, Label::Obstacle, box_at({1, 1, 1}, {3, 0, 0.5}));
@@ -155,7 +155,7 @@ TEST_CASE("a map that is smaller than its scene proves nothing beyond its rim")
     CHECK(space.proof_of({8, 0, 0.1}, 0) == Proof::Candidate);
 }
 
-TEST_CASE("footprints hold the part from outside and from inside")
+TEST_CASE("footprints bound a part from outside and from inside")
 {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         const Robot robot = random_robot(seed);
@@ -176,7 +176,7 @@ TEST_CASE("footprints hold the part from outside and from inside")
             const Bounds box = robot.bounds();
             const double reach = std::max(box.max.norm(), box.min.norm());
             for (int i = 0; i < 200; ++i) {
-                // A grain of 0.1 mm: in the part or not, by the tests' own decision.
+                // A grain of 0.1 mm is inside the part or not, by the independent decision.
                 const Vec3 at(random.between(-reach, reach), random.between(-reach, reach),
                               random.between(box.min.z() - 0.1, box.max.z() + 0.1));
                 Scene grain;

@@ -18,7 +18,7 @@
 
 using namespace spawnfield;
 
-// Which ground counts, and how high above it the robot is: z limits, floors, --offset auto.
+// Tests of which ground counts and how high the robot is above it: z limits, floors, --offset auto.
 
 namespace {
 
@@ -46,7 +46,7 @@ TerrainMap terrain_of(const Map& map, double cell = 0.1)
     return rasterize_terrain(map.geometry, frame_around(map.bounds, cell), 1, {}, map.z_limits);
 }
 
-/// The height of the layer that a pose of a 2D raster stands on.
+/// Returns the height of the layer on which a pose of a 2D raster stands.
 double layer_height(const RasterPose& pose, const RasterResult& raster) { return pose.z - raster.offset; }
 
 std::vector<RasterPose> filtered(const RasterResult& raster, const ZRange& z)
@@ -66,7 +66,7 @@ bool same_poses(const std::vector<RasterPose>& a, const std::vector<RasterPose>&
 
 }  // namespace
 
-TEST_CASE("a 2D raster within heights has just the poses whose layers lie there, with the same verdicts")
+TEST_CASE("a 2D raster with a z range has exactly the poses whose layers are in the range, with the same verdicts")
 {
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
         const HardCase hard = hard_case(seed);
@@ -91,7 +91,7 @@ TEST_CASE("a 2D raster within heights has just the poses whose layers lie there,
     }
 }
 
-TEST_CASE("a map's z limits make poses beyond them outside and change no other verdict")
+TEST_CASE("z limits of a map make poses beyond them outside, and change no other verdict")
 {
     std::size_t outside = 0, inside = 0;
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
@@ -122,7 +122,7 @@ TEST_CASE("a map's z limits make poses beyond them outside and change no other v
     CHECK(inside > 1000);
 }
 
-TEST_CASE("a 3D raster and a search of a map with z limits judge as check does")
+TEST_CASE("in a map with z limits a 3D raster and a search give the verdicts of check")
 {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         const HardCase hard = hard_case(seed);
@@ -152,7 +152,7 @@ TEST_CASE("a 3D raster and a search of a map with z limits judge as check does")
     }
 }
 
-TEST_CASE("spawns stand on layers within the heights of the map, the query and the region")
+TEST_CASE("spawns stand on layers within the z limits of the map, the query and the region")
 {
     const TempFolder folder;
     TestMap map = map_of(tower_scene(folder));
@@ -190,7 +190,7 @@ TEST_CASE("spawns stand on layers within the heights of the map, the query and t
     }
 }
 
-TEST_CASE("a sample within heights is proven full, and dense probing finds no room")
+TEST_CASE("a sample with a z range is proven full, and dense probing finds no room")
 {
     const TempFolder folder;
     TestMap map = map_of(tower_scene(folder));
@@ -211,7 +211,7 @@ TEST_CASE("a sample within heights is proven full, and dense probing finds no ro
                 if (far) CHECK_FALSE(exhaustive.is_valid({p, Mat3::Identity()}));
             }
         }
-    options.z = {3.2, 5};  // only a crate, no ground
+    options.z = {3.2, 5};  // contains only a crate and no ground
     const SpawnList none = sample(judge, options);
     CHECK(none.spawns.empty());
     CHECK(none.is_full);
@@ -236,7 +236,7 @@ TEST_CASE("solid space beyond z limits still collides")
     CHECK(judge.check({{0, 3, 0.1}, Mat3::Identity()}).verdict == Verdict::Valid);
 }
 
-TEST_CASE("floors are the heights of a tower's slabs, and a ramp belongs to the lower floor up to half its height")
+TEST_CASE("floors are the heights of the slabs of a tower, and a ramp belongs to the lower floor up to half its height")
 {
     const TempFolder folder;
     const TestMap map = map_of(tower_scene(folder));
@@ -248,7 +248,8 @@ TEST_CASE("floors are the heights of a tower's slabs, and a ramp belongs to the 
     CHECK(floors[1].z.low < floors[0].z.high + 1e-6);
     CHECK(std::isinf(floors[0].z.low));
     CHECK(std::isinf(floors[2].z.high));
-    // The lower floors share the ramp, half each; ground with less than 1.5 m up to the ramp is not counted.
+    // The two lower floors share the ramp, half each. Ground with less than 1.5 m of height below the ramp is not
+    // counted.
     const double run = 8 * std::cos(0.35877067), ramp = 2 * run;
     CHECK(std::abs(floors[2].area - 100) < 2);
     CHECK(std::abs(floors[1].area - (100 + ramp / 2)) < 3);
@@ -303,7 +304,7 @@ TEST_CASE("the automatic offset puts the lowest point 0.1 m above the layer")
                       "sample: offset is 1.1, needs at most max_height, 1 m: such poses are aerial");
 }
 
-TEST_CASE("whatever the options, check with the same options calls every pose that sample wrote valid")
+TEST_CASE("with the same options, check finds every pose of sample valid")
 {
     const Arena arena;
     arena.write("rover.yaml",
@@ -317,7 +318,7 @@ TEST_CASE("whatever the options, check with the same options calls every pose th
         const ProgramRun drawn = arena("sample " + common + " -n 60 --yaw random --min-distance 0.3 -o spawns.csv");
         INFO(drawn.err);
         REQUIRE(drawn.status == 0);
-        std::string of_check = common;  // check has no --offset
+        std::string of_check = common;  // without --offset, which check does not have
         if (const std::size_t at = of_check.find("--offset"); at != std::string::npos) {
             const std::size_t end = of_check.find(' ', at + 9);
             of_check.erase(at, end == std::string::npos ? end : end - at);
@@ -329,7 +330,7 @@ TEST_CASE("whatever the options, check with the same options calls every pose th
     }
 }
 
-TEST_CASE("the commands keep to heights and floors, and pictures and maps of one floor are one command each")
+TEST_CASE("all commands respect --z and --floor, so a picture or a map of one floor needs one command")
 {
     const TempFolder folder;
     const auto run = [&](const std::string& arguments) { return run_program(folder, arguments); };
@@ -369,7 +370,7 @@ TEST_CASE("the commands keep to heights and floors, and pictures and maps of one
         {"--floor 3", "--floor is 3; the map has 3 floors: 0 at 0 m, 1 at 3 m, 2 at 6 m"},
         {"--floor 1 --z 0:2", "--floor and --z (or six numbers for a box) both limit heights; give one of them"},
         {"--z 2", "--z is \"2\", needs LOW:HIGH in m, for example 5:8 or 5:"},
-        {"--z 3:2", "--z is \"3:2\": the lower height comes first"},
+        {"--z 3:2", "--z is \"3:2\"; give the lower height first"},
         {"--z 0:2 --region=0,0,0,1,1,1", "--z and the six numbers of --region both limit heights; give one of them"},
         {"--offset up", "--offset: \"up\""}};
     for (const auto& [options, message] : refusals) {
@@ -380,7 +381,7 @@ TEST_CASE("the commands keep to heights and floors, and pictures and maps of one
     CHECK(run("raster" + robot + "--dims 3 --step 1 --floor 1").status == 2);
 }
 
-TEST_CASE("a map baked with z limits keeps to them in every command")
+TEST_CASE("z limits of a bake apply in every command")
 {
     const TempFolder folder;
     const auto run = [&](const std::string& arguments) { return run_program(folder, arguments); };
@@ -402,7 +403,8 @@ TEST_CASE("a map baked with z limits keeps to them in every command")
     REQUIRE(run("export" + robot + "--format nav2 --resolution 0.5 -o limited.yaml").status == 0);
     REQUIRE(run(scene + "-o whole").status == 0);
     REQUIRE(run("export whole" + husky_option + "--format nav2 --z 2.5:5 --resolution 0.5 -o whole.yaml").status == 0);
-    // The same picture, but that an origin above 5 m, on the upper end of the ramp, is outside the map: unknown.
+    // The same picture, except that an origin above 5 m (on the upper end of the ramp) is outside the map, and so
+    // unknown.
     const std::string limited = bytes_of(folder / "limited.pgm"), whole = bytes_of(folder / "whole.pgm");
     REQUIRE(limited.size() == whole.size());
     std::size_t outside = 0;
@@ -420,7 +422,7 @@ TEST_CASE("a map baked with z limits keeps to them in every command")
     CHECK(run(scene + "-o off --z 50:60").status == 4);
 }
 
-TEST_CASE("a map of format version 2 is read: without z limits, its floors found anew")
+TEST_CASE("a map of format version 2 is read: it has no z limits, and its floors are found again")
 {
     const TempFolder folder;
     REQUIRE(
@@ -440,7 +442,7 @@ TEST_CASE("a map of format version 2 is read: without z limits, its floors found
     CHECK(run_program(folder, "sample map" + husky_option + "-n 5 --floor 2").status == 0);
 }
 
-TEST_CASE("the offset is found by itself, and one that cannot work ends at once with status 3")
+TEST_CASE("the offset is chosen automatically, and an impossible one ends at once with status 3")
 {
     const Arena arena;
     arena.write("tall.yaml", "format: spawnfield-robot/1\nname: tall\nparts:\n  - {box: [0.6, 0.4, 0.8]}\n");
@@ -475,7 +477,7 @@ TEST_CASE("the offset is found by itself, and one that cannot work ends at once 
     CHECK(arena("sample map -n 5 --robot box:0.3,0.3,0.3@0,0,-1.5 --max-height 1.75 -o high.csv").status == 0);
 }
 
-TEST_CASE("the preview of a roofed world has a picture for each floor")
+TEST_CASE("the preview of a world with roofs has a picture of each floor")
 {
     const TempFolder folder;
     const auto preview_of = [&](const std::string& map) {
@@ -492,7 +494,8 @@ TEST_CASE("the preview of a roofed world has a picture for each floor")
     bake_parts("roofed", floor + "  - {name: roof, label: obstacle, box: [20, 10, 0.2], xyz: [0, 0, 5]}\n");
     bake_parts("two", floor + "  - {name: upper, label: terrain, box: [20, 10, 0.2], xyz: [0, 0, 3.9]}\n");
     const cv::Mat open = preview_of("open"), roofed = preview_of("roofed"), two = preview_of("two");
-    // The roof is cut away: the roofed picture shows the same floor and crate as the open one, under another title.
+    // The roof is cut away, so the picture with the roof shows the same floor and crate as the open one, under another
+    // title.
     REQUIRE(open.size() == roofed.size());
     const cv::Rect plot(0, 150, open.cols * 3 / 4, open.rows / 2);
     cv::Mat difference;

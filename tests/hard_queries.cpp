@@ -5,7 +5,7 @@
 
 using namespace spawnfield;
 
-// The queries of a hard case: small rasters on and off the raster's lattice, poses near the ground, spawns.
+// The queries of a hard case: small rasters on and off the lattice of the raster, poses near the ground, and spawns.
 
 namespace compare {
 namespace {
@@ -19,7 +19,7 @@ RasterOptions raster_options(const HardCase& hard, Random& random)
     return options;
 }
 
-/// As many steps to the map's width, incommensurable with any resolution.
+/// Returns a step with which about `cols` columns cover the width of the map. It is not a multiple of the resolution.
 double wide_step(const TestMap& map, int cols)
 {
     return std::max(1e-3, (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / (cols - 0.29));
@@ -31,7 +31,7 @@ void shift_columns(Bounds& bounds, double by)
     bounds.max.head<2>().array() += by;
 }
 
-/// Across the map; at cells' corners; at their centres; some cells apart.
+/// Compares rasters across the whole map, at corners of cells, at centres of cells, and with steps of several cells.
 Tally rasters_2d(const TestMap& map, const TwoJudges& judges, const HardCase& hard, Random& random)
 {
     Tally tally;
@@ -48,7 +48,7 @@ Tally rasters_2d(const TestMap& map, const TwoJudges& judges, const HardCase& ha
     return tally;
 }
 
-/// Heights of a crop that are few enough.
+/// Limits the raster to about `heights` heights.
 void limit_heights(RasterOptions& options, const HardCase& hard, Random& random, int heights)
 {
     options.dims = 3;
@@ -71,7 +71,7 @@ Tally rasters_3d(const TestMap& map, const TwoJudges& judges, const HardCase& ha
     return of_raster(judges, options);
 }
 
-/// Steps that are fine, and so wide that none is near most layers.
+/// Compares snapped rasters with fine steps, and with steps so wide that most layers have no step near them.
 Tally rasters_snapped(const TestMap& map, const HardCase& hard, Random& random)
 {
     Tally tally;
@@ -116,7 +116,7 @@ Options spawn_options(const HardCase& hard, Random& random)
     return options;
 }
 
-/// Points to avoid, anywhere in the map.
+/// Returns points to avoid, anywhere in the map.
 std::vector<AvoidedPoints> some_points(const TestMap& map, Random& random)
 {
     AvoidedPoints out;
@@ -137,7 +137,7 @@ Tally samples(const TestMap& map, const HardCase& hard, Random& random)
     return of_sample({map, hard.robot, limits}, options);
 }
 
-/// Through the metre above the lowest ground, or nearly all draws would be aerial.
+/// Compares searches in the lowest 2.5 m of the map. Otherwise nearly all draws would be aerial.
 Tally searches(const TestMap& map, const TwoJudges& judges, const HardCase& hard, Random& random)
 {
     SearchOptions options = spawn_options<SearchOptions>(hard, random);
@@ -147,7 +147,7 @@ Tally searches(const TestMap& map, const TwoJudges& judges, const HardCase& hard
     return of_search(judges, options);
 }
 
-/// Whether some hundred draws are likely to give a spawn: a sampler that finds none tries long.
+/// Returns whether a few hundred draws are likely to give a spawn. A sampler that finds none tries for a long time.
 bool has_room(const Tally& rasters) { return 20 * rasters.verdicts[Verdict::Valid] > rasters.poses; }
 
 }  // namespace
@@ -159,13 +159,13 @@ std::vector<Pose> standing_poses(const TestMap& map, const HardCase& hard, const
     options.layers = {};
     options.bounds = crop;
     options.step = std::max(1e-3, (crop.max.x() - crop.min.x()) / 9);
-    const std::vector<RasterPose> stand = raster(Judge(map, hard.robot), options).poses;
+    const std::vector<RasterPose> raster_poses = raster(Judge(map, hard.robot), options).poses;
     std::vector<Pose> poses;
-    for (std::size_t i = 0; i < count && !stand.empty(); ++i) {
-        const RasterPose& at = stand[std::size_t(random.below(int(stand.size())))];
-        const double x = at.x + (random.chance(0.5) ? random.between(-0.1, 0.1) : 0),
-                     y = at.y + (random.chance(0.3) ? random.between(-1e-5, 1e-5) : 0);
-        const double z = at.z + (random.chance(0.3) ? random.between(-1e-4, 1e-4) : 0);
+    for (std::size_t i = 0; i < count && !raster_poses.empty(); ++i) {
+        const RasterPose& pose = raster_poses[std::size_t(random.below(int(raster_poses.size())))];
+        const double x = pose.x + (random.chance(0.5) ? random.between(-0.1, 0.1) : 0),
+                     y = pose.y + (random.chance(0.3) ? random.between(-1e-5, 1e-5) : 0);
+        const double z = pose.z + (random.chance(0.3) ? random.between(-1e-4, 1e-4) : 0);
         const double lean = random.chance(0.3) ? random.between(0, 0.3) : 0, roll = random.between(-lean, lean),
                      pitch = random.between(-lean, lean);
         const double yaw = random.chance(0.3) ? hard.yaws[0] : random.between(-M_PI, M_PI);
@@ -198,7 +198,8 @@ bool is_filled_open(const Scene& scene)
                        [&](const Piece& piece) { return piece.solid && scene.parts[piece.part].open_edges > 0; });
 }
 
-/// Off the lattice by chance: along borders of faces the tests' own decision may be either side's.
+/// Returns poses at random distances from the lattice, because on borders of faces the independent decision may take
+/// either side.
 std::vector<Pose> unaligned_poses(const TestMap& map, const HardCase& hard)
 {
     Random random{hard.seed + 31};

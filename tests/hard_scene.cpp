@@ -10,29 +10,30 @@ using namespace spawnfield;
 
 namespace {
 
-// One draw per call of a function or within braces: arguments and operands are evaluated in any order.
+// Function calls contain at most one draw, because C++ may evaluate arguments and operands in any order. Braced lists
+// are evaluated from left to right.
 
-/// A scene that grows.
+/// A scene while it is built.
 struct Site {
     Random random;
-    double cell = 0.1;  ///< m; the raster's
+    double cell = 0.1;  ///< m; cell size of the raster
     double half = 10;   ///< m; from the middle to the border
     bool razor = true;
-    std::vector<double> heights = {};  ///< above a level floor, where robots at the offset just touch, m
+    std::vector<double> heights = {};  ///< m above a level floor at which robots at the offset just touch
     Scene scene = {};
 };
 
-/// Smaller worlds hold smaller things.
+/// Returns the scale of things: smaller worlds contain smaller things.
 double scale(const Site& site) { return std::clamp(site.half / 6, 0.4, 1.2); }
 
-/// About half of them on a border of cells.
+/// Returns the coordinate, in about half of the calls moved to a border of cells.
 double snapped(Site& site, double place)
 {
     if (site.random.chance(0.5)) return place;
     return -site.half + std::round((place + site.half) / site.cell) * site.cell;
 }
 
-/// A length, about half of them whole cells.
+/// Returns a length, in about half of the calls a whole number of cells.
 double length(Site& site, double low, double high)
 {
     const double value = site.random.between(low, high) * scale(site);
@@ -48,7 +49,7 @@ double gap(Site& site)
     return site.random.chance(0.5) ? size : -size;
 }
 
-/// Of a top or a ceiling above its ground.
+/// Returns the height of a top or a ceiling above its ground.
 double height(Site& site, double low, double high)
 {
     if (site.random.chance(0.4)) {
@@ -58,7 +59,7 @@ double height(Site& site, double low, double high)
     return length(site, low, high);
 }
 
-/// The top of something at (x, y), rather the lowest; 0 where there is nothing.
+/// Returns the top of some terrain at (x, y), mostly the lowest; 0 if there is none.
 double ground(Site& site, double x, double y)
 {
     const slow::Column column = slow::column(site.scene, x, y);
@@ -70,7 +71,7 @@ double ground(Site& site, double x, double y)
     return site.random.chance(0.7) ? tops.front() : tops[std::size_t(site.random.below(int(tops.size())))];
 }
 
-/// A place on the ground.
+/// Returns a place on the ground.
 Vec3 spot(Site& site)
 {
     const double reach = 0.85 * site.half;
@@ -81,7 +82,7 @@ Vec3 spot(Site& site)
 
 Vec3 above(Vec3 place, double lift) { return place + Vec3(0, 0, lift); }
 
-/// Either on the ground by its foot, or anywhere between.
+/// Returns a place at the height `standing` above the ground, or at any height between `low` and `high`.
 Vec3 lifted_spot(Site& site, double standing, double low, double high)
 {
     const double lift = site.random.chance(0.5) ? standing : site.random.between(low, high);
@@ -106,7 +107,7 @@ Mat3 tilted(Site& site, double limit)
 
 Mat3 upright_or_tilted(Site& site) { return site.random.chance(0.6) ? turned(site) : tilted(site, M_PI); }
 
-/// A box between two corners, as a primitive or a mesh.
+/// Adds a box between two corners, as a primitive or a mesh.
 void add_block(Site& site, Label label, const Vec3& low, const Vec3& high)
 {
     const Vec3 size = high - low;
@@ -117,7 +118,7 @@ void add_block(Site& site, Label label, const Vec3& low, const Vec3& high)
         hand::add_mesh(site.scene, label, hand::moved(hand::box(size), place));
 }
 
-/// Level or upright rectangle without thickness.
+/// Adds a level or upright rectangle without thickness.
 void add_sheet(Site& site, Label label, double size_x, double size_y, const Pose& pose)
 {
     hand::Mesh mesh = hand::moved(hand::rectangle(size_x, size_y), pose);
@@ -141,7 +142,7 @@ void add_floor(Site& site)
     }
 }
 
-/// Smooth hills, or a field of noise in steps of a cell.
+/// Adds smooth hills or random noise, in some scenes with heights that are whole multiples of a cell.
 void add_heightmap(Site& site)
 {
     const int cells = site.random.below(2) == 0 ? 8 : 13;
@@ -155,7 +156,7 @@ void add_heightmap(Site& site)
     hand::add_mesh(site.scene, Label::Terrain, mesh, {.kind = "heightmap", .sides_up = site.random.chance(0.4)});
 }
 
-/// Relief with patches of obstacle and water, some faces wound the other way round.
+/// Adds a relief with patches of obstacle and water. Some faces have the opposite winding.
 void add_patchwork(Site& site)
 {
     const double rise = site.random.between(0, 0.4);
@@ -171,7 +172,7 @@ void add_patchwork(Site& site)
     hand::add_mesh(site.scene, Label::Terrain, mesh, options);
 }
 
-/// Slabs at heights of their own, next to each other on borders of cells.
+/// Adds slabs of different heights next to each other, with borders on borders of cells.
 void add_terraces(Site& site)
 {
     const int tiles = 2 + site.random.below(3);
@@ -241,7 +242,7 @@ void add_wall(Site& site)
         hand::add_mesh(site.scene, Label::Obstacle, hand::moved(hand::box({along, 0.02, std::abs(tall) + 0.1}), place));
         return;
     }
-    const bool over_x = site.random.chance(0.5);  // its face on a border of cells, mostly
+    const bool over_x = site.random.chance(0.5);  // the face is mostly on a border of cells
     const Vec3 size = {over_x ? along : 0.02, over_x ? 0.02 : along, std::max(tall, 0.02)};
     add_block(site, Label::Obstacle, low, low + size);
 }
@@ -278,7 +279,7 @@ void add_stairs(Site& site)
         add_block(site, Label::Terrain, low + Vec3(run * i, 0, 0), low + Vec3(run * (i + 1), wide, rise * (i + 1)));
 }
 
-/// A tilted plate, or a wedge.
+/// Adds a tilted plate or a wedge.
 void add_ramp(Site& site)
 {
     const double along = length(site, 1, 4), wide = length(site, 0.5, 2), slope = site.random.between(0.05, 0.9);
@@ -301,14 +302,14 @@ void add_storey(Site& site)
     if (site.random.chance(0.5)) {
         const Mat3 rotation = site.random.chance(0.6) ? Mat3(Mat3::Identity()) : tilted(site, 0.2);
         add_sheet(site, label, size_x, size_y, {place, rotation});
-    } else {  // its lower side at the height
+    } else {  // the lower side is at the height
         const double thickness = site.random.between(0.02, 0.3);
         add_block(site, label, place - Vec3(size_x / 2, size_y / 2, 0),
                   place + Vec3(size_x / 2, size_y / 2, thickness));
     }
 }
 
-/// A deck on two piers, with a ramp up to it.
+/// Adds a deck on two piers, with a ramp up to it.
 void add_bridge(Site& site)
 {
     const Vec3 low = spot(site);
@@ -324,7 +325,7 @@ void add_bridge(Site& site)
     hand::add_mesh(site.scene, Label::Terrain, hand::moved(wedge, place));
 }
 
-/// Two walls and a roof that may be terrain, or a box of sheets without its ends.
+/// Adds two walls and a roof that may be terrain, or a box of sheets without its ends.
 void add_tunnel(Site& site)
 {
     const Vec3 low = spot(site);
@@ -343,7 +344,7 @@ void add_tunnel(Site& site)
     add_block(site, roof, low + Vec3(0, 0, clear), low + Vec3(along, 2 * thick + wide, clear + thick));
 }
 
-/// An L lying on its head, or a leaning block.
+/// Adds an upside-down L, or a leaning block.
 void add_overhang(Site& site)
 {
     const double wide = length(site, 0.6, 2), thick = length(site, 0.1, 0.4), depth = length(site, 0.3, 1.5);
@@ -367,7 +368,7 @@ void add_table(Site& site)
     }
 }
 
-/// A surface or a body of water, often level with the ground.
+/// Adds a surface or a body of water, often level with the ground.
 void add_water(Site& site)
 {
     const double size_x = length(site, 0.5, 4), size_y = length(site, 0.5, 4);
@@ -382,7 +383,7 @@ void add_water(Site& site)
     }
 }
 
-/// Leaves of two sizes in a lattice.
+/// Adds octree leaves of two sizes on a lattice.
 void add_voxels(Site& site)
 {
     begin_octomap(site, matter(site));
@@ -406,7 +407,7 @@ std::vector<Vec3> points_around(Random& random, int count, double radius)
     return points;
 }
 
-/// Closed and convex enough; filled mostly, wound either way.
+/// Adds a closed, nearly convex mesh, which is mostly filled. Its winding varies.
 void add_rock(Site& site)
 {
     const double radius = length(site, 0.1, 0.9);
@@ -417,7 +418,7 @@ void add_rock(Site& site)
     hand::add_mesh(site.scene, matter(site), hand::moved(mesh, {place, Mat3::Identity()}), {.fill = fill});
 }
 
-/// Closed within closed, or a sheet within closed: no cavity.
+/// Adds a closed piece with another closed piece or a sheet inside it. This makes no cavity.
 void add_nested(Site& site)
 {
     const double size_x = length(site, 0.6, 2), size_y = length(site, 0.6, 2), size_z = length(site, 0.6, 2);
@@ -429,7 +430,7 @@ void add_nested(Site& site)
     hand::add_piece(site.scene, hand::moved(hand::flipped(inner), place));
 }
 
-/// What `solid: true` in a scene file does to a mesh with holes.
+/// Fills the last piece although it has holes, as `solid: true` in a scene file does.
 void fill_last_piece(Scene& scene)
 {
     scene.pieces.back().solid = scene.pieces.back().open = true;
@@ -437,7 +438,7 @@ void fill_last_piece(Scene& scene)
     ++scene.parts.back().solid_pieces;
 }
 
-/// Walls, floor and roof without thickness; free inside, or filled in spite of the hole.
+/// Adds walls, floor and roof without thickness. The inside is free, or filled in spite of the hole.
 void add_house(Site& site)
 {
     const double size_x = length(site, 0.8, 3), size_y = length(site, 0.8, 3), size_z = length(site, 0.6, 2);
@@ -449,7 +450,7 @@ void add_house(Site& site)
     if (site.random.chance(0.2)) fill_last_piece(site.scene);
 }
 
-/// Long thin triangles across everything.
+/// Adds long thin triangles across the scene.
 void add_sliver(Site& site)
 {
     const double lift = height(site, 0.1, 1.5), roll = site.random.between(-0.5, 0.5),
@@ -462,7 +463,7 @@ void add_sliver(Site& site)
     hand::add_mesh(site.scene, matter(site), hand::moved(mesh, place));
 }
 
-/// A thin pyramid within one cell, standing or hanging.
+/// Adds a thin pyramid inside one cell, standing or hanging.
 void add_spike(Site& site)
 {
     const double side = std::min(0.03, site.cell / 2), tall = length(site, 0.1, 1.2);
@@ -484,7 +485,7 @@ void add_cable(Site& site)
     hand::add_shape(site.scene, Label::Obstacle, {ShapeKind::Capsule, {radius, site.half, 0}, place});
 }
 
-/// A sheet on edge: no ray from above meets it.
+/// Adds a vertical sheet, which no vertical ray meets.
 void add_fence(Site& site)
 {
     const double along = length(site, 0.5, 4), tall = length(site, 0.2, 1.5),
@@ -493,7 +494,7 @@ void add_fence(Site& site)
     hand::add_mesh(site.scene, matter(site), hand::moved(hand::rectangle(along, tall), upright));
 }
 
-/// Terrain and obstacle with one top, or one closely over the other.
+/// Adds terrain and something else with the same top, or one closely above the other.
 void add_twins(Site& site)
 {
     const Vec3 low = spot(site);
@@ -507,7 +508,7 @@ void add_twins(Site& site)
         add_sheet(site, matter(site), size_x, size_y, {above(low + shift, tall), Mat3::Identity()});
 }
 
-/// Just above or just below what the robot fills, from the ground up.
+/// Adds a ceiling at the top of the robot, or slightly above or below it.
 void add_ceiling(Site& site)
 {
     const double top = *std::max_element(site.heights.begin(), site.heights.end()) + gap(site);
@@ -585,7 +586,7 @@ void move_parts(Robot& robot, const Vec3& by)
     }
 }
 
-/// A low body that carries something thin and tall.
+/// Adds a low body that carries something thin and tall.
 void add_mast(Robot& robot, Random& random)
 {
     const double tall = random.between(0.5, 2), radius = random.between(0.005, 0.03);
@@ -597,7 +598,7 @@ void add_mast(Robot& robot, Random& random)
         robot.parts.push_back(part_of(ShapeKind::Sphere, {2 * radius + 0.02, 0, 0}, foot + Vec3(0, 0, tall / 2)));
 }
 
-/// Two legs under a beam: much fits between them.
+/// Adds two legs under a beam. Many things fit between the legs.
 void add_portal(Robot& robot, Random& random)
 {
     const double wide = random.between(0.3, 0.8), tall = random.between(0.2, 0.9), leg = random.between(0.03, 0.1);
@@ -614,7 +615,7 @@ void add_rod(Robot& robot, Random& random)
         part_of(ShapeKind::Capsule, size, {random.between(-0.5, 0.5), 0, 0.3}, rotation_from_rpy(roll, 0, yaw)));
 }
 
-/// Sides that are whole cells: footprints end on borders.
+/// Adds a box whose sides are whole cells, so that footprints end on borders of cells.
 void add_whole_cells(Robot& robot, Random& random, double cell)
 {
     const auto cells = [&](double up_to) { return cell * (1 + random.below(std::max(1, int(up_to / cell)))); };
@@ -647,7 +648,7 @@ Robot robot_of(Random& random, double cell, double factor)
         const double x = random.between(-1.5, 1.5), y = random.between(-1.5, 1.5);
         move_parts(robot, {x, y, random.between(0, 0.5)});
     }
-    if (random.chance(0.3)) move_parts(robot, {0, 0, -robot.bounds().min.z()});  // stands on its origin
+    if (random.chance(0.3)) move_parts(robot, {0, 0, -robot.bounds().min.z()});  // now the robot stands on its origin
     return robot;
 }
 
@@ -677,7 +678,7 @@ double max_height_of(Random& random, double offset)
     return random.between(0.2, 1.5);
 }
 
-/// Not, or whole metres, or anywhere within a few kilometres.
+/// Returns a shift of the scene: zero, whole metres, or anything up to a few kilometres.
 Vec3 whereabouts(Random& random)
 {
     if (random.chance(0.6)) return Vec3::Zero();

@@ -14,7 +14,7 @@ RasterOptions half_metres() { return {.step = 0.5}; }
 
 }  // namespace
 
-TEST_CASE("a raster at 16 headings counts the valid ones of 16 rasters, and takes the commonest verdict where none is")
+TEST_CASE("a raster at 16 headings counts valid headings; if none is valid, the most frequent verdict counts")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());

@@ -5,7 +5,7 @@
 
 namespace {
 
-/// Runs `heatmap` for the Husky, coarse and quick.
+/// Runs `heatmap` for the Husky with a coarse step, which is fast.
 ProgramRun heatmap(const Arena& arena, const std::string& arguments)
 {
     return arena("heatmap map --step 0.5" + husky_option + arguments);
@@ -24,7 +24,7 @@ bool has(const std::vector<std::string>& texts, const std::string& part)
 
 }  // namespace
 
-TEST_CASE("endings that no picture is written with are refused before any work")
+TEST_CASE("file extensions that are not for pictures are refused before any work")
 {
     const Arena arena;
     for (const std::string& command :
@@ -42,7 +42,7 @@ TEST_CASE("endings that no picture is written with are refused before any work")
     CHECK(arena.names() == std::set<std::string>{"map"});
 }
 
-TEST_CASE("pictures of each command are PNG, SVG or PDF as their names say")
+TEST_CASE("pictures of each command are PNG, SVG or PDF according to their extension")
 {
     const Arena arena;
     const std::pair<std::string, std::string> starts[] = {{"png", "\x89PNG"}, {"svg", "<?xml"}, {"pdf", "%PDF-"}};
@@ -60,7 +60,7 @@ TEST_CASE("pictures of each command are PNG, SVG or PDF as their names say")
     }
 }
 
-TEST_CASE("the picture says robot, offset, yaw and layers")
+TEST_CASE("the picture names robot, offset, yaw and layers")
 {
     const Arena arena;
     REQUIRE(heatmap(arena, "-o a.svg --offset 0.25 --yaw 0.5235987755982988 --layers top --max-slope 20").status == 0);
@@ -71,10 +71,10 @@ TEST_CASE("the picture says robot, offset, yaw and layers")
     CHECK(texts_in(arena, "r.svg")[1] == "yaw 0 deg, all layers (valid if one is)");
 }
 
-TEST_CASE("the ground is shown for the way in which the spawns face")
+TEST_CASE("the ground is shown for the heading of the spawns")
 {
     const Arena arena;
-    arena.write("same.csv", "x,y,z,yaw\n0,3,0.1,1.5\n2,3,0.1,7.783185307179586\n");  // 1.5, and a turn more
+    arena.write("same.csv", "x,y,z,yaw\n0,3,0.1,1.5\n2,3,0.1,7.783185307179586\n");  // 1.5 rad, and one turn more
     arena.write("mixed.csv", "x,y,z,yaw\n0,3,0.1,0\n2,3,0.1,1\n50,3,0.1,1\n");
     const ProgramRun same = heatmap(arena, "-o same.svg --spawns same.csv");
     CHECK_THAT(
@@ -97,7 +97,7 @@ TEST_CASE("the ground is shown for the way in which the spawns face")
     CHECK(heatmap(arena, "-o any.svg --yaw north").status == 2);
 }
 
-TEST_CASE("what check wrote is drawn by verdict, with names")
+TEST_CASE("poses from check are drawn by verdict, with their names")
 {
     const Arena arena;
     arena.write("poses.csv", "name,x,y,z\nstart,0,3,0.1\nwall,-6.5,-5,0.1\nlake,7,-7,0.1\n");
@@ -113,10 +113,10 @@ TEST_CASE("what check wrote is drawn by verdict, with names")
     CHECK(std::find(texts.begin(), texts.end(), "2") != texts.end());
     const ProgramRun nothing_to_name = heatmap(arena, "-o b.svg --names");
     CHECK(nothing_to_name.status == 2);
-    CHECK(nothing_to_name.err == "spawnfield: --names needs --spawns: it writes the names of spawns\n");
+    CHECK(nothing_to_name.err == "spawnfield: --names needs --spawns, because it writes the names of spawns\n");
 }
 
-TEST_CASE("heat maps are the same bytes at any number of threads")
+TEST_CASE("heat maps are the same bytes with any number of threads")
 {
     const Arena arena;
     for (const char* const ending : {"png", "svg", "pdf"}) {

@@ -48,7 +48,7 @@ void add_page(TerrainMap& terrain, const std::string& name, const Surface& surfa
     terrain.pages.push_back(page);
 }
 
-/// Terrain over x and y from 0 to these lengths.
+/// Returns terrain with x from 0 to `width` and y from 0 to `height`.
 TerrainMap terrain_of(double width, double height, const Surface& surface, double cell = 0.25)
 {
     TerrainMap terrain;
@@ -84,7 +84,8 @@ void add_pose(RasterResult& raster, int i, int j, double z, Verdict verdict)
     ++raster.counts[verdict];
 }
 
-/// A column for each letter, the first line at the largest y; '.' has no pose. Columns stand 2 m apart from (1, 1) on.
+/// Returns a raster with a column for each letter; the first line has the largest y, and '.' has no pose. Columns are 2
+/// m apart, starting at (1, 1).
 RasterResult raster_of(const Drawing& drawing)
 {
     RasterResult raster;
@@ -101,11 +102,11 @@ RasterResult raster_of(const Drawing& drawing)
 
 // ---------------------------------------------------------------- pictures
 
-/// A picture as a reader sees it: the plot is what the frame of exactly this colour encloses.
+/// A picture. Its plot is the area inside the frame, which has a colour of its own.
 struct Picture {
     Image image;
     cv::Rect plot;
-    View view;  ///< that the plot shows
+    View view;  ///< area of the map that the plot shows
 
     cv::Point pixel(double x, double y) const
     {
@@ -117,7 +118,7 @@ struct Picture {
 
 const Colour frame_colour = rgb(0x404040);
 
-/// First and one past the last of the longest run of frame colour in a row.
+/// Returns the longest run of the frame colour in a row: its first column, and the one after its last.
 cv::Range longest_run(const Image& image, int row)
 {
     cv::Range longest(0, 0);
@@ -130,12 +131,12 @@ cv::Range longest_run(const Image& image, int row)
     return longest;
 }
 
-/// A tick at the plot's edge makes one of the frame's lines longer than the others.
+/// Returns the plot. A tick at the edge of the plot makes one line of the frame longer than the others.
 cv::Rect find_plot(const Image& image)
 {
     int width = 0;
     for (int row = 0; row < image.rows; ++row) width = std::max(width, longest_run(image, row).size());
-    std::vector<int> rows;  // of the frame's upper and lower line
+    std::vector<int> rows;  // of the upper and lower line of the frame
     cv::Range across(0, image.cols);
     for (int row = 0; row < image.rows; ++row)
         if (const cv::Range run = longest_run(image, row); run.size() > 0.85 * width) {
@@ -168,7 +169,7 @@ Picture draw(const RasterResult& raster, const HeatmapOptions& options = {},
                                                            grid.cols * grid.step, grid.rows * grid.step}));
 }
 
-/// Texts of the picture, as its SVG has them.
+/// Returns the texts of the picture, from its SVG.
 std::vector<std::string> texts_of(const RasterResult& raster, const HeatmapOptions& options = {},
                                   const TerrainMap& terrain = level_terrain(20, 20), const Map& map = {})
 {
@@ -217,7 +218,7 @@ Colour colour_of(char letter)
 
 }  // namespace
 
-TEST_CASE("each column has its verdict's colour, up to its edges, where it stands")
+TEST_CASE("each column has the colour of its verdict, at its place and up to its edges")
 {
     const Drawing drawing = GENERATE(Drawing{"VCSOA", "X.VVC", "SSVOO"}, Drawing{"VTUCS"}, Drawing{"CVVVVVVVVVVS"},
                                      Drawing{"C", "V", "V", "S", "."}, Drawing{"O"});
@@ -234,7 +235,7 @@ TEST_CASE("each column has its verdict's colour, up to its edges, where it stand
                 }
 }
 
-TEST_CASE("the longer side of a picture is as asked, and nothing in it is cut off")
+TEST_CASE("the longer side of a picture has the requested length, and nothing is cut off")
 {
     const auto [cols, rows] = GENERATE(table<int, int>({{1, 1}, {6, 1}, {1, 6}, {40, 1}, {1, 40}, {7, 4}}));
     const int pixels = GENERATE(200, 1000, 2000);
@@ -254,7 +255,7 @@ TEST_CASE("the longer side of a picture is as asked, and nothing in it is cut of
         coloured += image(0, col) != white || image(image.rows - 1, col) != white;
     CHECK(coloured == 0);
     CHECK(double(picture.plot.width) / picture.plot.height ==
-          Approx(picture.view.width / picture.view.height).epsilon(0.1));  // whole pixels
+          Approx(picture.view.width / picture.view.height).epsilon(0.1));  // pixels are whole numbers
 }
 
 TEST_CASE("the legend shows every verdict that a two-dimensional raster may have")
@@ -266,14 +267,14 @@ TEST_CASE("the legend shows every verdict that a two-dimensional raster may have
         CHECK(count_outside_plot(picture, colour) < 100);  // edges of texts are grey
 }
 
-TEST_CASE("the legend shows rare verdicts and columns without terrain where there are any")
+TEST_CASE("the legend shows rare verdicts and columns without terrain only if there are any")
 {
     const Picture picture = draw(raster_of({"VXATU."}));
     for (const Colour& colour : {aerial, outside, steep, unstable, no_pose})
         CHECK(count_outside_plot(picture, colour) > 300);
 }
 
-TEST_CASE("a column is valid if any of its poses is, else as the topmost says")
+TEST_CASE("a column is valid if any of its poses is, or else it has the verdict of its highest pose")
 {
     RasterResult raster = raster_of({"..."});
     for (const int i : {0, 1}) add_pose(raster, i, 0, 3, Verdict::Collision);
@@ -300,19 +301,19 @@ TEST_CASE("ground that faces north-west is lighter than ground that faces south-
 {
     const auto roof = [](double x, double y) {
         return float(-0.5 * std::abs((x - 5) - (y - 5)));
-    };  // ridge from SW to NE
+    };  // a ridge from south-west to north-east
     const Picture picture = draw(raster_of({"VVVVV", "VVVVV", "VVVVV", "VVVVV", "VVVVV"}), {},
                                  terrain_of(10, 10, roof));
     const Colour lit = picture.at(2, 8), dark = picture.at(8, 2);
     CHECK(brightness(lit) > brightness(valid));
     CHECK(brightness(dark) < brightness(valid));
     for (const Colour& colour : {lit, dark}) {
-        CHECK(colour[1] > colour[2]);  // green over red over blue
+        CHECK(colour[1] > colour[2]);  // more green than red, and more red than blue
         CHECK(colour[2] > colour[0]);
     }
 }
 
-TEST_CASE("an arrow stands where a spawn is and points along its yaw")
+TEST_CASE("an arrow is at the place of its spawn and points along its yaw")
 {
     const double yaw = GENERATE(0, 1, 2, 3) * pi / 2;
     const RasterResult raster = raster_of({"VVVVV", "VVVVV", "VVVVV"});
@@ -340,7 +341,7 @@ TEST_CASE("clearance grows from the border and from columns that are not valid")
     const Ramp ramp = viridis();
     const auto colour = [&](double clearance) {
         return ramp[std::size_t(std::lround(clearance / 4 * 255))];
-    };  // scale: 0 .. 4 m
+    };  // the scale is 0 .. 4 m
     CHECK(picture.at(1, 1) == colour(2));
     CHECK(picture.at(3, 3) == colour(4));
     CHECK(picture.at(5, 7) == colour(2));
@@ -348,7 +349,7 @@ TEST_CASE("clearance grows from the border and from columns that are not valid")
     CHECK(picture.at(7, 7) == rgb(0x9a9a9a));
 }
 
-TEST_CASE("height shows the pose that the column is known by")
+TEST_CASE("height shows the pose that represents the column")
 {
     RasterResult raster = raster_of({"..."});
     add_pose(raster, 0, 0, 0, Verdict::Valid);
@@ -369,7 +370,7 @@ TEST_CASE("slope is that of the layer below the pose, and the scale ends at the 
     const Picture picture = draw(raster_of({"V", "V", "V", "V", "V", "V"}), {.quantity = HeatmapQuantity::Slope},
                                  terrain_of(2, 12, ground));
     CHECK(picture.at(1, 1) == viridis().front());
-    const Colour steepest = viridis().back(), seen = picture.at(1, 11);  // shaded, so only like it
+    const Colour steepest = viridis().back(), seen = picture.at(1, 11);  // it is shaded, so the colour is only similar
     for (int c = 0; c < 3; ++c) CHECK(std::abs(seen[c] - steepest[c]) < 60);
 }
 
@@ -384,14 +385,14 @@ TEST_CASE("under a level roof slope is that of the ramp below, where the shown p
     for (int i = 0; i < 6; ++i) add_pose(raster, i, 0, 0.2 * raster.grid.x_of(i) + 0.1, Verdict::Valid);
     const std::vector<std::string> texts = texts_of(raster, {.quantity = HeatmapQuantity::Slope}, terrain);
     CAPTURE(texts);
-    CHECK(contains(texts, "11.3"));  // the end of the scale: no cliff where the roof ends
+    CHECK(contains(texts, "11.3"));  // the end of the scale; the edge of the roof is not a cliff
     raster.poses[0].z = 10.1;        // now on the roof, which is level
     const Picture picture = draw(raster, {.quantity = HeatmapQuantity::Slope}, terrain);
     CHECK(picture.at(1, 1) == viridis().front());
     CHECK(brightness(picture.at(3, 1)) > brightness(viridis()[200]));
 }
 
-TEST_CASE("a gradient is one-sided beside a hole and nothing in it")
+TEST_CASE("a gradient is one-sided beside a hole, and there is none in the hole")
 {
     HeightImage heights(3, 3);
     heights.values = {4, 5, 6,        //
@@ -402,7 +403,7 @@ TEST_CASE("a gradient is one-sided beside a hole and nothing in it")
     CHECK(gradient(heights, 1, 2, 0.5).hasNaN());
 }
 
-TEST_CASE("options and rasters out of range are named with their limits")
+TEST_CASE("options and rasters out of range are refused with their limits")
 {
     const TempFolder folder;
     const TerrainMap terrain = level_terrain(2, 2);
@@ -440,7 +441,7 @@ TEST_CASE("a picture that cannot be written is an OutputError")
                     OutputError);
 }
 
-TEST_CASE("a preview shows terrain by height, obstacles grey, water blue and nothing white")
+TEST_CASE("a preview shows terrain by height, obstacles grey, water blue, and white where there is nothing")
 {
     // From left to right: low ground, high ground, a block on the ground, a lake, nothing, a block in the air, a pier.
     const auto ground = [](double x, double) { return x < 4 ? 0.0f : x < 12 ? 2.0f : x < 16 ? -1.0f : nothing; };
@@ -474,18 +475,18 @@ TEST_CASE("a preview shows terrain by height, obstacles grey, water blue and not
 
 // ---------------------------------------------------------------- legends
 
-TEST_CASE("the legend counts columns as they are shown, not poses")
+TEST_CASE("the legend counts columns by their colours, not poses")
 {
     RasterResult raster = raster_of({"VVC."});
-    add_pose(raster, 2, 0, 5, Verdict::Valid);  // another layer: the column is valid
+    add_pose(raster, 2, 0, 5, Verdict::Valid);  // another layer, so the column is valid
     const std::vector<std::string> texts = texts_of(raster);
     CHECK(contains(texts, "3 columns, 2 m apart"));
     CHECK(contains(texts, "3   100.0 %"));  // valid
     CHECK(contains(texts, "0"));            // collision
-    CHECK(contains(texts, "1 column"));     // no terrain: beside the shares
+    CHECK(contains(texts, "1 column"));     // no terrain; not part of the shares
 }
 
-TEST_CASE("a caption stands below the title")
+TEST_CASE("a caption is below the title")
 {
     const std::vector<std::string> texts = texts_of(raster_of({"V"}),
                                                     {.title = "arena, husky", .caption = "offset 0.1 m, yaw 0 deg"});
@@ -493,7 +494,7 @@ TEST_CASE("a caption stands below the title")
     CHECK(texts[1] == "offset 0.1 m, yaw 0 deg");
 }
 
-TEST_CASE("scales of height end at the data, on both sides")
+TEST_CASE("scales of height end at the lowest and highest values")
 {
     RasterResult raster = raster_of({".."});
     add_pose(raster, 0, 0, 0.13, Verdict::Valid);
@@ -507,7 +508,7 @@ TEST_CASE("scales of height end at the data, on both sides")
 
 // ---------------------------------------------------------------- headings
 
-TEST_CASE("with several headings a column is valid at all, at some or at none")
+TEST_CASE("with several headings a column is valid at all of them, at some or at none")
 {
     RasterResult raster = raster_of({"VVVC"});
     HeatmapOptions options{.headings = 16, .valid_headings = {16, 15, 1, 0}};
@@ -520,7 +521,7 @@ TEST_CASE("with several headings a column is valid at all, at some or at none")
     CHECK(contains(texts, "valid at all 16 headings"));
     CHECK(contains(texts, "2   50.0 %"));
 
-    add_pose(raster, 1, 0, -3, Verdict::Valid);  // a lower layer, valid at more headings, is the one that is shown
+    add_pose(raster, 1, 0, -3, Verdict::Valid);  // a lower layer that is valid at more headings is shown
     options.valid_headings = {16, 15, 1, 0, 16};
     CHECK(draw(raster, options).at(3, 1) == valid);
     options.valid_headings.pop_back();
@@ -528,7 +529,7 @@ TEST_CASE("with several headings a column is valid at all, at some or at none")
                       Contains("size of valid_headings is 4, needs as many as the raster's poses, or none"));
 }
 
-TEST_CASE("quantities count as valid what fits at all headings")
+TEST_CASE("quantities count a pose as valid if it is valid at all headings")
 {
     const RasterResult raster = raster_of({"VVV", "VVV", "VVV"});
     const HeatmapOptions options{
@@ -540,7 +541,7 @@ TEST_CASE("quantities count as valid what fits at all headings")
 
 // ---------------------------------------------------------------- obstacles
 
-TEST_CASE("obstacles are dark where they stand at the robot's height, and what else collides has the collision colour")
+TEST_CASE("obstacles at the height of the robot are dark, and other collisions have the collision colour")
 {
     // A wall, a beam 3 m above the ground, and a block that begins above a low robot: on a floor of 12 x 12 m.
     const TempFolder folder;
@@ -561,7 +562,7 @@ parts:
     const RasterResult result = verdicts(low);
     const Picture picture = draw(result, {.robot = &low}, terrain, map);
     CHECK(picture.at(6, 5) == obstacle);
-    CHECK(picture.at(5.9, 5) == obstacle);  // not only where a column of the raster stands
+    CHECK(picture.at(5.9, 5) == obstacle);  // not only at the columns of the raster
     CHECK(picture.at(5.2, 5) == collision);
     CHECK(picture.at(6.8, 5) == collision);
     CHECK(picture.at(4.5, 5) == valid);
@@ -569,7 +570,8 @@ parts:
     CHECK(picture.at(10, 4) == valid);  // below the block
     CHECK(draw(verdicts(high), {.robot = &high}, terrain, map).at(10, 4) == obstacle);
 
-    // 49 columns in y; the wall's own are those at x = 6, and its margin reaches 1 m + 0.15 m to each side.
+    // There are 49 columns in y. The columns of the wall are at x = 6, and its margin reaches 1 m + 0.15 m to each
+    // side.
     const std::vector<std::string> texts = texts_of(result, {.robot = &low}, terrain, map);
     CHECK(contains(texts, "49   2.0 %"));
     const auto row = std::count_if(result.poses.begin(), result.poses.end(), [](const RasterPose& pose) {
@@ -581,7 +583,7 @@ parts:
 
 TEST_CASE("obstacles on a slope are found at the height of the ground below them")
 {
-    // 45 degrees, columns 2 m apart: between columns the ground is up to 1 m off.
+    // The slope has 45 degrees and columns are 2 m apart, so between columns the ground differs by up to 1 m.
     const TempFolder folder;
     folder.write("slope.obj", "o slope\nv 0 0 0\nv 12 0 12\nv 12 4 12\nv 0 4 0\nf 1 2 3 4\n");
     const TestMap map = map_of(load_scene(folder.write("scene.yaml", R"(
@@ -602,7 +604,7 @@ parts:
 
 namespace {
 
-/// Polygons of an SVG picture that have this fill.
+/// Returns the polygons of an SVG picture that have this fill.
 std::vector<std::vector<cv::Point2d>> polygons_of(const RasterResult& raster, const HeatmapOptions& options,
                                                   const std::string& fill)
 {
@@ -632,7 +634,7 @@ const std::string white_fill = "#ffffff";
 
 }  // namespace
 
-TEST_CASE("spawns are footprints to scale where those are 6 pixels long or more, else arrows")
+TEST_CASE("spawns are footprints to scale if these are at least 6 pixels long, or else arrows")
 {
     const RasterResult raster = raster_of(
         {"VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV", "VVVVVVVVVV"});  // 20 x 10 m
@@ -641,12 +643,12 @@ TEST_CASE("spawns are footprints to scale where those are 6 pixels long or more,
     const Picture picture = draw(raster, options);
     const double metre = picture.plot.width / picture.view.width;
     const auto footprints = polygons_of(raster, options, white_fill);
-    REQUIRE(footprints.size() >= 2);  // in the plot and in the legend; the north arrow's half too
-    CHECK(size_of(footprints[0]).width == Approx(metre).margin(2));  // it looks along y
+    REQUIRE(footprints.size() >= 2);  // in the plot, in the legend, and half of the north arrow
+    CHECK(size_of(footprints[0]).width == Approx(metre).margin(2));  // it faces along y
     CHECK(size_of(footprints[0]).height == Approx(2 * metre).margin(2));
     CHECK(picture.at(10, 5) == white);
-    CHECK(picture.at(10, 5.8) == ink);    // the heading mark, towards its front
-    CHECK(picture.at(10, 4.2) == valid);  // behind the origin there is half a metre of it only
+    CHECK(picture.at(10, 5.8) == ink);    // the mark that shows the front
+    CHECK(picture.at(10, 4.2) == valid);  // only half a metre of the robot is behind the origin
     CHECK(picture.at(10, 4.6) == white);
 
     // The same robot in 20 x 10 km: an arrow of the usual length.
@@ -690,7 +692,7 @@ TEST_CASE("spawns with verdicts have their colours, and the legend counts those 
     CHECK_THROWS_WITH(texts_of(raster, options), Contains("size of spawn_verdicts is 2"));
 }
 
-TEST_CASE("names are written beside spawns, and those without room are counted")
+TEST_CASE("names are written beside spawns, and names without room are counted")
 {
     const RasterResult raster = raster_of({"VVVVV", "VVVVV", "VVVVV"});
     HeatmapOptions options{.spawns = {{{2, 2, 0}, 0}, {{8, 4, 0}, 1}}, .spawn_names = {"left <1>", "right"}};
@@ -709,7 +711,7 @@ TEST_CASE("names are written beside spawns, and those without room are counted")
     CHECK(contains(texts, std::to_string(written + 2) + " of 22 names shown: no room"));
 }
 
-TEST_CASE("heat maps are SVG and PDF by the file's ending, with texts as texts")
+TEST_CASE("heat maps are SVG or PDF by the file extension, with texts as text")
 {
     const TempFolder folder;
     const RasterResult raster = raster_of({"VC"});

@@ -31,7 +31,7 @@ void write_image(const TempFolder& folder, const std::string& name, const Pixels
     REQUIRE(cv::imwrite((folder / name).string(), converted));
 }
 
-/// A terrain part of a heightmap file in the folder.
+/// Loads a terrain part with a heightmap file in the folder.
 Scene load(const TempFolder& folder, const std::string& keys, const std::string& more = "")
 {
     return load_parts(folder, "  - {name: ground, label: terrain, heightmap: {" + keys + "}" + more + "}\n");
@@ -79,7 +79,7 @@ TEST_CASE("a 16-bit image spans z to pixel 65535")
     CHECK(height(scene, 0.5, -0.5) == Approx(132.768).epsilon(1e-12));
 }
 
-TEST_CASE("z may run downwards: dark is high then")
+TEST_CASE("z may be reversed, and then dark is high")
 {
     const TempFolder folder;
     write_image(folder, "a.png", {{0, 0}, {255, 255}}, CV_8U);
@@ -88,10 +88,10 @@ TEST_CASE("z may run downwards: dark is high then")
     CHECK(height(scene, 0, -1) == Approx(1));
 }
 
-TEST_CASE("cells are split from the smaller column and row to the larger ones")
+TEST_CASE("cells are split from the corner with the smaller column and row to the one with the larger")
 {
     const TempFolder folder;
-    // Along that diagonal all is 0; along the other one all would be 1 in the middle.
+    // Along that diagonal all heights are 0. Along the other one the middle would be 1.
     write_image(folder, "a.tiff", {{0, 1}, {1, 0}}, CV_32F);
     const Scene valley = load(folder, "file: a.tiff, size: [2, 2]");
     CHECK(height(valley, 0, 0) == Approx(0).margin(1e-12));
@@ -109,11 +109,11 @@ TEST_CASE("a float image is metres, and has no ground where a corner is NaN")
     CHECK(height(scene, 1, 1) == 3.5);
     CHECK(height(scene, 0, 0) == 2.25);
     CHECK(scene.triangles.size() == 7);
-    CHECK_FALSE(has_ground(scene, -0.9, -0.9));  // the half of the cell at the hole
+    CHECK_FALSE(has_ground(scene, -0.9, -0.9));  // the half of the cell beside the hole
     CHECK(has_ground(scene, -0.4, -0.1));        // its other half
 }
 
-TEST_CASE("a lone height among holes is no ground and widens nothing")
+TEST_CASE("a single height among holes is not ground and does not widen the bounds")
 {
     const TempFolder folder;
     write_image(folder, "a.tiff", {{hole, hole, hole, hole}, {99, hole, 2, 3}, {hole, hole, 2, 3}}, CV_32F);
@@ -124,14 +124,14 @@ TEST_CASE("a lone height among holes is no ground and widens nothing")
     CHECK(scene.bounds().min.x() == 0.5);
 }
 
-TEST_CASE("double images count as float ones")
+TEST_CASE("images of doubles are read like images of floats")
 {
     const TempFolder folder;
     write_image(folder, "a.tiff", {{1, 2}, {3, 4}}, CV_64F);
     CHECK(height(load(folder, "file: a.tiff, size: [2, 2]"), 1, -1) == 4);
 }
 
-TEST_CASE("a heightmap goes with its pose and its sides")
+TEST_CASE("a heightmap has the pose and the sides of its part")
 {
     const TempFolder folder;
     write_image(folder, "a.tiff", {{1, 2}, {3, 4}}, CV_32F);
@@ -147,7 +147,7 @@ TEST_CASE("a heightmap goes with its pose and its sides")
     }
 }
 
-TEST_CASE("heightmaps that make no sense are refused by name")
+TEST_CASE("invalid heightmaps are refused by name")
 {
     const TempFolder folder;
     write_image(folder, "grey.png", {{0, 255}, {0, 255}}, CV_8U);
@@ -166,23 +166,23 @@ TEST_CASE("heightmaps that make no sense are refused by name")
                       used("none.png") + "does not exist; is the path right? (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: text.png, size: [1, 1], z: [0, 1]"),
                       used("text.png") +
-                          "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its "
-                          "layout told with the key raw (line 4)");
+                          "is not PNG, TIFF or an ESRI ASCII grid; convert it to one of them, or give its layout with "
+                          "the key raw (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: photo.jpg, size: [1, 1], z: [0, 1]"),
                       used("photo.jpg") +
-                          "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its "
-                          "layout told with the key raw (line 4)");
+                          "is not PNG, TIFF or an ESRI ASCII grid; convert it to one of them, or give its layout with "
+                          "the key raw (line 4)");
     CHECK_THROWS_WITH(
         load(folder, "file: colour.png, size: [1, 1], z: [0, 1]"),
-        used("colour.png") + "has a pixel that is coloured (column 0, row 0), needs to be a grey image (line 4)");
+        used("colour.png") + "has a pixel that is coloured (column 0, row 0), needs only grey, opaque pixels (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: thin.png, size: [1, 1], z: [0, 1]"),
                       used("thin.png") + "has 2 x 1 pixels, needs at least 2 x 2 (line 4)");
     CHECK_THROWS_WITH(
         load(folder, "file: grey.png, size: [1, 1]"),
         used("grey.png") +
-            "is an integer image; heightmap.z is missing (heights of 0 and of the largest value) (line 4)");
+            "is an integer image; give heightmap.z (heights in m of the value 0 and of the largest value) (line 4)");
     CHECK_THROWS_WITH(load(folder, "file: float.tiff, size: [1, 1], z: [0, 1]"),
-                      used("float.tiff") + "has heights in metres already; heightmap.z must go (line 4)");
+                      used("float.tiff") + "has heights in metres already; remove heightmap.z (line 4)");
     CHECK_THROWS_WITH(
         load(folder, "file: inf.tiff, size: [1, 1]"),
         used("inf.tiff") + "row 1, column 0 is infinite, needs a finite height or NaN (no ground) (line 4)");
@@ -192,10 +192,10 @@ TEST_CASE("heightmaps that make no sense are refused by name")
                       start + "size has 0, needs > 0 (line 4)");
     CHECK_THROWS_WITH(load(folder, "size: [1, 1], z: [0, 1]"), start + "file is missing");
     CHECK_THROWS_WITH(load(folder, "file: grey.png, size: [1, 1], zed: [0, 1]"),
-                      start + "zed is no known key; known: file, size, cell, z, origin, nodata, raw (line 4)");
+                      start + "zed is not a known key; known keys: file, size, cell, z, origin, nodata, raw (line 4)");
 }
 
-TEST_CASE("real heightmaps have the heights that their sources tell")
+TEST_CASE("real heightmaps have the heights that their sources document")
 {
     const auto shared = shared_scenes();
     if (!shared) return;
@@ -212,7 +212,8 @@ TEST_CASE("real heightmaps have the heights that their sources tell")
     CHECK(moon.bounds().min.z() == Approx(-212.30).margin(0.01));
     CHECK(moon.bounds().max.z() == Approx(-205.44).margin(0.01));
 
-    // The river's image was made from an ESRI grid: 50 x 37 heights, the northern row first, after six header lines.
+    // The image of the river was made from an ESRI grid of 50 x 37 heights, the northernmost row first, after six
+    // header lines.
     const Scene river = load_scene(*shared / "dem/river/scene.yaml");
     const Geometry geometry(river);
     std::ifstream grid(*shared / "dem/river/DEM-kootenai_37x50_1x1.asc");

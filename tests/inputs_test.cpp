@@ -33,11 +33,11 @@ void make_pipe(const fs::path& file)
 std::string pipe_complaint(const std::string& file)
 {
     return "spawnfield: " + file +
-           ": is a pipe, needs a regular file; write it to one first, or give - (standard input) where the option "
-           "takes it\n";
+           ": is a pipe, needs a regular file; write it to one first, or give - (standard input) if the option accepts "
+           "it\n";
 }
 
-/// A run that must end by itself: a pipe without a writer would keep it waiting.
+/// Runs the program, which must end by itself: a pipe without a writer would make it wait.
 ProgramRun within_seconds(const Arena& arena, const std::string& arguments)
 {
     return interrupt_program(arena, arguments, 20, "KILL");
@@ -57,7 +57,7 @@ std::size_t nearer(const std::vector<Pose>& poses, const std::vector<Pose>& othe
 
 // ---- several robots one after another ----
 
-TEST_CASE("robots are placed one after another, each away from those before")
+TEST_CASE("robots are placed one after another, each away from the earlier ones")
 {
     const Arena arena;
     REQUIRE(arena("sample map -n 6 --min-distance 2 --yaw random -o a.csv" + husky_option).status == 0);
@@ -75,7 +75,7 @@ TEST_CASE("robots are placed one after another, each away from those before")
               .status == 0);
     const auto c = poses_in(arena / "c.csv");
     CHECK((nearer(c, a, 1.5) == 0 && nearer(c, b, 2.5) == 0));
-    CHECK(nearer(c, a, 2.5) > 0);  // the distances belong to their files
+    CHECK(nearer(c, a, 2.5) > 0);  // each distance applies to its own file
     const ProgramRun json = arena("sample map -n 2 --min-distance 1 --avoid a.csv --avoid b.csv --format json" + box);
     const auto avoid = nlohmann::json::parse(json.out)["settings"]["avoid"];
     CHECK(
@@ -87,7 +87,7 @@ TEST_CASE("robots are placed one after another, each away from those before")
                Contains("a.csv: 6 poses, 1 m") && Contains("Draws near avoided poses"));
 }
 
-TEST_CASE("the commands of docs/input-files.md on several robots work")
+TEST_CASE("the commands for several robots in docs/input-files.md work")
 {
     const Arena arena;
     fs::create_symlink(program_file(), arena / "spawnfield");
@@ -121,7 +121,7 @@ TEST_CASE("a map that avoided poses cover ends with 3 and a proof")
     CHECK(poses_in(arena / "s.csv").empty());
 }
 
-TEST_CASE("avoiding at no distance changes no byte, and options that do not fit together are refused")
+TEST_CASE("avoiding with distance 0 changes no byte, and options that do not fit together are refused")
 {
     const Arena arena;
     arena.write("a.csv", "x,y,z\n0,3,0.1\n");
@@ -136,7 +136,7 @@ TEST_CASE("avoiding at no distance changes no byte, and options that do not fit 
         return run.err;
     };
     CHECK(refused("--avoid a.csv") ==
-          "spawnfield: --avoid needs --avoid-distance M, or a --min-distance > 0, which is its default\n");
+          "spawnfield: --avoid needs --avoid-distance M, or --min-distance > 0 (the default of --avoid-distance)\n");
     CHECK(refused("--avoid-distance 1") == "spawnfield: --avoid-distance needs --avoid FILE\n");
     CHECK(refused("--avoid a.csv --avoid-distance -1") == "spawnfield: --avoid-distance is -1, needs >= 0 m\n");
     CHECK(refused("--avoid a.csv --avoid a.csv --avoid a.csv --avoid-distance 1 --avoid-distance 2") ==
@@ -146,7 +146,7 @@ TEST_CASE("avoiding at no distance changes no byte, and options that do not fit 
                Contains("notice: --avoid far.csv: all of its 2 poses lie off the map, which is "));
 }
 
-TEST_CASE("a region of poses is refused by its header")
+TEST_CASE("a poses file given as a region is refused because of its header")
 {
     const TempFolder folder;
     const auto complaint = [&](const std::string& header) {
@@ -181,7 +181,7 @@ TEST_CASE("columns in degrees are degrees")
                       "a: line 1: has columns qx,qy,qz,qw beside roll,pitch,yaw, needs one of the two");
 }
 
-TEST_CASE("an angle of more than a turn is noticed once for its column")
+TEST_CASE("an angle of more than one turn gets one notice for its column")
 {
     CHECK(parse_poses("x,y,z,yaw\n0,0,0,6.2831853\n0,0,0,-6.2831853\n", "a").notices.empty());
     CHECK(
@@ -212,7 +212,7 @@ TEST_CASE("--yaw takes degrees in every command that has it")
     CHECK_THAT(arena("sample map -n 1 --yaw -30deg" + husky_option).out, Contains(",-0.5235987755982988\n"));
     CHECK(arena("experiment map --dims 2 --steps 2 --yaw 90deg -o e" + husky_option).status == 0);
     CHECK_THAT(arena("experiment map --dims 2 --steps 2 --yaw 90grad -o e" + husky_option).err,
-               Contains("--yaw is \"90grad\", needs rad, as 1.57, or degrees, as 90deg\n"));
+               Contains("--yaw is \"90grad\", needs radians such as 1.57 or degrees such as 90deg\n"));
     CHECK(arena("sample map -n 1 --yaw inf" + husky_option).status == 2);
     CHECK(arena("raster map --yaw random" + raster + husky_option).status == 2);
     const std::string hint = "notice: --yaw 90 is more than a turn of 2 pi rad; did you mean degrees? --yaw 90deg\n";
@@ -224,7 +224,7 @@ TEST_CASE("--yaw takes degrees in every command that has it")
 
 // ---- CSV ----
 
-TEST_CASE("a CSV file without header, commas or poses is refused with the fix")
+TEST_CASE("a CSV file without header, commas or poses is refused, with advice")
 {
     const auto complaint = [](const std::string& text) {
         try {
@@ -245,7 +245,7 @@ TEST_CASE("a CSV file without header, commas or poses is refused with the fix")
     CHECK(complaint("1,5;2,5;-0,1\n") == semicolons);
     CHECK(complaint("x\ty\tz\n1\t2\t3\n") ==
           "a: line 1: has fields separated by tabs, needs commas: tr '\\t' ',' < IN.csv > OUT.csv");
-    CHECK(complaint("x,y,z,a;b\n1,2,3,\"c;d\"\n").empty());  // a semicolon within a field
+    CHECK(complaint("x,y,z,a;b\n1,2,3,\"c;d\"\n").empty());  // a semicolon inside a field
     CHECK(complaint("x,y,z\n") == "a: has a header but no pose; --allow-empty accepts that");
     CHECK(parse_poses("x,y,z\n", "a", true).notices == std::vector<std::string>{"a: has a header but no pose"});
     CHECK(complaint("") == "a: is empty, needs a header x,y,z,roll,pitch,yaw");
@@ -359,7 +359,7 @@ TEST_CASE("two streams of one kind, and - for a folder or a file that names othe
     CHECK(arena.names() == std::set<std::string>{"map"});
 }
 
-// ---- what is not a regular file ----
+// ---- files that are not regular files ----
 
 TEST_CASE("a pipe is refused before it is opened, wherever a file is read")
 {
@@ -420,7 +420,7 @@ TEST_CASE("pipes that a scene or a robot names are refused too")
     }
     arena.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: pipe.obj}]\n");
     CHECK_THAT(within_seconds(arena, "info robot.yaml").err, Contains("pipe.obj: is a pipe, needs a regular file"));
-    // A material's file counts for nothing: the mesh is read without it.
+    // The file of a material has no effect, so the mesh is read without it.
     arena.write("material.obj", "mtllib pipe\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     CHECK(within_seconds(arena, "info -q material.obj").status == 0);
     arena.write("buffer.gltf", R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "pipe", "byteLength": 36}],
@@ -429,14 +429,14 @@ TEST_CASE("pipes that a scene or a robot names are refused too")
     CHECK(within_seconds(arena, "info -q buffer.gltf").status == 4);
 }
 
-TEST_CASE("folders, devices, sockets and circles of links are refused as what they are")
+TEST_CASE("folders, devices, sockets and circles of links are refused, and the message names the kind")
 {
     const Arena arena;
     fs::create_symlink("circle", arena / "circle");
     sockaddr_un address{AF_UNIX, "socket"};
     const int descriptor = socket(AF_UNIX, SOCK_STREAM, 0);
     const fs::path before = fs::current_path();
-    fs::current_path(arena.path());  // names of sockets are short
+    fs::current_path(arena.path());  // the name of a socket must be short
     const bool is_bound = bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     fs::current_path(before);
     REQUIRE(is_bound);
@@ -457,7 +457,7 @@ TEST_CASE("folders, devices, sockets and circles of links are refused as what th
 
 // ---- kinds of files ----
 
-TEST_CASE("files of other programs are named, with how to get the data in")
+TEST_CASE("files of other programs are recognised, with advice how to import the data")
 {
     const TempFolder folder;
     const auto scene_complaint = [&](const fs::path& file) {
@@ -495,14 +495,14 @@ TEST_CASE("files of other programs are named, with how to get the data in")
         CAPTURE(kind.file);
         const fs::path file = folder.write(kind.file, kind.text);
         CHECK_THAT(scene_complaint(file),
-                   Contains(": is " + kind.name + ", which is not read; ") && Contains(kind.scene));
+                   Contains(": is " + kind.name + ", which cannot be read here; ") && Contains(kind.scene));
         CHECK_THAT(robot_complaint(file),
-                   Contains(": is " + kind.name + ", which is not read; ") && Contains(kind.robot));
+                   Contains(": is " + kind.name + ", which cannot be read here; ") && Contains(kind.robot));
     }
     CHECK_NOTHROW(refuse_foreign_robot(folder.write("b.xml", "<robot name='mujoco'/>")));
 }
 
-TEST_CASE("what is given as a map but is none is named")
+TEST_CASE("a file or folder that is not a map is refused, and the message names what it is")
 {
     const Arena arena;
     const auto said = [&](const std::string& file) {
@@ -523,7 +523,7 @@ TEST_CASE("what is given as a map but is none is named")
     CHECK(said("none") == "spawnfield: none: does not exist; is the path right?\n");
 }
 
-TEST_CASE("a robot that is likely in millimetres, or larger than the map, is noticed")
+TEST_CASE("a robot that is probably in millimetres, or larger than the map, gets a notice")
 {
     const Arena arena;
     arena.write("p.csv", "x,y,z\n0,3,0.1\n");
@@ -545,7 +545,7 @@ TEST_CASE("a robot that is likely in millimetres, or larger than the map, is not
 
 // ---- spelling ----
 
-TEST_CASE("slips in options, values and commands come with what was meant")
+TEST_CASE("misspelled options, values and commands get a suggestion")
 {
     const Arena arena;
     const auto said = [&](const std::string& arguments) {
@@ -565,7 +565,7 @@ TEST_CASE("slips in options, values and commands come with what was meant")
               usage_hint);
     CHECK(said("check map --robt box:1,1,1 --poses p.csv") ==
           "spawnfield: --robt is not an option of check; did you mean --robot?" +
-              usage_hint);  // though --robot is missing
+              usage_hint);  // although --robot is missing, too
     CHECK(said(sample + "--frobnicate") == "spawnfield: --frobnicate is not an option of sample" + usage_hint);
     CHECK_THAT(said(sample + "--format ros2"), Contains("\"ros2\" is not one of csv, json, ") &&
                                                    Contains("; did you mean ros2-launch-py or ros2-launch-xml?"));
@@ -574,6 +574,6 @@ TEST_CASE("slips in options, values and commands come with what was meant")
     CHECK_THAT(said("export map --format geotif -o a.tif"), Contains("; did you mean geotiff?"));
     CHECK_THAT(said("heatmap map -o a.png --quantity clearence" + box), Contains("; did you mean clearance?"));
     CHECK_THAT(said("raster map --dims 4 --step 1" + box), Contains("\"4\" is not one of 2, 3"));
-    CHECK_THAT(said("smaple map"), Contains("smaple is no command") && Contains("; did you mean sample?"));
+    CHECK_THAT(said("smaple map"), Contains("smaple is not a command") && Contains("; did you mean sample?"));
     CHECK_THAT(said("--vesion"), Contains("--vesion is not an option of spawnfield; did you mean --version?"));
 }

@@ -4,7 +4,7 @@
 #include <tbb/global_control.h>
 
 #ifdef __SANITIZE_ADDRESS__
-// assimp leaks where it gives up on a damaged file.
+// assimp leaks memory when it rejects a damaged file.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
 #endif
 

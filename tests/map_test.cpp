@@ -62,7 +62,7 @@ TEST_CASE("a map that is read back has the geometry and the answers of the one t
     }
 }
 
-TEST_CASE("a map folder holds the files that it should, as other programs open them")
+TEST_CASE("a map folder has its files, and other programs can open them")
 {
     const TempFolder temp;
     const BakeReport report = bake_training(temp / "map");
@@ -87,7 +87,7 @@ TEST_CASE("a map folder holds the files that it should, as other programs open t
     }
 }
 
-TEST_CASE("heightmap.png stands for the top layer with the range that map.yaml tells")
+TEST_CASE("heightmap.png has the top layer, with the range that map.yaml states")
 {
     const TempFolder temp;
     Scene scene;
@@ -110,7 +110,7 @@ TEST_CASE("heightmap.png stands for the top layer with the range that map.yaml t
         }
 }
 
-TEST_CASE("a bake is the same bytes at any thread count")
+TEST_CASE("a bake is the same bytes with any number of threads")
 {
     const TempFolder temp;
     bake_training(temp / "1", 1);
@@ -141,7 +141,7 @@ TEST_CASE("a bake that fails or is stopped leaves the old map as it was and noth
     verify_map(temp / "map");
 }
 
-TEST_CASE("a folder that is no map is not replaced")
+TEST_CASE("a folder that is not a map is not replaced")
 {
     const TempFolder temp;
     temp.write("precious/work.txt", "years");
@@ -152,7 +152,7 @@ TEST_CASE("a folder that is no map is not replaced")
     verify_map(temp / "empty");
 }
 
-TEST_CASE("every altered byte is noticed: by queries in what they read, by verify in all of it")
+TEST_CASE("every altered byte is detected: by queries in what they read, by verify everywhere")
 {
     const TempFolder temp;
     bake_training(temp / "map");
@@ -176,13 +176,13 @@ TEST_CASE("every altered byte is noticed: by queries in what they read, by verif
             }
         }
         temp.write("map/" + name, good.substr(0, good.size() - 1));
-        CHECK_THROWS_AS(read_map(temp / "map"), FileError);  // sizes of all files are looked at
+        CHECK_THROWS_AS(read_map(temp / "map"), FileError);  // the sizes of all files are checked
         temp.write("map/" + name, good);
         CHECK_NOTHROW(verify_map(temp / "map"));
     }
 }
 
-TEST_CASE("default resolutions are coarser, with a notice, where a map would be too large or too far out")
+TEST_CASE("default resolutions are coarser, with a notice, if a map would be too large or too far from the origin")
 {
     const TempFolder temp;
     const fs::path file = temp.write("scene.txt", "");

@@ -21,7 +21,7 @@ using Catch::Contains;
 
 namespace {
 
-/// A corner of a box of 4 x 2 x 1, closed: each axis has a length of its own.
+/// A corner of a box of 4 x 2 x 1, as a closed mesh. Each axis has a different length.
 const std::string wedge = "o wedge\nv 0 0 0\nv 4 0 0\nv 0 2 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 std::string replaced(std::string text, const std::string& from, const std::string& to)
@@ -54,7 +54,7 @@ std::size_t count(const Scene& scene, Label label)
     return std::size_t(std::count(scene.triangle_labels.begin(), scene.triangle_labels.end(), label));
 }
 
-/// glTF of a box of 4 x 2 x 1, as text, with these members in its root.
+/// Returns a glTF text of a box of 4 x 2 x 1, with these members in its root.
 std::string gltf_with(const std::string& members)
 {
     return replaced(mesh_text::gltf({{.name = "crate", .mesh = hand::box({4, 2, 1})}}), "{", "{" + members);
@@ -82,7 +82,7 @@ std::string deflated(const std::string& text)
     return out;
 }
 
-/// A ZIP archive of these files, packed.
+/// Returns a compressed ZIP archive of these files.
 std::string zip(const std::vector<std::pair<std::string, std::string>>& files)
 {
     std::string out, directory;
@@ -104,7 +104,7 @@ std::string zip(const std::vector<std::pair<std::string, std::string>>& files)
            little_endian(start, 4) + little_endian(0, 2);
 }
 
-/// A 3MF package of the wedge, with these attributes of its <model>.
+/// Returns a 3MF package of the wedge, with these attributes of its <model>.
 std::string package_3mf(const std::string& attributes)
 {
     return zip(
@@ -143,13 +143,14 @@ TEST_CASE("every common mesh format is read in its own unit and axes")
     check_wedge(written("stlb", "binary.stl"), as_it_is);
     check_wedge(written("ply", "text.ply"), as_it_is);
     check_wedge(written("plyb", "binary.PLY"), as_it_is);
-    check_wedge(written("3ds", "wedge.3ds"), as_it_is);  // z up by its format; assimp turns it and so do we, back
+    check_wedge(written("3ds", "wedge.3ds"),
+                as_it_is);  // the format has z up; assimp turns it, and the reader turns it back
     check_wedge(written("glb2", "wedge.glb"), turned_from_y_up);
     check_wedge(written("gltf2", "wedge.gltf"), turned_from_y_up);
     check_wedge(written("collada", "wedge.dae"), turned_from_y_up);  // assimp writes Y_UP
 }
 
-TEST_CASE("FBX is read with the unit and the up axis that it tells")
+TEST_CASE("FBX is read with its own unit and up axis")
 {
     const TempFolder folder;
     Assimp::Importer importer;
@@ -182,15 +183,15 @@ TEST_CASE("a mesh in millimetres or on its side gets a notice, a plausible one g
     CHECK(!has(notices("good.obj", {100, 80, 1}, {}), "large"));
     CHECK(!has(notices("good.obj", {100, 80, 1}, {}), "side"));
     CHECK(has(notices("mm.obj", {100000, 80000, 1}, {}),
-              "is 100000 x 80000 x 1 m, which is large: is it in millimetres? --scale 0.001 makes it metres"));
+              "is 100000 x 80000 x 1 m, which is large; is it in millimetres? --scale 0.001 converts it to metres"));
     CHECK(!has(notices("mm.obj", {100000, 80000, 1}, {.scale = 0.001}), "large"));
     CHECK(has(notices("tiny.obj", {0.1, 0.2, 0.01}, {}), "which is small"));
     CHECK(has(notices("lying.obj", {100, 1, 80}, {}),
-              "most of its faces look along y, few up: does it lie on its side? --up y or z"));
+              "most of its faces look along y, few up; does it lie on its side? --up y or z"));
     CHECK(!has(notices("lying.obj", {100, 1, 80}, {.up = 'y'}), "side"));
 }
 
-TEST_CASE("glTF that needs an extension about geometry is refused, about looks it is not")
+TEST_CASE("glTF that requires an extension for geometry is refused, one for appearance is accepted")
 {
     const TempFolder folder;
     const auto needs = [&](const std::string& extension) {
@@ -204,7 +205,7 @@ TEST_CASE("glTF that needs an extension about geometry is refused, about looks i
         load_scene(needs("KHR_draco_mesh_compression")),
         Contains("needs the glTF extension KHR_draco_mesh_compression") && Contains("gltf-transform copy"));
     CHECK_THROWS_WITH(load_scene(needs("FOO_bar")),
-                      Contains("needs the glTF extension FOO_bar (extensionsRequired), which is not known here"));
+                      Contains("needs the glTF extension FOO_bar (extensionsRequired), which is unknown here"));
     CHECK_THROWS_AS(load_scene(needs("FOO_bar")), FileError);
     for (const char* extension :
          {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual", "EXT_texture_webp"})
@@ -213,7 +214,7 @@ TEST_CASE("glTF that needs an extension about geometry is refused, about looks i
           12);
 }
 
-TEST_CASE("glTF with instances or positions that are no floats is refused, required or not")
+TEST_CASE("glTF with instances or positions that are not floats is refused, required or not")
 {
     const TempFolder folder;
     const std::string plain = gltf_with("");
@@ -221,15 +222,15 @@ TEST_CASE("glTF with instances or positions that are no floats is refused, requi
         plain, "\"name\":\"crate\"",
         "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{}}},\"name\":\"crate\"");
     CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", instances)),
-                      Contains("node \"crate\": has instances by EXT_mesh_gpu_instancing"));
+                      Contains("node \"crate\" has instances, by EXT_mesh_gpu_instancing"));
     CHECK_THROWS_WITH(
         load_scene(folder.write("a.gltf", replaced(plain, "\"componentType\":5126", "\"componentType\":5123"))),
-        Contains("has positions that are no floats, by KHR_mesh_quantization"));
+        Contains("has positions that are not floats, because of KHR_mesh_quantization"));
     folder.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: a.gltf}]\n");
     CHECK_THROWS_WITH(load_robot((folder / "robot.yaml").string()), Contains("KHR_mesh_quantization"));
 }
 
-TEST_CASE("3DS has its own axes again: up turns those")
+TEST_CASE("3DS keeps its own axes, and up applies to these")
 {
     const TempFolder folder;
     Assimp::Importer importer;
@@ -241,15 +242,15 @@ TEST_CASE("3DS has its own axes again: up turns those")
         CHECK((bounds(up).min - Vec3(0, 0, 0)).norm() < 1e-6);
         CHECK((bounds(up).max - Vec3(4, 2, 1)).norm() < 1e-6);
     }
-    CHECK((bounds('y').min - Vec3(0, -1, 0)).norm() < 1e-6);  // (x, y, z) to (x, -z, y)
+    CHECK((bounds('y').min - Vec3(0, -1, 0)).norm() < 1e-6);  // (x, y, z) becomes (x, -z, y)
     CHECK((bounds('y').max - Vec3(4, 0, 2)).norm() < 1e-6);
     folder.write("scene.yaml",
                  "format: spawnfield-scene/1\nparts: [{name: a, mesh: a.3ds, up: y, scale: [1, 10, 100]}]\n");
     CHECK((load_scene(folder / "scene.yaml").bounds().min - Vec3(0, -100, 0)).norm() <
-          1e-4);  // scale comes first, on the file's axes
+          1e-4);  // the scale is applied first, on the axes of the file
 }
 
-TEST_CASE("DXF, which assimp turns too, is read on its own axes")
+TEST_CASE("DXF, which assimp also turns, is read with its own axes")
 {
     const TempFolder folder;
     std::string text = "0\nSECTION\n2\nENTITIES\n0\n3DFACE\n8\n0\n";
@@ -262,7 +263,7 @@ TEST_CASE("DXF, which assimp turns too, is read on its own axes")
     CHECK((bounds.max - Vec3(4, 2, 1)).norm() < 1e-6);
 }
 
-TEST_CASE("a name that comes back in an OBJ has its faces, and a name may have blanks")
+TEST_CASE("a name that occurs twice in an OBJ has all its faces, and a name may contain blanks")
 {
     const TempFolder folder;
     const std::string corners =
@@ -275,7 +276,7 @@ TEST_CASE("a name that comes back in an OBJ has its faces, and a name may have b
     CHECK(terrain("o road\n" + first + "o wall\n" + wall + "o road\n" + last) == 4);
     CHECK(terrain("g road\n" + first + "g wall\n" + wall + "g road\n" + last) == 4);
     CHECK(terrain("g road\n" + first + "o wall\n" + wall + "g road\n" + last) ==
-          4);  // o does not end the group, for assimp
+          4);  // in assimp, o does not end the group
     CHECK(terrain("o road\n" + first + "g wall\n" + wall + "o road\n" + last) == 4);
     CHECK(terrain("o wall\n" + first + "o road\n" + wall + "o wall\n" + last) == 2);
     CHECK(terrain("o my road\r\n" + first + "o my wall\n" + wall + "o my road \n" + last) == 4);
@@ -283,7 +284,7 @@ TEST_CASE("a name that comes back in an OBJ has its faces, and a name may have b
           std::string::npos);
 }
 
-TEST_CASE("faces under one name that is told again stay one piece")
+TEST_CASE("faces under one name that is repeated stay one piece")
 {
     const TempFolder folder;
     const Scene scene = load_scene(folder.write("a.obj", replaced(wedge, "f 1 2 4\n", "f 1 2 4\no wedge\n")));
@@ -291,7 +292,7 @@ TEST_CASE("faces under one name that is told again stay one piece")
     CHECK(scene.pieces[0].solid);
 }
 
-TEST_CASE("OBJ numbers may begin with a point, lines with a blank")
+TEST_CASE("numbers in an OBJ may begin with a point, and lines with a blank")
 {
     const TempFolder folder;
     const Scene scene = load_scene(
@@ -310,21 +311,21 @@ TEST_CASE("glTF with a vertex index beyond its vertices is refused")
 {
     const TempFolder folder;
     hand::Mesh mesh = hand::box({4, 2, 1});
-    mesh.triangles[5][1] = 8;  // of vertices 0 .. 7
+    mesh.triangles[5][1] = 8;  // only 0 .. 7 are vertices
     CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", mesh_text::gltf({{.mesh = mesh}}))),
-                      Contains("1 of its 12 triangles have a vertex index beyond their vertices"));
+                      Contains("1 of its 12 triangles refer to a vertex that does not exist"));
 }
 
-TEST_CASE("morph targets count by the weights of their mesh; skins and a node's own weights are told")
+TEST_CASE("morph targets use the weights of their mesh; skins and weights of a node get a notice")
 {
     const TempFolder folder;
     const std::string plain = mesh_text::gltf({{.name = "crate", .mesh = hand::box({4, 2, 1})}});
     const std::string attributes = "\"attributes\":{\"POSITION\":0}";
-    const auto with =
-        [&](const std::string& weights) {  // its target moves each corner by itself: all is twice as large at 1
-            return replaced(plain, "{\"primitives\":[{" + attributes,
-                            "{" + weights + "\"primitives\":[{" + attributes + ",\"targets\":[{\"POSITION\":0}]");
-        };
+    // The target moves each corner by its own position, so weight 1 doubles the size.
+    const auto with = [&](const std::string& weights) {
+        return replaced(plain, "{\"primitives\":[{" + attributes,
+                        "{" + weights + "\"primitives\":[{" + attributes + ",\"targets\":[{\"POSITION\":0}]");
+    };
     const auto size = [&](const std::string& text) {
         const Bounds bounds = load_scene(folder.write("a.gltf", text), {.up = 'z'}).bounds();
         return Vec3(bounds.max - bounds.min);
@@ -333,26 +334,26 @@ TEST_CASE("morph targets count by the weights of their mesh; skins and a node's 
     CHECK((size(with("\"weights\":[0.5],")) - Vec3(6, 3, 1.5)).norm() < 1e-5);
     CHECK((size(with("\"weights\":[0],")) - Vec3(4, 2, 1)).norm() < 1e-5);
     CHECK((size(with("")) - Vec3(4, 2, 1)).norm() < 1e-5);
-    CHECK(load_scene(folder / "a.gltf").notices.size() == 1);  // that all is terrain
+    CHECK(load_scene(folder / "a.gltf").notices.size() == 1);  // the notice that everything is terrain
     const std::string posed = replaced(with("\"weights\":[1],"), "\"name\":\"crate\"",
                                        "\"weights\":[0],\"name\":\"crate\"");
     CHECK_THAT(notices_of(load_scene(folder.write("a.gltf", posed))),
-               Contains("a.gltf: node \"crate\": a node's own weights of morph targets do not count"));
+               Contains("a.gltf: node \"crate\": the morph target weights of a node are ignored"));
     const std::string skinned = replaced(plain, "\"name\":\"crate\"", "\"skin\":0,\"name\":\"crate\"");
     const std::string skin = replaced(skinned, "\"materials\"", "\"skins\":[{\"joints\":[0]}],\"materials\"");
     CHECK_THROWS_WITH(load_scene(folder.write("a.gltf", skin)),
-                      Contains("skin 0: has no inverseBindMatrices for all of its joints"));
+                      Contains("skin 0 has fewer inverseBindMatrices than joints"));
     const std::string matrices = replaced(
         skin, "\"joints\":[0]",
-        "\"joints\":[0],\"inverseBindMatrices\":2");  // an accessor over the corners' first 64 bytes
+        "\"joints\":[0],\"inverseBindMatrices\":2");  // an accessor for the first 64 bytes of the corners
     const std::string accessor =
         ",{\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"MAT4\"}],\"bufferViews\"";
     folder.write("a.gltf", replaced(matrices, "],\"bufferViews\"", accessor));
     CHECK_THAT(notices_of(load_scene(folder / "a.gltf")),
-               Contains("node \"crate\": the joints of a skin do not count"));
+               Contains("node \"crate\": the joints of its skin are ignored"));
     folder.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: a.gltf}]\n");
     CHECK_THAT(load_robot((folder / "robot.yaml").string()).notices[0],
-               Contains("a.gltf: node \"crate\": the joints of a skin do not count"));
+               Contains("a.gltf: node \"crate\": the joints of its skin are ignored"));
 }
 
 TEST_CASE("a mesh of more than 1 km with walls gets a notice, hills get none")
@@ -361,15 +362,15 @@ TEST_CASE("a mesh of more than 1 km with walls gets a notice, hills get none")
     const auto notices = [&](const Vec3& size) {
         return notices_of(load_scene(folder.write("a.obj", mesh_text::obj(hand::box(size)))));
     };
-    CHECK_THAT(notices({12000, 9000, 3000}), Contains("is 12000 x 9000 x 3000 m and has a wall of 3000 m height: is it "
-                                                      "in millimetres? --scale 0.001 makes it metres"));
+    CHECK_THAT(notices({12000, 9000, 3000}), Contains("is 12000 x 9000 x 3000 m and has a wall of 3000 m height; is it "
+                                                      "in millimetres? --scale 0.001 converts it to metres"));
     CHECK_THAT(notices({12000, 9000, 830}), !Contains("millimetres"));  // as high as the highest tower
     CHECK_THAT(notices({12, 9, 3}), !Contains("millimetres"));
     const std::string slope = "v 0 0 0\nv 9000 0 0\nv 0 100 3000\nf 1 2 3\n";
     CHECK_THAT(notices_of(load_scene(folder.write("slope.obj", slope))), !Contains("millimetres"));
 }
 
-TEST_CASE("3MF and AMF are read in their unit, millimetres where they tell none")
+TEST_CASE("3MF and AMF are read in their unit, or else in millimetres")
 {
     const TempFolder folder;
     check_wedge(folder.write("none.3mf", package_3mf("")), 0.001 * Vec3(4, 2, 1));
@@ -390,9 +391,9 @@ TEST_CASE("3MF and AMF are read in their unit, millimetres where they tell none"
     check_wedge(amf(" version=\"1.1\""), 0.001 * Vec3(4, 2, 1));
     check_wedge(folder.write("in.3mf", package_3mf("unit=\"inch\"")), 0.0254 * Vec3(4, 2, 1));
     CHECK_THROWS_WITH(load_scene(folder.write("bad.3mf", package_3mf("unit=\"mile\""))),
-                      Contains("its unit is \"mile\", needs one of micron, millimeter"));
+                      Contains("has the unit \"mile\", needs one of micron, millimeter"));
     const std::string good = package_3mf("unit=\"meter\"");
-    for (std::size_t size = 0; size < good.size(); size += 7)  // cut anywhere: a result or a FileError
+    for (std::size_t size = 0; size < good.size(); size += 7)  // cut at any byte: a result or a FileError
         try {
             load_scene(folder.write("cut.3mf", good.substr(0, size)));
         } catch (const FileError&) {

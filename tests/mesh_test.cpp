@@ -30,7 +30,7 @@ Scene load_mesh(const TempFolder& folder, const std::string& name, const std::st
     return load_parts(folder, "  - {name: thing, mesh: " + name + keys + "}\n");
 }
 
-/// Six times the volume if all triangles look outwards; negative if they look inwards.
+/// Returns six times the volume if all triangles face outwards; the result is negative if they face inwards.
 double signed_volume(const Scene& scene)
 {
     double sum = 0;
@@ -48,7 +48,7 @@ std::size_t count(const Scene& scene, Label label)
     return std::size_t(std::count(scene.triangle_labels.begin(), scene.triangle_labels.end(), label));
 }
 
-/// A box that lies unlike in each direction: x 1..3, y 10..14, z 100..108.
+/// Returns a box that differs in each direction: x 1..3, y 10..14, z 100..108.
 hand::Mesh marker() { return box({1, 10, 100}, {3, 14, 108}); }
 
 const std::vector<double> shifted_by_5_in_x = {1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -57,7 +57,7 @@ const std::vector<double> mirrored_in_x = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 
 
 }  // namespace
 
-TEST_CASE("OBJ and STL are taken as they are, z up")
+TEST_CASE("OBJ and STL are read without conversion, z up")
 {
     const TempFolder folder;
     const auto [name, bytes] = GENERATE(std::pair("a.obj", mesh_text::obj(marker())),
@@ -66,14 +66,14 @@ TEST_CASE("OBJ and STL are taken as they are, z up")
     const Scene scene = load_mesh(folder, name, bytes);
     check_bounds(scene.bounds(), {1, 10, 100}, {3, 14, 108});
     CHECK(scene.triangles.size() == 12);
-    CHECK(scene.vertices.size() == 8);  // welded, also where the file repeats them
+    CHECK(scene.vertices.size() == 8);  // corners are welded, also if the file repeats them
     CHECK(scene.parts[0].solid_pieces == 1);
     CHECK(scene.parts[0].open_edges == 0);
     CHECK(scene.pieces[0].bottom == 100);
     CHECK(signed_volume(scene) == Approx(64));
 }
 
-TEST_CASE("up: y turns (x, y, z) to (x, -z, y)")
+TEST_CASE("up: y converts (x, y, z) to (x, -z, y)")
 {
     const TempFolder folder;
     check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", up: y").bounds(), {1, -108, 10},
@@ -81,7 +81,7 @@ TEST_CASE("up: y turns (x, y, z) to (x, -z, y)")
     check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", up: z").bounds(), {1, 10, 100}, {3, 14, 108});
 }
 
-TEST_CASE("scale is one number or three, on the file's own axes")
+TEST_CASE("scale is one number or three, on the axes of the file")
 {
     const TempFolder folder;
     check_bounds(load_mesh(folder, "a.obj", mesh_text::obj(marker()), ", scale: 0.5").bounds(), {0.5, 5, 50},
@@ -92,17 +92,18 @@ TEST_CASE("scale is one number or three, on the file's own axes")
                  {2, -10.8, 30}, {6, -10, 42});
 }
 
-TEST_CASE("unit, scale, up, rpy and xyz come in this order")
+TEST_CASE("unit, scale, up, rpy and xyz are applied in this order")
 {
     const TempFolder folder;
     const std::string bytes = mesh_text::dae({{.mesh = marker()}}, {.up = "Y_UP", .unit = 0.01});
     const Scene scene = load_mesh(folder, "a.dae", bytes,
                                   ", scale: [100, 200, 300], rpy_deg: [0, 0, 90], xyz: [1000, 2000, 3000]");
-    // Unit and scale: x 1..3, y 20..28, z 300..324. Up: y -324..-300, z 20..28. A quarter turn: (x, y) to (-y, x).
+    // With unit and scale: x 1..3, y 20..28, z 300..324. With up: y -324..-300, z 20..28. A quarter turn: (x, y)
+    // becomes (-y, x).
     check_bounds(scene.bounds(), {1300, 2001, 3020}, {1324, 2003, 3028}, 1e-4);
 }
 
-TEST_CASE("COLLADA's up axis is believed unless the part says otherwise")
+TEST_CASE("COLLADA's up axis is used unless the part has its own")
 {
     const TempFolder folder;
     const auto bounds = [&](const std::string& axis, const std::string& keys = "") {
@@ -111,12 +112,12 @@ TEST_CASE("COLLADA's up axis is believed unless the part says otherwise")
     check_bounds(bounds("Z_UP"), {1, 10, 100}, {3, 14, 108});
     check_bounds(bounds("Y_UP"), {1, -108, 10}, {3, -100, 14});
     check_bounds(bounds(""), {1, -108, 10}, {3, -100, 14});        // COLLADA's default is Y_UP
-    check_bounds(bounds("X_UP"), {-14, -108, 1}, {-10, -100, 3});  // x up, right is -y, towards the viewer z
+    check_bounds(bounds("X_UP"), {-14, -108, 1}, {-10, -100, 3});  // x is up, -y is right, z points to the viewer
     check_bounds(bounds("Y_UP", ", up: z"), {1, 10, 100}, {3, 14, 108});
     check_bounds(bounds("Z_UP", ", up: y"), {1, -108, 10}, {3, -100, 14});
 }
 
-TEST_CASE("COLLADA's unit counts once")
+TEST_CASE("COLLADA's unit is applied once")
 {
     const TempFolder folder;
     const std::string bytes = mesh_text::dae({{.mesh = marker(), .matrix = shifted_by_5_in_x}}, {.unit = 0.0254});
@@ -132,17 +133,17 @@ TEST_CASE("glTF is y up and in metres")
     check_bounds(load_mesh(folder, "a.gltf", bytes, ", up: z").bounds(), {1, 10, 100}, {3, 14, 108});
 }
 
-TEST_CASE("a node's matrix comes after its parents'")
+TEST_CASE("the matrix of a node is applied before those of its parents")
 {
     const TempFolder folder;
     const mesh_text::Node child{.name = "child", .mesh = box({1, 10, 100}, {3, 14, 108}), .matrix = shifted_by_5_in_x};
     const std::vector<mesh_text::Node> nodes = {{.name = "parent", .matrix = turned_about_z, .children = {child}}};
-    // Shifted: x 6..8. Turned: (x, y) to (-y, x).
+    // After the shift: x 6..8. After the turn: (x, y) becomes (-y, x).
     check_bounds(load_mesh(folder, "a.dae", mesh_text::dae(nodes)).bounds(), {-14, 6, 100}, {-10, 8, 108});
     check_bounds(load_mesh(folder, "a.gltf", mesh_text::gltf(nodes), ", up: z").bounds(), {-14, 6, 100}, {-10, 8, 108});
 }
 
-TEST_CASE("a mirrored node keeps its faces turned outwards")
+TEST_CASE("the faces of a mirrored node still point outwards")
 {
     const TempFolder folder;
     const std::vector<mesh_text::Node> nodes = {{.mesh = marker(), .matrix = mirrored_in_x}};
@@ -153,11 +154,11 @@ TEST_CASE("a mirrored node keeps its faces turned outwards")
         CHECK(scene.parts[0].solid_pieces == 1);
     }
     const Scene inside_out = load_mesh(folder, "b.obj", mesh_text::obj(hand::flipped(marker())));
-    CHECK(signed_volume(inside_out) == Approx(-64));  // the check above can fail
+    CHECK(signed_volume(inside_out) == Approx(-64));  // shows that the check above can fail
     CHECK(inside_out.parts[0].solid_pieces == 1);     // normals do not matter
 }
 
-TEST_CASE("a mirrored sheet with sides: up still looks up")
+TEST_CASE("a mirrored sheet with sides: up still faces up")
 {
     const TempFolder folder;
     const std::vector<mesh_text::Node> nodes = {{.mesh = hand::rectangle(2, 2), .matrix = mirrored_in_x}};
@@ -167,7 +168,7 @@ TEST_CASE("a mirrored sheet with sides: up still looks up")
     CHECK(column_at(Geometry(scene), 0.3, 0.2).layers == std::vector<double>{0});
 }
 
-TEST_CASE("label rules look at the node's or the material's name; the first match wins, case does not count")
+TEST_CASE("label rules match the name of the node or the material; the first match wins, case does not matter")
 {
     const TempFolder folder;
     const std::vector<mesh_text::Node> nodes = {
@@ -188,11 +189,11 @@ TEST_CASE("label rules look at the node's or the material's name; the first matc
     CHECK(count(scene, Label::Water) == 2);
     CHECK(count(scene, Label::Obstacle) == 12);
     CHECK(scene.triangles.size() == 16);
-    CHECK(scene.bounds().max.x() == 0.5);  // the ignored sheet widens nothing
+    CHECK(scene.bounds().max.x() == 0.5);  // the ignored sheet does not widen the bounds
     CHECK(scene.parts[0].label == Label::Obstacle);
 }
 
-TEST_CASE("a rule with node and material holds where both match")
+TEST_CASE("a rule with node and material applies if both match")
 {
     const TempFolder folder;
     std::vector<mesh_text::Node> nodes;
@@ -212,12 +213,12 @@ TEST_CASE("a rule with node and material holds where both match")
     CHECK(terrain("{material: wood, node: 'FLOOR*', label: obstacle}, {material: wood, label: terrain}") ==
           "table_wood ");
     CHECK(terrain("{node: 'floor*', label: terrain}") == "floor_wood floor_stone ");
-    // Each name is there, but not together.
+    // Both names exist, but not together.
     CHECK(terrain("{node: floor_wood, material: stone, label: terrain}") ==
           "labels: node \"floor_wood\" with material \"stone\" matches nothing");
 }
 
-TEST_CASE("a rule sees the node that carries the mesh, not its ancestors")
+TEST_CASE("a rule matches the node that has the mesh, not its ancestors")
 {
     const TempFolder folder;
     const mesh_text::Node child{.name = "slab", .mesh = hand::box({1, 1, 1})};
@@ -227,7 +228,7 @@ TEST_CASE("a rule sees the node that carries the mesh, not its ancestors")
     CHECK(count(load_mesh(folder, "a.gltf", bytes, ", labels: [{node: slab, label: terrain}]"), Label::Terrain) == 12);
 }
 
-TEST_CASE("of an OBJ, the last o or g is the node")
+TEST_CASE("in an OBJ, the last o or g is the node")
 {
     const TempFolder folder;
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
@@ -237,7 +238,7 @@ TEST_CASE("of an OBJ, the last o or g is the node")
     CHECK(count(scene, Label::Water) == 1);
 }
 
-TEST_CASE("solid pieces are found one by one: two cubes in one node are two")
+TEST_CASE("each solid piece is found: two cubes in one node are two pieces")
 {
     const TempFolder folder;
     hand::Mesh cubes = hand::box({1, 1, 1});
@@ -253,7 +254,7 @@ TEST_CASE("solid pieces are found one by one: two cubes in one node are two")
     CHECK(scene.pieces[1].bottom == 5);
 }
 
-TEST_CASE("a cube without a face is a sheet, and its open edges are told; its closed neighbour stays solid")
+TEST_CASE("a cube with a missing face is a sheet, and its open edges are counted; its closed neighbour stays solid")
 {
     const TempFolder folder;
     const hand::Mesh house = hand::without(hand::box({1, 1, 1}), 0, 2), shed = box({3, 0, 0}, {4, 1, 1});
@@ -268,7 +269,7 @@ TEST_CASE("a cube without a face is a sheet, and its open edges are told; its cl
     CHECK(column_at(geometry, 3.5, 0.5).spans.size() == 1);  // filled
 }
 
-TEST_CASE("solid: false empties what is closed, solid: true fills what is open")
+TEST_CASE("solid: false makes closed pieces hollow, solid: true fills open ones")
 {
     const TempFolder folder;
     const std::string closed = mesh_text::obj(hand::box({1, 1, 1})),
@@ -283,10 +284,10 @@ TEST_CASE("solid: false empties what is closed, solid: true fills what is open")
     CHECK(column_at(Geometry(filled), 0.1, 0.2).spans.size() == 1);
 }
 
-TEST_CASE("a closed piece of which some faces are water or ignored is no solid")
+TEST_CASE("a closed piece with faces that are water or ignored is not solid")
 {
     const TempFolder folder;
-    // Primitives of one node, told apart by material: the top of a basin, two triangles of its twelve.
+    // Primitives of one node with different materials: the top of a basin is two of its twelve triangles.
     const std::string name = GENERATE("water", "ignore");
     const hand::Mesh cube = hand::box({1, 1, 1});
     std::string text = "o basin\n";
@@ -305,7 +306,7 @@ TEST_CASE("a closed piece of which some faces are water or ignored is no solid")
     CHECK(load_mesh(folder, "a.obj", text, ", labels: [{material: other, label: terrain}]").parts[0].solid_pieces == 1);
 }
 
-TEST_CASE("a part whose every face is ignored has no pieces")
+TEST_CASE("a part with only ignored faces has no pieces")
 {
     const TempFolder folder;
     folder.write("a.obj", mesh_text::obj(hand::box({1, 1, 1})));
@@ -315,7 +316,7 @@ TEST_CASE("a part whose every face is ignored has no pieces")
     CHECK(scene.parts[0].triangles == 0);
 }
 
-TEST_CASE("triangles of no area by equal corners are dropped, lines and points too")
+TEST_CASE("triangles with equal corners are dropped, and so are lines and points")
 {
     const TempFolder folder;
     const Scene scene = load_mesh(
@@ -336,7 +337,7 @@ TEST_CASE("polygons are split into triangles")
     CHECK(area == Approx(3));
 }
 
-TEST_CASE("pieces are joined over edges, not over corners")
+TEST_CASE("pieces are connected over edges, not over corners")
 {
     const std::vector<Triangle> bow_tie = {{0, 1, 2}, {2, 3, 4}};
     CHECK(find_pieces(bow_tie).of_face == std::vector<std::uint32_t>{0, 1});
@@ -348,7 +349,8 @@ TEST_CASE("pieces are joined over edges, not over corners")
 
 TEST_CASE("an edge with four faces is closed, one with three is open")
 {
-    const std::vector<Triangle> doubled = {{0, 1, 2}, {2, 1, 0}};  // both windings, as many real files have them
+    // The same triangle with both windings, as in many real files.
+    const std::vector<Triangle> doubled = {{0, 1, 2}, {2, 1, 0}};
     CHECK(find_pieces(doubled).open_edges == std::vector<std::uint32_t>{0});
     const std::vector<Triangle> fin = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
     CHECK(find_pieces(fin).open_edges == std::vector<std::uint32_t>{7});

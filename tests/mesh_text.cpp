@@ -46,7 +46,7 @@ void append_geometry(std::string& text, const Node& node)
 
 void append_node(std::string& text, const Node& node)
 {
-    // Ids differ from names on purpose, as Blender's do.
+    // Ids differ from names on purpose, as in files of Blender.
     text += "<node id=\"" + node.name + "-id\" name=\"" + node.name + "\">";
     if (!node.matrix.empty()) text += "<matrix sid=\"transform\">" + spaced(node.matrix) + "</matrix>";
     if (!node.mesh.triangles.empty())
@@ -80,7 +80,7 @@ std::string base64(const std::string& bytes)
     return out;
 }
 
-/// The arrays of a glTF file while they grow.
+/// The arrays of a glTF file while it is built.
 struct Gltf {
     std::string nodes, meshes, materials, accessors, views, buffer;
     int node_count = 0, mesh_count = 0, view_count = 0;

@@ -27,7 +27,7 @@ std::filesystem::path write_yaml(const TempFolder& folder, const std::string& im
     return folder.write("map.yaml", "image: " + image + "\n" + keys);
 }
 
-/// "#": occupied, ".": free, "?": unknown; the first row is the uppermost.
+/// Returns a drawing of the map: "#" is occupied, "." free and "?" unknown; the first row is the top row.
 std::string drawn(const Nav2Map& map)
 {
     std::string out;
@@ -40,7 +40,7 @@ std::string read(const TempFolder& folder, const std::string& image, const std::
     return drawn(read_nav2_map(write_yaml(folder, image, keys)));
 }
 
-/// One row of bytes.
+/// Returns a PGM image with one row of bytes.
 std::string pgm(const std::vector<int>& values, int cols, int largest = 255)
 {
     std::string out = "P5\n# by a map saver\n" + std::to_string(cols) + " " +
@@ -59,28 +59,28 @@ void write_png(const TempFolder& folder, const std::string& name, const cv::Mat&
 
 }  // namespace
 
-TEST_CASE("pixels are occupied, free or unknown by their thresholds, as map_server has it")
+TEST_CASE("pixels are occupied, free or unknown by their thresholds, as in map_server")
 {
     const TempFolder folder;
-    // (255 - v) / 255 > 0.65 up to 89, < 0.196 from 206 on.
+    // (255 - v) / 255 is above 0.65 up to v = 89, and below 0.196 from v = 206 on.
     folder.write("a.pgm", pgm({0, 89, 90, 205, 206, 254, 255}, 7));
     CHECK(read(folder, "a.pgm") == "##??...");
     CHECK(read(folder, "a.pgm", "mode: scale\n" + usual) == "##??...");
-    // Negated v / 255: > 0.65 from 166 on, < 0.196 up to 49.
+    // With negate, v / 255 is above 0.65 from v = 166 on, and below 0.196 up to v = 49.
     folder.write("b.pgm", pgm({0, 49, 50, 165, 166, 255}, 6));
     CHECK(read(folder, "b.pgm",
                "resolution: 0.5\norigin: [1, 2, 0]\nnegate: true\noccupied_thresh: 0.65\nfree_thresh: 0.196\n") ==
           "..??##");
-    // Neither limit belongs to its side: 51 / 255 is 0.2.
+    // A pixel at a threshold is unknown: 51 / 255 is 0.2.
     folder.write("c.pgm", pgm({204, 205, 51, 50}, 4));
     CHECK(read(folder, "c.pgm",
                "resolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.8\nfree_thresh: 0.2\n") == "?.?#");
-    // Raw: per cent, over 100 unknown.
+    // In raw mode pixels are per cent, and unknown above 100.
     folder.write("d.pgm", pgm({0, 19, 20, 65, 66, 100, 101, 255}, 8));
     CHECK(read(folder, "d.pgm", "mode: raw\n" + usual) == "..??##??");
 }
 
-TEST_CASE("text, two bytes and other largest values are the same pixels")
+TEST_CASE("PGM as text, with two bytes or with another largest value gives the same pixels")
 {
     const TempFolder folder;
     folder.write("a.pgm", "P2 # text\n# and more\n4 1 # size\n255\n0 89\n# between\n90 255");
@@ -92,7 +92,7 @@ TEST_CASE("text, two bytes and other largest values are the same pixels")
     CHECK(read_pgm(folder / "b.pgm").largest == 65535);
 }
 
-TEST_CASE("colours are averaged, and what is transparent is unknown")
+TEST_CASE("colours are averaged, and transparent pixels are unknown")
 {
     const TempFolder folder;
     using Bgra = cv::Vec4b;
@@ -119,7 +119,7 @@ TEST_CASE("colours are averaged, and what is transparent is unknown")
     CHECK(read(folder, "c.png") == "#?.");
 }
 
-TEST_CASE("blocks cover each wanted cell once and nothing else")
+TEST_CASE("blocks cover each selected cell once and nothing else")
 {
     Draw draw(5, 0);
     for (int round = 0; round < 60; ++round) {
@@ -136,7 +136,7 @@ TEST_CASE("blocks cover each wanted cell once and nothing else")
     CHECK(blocks_of(3, 4, [](int, int) { return true; }).size() == 1);
 }
 
-TEST_CASE("a 2D map is a floor with walls where its cells say, at any yaw")
+TEST_CASE("a 2D map becomes a floor with walls at its occupied cells, at any yaw")
 {
     const TempFolder folder;
     const double yaw = GENERATE(0.0, 0.6, -2.5);
@@ -159,7 +159,7 @@ TEST_CASE("a 2D map is a floor with walls where its cells say, at any yaw")
     for (const Triangle& t : scene.triangles)
         floor_area +=
             (scene.vertices[t[1]] - scene.vertices[t[0]]).cross(scene.vertices[t[2]] - scene.vertices[t[0]]).z() /
-            2;  // seen from above, counterclockwise
+            2;  // positive if counterclockwise as seen from above
     std::size_t occupied = 0, known = 0;
     for (int row = 0; row < rows; ++row)
         for (int col = 0; col < cols; ++col) {
@@ -180,7 +180,7 @@ TEST_CASE("a 2D map is a floor with walls where its cells say, at any yaw")
     CHECK(floor_area == Approx(double(known) * 0.0625));
 }
 
-TEST_CASE("what a map leaves open is told")
+TEST_CASE("ambiguous settings of a map get a notice")
 {
     const TempFolder folder;
     folder.write("a.pgm", pgm({0, 205, 254}, 3));
@@ -189,27 +189,26 @@ TEST_CASE("what a map leaves open is told")
     CHECK(notices(usual) == std::vector<std::string>{file + "walls are 2 m high (--wall-height sets it)"});
     const std::vector<std::string> many = notices(
         "resolution: 1\norigin: [0, 0, 0]\nnegate: 1\nmode: raw\nfree_thresh: 0.25\nlayers: 3\n");
-    CHECK(many == std::vector<std::string>{file + "the key layers is not looked at",
-                                           file + "occupied_thresh is missing, taken as 0.65",
+    CHECK(many == std::vector<std::string>{file + "the key layers is unknown and ignored",
+                                           file + "occupied_thresh is missing; the default 0.65 is used",
                                            file + "negate has no effect in mode raw, as in nav2",
                                            file + "walls are 2 m high (--wall-height sets it)"});
     const std::vector<std::string> grey = notices(
         "resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n");
     const std::string free_grey = file + "1 pixels of 205, which map savers write for unknown, are free";
-    CHECK(grey[0] == free_grey + " by free_thresh 0.25 (below 0.196 they are unknown)");
+    CHECK(grey[0] == free_grey + " by free_thresh 0.25 (with free_thresh 0.196 or less they are unknown)");
     write_png(folder, "b.png", cv::Mat(1, 1, CV_8UC4, cv::Scalar(205, 205, 205, 255)));  // with alpha 217.5: 0.147
     const auto of_alpha = [&](const std::string& keys) {
         return load_scene(write_yaml(folder, "b.png", keys)).notices[0];
     };
-    CHECK(
-        of_alpha(usual) ==
-        free_grey +
-            ", as mode trinary counts alpha as a fourth colour (as nav2 does; without the alpha channel they are not)");
+    CHECK(of_alpha(usual) == free_grey +
+                                 ", because mode trinary counts alpha as a fourth colour, as in nav2 (without the "
+                                 "alpha channel they are not free)");
     CHECK(of_alpha("resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n") ==
           grey[0]);
 }
 
-TEST_CASE("maps that make no sense are refused by file, key and line")
+TEST_CASE("invalid maps are refused by file, key and line")
 {
     const TempFolder folder;
     folder.write("a.pgm", pgm({0, 205, 254}, 3));
@@ -228,12 +227,12 @@ TEST_CASE("maps that make no sense are refused by file, key and line")
     };
     check_refused("none.pgm", usual, used("none.pgm") + "does not exist; is the path right? (line 1)");
     check_refused("bits.pgm", usual,
-                  used("bits.pgm") + "is neither PGM (P2, P5) nor PNG; a map's image needs to be one of them (line 1)");
+                  used("bits.pgm") + "is not PGM (P2, P5) or PNG; convert the map's image to one of them (line 1)");
     check_refused("giant.pgm", usual, used("giant.pgm") + "has 99999 x 99999 pixels, needs at most 67108864 (line 1)");
     check_refused("over.pgm", usual,
                   used("over.pgm") + "has a pixel of 101, needs at most its largest value 100 (line 1)");
     check_refused("text.pgm", usual,
-                  used("text.pgm") + "is cut short or a damaged PGM image: pixel 1 is no whole number (line 1)");
+                  used("text.pgm") + "is cut short or a damaged PGM image: pixel 1 is not a whole number (line 1)");
     CHECK_THROWS_WITH(load_scene(write_yaml(folder, "short.pgm")), Contains("is cut short"));
     check_refused("full.pgm", usual, "has no free cell (3 x 1); are negate and the thresholds right?");
     check_refused("a.pgm", "origin: [0, 0, 0]\n", "resolution is missing");
@@ -256,7 +255,7 @@ TEST_CASE("maps that make no sense are refused by file, key and line")
                       Contains("wall_height is for a 2D map"));
 }
 
-TEST_CASE("a nav2 map bakes as it is, and robots stand where it is free")
+TEST_CASE("a nav2 map can be baked directly, and robots stand where it is free")
 {
     const TempFolder folder;
     std::vector<int> values(40 * 40, 254);
@@ -284,7 +283,7 @@ TEST_CASE("a nav2 map bakes as it is, and robots stand where it is free")
         CHECK(values[std::size_t(row * 40 + col)] == 254);
     }
     CHECK(run_program(folder, "bake map.yaml -o map2 --wall-height 0.5 --scale 2").status == 2);
-    for (const std::string height : {"0", "-1"}) {  // 0 is not "not given"
+    for (const std::string height : {"0", "-1"}) {  // 0 differs from a missing option
         const ProgramRun refused = run_program(folder, "bake map.yaml -o map2 --wall-height " + height);
         CHECK(refused.status == 2);
         CHECK_THAT(refused.err, Contains("--wall-height is " + height + ", needs > 0"));

@@ -9,11 +9,11 @@
 using namespace spawnfield;
 using State = OccupancyTree::State;
 
-TEST_CASE("a voxel is occupied when a surface touches it or its centre is inside, free in the bounds, unknown outside")
+TEST_CASE("a voxel is occupied if a surface touches it or its centre is inside, else free, and unknown off the bounds")
 {
     Scene scene;
     hand::add_mesh(scene, Label::Obstacle,
-                   hand::moved(hand::box({2, 2, 2}), {{0.05, 0, 0}, Mat3::Identity()}));  // -0.95 .. 1.05
+                   hand::moved(hand::box({2, 2, 2}), {{0.05, 0, 0}, Mat3::Identity()}));  // x from -0.95 to 1.05
     TestMap map = map_of(scene);
     map.bounds = {Vec3(-3, -3, -3), Vec3(3, 3, 3)};
     const OccupancyTree tree = build_occupancy(map.geometry, map.bounds, 0.25);
@@ -21,9 +21,9 @@ TEST_CASE("a voxel is occupied when a surface touches it or its centre is inside
     CHECK(tree.at({0, 0, 0}) == State::Occupied);    // deep inside
     CHECK(tree.at({1.1, 0, 0}) == State::Occupied);  // the surface at 1.05 lies in 1.00 .. 1.25
     CHECK(tree.at({1.3, 0, 0}) == State::Free);
-    CHECK(tree.at({0, 1.1, 0}) == State::Occupied);  // touched: the surface is its lower side
+    CHECK(tree.at({0, 1.1, 0}) == State::Occupied);  // the surface touches its lower side
     CHECK(tree.at({0, 1.3, 0}) == State::Free);
-    CHECK(tree.at({-1.01, 0, 0}) == State::Free);  // ends 0.05 before the surface
+    CHECK(tree.at({-1.01, 0, 0}) == State::Free);  // the voxel ends 0.05 before the surface
     CHECK(tree.at({2.9, 2.9, 2.9}) == State::Free);
     CHECK(tree.at({3.1, 0, 0}) == State::Unknown);
     CHECK(tree.at({0, 0, -3.1}) == State::Unknown);
@@ -40,7 +40,7 @@ TEST_CASE("water is free space")
     CHECK(tree.at({0.1, 0.1, -0.9}) == State::Occupied);
 }
 
-TEST_CASE("voxels of random scenes are what a box of their size meets")
+TEST_CASE("voxels of random scenes are occupied if a box of their size meets something")
 {
     std::size_t occupied = 0, free = 0;
     for (std::uint64_t seed = 1; seed <= 25; ++seed) {
@@ -67,7 +67,7 @@ TEST_CASE("voxels of random scenes are what a box of their size meets")
     CHECK(free > 500);
 }
 
-TEST_CASE("an occupancy tree has the same leaves at any thread count and is pruned")
+TEST_CASE("an occupancy tree has the same leaves with any number of threads and is pruned")
 {
     const TestMap map = map_of(random_scene(3));
     const OccupancyTree one = build_occupancy(map.geometry, map.bounds, 0.1, 1);
@@ -80,14 +80,14 @@ TEST_CASE("an occupancy tree has the same leaves at any thread count and is prun
     CHECK(tree.leaves() < 64);  // 262,144 voxels, all but one free
 }
 
-TEST_CASE("the file that is written without a tree is the tree's, at any thread count")
+TEST_CASE("the file that is written without a tree is equal to that of the tree, with any number of threads")
 {
     const TempFolder temp;
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         const TestMap map = map_of(random_scene(seed));
         Bounds bounds = map.bounds;
         if (seed % 3 == 0)
-            bounds = {bounds.min - Vec3(1, 20, 3), bounds.max + Vec3(15, 1, 7)};  // over the edges of blocks
+            bounds = {bounds.min - Vec3(1, 20, 3), bounds.max + Vec3(15, 1, 7)};  // beyond the edges of blocks
         const double voxel = 0.05 + 0.03 * double(seed % 4);
         const OccupancyTree tree = build_occupancy(map.geometry, bounds, voxel);
         tree.write(temp / "tree.bt");
@@ -100,7 +100,7 @@ TEST_CASE("the file that is written without a tree is the tree's, at any thread 
     }
 }
 
-TEST_CASE("bounds beyond OctoMap's keys are refused with the resolution that would do")
+TEST_CASE("bounds beyond the keys of OctoMap are refused, with the resolution that would work")
 {
     Scene scene;
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(2, 2), {{5000, 0, 0}, Mat3::Identity()}));

@@ -22,8 +22,8 @@ using Catch::Contains;
 
 namespace {
 
-/// Voxels of 0.25 m. A floor over x, y of -2 .. 2 with its top at z = 0; free space up to z = 2 where x < 0, and a free
-/// column at the far corner of the other half, which is unknown else.
+/// Returns a tree with voxels of 0.25 m: a floor over x and y of -2 .. 2 with its top at z = 0, and free space up to z
+/// = 2 where x < 0. The other half is unknown, except for a free column at its far corner.
 template <class Tree>
 Tree half_seen()
 {
@@ -94,7 +94,7 @@ double volume_of(const Scene& scene, std::uint32_t part)
 
 }  // namespace
 
-TEST_CASE("unknown boxes fill just what the tree does not know of its extent, once")
+TEST_CASE("unknown boxes fill exactly the unknown space in the extent of the tree, once")
 {
     const unsigned seed = GENERATE(range(1u, 6u));
     const octomap::OcTree tree = random_tree(seed);
@@ -105,7 +105,7 @@ TEST_CASE("unknown boxes fill just what the tree does not know of its extent, on
         CHECK(box.volume() > 0);
         sum += box.volume();
     }
-    CHECK(sum == extent.volume() - known_volume(tree));  // so none overlap, by what follows
+    CHECK(sum == extent.volume() - known_volume(tree));  // together with the check below: no boxes overlap
     double x = 0, y = 0, z = 0;
     auto& changeable = const_cast<octomap::OcTree&>(tree);
     changeable.getMetricMin(x, y, z);
@@ -126,27 +126,27 @@ TEST_CASE("unknown boxes fill just what the tree does not know of its extent, on
             }
 }
 
-TEST_CASE("boxes of unknown space are few: those of a half with one free column")
+TEST_CASE("unknown space needs few boxes: here a half with one free column")
 {
     const octomap::OcTree tree = half_seen<octomap::OcTree>();
     CHECK(unknown_boxes(tree, known_extent(tree)).size() <= 8);
 }
 
-TEST_CASE("unknown space is free unless the scene or the caller says blocked, and a notice tells how much there is")
+TEST_CASE("unknown space is free unless the scene or the caller makes it blocked, and a notice states its volume")
 {
     const TempFolder folder;
     const std::string words = (folder / "scan.bt").string() + ": 15.875 m3 of its 36 m3 are unknown (44.1 %) and ";
     const Scene open = load(folder, "");
     CHECK(open.parts.size() == 1);
     REQUIRE(open.notices.size() == 1);
-    CHECK(open.notices[0] == words + "count as free (--unknown blocked makes them solid)");
+    CHECK(open.notices[0] == words + "are treated as free (--unknown blocked makes them solid)");
     const Scene blocked = load(folder, ", unknown: blocked");
     REQUIRE(blocked.parts.size() == 2);
     CHECK(blocked.parts[1].name == "scan:unknown");
     CHECK(blocked.parts[1].label == Label::Obstacle);
     CHECK(volume_of(blocked, 0) == Approx(4));
     CHECK(volume_of(blocked, 1) == Approx(15.875));
-    CHECK(blocked.notices == std::vector<std::string>{words + "count as solid"});
+    CHECK(blocked.notices == std::vector<std::string>{words + "are treated as solid"});
     const auto file = folder.write("bare.bt", half_seen_bytes());
     CHECK(load_scene(file, {.unknown = Unknown::Blocked}).parts.size() == 2);
     CHECK(load_scene(folder / "scene.yaml", {.unknown = Unknown::Free}).parts.size() == 1);
@@ -155,32 +155,34 @@ TEST_CASE("unknown space is free unless the scene or the caller says blocked, an
                           ": part \"scan\": unknown is \"solid\", needs one of free, blocked (line 3)");
 }
 
-TEST_CASE("a part's name that unknown space takes is refused, and unknown without an OctoMap told")
+TEST_CASE("a part must not have the name of unknown space, and unknown without an OctoMap gets a notice")
 {
     const TempFolder folder;
     folder.write("scan.bt", half_seen_bytes());
     const std::string head = "format: spawnfield-scene/1\nparts:\n",
                       box = "  - {name: 'scan:unknown', label: terrain, box: [1, 1, 1]}\n",
                       scan = "  - {name: scan, octomap: scan.bt, unknown: blocked}\n";
-    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + box + scan)), Contains("is given to another part"));
+    CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + box + scan)),
+                      Contains("is already used; rename one of the parts"));
     CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + scan + box)),
-                      Contains("is given to an earlier part too"));
+                      Contains("is also the name of an earlier part"));
     const Scene plain = load_scene(folder.write("a.yaml", head + box), {.unknown = Unknown::Blocked});
     REQUIRE(plain.notices.size() == 1);
     CHECK(plain.notices[0] == (folder / "a.yaml").string() + ": has no OctoMap, so --unknown has no effect");
     CHECK_THROWS_WITH(load_scene(folder.write("a.yaml", head + "  - {name: a, box: [1, 1, 1], unknown: free}\n")),
-                      Contains("unknown is no known key"));
+                      Contains("unknown is not a known key"));
 }
 
-TEST_CASE("a robot that is partly in unknown space collides with it where that is blocked")
+TEST_CASE("a robot that is partly in unknown space collides if that is blocked")
 {
     const TempFolder folder;
     const Robot robot = load_robot("box:0.4,0.4,0.4");
-    const std::vector<Pose> poses = {{{-1, 0, 0.1}, Mat3::Identity()},     // all in what was seen free
-                                     {{-0.1, 0, 0.1}, Mat3::Identity()},   // half of it beyond x = 0
-                                     {{-0.21, 0, 0.1}, Mat3::Identity()},  // 1 cm before
-                                     {{1, 1, 0.5}, Mat3::Identity()},      // in unknown space
-                                     {{-1, 0, 1.9}, Mat3::Identity()}};    // out of the top, where nothing blocks
+    const std::vector<Pose> poses = {
+        {{-1, 0, 0.1}, Mat3::Identity()},     // completely in free space
+        {{-0.1, 0, 0.1}, Mat3::Identity()},   // half of it beyond x = 0
+        {{-0.21, 0, 0.1}, Mat3::Identity()},  // 1 cm before unknown space
+        {{1, 1, 0.5}, Mat3::Identity()},      // in unknown space
+        {{-1, 0, 1.9}, Mat3::Identity()}};    // reaches beyond the top, where nothing is blocked
     const auto verdicts = [&](const std::string& more) {
         const TestMap map = map_of(load(folder, more));
         return Judge(map, robot, {.max_height = 5}).check(poses);
@@ -195,7 +197,7 @@ TEST_CASE("a robot that is partly in unknown space collides with it where that i
     }
     REQUIRE(blocked[1].hit);
     CHECK(blocked[1].hit->part == 1);
-    // Over the top of unknown space it is the ground, and no terrain.
+    // Above unknown space the ground is unknown space, which is not terrain.
     const TestMap map = map_of(load(folder, ", unknown: blocked"));
     const Judge judge(map, robot);
     CHECK(judge.check({{1, 1, 2.1}, Mat3::Identity()}).verdict == Verdict::OffTerrain);
@@ -229,7 +231,7 @@ TEST_CASE("with unknown space blocked the mask and the independent decision stil
     CHECK(decided > 200);
 }
 
-TEST_CASE("OctoMaps with colours or times hold the same as plain ones")
+TEST_CASE("OctoMaps with colours or times have the same contents as plain ones")
 {
     const TempFolder folder;
     auto coloured = half_seen<octomap::ColorOcTree>();
@@ -290,8 +292,9 @@ TEST_CASE("bake --unknown blocked puts unknown space into the map")
                      blocked = run_program(folder, "bake scan.bt -o blocked --unknown blocked");
     REQUIRE(open.status == 0);
     REQUIRE(blocked.status == 0);
-    CHECK_THAT(open.err, Contains("notice: scan.bt: 15.875 m3 of its 36 m3 are unknown (44.1 %) and count as free"));
-    CHECK_THAT(blocked.err, Contains("(44.1 %) and count as solid"));
+    CHECK_THAT(open.err,
+               Contains("notice: scan.bt: 15.875 m3 of its 36 m3 are unknown (44.1 %) and are treated as free"));
+    CHECK_THAT(blocked.err, Contains("(44.1 %) and are treated as solid"));
     folder.write("poses.csv", "x,y,z\n-1,0,0.1\n1,1,0.1\n");
     CHECK_THAT(run_program(folder, "check open --robot box:0.4,0.4,0.4 --poses poses.csv").out,
                Contains("1,1,0.1,valid"));
@@ -300,7 +303,7 @@ TEST_CASE("bake --unknown blocked puts unknown space into the map")
     CHECK(run_program(folder, "bake scan.bt -o other --unknown solid").status == 2);
 }
 
-TEST_CASE("the corridor's unknown space is a sane number of boxes")
+TEST_CASE("the unknown space of the corridor is a reasonable number of boxes")
 {
     const auto shared = shared_scenes();
     if (!shared) return;

@@ -17,7 +17,7 @@ constexpr double pi = std::numbers::pi;
 double degrees(double radians) { return radians * 180 / pi; }
 double radians(double degrees) { return degrees * pi / 180; }
 
-/// Linear red, green, blue, 0 .. 1, of 0xRRGGBB (IEC 61966-2-1).
+/// Returns linear red, green and blue (0 .. 1) of 0xRRGGBB (IEC 61966-2-1).
 Eigen::Vector3d linear(std::uint32_t colour)
 {
     Eigen::Vector3d out;
@@ -28,7 +28,7 @@ Eigen::Vector3d linear(std::uint32_t colour)
     return out;
 }
 
-/// CIELAB of linear sRGB, for the white of D65.
+/// Returns CIELAB of linear sRGB, for the white point D65.
 Lab lab(const Eigen::Vector3d& rgb)
 {
     Eigen::Matrix3d xyz_from_rgb;
@@ -39,7 +39,7 @@ Lab lab(const Eigen::Vector3d& rgb)
     return {116 * f.y() - 16, 500 * (f.x() - f.y()), 200 * (f.y() - f.z())};
 }
 
-/// CIEDE2000. Source: Sharma, Wu, Dalal, The CIEDE2000 color-difference formula, 2005.
+/// Returns the colour difference CIEDE2000. Source: Sharma, Wu, Dalal, The CIEDE2000 color-difference formula, 2005.
 double difference(const Lab& one, const Lab& other)
 {
     const auto power7 = [](double c) { return std::sqrt(std::pow(c, 7) / (std::pow(c, 7) + std::pow(25.0, 7))); };
@@ -74,11 +74,11 @@ double difference(const Lab& one, const Lab& other)
 
 struct Vision {
     const char* name;
-    Eigen::Matrix3d seen;  ///< linear sRGB from linear sRGB
+    Eigen::Matrix3d seen;  ///< from linear sRGB to linear sRGB
 };
 
-/// Normal vision, and the three kinds of colour blindness at full severity.
-/// Source: Machado, Oliveira, Fernandes, A physiologically-based model for simulation of color vision deficiency, 2009.
+/// Returns normal vision and the three kinds of colour blindness at full severity. Source: Machado, Oliveira,
+/// Fernandes, A physiologically-based model for simulation of color vision deficiency, 2009.
 std::vector<Vision> visions()
 {
     std::vector<Vision> out(4);
@@ -97,7 +97,7 @@ Lab seen(std::uint32_t colour, const Vision& vision)
     return lab((vision.seen * linear(colour)).cwiseMax(0).cwiseMin(1));
 }
 
-/// All ten verdicts of the design, also those that no query gives yet.
+/// Returns all ten verdicts of the design, also those that no query gives yet.
 std::vector<std::pair<std::string, std::uint32_t>> all_verdicts()
 {
     std::vector<std::pair<std::string, std::uint32_t>> out;
@@ -146,7 +146,7 @@ TEST_CASE("no two of the ten verdicts are closer than 20 (CIEDE2000 and CIE76), 
             }
 }
 
-TEST_CASE("the other colours of a heat map are told from verdicts and from each other, in every kind of vision")
+TEST_CASE("the other colours of a heat map differ from verdicts and from each other, in every kind of vision")
 {
     auto colours = all_verdicts();
     const std::size_t verdicts = colours.size();

@@ -2,8 +2,8 @@
 
 #include <string>
 
-/// Absolute paths, known to paths.cpp alone, so that a checkout elsewhere compiles the other test files to the same
-/// objects.
-const std::string& source_folder();  ///< of this repository
+/// Absolute paths. Only paths.cpp contains them, so that the other test files compile to the same objects in every
+/// checkout.
+const std::string& source_folder();  ///< root folder of this repository
 const std::string& program_file();   ///< the program spawnfield of this build
 const std::string& python_file();    ///< a Python that may have the packages of tests/requirements.txt

@@ -30,7 +30,7 @@ std::string chunk(const std::string& name, const std::string& data)
 
 struct PngText {
     std::uint32_t cols = 2, rows = 2;
-    char bits = 8, colour = 0, interlace = 0;  ///< as the header has them
+    char bits = 8, colour = 0, interlace = 0;  ///< values of the header
     std::string lines = "";                    ///< a filter byte and the pixels, for each row
     std::string before = "";                   ///< chunks in front of the pixels
 };
@@ -55,7 +55,7 @@ GreyImage read_png(const TempFolder& folder, const PngText& png)
 
 }  // namespace
 
-TEST_CASE("PNG pixels of fewer than 8 bits are spread over 0 .. 255")
+TEST_CASE("PNG pixels of fewer than 8 bits are scaled to 0 .. 255")
 {
     const TempFolder folder;
     CHECK(read_png(folder, {.bits = 1, .lines = {0, '\x40', 0, '\x80'}}).pixels == Pixels{0, 255, 255, 0});
@@ -65,10 +65,11 @@ TEST_CASE("PNG pixels of fewer than 8 bits are spread over 0 .. 255")
     CHECK(four.largest == 255);
 }
 
-TEST_CASE("an interlaced PNG is read as a plain one")
+TEST_CASE("an interlaced PNG is read like a plain one")
 {
     const TempFolder folder;
-    // Of 2 x 2 pixels, Adam7's first pass has the first, its sixth the second, its last the second row.
+    // For 2 x 2 pixels, the first pass of Adam7 has the first pixel, the sixth pass the second pixel, and the last pass
+    // the second row.
     CHECK(read_png(folder, {.interlace = 1, .lines = {0, 1, 0, 2, 0, 3, 4}}).pixels == Pixels{1, 2, 3, 4});
     const GreyImage deep = read_png(folder, {.bits = 16, .interlace = 1, .lines = {0, 1, 0, 0, 2, 0, 0, 3, 0, 4, 5}});
     CHECK(deep.pixels == Pixels{256, 512, 768, 1029});
@@ -82,7 +83,7 @@ TEST_CASE("gamma and transparency leave PNG pixels as they are")
     CHECK(read_png(folder, {.lines = {0, 1, 2, 0, 3, 4}, .before = chunks}).pixels == Pixels{1, 2, 3, 4});
 }
 
-TEST_CASE("a PNG image that is grey is read as such, in whatever colours it is stored")
+TEST_CASE("a grey PNG image is read as grey, with any colour type")
 {
     const TempFolder folder;
     CHECK(read_png(folder, {.colour = 2, .lines = {0, 1, 1, 1, 2, 2, 2, 0, 3, 3, 3, 4, 4, 4}}).pixels ==
@@ -101,13 +102,13 @@ TEST_CASE("PNG images that are damaged or not grey are refused with their name a
         CHECK_THROWS_WITH(read_png(folder, png), file + reason);
     };
     check_refused({.colour = 2, .lines = {0, 7, 7, 7, 8, 8, 8, 0, 9, 9, 9, 9, 9, 8}},
-                  "has a pixel that is coloured (column 1, row 1), needs to be a grey image");
+                  "has a pixel that is coloured (column 1, row 1), needs only grey, opaque pixels");
     check_refused({.colour = 4, .lines = {0, 7, '\xff', 8, '\xfe', 0, 9, '\xff', 9, '\xff'}},
-                  "has a pixel that is transparent (column 1, row 0), needs to be a grey image");
+                  "has a pixel that is transparent (column 1, row 0), needs only grey, opaque pixels");
     check_refused({.colour = 6, .lines = std::string(18, '\0')},
-                  "has a pixel that is transparent (column 0, row 0), needs to be a grey image");
+                  "has a pixel that is transparent (column 0, row 0), needs only grey, opaque pixels");
     check_refused({.colour = 3, .lines = std::string(6, '\0'), .before = chunk("PLTE", "abcdef")},
-                  "has a pixel that is coloured (column 0, row 0), needs to be a grey image");
+                  "has a pixel that is coloured (column 0, row 0), needs only grey, opaque pixels");
     check_refused({.lines = {0, 1, 2}}, "is a damaged PNG image: Not enough image data");
     check_refused({.cols = 0, .lines = {0, 0}}, "is a damaged PNG image: Invalid IHDR data");
     check_refused({.cols = 1000000, .rows = 1000000, .lines = {0}},
@@ -117,7 +118,7 @@ TEST_CASE("PNG images that are damaged or not grey are refused with their name a
     folder.write("a.png", good.substr(0, good.size() - 20));
     CHECK_THROWS_WITH(read_grey_png(folder / "a.png"), file + "is a damaged PNG image: cut short");
     std::string bad = good;
-    bad[good.size() - 13] ^= 1;  // the last byte of the checksum in front of IEND
+    bad[good.size() - 13] ^= 1;  // the last byte of the checksum before IEND
     folder.write("a.png", bad);
     CHECK_THROWS_WITH(read_grey_png(folder / "a.png"), file + "is a damaged PNG image: IDAT: CRC error");
 }

@@ -20,7 +20,7 @@ PoseTable read(const std::string& text)
     return read_poses(folder.write("poses.csv", text));
 }
 
-/// What is said about a file, without its name.
+/// Returns the error message for a file, without its name.
 std::string complaint(const std::string& text)
 {
     const TempFolder folder;
@@ -49,7 +49,7 @@ std::string raster_csv(const RasterResult& raster, bool aerial)
     return out;
 }
 
-/// Numbers whose shortest texts are of all kinds.
+/// Numbers whose shortest texts have different forms.
 const std::vector<double> odd_numbers = {0.1,
                                          1.0 / 3,
                                          1e-300,
@@ -86,7 +86,7 @@ TEST_CASE("quaternions are x, y, z, w and may be a little off unit length")
     CHECK((rolled.rotation * rolled.rotation.transpose()).isApprox(Mat3::Identity(), 1e-14));
 }
 
-TEST_CASE("rows and header are kept as they stand, extra columns and all")
+TEST_CASE("rows and header are kept unchanged, including extra columns")
 {
     const PoseTable table = read("name,x,y,z,note\n\"a, b\",1, 2 ,3,\"say \"\"hi\"\"\"\nc,4,5,6,\n");
     CHECK(table.header == "name,x,y,z,note");
@@ -96,7 +96,7 @@ TEST_CASE("rows and header are kept as they stand, extra columns and all")
     CHECK(table.poses[0].position == Vec3(1, 2, 3));
 }
 
-TEST_CASE("line ends of Windows, a byte order mark, empty lines and a missing last line end do no harm")
+TEST_CASE("line ends of Windows, a byte order mark, empty lines and a missing last line end are accepted")
 {
     const PoseTable table = read("\xEF\xBB\xBFx,y,z\r\n1,2,3\r\n\r\n  \n4,5,6");
     CHECK(table.header == "x,y,z");
@@ -106,7 +106,7 @@ TEST_CASE("line ends of Windows, a byte order mark, empty lines and a missing la
     CHECK(read("\"x\",\"y\",\"z\"\n\"1\",\"2\",\"3\"\n").poses[0].position == Vec3(1, 2, 3));
 }
 
-TEST_CASE("a poses file that makes no sense is told by line and column")
+TEST_CASE("an invalid poses file is refused by line and column")
 {
     CHECK(complaint("") == "is empty, needs a header x,y,z,roll,pitch,yaw");
     CHECK(complaint("\n \n") == "is empty, needs a header x,y,z,roll,pitch,yaw");
@@ -135,7 +135,7 @@ TEST_CASE("a poses file that makes no sense is told by line and column")
     CHECK_THROWS_WITH(read_poses("/none/poses.csv"), "/none/poses.csv: does not exist; is the path right?");
 }
 
-TEST_CASE("what may be a slip of the pen in a poses file is told")
+TEST_CASE("probable mistakes in a poses file get a notice")
 {
     const auto notices = [](const std::string& text) {
         const TempFolder folder;
@@ -145,10 +145,11 @@ TEST_CASE("what may be a slip of the pen in a poses file is told")
         return out;
     };
     CHECK(notices("id,x,y,z,yaw\n1,2,3,4,5\n").empty());
-    CHECK(notices("x,y,z,Yaw\n1,2,3,4\n") == ": column Yaw is carried along, not read: names are lower case (yaw)\n");
+    CHECK(notices("x,y,z,Yaw\n1,2,3,4\n") ==
+          ": column Yaw is copied but not read, because names of columns are lower case (yaw)\n");
 }
 
-TEST_CASE("verdicts take the place of older ones")
+TEST_CASE("verdicts replace older verdicts")
 {
     const PoseTable table = read("hit,x,\"verdict\",y,z,note\nlamp,0,\"1,2\",0,0.1,\"a, \"\"b\"\"\"\n");
     CHECK(replaced_columns(table) == std::vector<std::string>{"hit", "verdict"});
@@ -177,9 +178,9 @@ TEST_CASE("spawns that were written read back to the same doubles")
     }
 }
 
-TEST_CASE("spawns of none are a header") { CHECK(spawns_csv({}) == "x,y,z,roll,pitch,yaw\n"); }
+TEST_CASE("an empty list of spawns is written as a header") { CHECK(spawns_csv({}) == "x,y,z,roll,pitch,yaw\n"); }
 
-TEST_CASE("verdicts stand behind the columns they were asked about")
+TEST_CASE("verdicts follow the columns of the poses")
 {
     const PoseTable table = read("id,x,y,z\n7,0,0,0.1\n8,0,0,5\n9,0,0,0.3\n10,0,0,1\n");
     Scene scene;
@@ -202,7 +203,7 @@ TEST_CASE("verdicts stand behind the columns they were asked about")
           "10,0,0,1,collision,0,1,occupancy\n");
 }
 
-TEST_CASE("a raster is written as it is listed; a pose whose ground is no layer has none")
+TEST_CASE("a raster is written in its order; a pose whose ground is not a layer has no layer")
 {
     RasterResult raster;
     raster.yaw = 0.5;
@@ -213,7 +214,7 @@ TEST_CASE("a raster is written as it is listed; a pose whose ground is no layer 
           "1.5,2,0.3333333333333333,0.5,,off_terrain\n");
 }
 
-TEST_CASE("aerial poses are written in their places only when asked for")
+TEST_CASE("aerial poses are written, in their places, only on request")
 {
     RasterResult raster;
     raster.dims = 3;
@@ -251,7 +252,7 @@ TEST_CASE("a long raster comes in pieces of whole lines")
     CHECK(most < (1 << 20) + 100);
 }
 
-TEST_CASE("spawns as JSON have quaternions of unit length, names, their settings and the map they hold in")
+TEST_CASE("spawns as JSON have unit quaternions, names, their settings and their map")
 {
     SpawnList list;
     list.spawns = {{{1, 2, 3}, 0.5}};
@@ -316,7 +317,7 @@ TEST_CASE("spawns as JSON have quaternions of unit length, names, their settings
     CHECK_FALSE((given.contains("settings") || given.contains("counts") || given["poses"][0].contains("name")));
 }
 
-TEST_CASE("names of a table are carried on, and its poses keep roll and pitch")
+TEST_CASE("names of a table are kept, and its poses keep roll and pitch")
 {
     const PoseTable table = read("name,x,y,z,roll,pitch,yaw\n\"a, b\",1,2,3,0.1,-0.2,0.3\nc,4,5,6,0,0,3\n");
     CHECK(column_of(table, "name") == std::vector<std::string>{"a, b", "c"});

@@ -1,4 +1,4 @@
-// What most test files include, compiled once.
+// Headers that most test files include. They are compiled once.
 #include "catch.h"
 
 #include <spawnfield/error.h>

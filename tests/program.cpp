@@ -25,8 +25,8 @@ ProgramRun run_program(const TempFolder& folder, const std::string& arguments) {
 ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds,
                              const std::string& signal)
 {
-    // In the foreground only the program is told: a group's members are told twice, and the second Ctrl-C ends it at
-    // once.
+    // With --foreground only the program gets the signal. Without it, every process of the group gets the signal, so
+    // the program gets it twice, and a second Ctrl-C ends it at once.
     return run(
         folder,
         "timeout --foreground --preserve-status --signal=" + signal + " --kill-after=30 " + std::to_string(seconds),

@@ -2,15 +2,15 @@
 
 #include "temp_folder.h"
 
-/// The real program, run by tests.
+/// The result of a run of the program.
 struct ProgramRun {
-    int status;  ///< as a shell tells it: 128 + N for signal N
+    int status;  ///< status as in a shell: 128 + N for signal N
     std::string out, err;
 };
 
-/// `spawnfield ARGUMENTS` in the folder, by a shell, without a terminal.
+/// Runs `spawnfield ARGUMENTS` in the folder, in a shell and without a terminal.
 ProgramRun run_program(const TempFolder& folder, const std::string& arguments);
 
-/// The same; the signal (Ctrl-C) comes after `seconds`, and a hard end half a minute later.
+/// Does the same, but sends the signal (Ctrl-C by default) after `seconds`, and kills the program half a minute later.
 ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds,
                              const std::string& signal = "INT");

@@ -13,9 +13,10 @@ namespace {
 
 using Height = std::function<double(double x, double y)>;
 
-// One draw per call of a function or within braces: arguments are evaluated in any order.
+// Function calls contain at most one draw, because C++ may evaluate arguments in any order. Braced lists are evaluated
+// from left to right.
 
-/// A scene that grows.
+/// A scene while it is built.
 struct Yard {
     Random random;
     Height ground;
@@ -36,7 +37,7 @@ Mat3 upright_or_any(Random& random, double upright)
     return any_rotation(random);
 }
 
-/// Somewhere in the yard, `lift` above the ground.
+/// Returns a random place in the yard, `lift` above the ground.
 Vec3 spot(Yard& yard, double lift)
 {
     const double x = yard.random.between(-8.5, 8.5), y = yard.random.between(-8.5, 8.5);
@@ -49,7 +50,7 @@ Vec3 sizes(Random& random, double low, double high)
     return {x, y, z};
 }
 
-/// Corners on an ellipsoid: all of them are corners of their hull.
+/// Returns points on an ellipsoid, so that all of them are corners of their hull.
 std::vector<Vec3> points_around(Random& random, int count, const Vec3& radii)
 {
     std::vector<Vec3> points;
@@ -72,8 +73,8 @@ Height random_height(Random& random)
     };
 }
 
-/// Obstacles and water strewn over terrain.
-std::vector<Label> strewn_labels(Random& random, std::size_t count)
+/// Returns labels of terrain with random faces of obstacle and water.
+std::vector<Label> mixed_labels(Random& random, std::size_t count)
 {
     std::vector<Label> labels(count, Label::Terrain);
     for (Label& label : labels)
@@ -87,7 +88,7 @@ void add_relief(Yard& yard)
     hand::MeshOptions options = {.kind = yard.random.chance(0.5) ? "heightmap" : "mesh"};
     options.sides_up = yard.random.chance(0.4);
     if (options.kind == "mesh") {
-        if (yard.random.chance(0.5)) options.labels = strewn_labels(yard.random, mesh.triangles.size());
+        if (yard.random.chance(0.5)) options.labels = mixed_labels(yard.random, mesh.triangles.size());
         for (Triangle& t : mesh.triangles)
             if (yard.random.chance(0.1)) std::swap(t[1], t[2]);
     }
@@ -115,7 +116,7 @@ void add_box(Yard& yard)
     hand::add_shape(yard.scene, matter(yard.random), {ShapeKind::Box, size, place});
 }
 
-/// A plate or a wedge sunk in the ground.
+/// Adds a plate or a wedge that is partly in the ground.
 void add_ramp(Yard& yard)
 {
     const double length = yard.random.between(2, 6), width = yard.random.between(1, 2.5);
@@ -154,7 +155,7 @@ void add_rock(Yard& yard)
     hand::add_mesh(yard.scene, matter(yard.random), hand::moved(mesh, place), {.fill = fill});
 }
 
-/// Closed, not convex; sometimes with a label of its own for each face, sometimes wound inside out.
+/// Adds a closed mesh that is not convex. Some have a different label for each face, some are wound inside out.
 void add_corner(Yard& yard)
 {
     const double width = yard.random.between(1, 3), thickness = yard.random.between(0.2, 0.8);
@@ -169,7 +170,7 @@ void add_corner(Yard& yard)
     hand::add_mesh(yard.scene, matter(yard.random), hand::moved(mesh, place), options);
 }
 
-/// A closed piece within another makes no cavity.
+/// Adds a closed piece inside another one. This makes no cavity.
 void add_nested(Yard& yard)
 {
     const Vec3 size = sizes(yard.random, 1.5, 3);
@@ -178,7 +179,8 @@ void add_nested(Yard& yard)
     hand::add_piece(yard.scene, hand::moved(hand::flipped(hand::box(0.8 * size)), place));
 }
 
-/// Four walls, floor and roof, mostly with a side missing: then without thickness and free inside.
+/// Adds four walls, a floor and a roof. Mostly one side is missing; then the walls have no thickness and the inside is
+/// free.
 void add_house(Yard& yard)
 {
     const Vec3 size = {yard.random.between(2, 4), yard.random.between(2, 4), yard.random.between(1.5, 3)};
@@ -209,7 +211,7 @@ void add_pole(Yard& yard)
     }
 }
 
-/// A plate overhead: a box, or a sheet that may be wound either way round.
+/// Adds a plate overhead: a box, or a sheet with either winding.
 void add_storey(Yard& yard)
 {
     const double size_x = yard.random.between(2, 7), size_y = yard.random.between(2, 7);
@@ -276,7 +278,7 @@ RobotPart random_part(Random& random)
 
 // ---- Poses ----
 
-/// Near a vertex or primitive of the scene: where verdicts change.
+/// Returns a place near a vertex or a primitive of the scene, where verdicts change.
 Vec3 near_something(const Scene& scene, Random& random)
 {
     const int count = int(scene.pieces.size() + scene.primitives.size());

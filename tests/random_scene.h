@@ -8,19 +8,19 @@
 #include <cstdint>
 #include <vector>
 
-/// R = Rz(yaw) Ry(pitch) Rx(roll).
+/// Returns Rz(yaw) Ry(pitch) Rx(roll).
 spawnfield::Mat3 rotation_of_rpy(double roll, double pitch, double yaw);
 
-/// A small world about 20 x 20 m around the origin: relief or floor, and some of all that scenes are made of: ramps,
-/// boxes, round bodies, closed, nested and open meshes, thin walls, poles, upper storeys, water.
+/// Returns a small world of about 20 x 20 m around the origin: a relief or a floor, with ramps, boxes, round bodies,
+/// closed, nested and open meshes, thin walls, poles, upper storeys and water.
 spawnfield::Scene random_scene(std::uint64_t seed);
 
-/// One to four boxes, round bodies and hulls, up to about 1 m across, most of it above the origin.
+/// Returns a robot of one to four boxes, round bodies and hulls, up to about 1 m across, mostly above its origin.
 spawnfield::Robot random_robot(std::uint64_t seed);
 
-/// Poses in and slightly beyond the scene's bounds, most of them up to 1.5 m above some surface, half of them near a
-/// part of the scene rather than anywhere.
+/// Returns poses in the bounds of the scene and slightly beyond. Most are up to 1.5 m above some surface, and half of
+/// them are near a part of the scene.
 std::vector<spawnfield::Pose> random_poses(const spawnfield::Scene& scene, std::uint64_t seed, std::size_t count);
 
-/// Smallest box around the scene, from its vertices and the spheres around its primitives.
+/// Returns a box around the vertices of the scene and the spheres around its primitives.
 spawnfield::Bounds rough_bounds(const spawnfield::Scene& scene);

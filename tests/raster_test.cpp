@@ -38,12 +38,12 @@ TEST_CASE("the thesis's 2D raster of the training arena has 41 x 41 columns and 
         for (int i = 0; i < 41; ++i) expected += column_at(map.geometry, -10 + 0.5 * i, -10 + 0.5 * j).layers.size();
     CHECK(result.poses.size() == expected);
     CHECK(result.poses.size() >
-          1681);  // the floor goes on under platform, ramp and the flying box, and the underground box has its own top
+          1681);  // the floor continues under platform, ramp and flying box, and the underground box has its own top
     const Judge exhaustive = at_any_height(judge);
     for (const RasterPose& pose : result.poses) CHECK(pose.verdict == judged(exhaustive, pose, 0));
 }
 
-TEST_CASE("rows run y after y, x fastest, each column from the top down")
+TEST_CASE("rows are sorted by y, then by x, and each column from the top down")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -58,7 +58,7 @@ TEST_CASE("rows run y after y, x fastest, each column from the top down")
     }
 }
 
-TEST_CASE("a 3D raster has the verdicts of every pose asked by itself")
+TEST_CASE("a 3D raster has the verdicts that check gives for each single pose")
 {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         const TestMap map = map_of(seed == 1 ? training_map().scene : random_scene(seed));
@@ -94,14 +94,14 @@ TEST_CASE("upper limits of bounds and max_height belong to the raster")
     const Judge judge(map, load_robot("box:0.1,0.1,0.05"), {.max_height = 0.3});
     RasterOptions options{.dims = 3, .step = 0.1, .bounds = {Vec3(0, 0, 0.1), Vec3(0.7, 0.3, 1.2)}};
     const RasterResult result = raster(judge, options);
-    CHECK(result.grid.cols == 8);  // 0.7 / 0.1 is 6.999…
+    CHECK(result.grid.cols == 8);  // 0.7 / 0.1 is 6.999… in floating point
     CHECK(result.grid.rows == 4);
     CHECK(result.grid.heights == 12);
     CHECK(result.counts[Verdict::Valid] == 8 * 4 * 3);  // 0.1, 0.2 and 0.3
     CHECK(result.counts[Verdict::Aerial] == 8 * 4 * 9);
 }
 
-TEST_CASE("aerial poses are written in their places when asked for")
+TEST_CASE("aerial poses are written in their places on request")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -114,7 +114,7 @@ TEST_CASE("aerial poses are written in their places when asked for")
     CHECK(lines(few) < lines(all));
 }
 
-TEST_CASE("without height check every pose is asked for collisions alone")
+TEST_CASE("without height check every pose is checked only for collisions")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -129,7 +129,7 @@ TEST_CASE("without height check every pose is asked for collisions alone")
     CHECK(result.counts[Verdict::Collision] > 0);
 }
 
-TEST_CASE("layers narrow a raster to some of each column")
+TEST_CASE("layers restrict a raster to some layers of each column")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -158,7 +158,7 @@ TEST_CASE("columns outside the map are outside")
     CHECK(result.poses.size() == 12);
 }
 
-TEST_CASE("a raster is the same bytes at any thread count")
+TEST_CASE("a raster is the same bytes with any number of threads")
 {
     const TestMap map = map_of(random_scene(4));
     const Judge judge(map, random_robot(4));
@@ -197,7 +197,7 @@ RasterOptions snapped(double step, double step_z, double offset)
     return {.dims = 3, .step = step, .step_z = step_z, .offset = offset, .snap = true};
 }
 
-/// A level floor of 4 x 4 m at this height.
+/// Adds a level floor of 4 x 4 m at this height.
 void add_floor(Scene& scene, double height)
 {
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(4, 4), {Vec3(0, 0, height)}));
@@ -212,7 +212,7 @@ std::vector<double> heights_of(const RasterResult& raster)
 
 }  // namespace
 
-TEST_CASE("with snap a floor between two steps is found, without it is not")
+TEST_CASE("a floor between two steps is found with snap, but not without")
 {
     Scene scene;
     add_floor(scene, 1.2);  // steps at 0, 2.5 and 5: the next one above is 1.3 m up
@@ -228,7 +228,7 @@ TEST_CASE("with snap a floor between two steps is found, without it is not")
         CHECK(pose.verdict == Verdict::Valid);
         CHECK(pose.snapped);
     }
-    CHECK((found.counts[Verdict::Aerial] == 9 * 2 && found.counts[Verdict::Valid] == 9));  // 2.5 is replaced
+    CHECK((found.counts[Verdict::Aerial] == 9 * 2 && found.counts[Verdict::Valid] == 9));  // the second of the steps 0, 2.5 and 5 is replaced
     CHECK(found.counts.total() == 9 * 3);
     options.snap = false;
     const RasterResult missed = raster(judge, options);
@@ -236,8 +236,7 @@ TEST_CASE("with snap a floor between two steps is found, without it is not")
     CHECK((missed.counts[Verdict::Aerial] == 9 * 3 && missed.counts.total() == 9 * 3));
 }
 
-TEST_CASE(
-    "snapped poses take the place of steps: one for two layers below it, none beyond the last, none off the bounds")
+TEST_CASE("snapped poses replace steps: one step for two layers below it, none beyond the last step or the bounds")
 {
     Scene scene;
     for (const double height : {0.4, 1.6, 2.2, 5.5, 7.0, -1.0}) add_floor(scene, height);
@@ -245,31 +244,31 @@ TEST_CASE(
     const Judge judge(map, load_robot("box:0.1,0.1,0.05"));
     RasterOptions options = snapped(1, 2.5, 0.25);
     options.bounds = {Vec3(0, 0, 0), Vec3(0, 0, 6)};
+    // Three poses replace the step 2.5, and 5.75 is above the last step.
     const auto heights = [&] { return heights_of(raster(judge, options)); };
-    CHECK(heights() ==
-          std::vector<double>{5.75, 5.0, 2.45, 1.85, 0.65, 0.0});  // 2.5 is replaced by three, 5.5 is an extra one
+    // Three poses replace the step 2.5, and 5.75 is above the last step.
+    CHECK(heights() == std::vector<double>{5.75, 5.0, 2.45, 1.85, 0.65, 0.0});
     options.layers = {LayerChoice::Kind::Index, 2};
-    CHECK(raster(judge, options).poses.size() == 1);  // 2.45: the steps near it went
+    CHECK(raster(judge, options).poses.size() == 1);  // 2.45; the steps near it were replaced
     options.layers = {LayerChoice::Kind::Bottom, 0};
     const RasterResult bottom = raster(judge, options);
-    REQUIRE(bottom.poses.size() == 1);  // the layer is below the bounds, the step 0 is a metre above it
+    REQUIRE(bottom.poses.size() == 1);  // the layer is below the bounds, and the step 0 is 1 m above it
     CHECK_FALSE(bottom.poses[0].snapped);
     options.layers = {};
     options.step_z = 0.2;
     options.bounds.max.z() = 0.8;
-    CHECK(heights() ==
-          std::vector<double>{0.8, 0.65, 0.2 * 3, 0.2, 0});  // in place of 0.4, above the step that follows
-    options.offset = 0.4;                                    // where a step is, too: one pose
+    CHECK(heights() == std::vector<double>{0.8, 0.65, 0.2 * 3, 0.2, 0});  // 0.65 replaces 0.4, above the next step
+    options.offset = 0.4;                                                 // at a step, so there is one pose
     CHECK(heights() == std::vector<double>{0.8, 0.2 * 3, 0.2, 0});
 }
 
-TEST_CASE("a floor that is at a step but for rounding replaces that one")
+TEST_CASE("a floor that differs from a step only by rounding replaces that step")
 {
     RasterGrid grid;
     grid.step_z = 0.1;
     grid.heights = 8;
-    CHECK(grid.step_above(0.3) == 3);  // 3 * 0.1 is more
-    CHECK(grid.step_above(0.7) == 7);  // 7 * 0.1 is more, 0.7 / 0.1 less
+    CHECK(grid.step_above(0.3) == 3);  // 3 * 0.1 is greater than 0.3
+    CHECK(grid.step_above(0.7) == 7);  // 7 * 0.1 is greater than 0.7, and 0.7 / 0.1 is less than 7
     CHECK(grid.step_above(0.7 + 5e-10) == 7);
     CHECK(grid.step_above(0.7 + 5e-9) == 8);
     CHECK(grid.step_above(0.31) == 4);
@@ -311,7 +310,7 @@ TEST_CASE("the poses of the 2D raster are among those of the 3D raster with snap
     CHECK((valid > 500 && other > 500));
 }
 
-TEST_CASE("with snap no place is asked twice, and a column runs down, also where offsets meet steps")
+TEST_CASE("with snap no place is checked twice, and each column is sorted downwards, also if offsets meet steps")
 {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         const TestMap map = map_of(random_scene(seed));

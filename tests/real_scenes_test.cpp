@@ -8,11 +8,11 @@ using namespace spawnfield;
 
 namespace {
 
-/// What a folder's SOURCE.md says of it; extents in the scene's frame.
+/// Facts about a scene from its SOURCE.md; extents are in the frame of the scene.
 struct RealScene {
     std::string file;
     Vec3 min, max;
-    double margin;  ///< m, as SOURCE.md rounds
+    double margin;  ///< m, the rounding of SOURCE.md
     std::size_t triangles;
 };
 
@@ -40,7 +40,7 @@ const std::vector<RealScene>& real_scenes()
 
 struct RealRobot {
     std::string file;
-    double offset;  ///< m, leaves some room under its lowest point
+    double offset;  ///< m, leaves some space under the lowest point
 };
 
 const std::vector<RealRobot>& real_robots()
@@ -57,7 +57,7 @@ bool is_near(const Vec3& a, const Vec3& b, double margin) { return ((a - b).cwis
 
 }  // namespace
 
-TEST_CASE("every real scene has the extent and the triangles that its source tells")
+TEST_CASE("every real scene has the extent and the triangles that its source documents")
 {
     const auto folder = shared_scenes();
     if (!folder) return;
@@ -105,10 +105,10 @@ TEST_CASE("check in real scenes agrees with the independent decision")
     std::size_t decided = 0, valid = 0, collision = 0;
     for (const RealScene& real : real_scenes()) {
         const TestMap map = map_of(load_scene(*folder / real.file));
-        if (map.scene.triangles.size() > 50000) continue;  // the slow way looks at each triangle for each pose
+        if (map.scene.triangles.size() > 50000)
+            continue;  // the independent decision visits each triangle for each pose
         const Robot robot = load_robot((*folder / real_robots()[1].file).string());
         const Judge judge(map, robot);
-        // Random poses, and those that a sample gives: half of the others miss the ground.
         std::vector<Pose> poses = random_poses(map.scene, 17, 20);
         SampleOptions sampling{.count = 15, .offset = 0.15};
         for (const Spawn& spawn : sample(judge, sampling).spawns)
@@ -129,7 +129,7 @@ TEST_CASE("check in real scenes agrees with the independent decision")
     CHECK(collision > 20);
 }
 
-TEST_CASE("a map of a mesh with doubled faces has layers, but nothing inside")
+TEST_CASE("a map of a mesh with doubled faces has layers, but no inside")
 {
     const auto folder = shared_scenes();
     if (!folder) return;
@@ -143,7 +143,7 @@ TEST_CASE("a map of a mesh with doubled faces has layers, but nothing inside")
     const auto on_floor = std::count_if(list.spawns.begin(), list.spawns.end(),
                                         [](const Spawn& spawn) { return spawn.position.z() < 0.5; });
     CAPTURE(on_floor);
-    CHECK(on_floor > 80);  // under the roof; the rest stand where there is nothing but a ledge
+    CHECK(on_floor > 80);  // under the roof; the others are where there is only a ledge
 }
 
 TEST_CASE("the garage has spawns on every deck and none in the slabs")

@@ -32,7 +32,7 @@ Ring star(Draw& draw, const Vec2& centre, double radius, int corners)
     return out;
 }
 
-/// Corners anywhere, so that it crosses itself.
+/// Returns a ring with random corners, which crosses itself.
 Ring tangle(Draw& draw, int corners)
 {
     Ring out;
@@ -60,7 +60,8 @@ std::vector<Region> random_regions(Draw& draw)
     return out;
 }
 
-/// Even-odd upwards, where the index goes sideways; nothing near an edge.
+/// Returns whether p is in a region, by the even-odd rule with a ray upwards (the index uses sideways rays); nothing
+/// near an edge.
 std::optional<bool> slow_contains(const std::vector<Region>& regions, const Vec2& p)
 {
     bool in_any = false;
@@ -104,7 +105,7 @@ const Region triangle = region_of({{{{-3, -3}, {4, -2}, {0, 4}}}});
 
 }  // namespace
 
-TEST_CASE("a point is in a region as the even-odd rule says, counted another way")
+TEST_CASE("a point is in a region by the even-odd rule, counted in another way")
 {
     std::size_t in = 0, out = 0;
     for (int round = 0; round < 150; ++round) {
@@ -118,7 +119,7 @@ TEST_CASE("a point is in a region as the even-odd rule says, counted another way
             REQUIRE(index.contains(p) == *wanted);
             ++(*wanted ? in : out);
         }
-        for (const Region& region : regions)  // edges belong to it
+        for (const Region& region : regions)  // edges belong to the region
             for (const Region::Polygon& polygon : region.polygons)
                 for (const Ring& ring : polygon)
                     for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -131,7 +132,7 @@ TEST_CASE("a point is in a region as the even-odd rule says, counted another way
     CHECK(out > 5000);
 }
 
-TEST_CASE("rectangles that miss or fill a region are known to")
+TEST_CASE("rectangles outside or completely inside a region are recognised")
 {
     std::size_t missed = 0, covered = 0, clear = 0;
     for (int round = 0; round < 150; ++round) {
@@ -179,7 +180,7 @@ TEST_CASE("a comb of long teeth and a million corners take little memory and tim
     CHECK(index.contains({0.07, -0.5}));
 }
 
-TEST_CASE("regions are united, keep-outs taken away, and edges are of both")
+TEST_CASE("regions are united, keep-outs are removed, and edges belong to both")
 {
     Area area;
     area.within = {box_region(0, 0, 2, 2), box_region(1, 1, 3, 3)};
@@ -210,7 +211,7 @@ TEST_CASE("samples are uniform by area over the region, and nowhere else")
     REQUIRE(list.spawns.size() == 20000);
     CHECK(list.off_area > 0);
     const AreaIndex index(area);
-    // Cells of 0.5 m, with their shares of the area by fine points.
+    // Cells of 0.5 m with their shares of the area, counted with fine points.
     std::vector<double> observed(400, 0), share(400, 0);
     const auto bin = [](double x, double y) { return std::size_t((y + 5) / 0.5) * 20 + std::size_t((x + 5) / 0.5); };
     double total = 0;
@@ -240,10 +241,10 @@ TEST_CASE("samples are uniform by area over the region, and nowhere else")
     chi_square += (rest_observed - rest_expected) * (rest_observed - rest_expected) / rest_expected;
     CAPTURE(chi_square, bins);
     CHECK(std::abs(chi_square - bins) <
-          3.3 * std::sqrt(2.0 * bins));  // bins degrees of freedom: 0.1 % of honest runs are outside
+          3.3 * std::sqrt(2.0 * bins));  // `bins` degrees of freedom; 0.1 % of correct runs are outside
 }
 
-TEST_CASE("a region that is full is proven so, and the same bytes at any number of threads")
+TEST_CASE("a full region is proven full, with the same bytes with any number of threads")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky()), exhaustive = without_mask(judge);
@@ -262,7 +263,7 @@ TEST_CASE("a region that is full is proven so, and the same bytes at any number 
         CHECK(spawns_csv(many) == spawns_csv(one));
         CHECK((many.draws == one.draws && many.off_area == one.off_area && many.counts == one.counts));
     }
-    // Nothing can be added, by dense probing.
+    // Dense probing shows that nothing can be added.
     const AreaIndex index(area);
     std::size_t probes = 0;
     for (double y = -3; y <= 9; y += 0.05)
@@ -280,7 +281,7 @@ TEST_CASE("a region that is full is proven so, and the same bytes at any number 
     CHECK(probes > 5000);
 }
 
-TEST_CASE("a sliver of a ten-thousandth of the map is sampled as well, and an empty region is proven empty")
+TEST_CASE("a sliver of a ten-thousandth of the map is sampled, too, and an empty region is proven empty")
 {
     const TestMap map = floor_map(200);
     const Judge judge(map, load_robot("box:0.3,0.2,0.2"));
@@ -300,7 +301,7 @@ TEST_CASE("a sliver of a ten-thousandth of the map is sampled as well, and an em
     CHECK(nothing.is_full);
 }
 
-TEST_CASE("a raster in a region is the whole one's columns that lie in it")
+TEST_CASE("a raster in a region has the columns of the whole raster that are in the region")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -329,7 +330,7 @@ TEST_CASE("a raster in a region is the whole one's columns that lie in it")
     CHECK(same);
 }
 
-TEST_CASE("a search in a region finds only there, and ends")
+TEST_CASE("a search in a region finds spawns only there, and ends")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -368,11 +369,11 @@ TEST_CASE("GeoJSON of every kind with areas is read")
         R"(},{"type":"Feature","geometry":null},{"type":"Feature","geometry":{"type":"Point","coordinates":[1,1]}}]})");
     check_hole(all);
     CHECK(all.notices == std::vector<std::string>{(folder / "a.geojson").string() +
-                                                  ": 1 point or line left out: points and lines have no area"});
+                                                  ": 1 point or line ignored: points and lines have no area"});
     CHECK(all.name == "a.geojson");
     const Region utm = read(
         R"({"type":"Polygon","crs":{"type":"name","properties":{"name":"EPSG:32611"}},"coordinates":[)" + outer + "]}");
-    CHECK_THAT(utm.notices.at(0), Contains("crs EPSG:32611 is not looked at"));
+    CHECK_THAT(utm.notices.at(0), Contains("crs EPSG:32611 is ignored"));
 }
 
 TEST_CASE("CSV polygons end at empty lines or where their name changes")
@@ -417,7 +418,7 @@ TEST_CASE("a nav2 map is the region of its free cells, or a keep-out of its occu
             for (int col = 0; col < cols; ++col) {
                 const Vec2 low = map.corner(row + 1, col).head<2>(), high = map.corner(row, col + 1).head<2>(),
                            left = map.corner(row, col).head<2>();
-                const bool wanted = map.at(row, col) ==
+                const bool wanted = map.cell(row, col) ==
                                     (cells == MapCells::Free ? Nav2Map::Cell::Free : Nav2Map::Cell::Occupied);
                 REQUIRE(index.contains((low + high) / 2) == wanted);
                 REQUIRE(index.contains(0.98 * left + 0.01 * (low + high)) == wanted);
@@ -425,7 +426,7 @@ TEST_CASE("a nav2 map is the region of its free cells, or a keep-out of its occu
     }
 }
 
-TEST_CASE("regions that make no sense are refused with the place")
+TEST_CASE("invalid regions are refused with the place")
 {
     const TempFolder folder;
     const auto check_refused = [&](const std::string& name, const std::string& text, const std::string& reason) {
@@ -438,45 +439,45 @@ TEST_CASE("regions that make no sense are refused with the place")
                   "$.coordinates[0] has 2 different corners, needs at least 3");
     check_refused("a.json", polygon("[[0,0],[1,1],[2,2],[0,0]]"),
                   "$.coordinates[0] has no area: its corners lie on one line");
-    check_refused("a.json", polygon("[[0,0],[1,\"1\"],[2,2],[0,0]]"), "$.coordinates[0][1] is no position [x, y]");
-    check_refused("a.json", R"({"type":"Polygon"})", "$.coordinates is missing or no list");
-    check_refused("a.json", R"({"type":"Polygon","coordinates":[]})", "$.coordinates is no list of rings");
+    check_refused("a.json", polygon("[[0,0],[1,\"1\"],[2,2],[0,0]]"), "$.coordinates[0][1] is not a position [x, y]");
+    check_refused("a.json", R"({"type":"Polygon"})", "$.coordinates is missing or is not a list");
+    check_refused("a.json", R"({"type":"Polygon","coordinates":[]})", "$.coordinates is not a list of rings");
     check_refused(
         "a.json", R"({"type":"Topology"})",
         "$ has type \"Topology\", needs Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection");
     check_refused("a.json", R"({"type":"FeatureCollection","features":[{"type":"Feature"}]})",
                   "$.features[0].geometry is missing");
     check_refused("a.json", R"({"type":"Point","coordinates":[1,1]})", "has no polygon, only 1 point or line");
-    check_refused("a.json", "[]", "$ is no object");
+    check_refused("a.json", "[]", "$ is not an object");
     std::string deep;
     for (int i = 0; i < 5000; ++i) deep += R"({"type":"GeometryCollection","geometries":[)";
     for (int i = 0; i < 5000; ++i) deep += "]}";
     CHECK_THROWS_WITH(read_region(folder.write("a.json", deep)), Contains("is nested too deep"));
-    CHECK_THROWS_WITH(read_region(folder.write("a.json", "{\"type\":")), Contains("is no JSON"));
+    CHECK_THROWS_WITH(read_region(folder.write("a.json", "{\"type\":")), Contains("is not valid JSON"));
     CHECK_THROWS_WITH(read_region(folder.write("a.json", polygon("[[0,0],[NaN,0],[1,1],[0,0]]"))),
-                      Contains("is no JSON"));
+                      Contains("is not valid JSON"));
     CHECK_THROWS_WITH(read_region(folder.write("a.json", polygon("[[0,0],[1e999,0],[1,1],[0,0]]"))),
-                      Contains("is no JSON"));
+                      Contains("is not valid JSON"));
     check_refused(
         "a.json",
         R"({"type":"Polygon","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:OGC:1.3:CRS84"}},"coordinates":[]})",
-        "has crs urn:ogc:def:crs:OGC:1.3:CRS84, which is degrees; needs metres in the map's frame (ogr2ogr -t_srs "
-        "projects it)");
+        "has crs urn:ogc:def:crs:OGC:1.3:CRS84, which is in degrees; needs metres in the map's frame (ogr2ogr "
+        "-t_srs converts it)");
     check_refused("a.csv", "0,0\n1,0\n\n", "line 1: the polygon has 2 different corners, needs at least 3");
     check_refused("a.csv", "0,0\n1,0\n2,0\n", "line 1: the polygon has no area: its corners lie on one line");
-    check_refused("a.csv", "0,0\n1,x\n2,0\n", "line 2: \"x\" is no finite number");
-    check_refused("a.csv", "0,0\n1,nan\n2,0\n", "line 2: \"nan\" is no finite number");
+    check_refused("a.csv", "0,0\n1,x\n2,0\n", "line 2: \"x\" is not a finite number");
+    check_refused("a.csv", "0,0\n1,nan\n2,0\n", "line 2: \"nan\" is not a finite number");
     check_refused("a.csv", "0,0,0\n", "line 1: has 3 fields, needs x,y (a header line names further ones)");
     check_refused("a.csv", "lon,lat\n", "line 1: has neither numbers x,y nor the names of such columns");
     check_refused("a.csv", "", "has no polygon: x,y of three corners or more are needed");
     check_refused("a.yaml", "format: spawnfield-scene/1\n",
-                  "is no 2D map of nav2 or ROS (keys image, resolution, origin, …)");
+                  "is not a 2D map of nav2 or ROS (keys image, resolution, origin, …)");
     CHECK_THROWS_WITH(read_region(folder / "none.json"),
                       (folder / "none.json").string() + ": does not exist; is the path right?");
     CHECK_THROWS_WITH(read_region(folder.path()), Contains("is a folder, needs a file"));
 }
 
-TEST_CASE("regions that are cut short are read or refused, whatever the byte")
+TEST_CASE("regions that are cut at any byte are read or refused")
 {
     const TempFolder folder;
     folder.write("a.pgm", "P5\n3 2\n255\n\xfe\xfe\x01\xfe\xcd\x02");
@@ -501,7 +502,7 @@ TEST_CASE("regions that are cut short are read or refused, whatever the byte")
     CHECK(good >= 2);
 }
 
-TEST_CASE("the program takes regions and keep-outs, and tells what is odd")
+TEST_CASE("the program accepts regions and keep-outs, and gives notices about unusual ones")
 {
     const TempFolder folder;
     folder.write("scene.yaml", "format: spawnfield-scene/1\nparts: [{name: floor, label: terrain, plane: [20, 20]}]\n");
@@ -515,7 +516,7 @@ TEST_CASE("the program takes regions and keep-outs, and tells what is odd")
     CHECK_THAT(run.err, Contains(" off the region;"));
     const std::string json = bytes_of(folder / "s.json");
     CHECK_THAT(json, Contains("\"region\": [\n      \"a.geojson\"") && Contains("\"keep_out\": [\n      \"out.csv\""));
-    // A box alone is as it always was.
+    // A single box gives the output of earlier versions.
     const ProgramRun box = run_program(folder, "sample map" + robot + "-n 5 --region -3,-3,4,4");
     CHECK(box.status == 0);
     CHECK(box.err.find("off the region") == std::string::npos);
@@ -535,5 +536,5 @@ TEST_CASE("the program takes regions and keep-outs, and tells what is odd")
     const ProgramRun degrees = run_program(folder, "sample map" + robot + "-n 5 --region degrees.csv");
     CHECK(degrees.status == 3);
     CHECK_THAT(degrees.err, Contains("--region degrees.csv 7.001, 46.5 to 7.002, 46.501 m lies off the map") &&
-                                Contains("degrees need to become metres"));
+                                Contains("convert them to metres"));
 }

@@ -15,12 +15,12 @@ using Catch::Contains;
 
 namespace {
 
-/// Sides of what is drawn in the first link's colour, the largest first, pixels.
+/// Returns the sizes of the areas in the colour of the first link, the largest first, in pixels.
 std::vector<cv::Size> blue_areas(const cv::Mat& image)
 {
     cv::Mat mask, labels, stats, centroids;
     cv::inRange(image, cv::Scalar(241, 212, 161), cv::Scalar(243, 214, 163),
-                mask);  // blue, green, red of a lightened 56b4e9
+                mask);  // blue, green and red of a lightened 56b4e9
     const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids);
     std::vector<std::pair<int, cv::Size>> areas;
     for (int k = 1; k < count; ++k)
@@ -51,11 +51,11 @@ TEST_CASE("a robot is drawn from three sides to one scale")
     REQUIRE(image.cols == 1000);
     const auto areas = blue_areas(image);
     REQUIRE(areas.size() >= 3);
-    const double metre = areas[0].width / 2.0;  // from above 2 x 1 m
+    const double metre = areas[0].width / 2.0;  // from above it is 2 x 1 m
     CHECK(areas[0].height == Approx(metre).margin(5));
-    CHECK(areas[1].width == Approx(2 * metre).margin(5));  // from the right 2 x 0.5 m
+    CHECK(areas[1].width == Approx(2 * metre).margin(5));  // from the right it is 2 x 0.5 m
     CHECK(areas[1].height == Approx(0.5 * metre).margin(5));
-    CHECK(areas[2].width == Approx(metre).margin(5));  // from the front 1 x 0.5 m
+    CHECK(areas[2].width == Approx(metre).margin(5));  // from the front it is 1 x 0.5 m
     CHECK(areas[2].height == Approx(0.5 * metre).margin(5));
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("a robot's turning radius reaches its farthest corner as seen from abo
           Approx(2.5).epsilon(2e-3));
 }
 
-TEST_CASE("contacts are the file's, or told to be taken")
+TEST_CASE("contacts come from the file, or the text states that they are derived")
 {
     const TempFolder folder;
     CHECK_FALSE(robot_contacts(boxes(folder)).given);
@@ -98,7 +98,7 @@ TEST_CASE("contacts are the file's, or told to be taken")
     CHECK(given.points.size() == 3);
 }
 
-TEST_CASE("info tells of a robot's links, meshes, footprint and contacts, and draws it")
+TEST_CASE("info describes links, meshes, footprint and contacts of a robot, and draws it")
 {
     const TempFolder folder;
     boxes(folder);

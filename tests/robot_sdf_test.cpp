@@ -52,7 +52,7 @@ const std::string small_box = "<box><size>0.2 0.4 0.6</size></box>";
 
 }  // namespace
 
-TEST_CASE("an SDF model is the union of its links' collisions in its own frame, whatever its <pose>")
+TEST_CASE("an SDF model is the union of the collisions of its links in its own frame, independent of its <pose>")
 {
     const TempFolder folder;
     const Robot robot = load(
@@ -72,8 +72,8 @@ TEST_CASE("an SDF model is the union of its links' collisions in its own frame, 
     check_bounds(robot.parts[3].bounds(), {4.75, 2.75, 2.25}, {5.25, 3.25, 3.75});
     CHECK(robot.parts[3].name == "rod");
     REQUIRE(robot.notices.size() == 1);
-    CHECK(robot.notices[0] == (folder / "robot.sdf").string() +
-                                  ": the <pose> of model \"test\" does not count: poses are those of its own frame");
+    CHECK(robot.notices[0] ==
+          (folder / "robot.sdf").string() + ": the <pose> of model \"test\" is ignored: poses are in its own frame");
 }
 
 TEST_CASE("frames and nested models add up")
@@ -107,12 +107,14 @@ TEST_CASE("models are included from --model-path, from beside the file, and thro
     REQUIRE(robot.parts.size() == 1);
     CHECK(robot.parts[0].name == "axle::w::rim");
     check_bounds(robot.bounds(), {-0.5, 1.5, 0.5}, {0.5, 2.5, 1.5});
-    // The folder itself; its neighbours are found, being in the folder above.
+    // The folder itself is loaded. Its neighbours are found because they are in the same folder above.
     check_bounds(load_robot((folder / "lib/axle").string()).bounds(), {-0.5, 1.5, -0.5}, {0.5, 2.5, 0.5});
-    CHECK_THROWS_WITH(load(folder, inside),
-                      Catch::Contains("model://axle") &&
-                          Catch::Contains("; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell") &&
-                          Catch::StartsWith((folder / "robot.sdf").string() + ": "));
+    CHECK_THROWS_WITH(
+        load(folder, inside),
+        Catch::Contains("model://axle") &&
+            Catch::Contains(
+                "; give the folder of the models with --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH") &&
+            Catch::StartsWith((folder / "robot.sdf").string() + ": "));
 }
 
 TEST_CASE("models that include each other without end are refused, the same model twice is not")
@@ -129,8 +131,8 @@ TEST_CASE("models that include each other without end are refused, the same mode
         return std::filesystem::canonical(folder / name / "model.sdf").string();
     };
     CHECK_THROWS_WITH(load_robot((folder / "a").string()),
-                      Catch::Contains("model://a: leads back to itself: " + canonical("a") + " includes " +
-                                      canonical("b") + " includes " + canonical("a")));
+                      Catch::Contains("model://a: includes itself: " + canonical("a") + " includes " + canonical("b") +
+                                      " includes " + canonical("a")));
     folder.write("b/model.sdf", "<sdf version='1.9'><model name='b'>" + link_of("l", collision(small_box)) +
                                     "<!-- <include><uri>model://a</uri></include> --></model></sdf>");
     folder.write("a/model.sdf", "<sdf version='1.9'><model name='a'>" + link_of("l", "") +
@@ -139,7 +141,7 @@ TEST_CASE("models that include each other without end are refused, the same mode
     CHECK(load_robot((folder / "a").string()).parts.size() == 2);
 }
 
-TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
+TEST_CASE("SDF joints move the links behind them, and the canonical link does not move")
 {
     const TempFolder folder;
     const std::string turn = joint("turn", "revolute", "base", "arm",
@@ -155,7 +157,7 @@ TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
     const Robot robot = load(folder, all, {.joints = {{"turn", std::numbers::pi / 2}, {"slide", 1}}});
     CHECK(robot.parts[1].centre().isApprox(Vec3(1, 2, 1), 1e-9));
     CHECK(load(folder, all).parts[1].centre().isApprox(Vec3(3, 0, 0), 1e-9));
-    // Seen from the hand it is the base that moves.
+    // In the frame of the hand, the base moves.
     const Robot seen = load(
         folder, hand_link + arm + link_of("base", collision("<sphere><radius>0.1</radius></sphere>")) + turn + slide,
         {.joints = {{"turn", std::numbers::pi / 2}}});
@@ -164,16 +166,16 @@ TEST_CASE("SDF joints move what hangs on them, and the canonical link stays")
 
     const std::string file = (folder / "robot.sdf").string();
     CHECK_THROWS_WITH(load(folder, all, {.joints = {{"turn", 3}}}),
-                      "load_robot: joint \"turn\" is 3, its limits in " + file + " are -2 to 2 rad");
+                      "load_robot: joint \"turn\" is 3, outside its limits in " + file + ", -2 to 2 rad");
     CHECK_THROWS_WITH(load(folder, all, {.joints = {{"arm", 3}}}),
-                      "load_robot: joint \"arm\" is not in " + file + "; those that move: turn, slide");
+                      "load_robot: joint \"arm\" is not in " + file + "; joints that can be moved: turn, slide");
     const std::string loop = joint("loop", "fixed", "base", "hand", "");
     CHECK_THROWS_WITH(load(folder, all + loop, {.joints = {{"turn", 1}}}),
-                      file + ": joints cannot be given: link \"hand\" hangs on several joints, a closed chain");
+                      file + ": joints cannot be given: link \"hand\" is in a closed chain of joints");
     check_bounds(load(folder, all + loop).bounds(), load(folder, all).bounds().min, load(folder, all).bounds().max);
 }
 
-TEST_CASE("meshes of SDF: scale, submesh, centre, and COLLADA's unit but not its up axis")
+TEST_CASE("meshes of SDF use scale, submesh, centre and COLLADA's unit, but not its up axis")
 {
     const TempFolder folder;
     folder.write("two.obj", mesh_text::obj({{.name = "left", .mesh = mesh_text::box({0, 0, 0}, {1, 1, 1})},
@@ -190,10 +192,10 @@ TEST_CASE("meshes of SDF: scale, submesh, centre, and COLLADA's unit but not its
     check_bounds(bounds("<uri>cm.dae</uri>"), {0, 0, 0}, {0.1, 0.2, 0.3}, 1e-7);
     check_bounds(bounds("<uri>file://" + (folder / "two.obj").string() + "</uri>"), {0, 0, 0}, {5, 6, 7});
     CHECK_THROWS_WITH(bounds("<uri>two.obj</uri><submesh><name>up</name></submesh>"),
-                      Catch::Contains("two.obj: has no submesh \"up\"; it has left, right"));
+                      Catch::Contains("two.obj: has no submesh \"up\"; its nodes are left, right"));
 }
 
-TEST_CASE("an ellipsoid's polyhedron holds it, closely")
+TEST_CASE("the polyhedron of an ellipsoid contains it, with little extra space")
 {
     const Vec3 radii(1, 0.5, 0.25);
     const Pose pose{Vec3(1, 2, 3), rotation_from_rpy(0.3, -0.4, 2)};
@@ -221,30 +223,30 @@ TEST_CASE("an ellipsoid's polyhedron holds it, closely")
     const Robot robot = load(folder, link_of("a", collision("<ellipsoid><radii>1 2 3</radii></ellipsoid>")));
     REQUIRE(robot.notices.size() == 1);
     CHECK_THAT(robot.notices[0],
-               Catch::Contains("its ellipsoid counts as a polyhedron around it, 2.0 % more in volume"));
+               Catch::Contains("its ellipsoid is replaced by a polyhedron around it, with 2.0 % more volume"));
 }
 
-TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and line")
+TEST_CASE("an SDF robot that cannot be used is refused by file, link, collision and line")
 {
     const TempFolder folder;
     folder.write("flat.obj", mesh_text::obj(hand::rectangle(1, 1)));
     const std::string file = (folder / "robot.sdf").string() + ": ", in_a = file + "link \"a\": collision \"c\": ";
     const std::pair<std::string, std::string> cases[] = {
-        {link_of("a", ""), file + "has no <collision>, needs at least one (<visual> does not count)"},
+        {link_of("a", ""), file + "has no <collision>, needs at least one (<visual> elements are not used)"},
         {link_of("a", collision("<box><size>1 0 1</size></box>")),
          file + "\"a::c\": <box> <size> is 0, needs > 0 and at most 1000 km (line 3)"},
         {link_of("a", collision("<sphere><radius>-1</radius></sphere>")),
          file + "\"a::c\": <sphere> <radius> is -1, needs > 0 and at most 1000 km (line 3)"},
         {link_of("a", collision("<plane><normal>0 0 1</normal></plane>")),
-         in_a + "is a <plane>, which no robot can be made of: it has no end (line 3)"},
+         in_a + "is a <plane>, which a robot cannot have because it is infinite; use a <box> (line 3)"},
         {link_of("a",
                  collision(
                      "<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>1</height></polyline>")),
-         in_a + "is a <polyline>, which robots cannot have here: a box or a mesh does (line 3)"},
+         in_a + "is a <polyline>, which is not supported in robots; use a <box> or a <mesh> (line 3)"},
         {link_of("a", collision("<mesh><uri>none.stl</uri></mesh>")),
-         in_a + "<mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, "
-                "GAZEBO_MODEL_PATH, nor in the folders above the "
-                "file (line 3)"},
+         in_a + "<mesh> none.stl was not found beside the file, in --model-path, in GZ_SIM_RESOURCE_PATH, "
+                "in GAZEBO_MODEL_PATH or in the folders above the file; add its folder to --model-path or fix the URI "
+                "(line 3)"},
         {link_of("a", collision("<mesh><uri>flat.obj</uri></mesh>")),
          in_a + "<mesh> cannot be used: " + (folder / "flat.obj").string() +
              ": its convex hull has no volume: its points lie in a plane (line 3)"},
@@ -262,7 +264,7 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
         }
     };
     CHECK(refused("<sdf version='1.9'><world name='w'/></sdf>") ==
-          file + "holds a <world>, needs a <model> to be a robot");
+          file + "contains a <world>, needs a <model> to be a robot");
     for (const std::string& text :
          {sdf_of(link_of("a", collision(small_box)) + link_of("a", collision(small_box))), sdf_of("<link"),
           std::string(), sdf_of(link_of("a", collision(small_box), "<pose relative_to='q'/>")),
@@ -272,9 +274,10 @@ TEST_CASE("an SDF robot that cannot be used is told by file, link, collision and
         CHECK_THAT(refused(text), Catch::StartsWith(file));
     }
     std::filesystem::create_directories(folder / "empty");
-    CHECK_THROWS_WITH(
-        load_robot((folder / "empty").string()),
-        (folder / "empty").string() + ": is a folder without model.config and .sdf file, needs to be a model's");
+    CHECK_THROWS_WITH(load_robot((folder / "empty").string()),
+                      (folder / "empty").string() +
+                          ": is a folder without model.config and without a .sdf file, so it is not a model; give the "
+                          "folder of a model, or an SDF file");
 }
 
 TEST_CASE("every prefix of an SDF robot is read or refused")
@@ -289,14 +292,14 @@ TEST_CASE("every prefix of an SDF robot is read or refused")
     }
 }
 
-TEST_CASE("an SDF model with an inertia that cannot be is taken, with a notice")
+TEST_CASE("an SDF model with an impossible inertia is accepted, with a notice")
 {
     const TempFolder folder;
     const std::string inertia =
         "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>9</izz></inertia></inertial>";
     const Robot robot = load(folder, link_of("a", inertia + collision(small_box)) + link_of("b", inertia));
     REQUIRE(robot.notices.size() == 1);
-    CHECK_THAT(robot.notices[0], Catch::Contains("invalid inertia") && Catch::Contains("and 1 more such"));
+    CHECK_THAT(robot.notices[0], Catch::Contains("invalid inertia") && Catch::Contains("and 1 more of this kind"));
 }
 
 namespace {
@@ -336,7 +339,7 @@ double volume_of(const std::vector<RobotPart>& parts)
     return sum;
 }
 
-/// A ring of square section around z: radii 0.6 and 1, height 0.3.
+/// Returns a ring with a square section around z: radii 0.6 and 1, height 0.3.
 std::vector<Corners> ring(int segments)
 {
     std::vector<Corners> out;
@@ -357,9 +360,9 @@ std::vector<Corners> ring(int segments)
 
 }  // namespace
 
-TEST_CASE("an L comes apart into its two boxes, and no further")
+TEST_CASE("an L is split into its two boxes, and no further")
 {
-    // One closed surface of extruded outline.
+    // One closed surface: the extruded outline.
     const std::vector<std::array<double, 2>> outline = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 3}, {0, 3}};
     std::vector<Corners> l;
     for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -384,7 +387,7 @@ TEST_CASE("an L comes apart into its two boxes, and no further")
 
 TEST_CASE("a convex mesh stays one part") { CHECK(convex_split({triangles_of(hand::box({1, 2, 3}))}, 8).size() == 1); }
 
-TEST_CASE("parts of a ring hold its surface and its inside, and the more the closer")
+TEST_CASE("the parts of a ring contain its surface and its inside, and more parts fit more closely")
 {
     const Mat3 turn = GENERATE(Mat3(Mat3::Identity()), rotation_from_rpy(0.4, 0.7, 1.1));
     auto mesh = ring(24);
@@ -414,7 +417,7 @@ TEST_CASE("parts of a ring hold its surface and its inside, and the more the clo
     CHECK(before < 1.4 * std::numbers::pi * (1 - 0.36) * 0.3);
 }
 
-TEST_CASE("two boxes apart come apart without what lies between; a hole in one leaves its surface held")
+TEST_CASE("two separate boxes are split without the space between; a hole in one leaves its surface covered")
 {
     const auto one = triangles_of(hand::box({1, 1, 1}));
     auto other = triangles_of(hand::box({1, 1, 1}), {10, 3, 0});
@@ -428,9 +431,9 @@ TEST_CASE("two boxes apart come apart without what lies between; a hole in one l
         for (const Vec3& point : {t[0], t[1], t[2], Vec3((t[0] + t[1] + t[2]) / 3)}) CHECK(is_held(open, point));
 }
 
-TEST_CASE("a solid cut along all three axes keeps what lies at the planes' crossing")
+TEST_CASE("a solid that is cut along all three axes keeps the place where the planes cross")
 {
-    // A cross of three beams: its middle is a corner of eight boxes, and on no surface.
+    // A cross of three beams. Its middle is a corner of eight boxes, and is not on a surface.
     std::vector<SurfacePiece> beams;
     for (const Vec3& size : {Vec3(4, 1, 1), Vec3(1, 4, 1), Vec3(1, 1, 4)})
         beams.push_back(triangles_of(hand::box(size)));
@@ -451,7 +454,7 @@ TEST_CASE("a solid cut along all three axes keeps what lies at the planes' cross
     CHECK(volume_of(convex_split(beams, 7)) < 10.6);
 }
 
-TEST_CASE("mesh parts are a robot's parts, by the name of its link, and their number has limits")
+TEST_CASE("mesh parts become robot parts with the name of their link, and their number has limits")
 {
     const TempFolder folder;
     folder.write("two.obj", mesh_text::obj({{.name = "left", .mesh = mesh_text::box({0, 0, 0}, {1, 1, 1})},

@@ -79,21 +79,21 @@ TEST_CASE("box:LX,LY,LZ@x,y,z has its centre there")
     check_bounds(load_robot("box:1,2,3@0,0,1e-1").bounds(), {-0.5, -1, -1.4}, {0.5, 1, 1.6});
 }
 
-TEST_CASE("a box robot that makes no sense is wrong usage, and told why")
+TEST_CASE("an invalid box robot is wrong usage, with the reason")
 {
     const std::pair<std::string, std::string> cases[] = {
-        {"box:", "\"\" is no finite number"},
+        {"box:", "\"\" is not a finite number"},
         {"box:1,2", "has 2 side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])"},
         {"box:1,2,3,4", "has 4 side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])"},
-        {"box:1,2,x", "\"x\" is no finite number"},
-        {"box:1,2,3m", "\"3m\" is no finite number"},
-        {"box:1,,3", "\"\" is no finite number"},
-        {"box:1,nan,3", "\"nan\" is no finite number"},
-        {"box:1,2,inf", "\"inf\" is no finite number"},
+        {"box:1,2,x", "\"x\" is not a finite number"},
+        {"box:1,2,3m", "\"3m\" is not a finite number"},
+        {"box:1,,3", "\"\" is not a finite number"},
+        {"box:1,nan,3", "\"nan\" is not a finite number"},
+        {"box:1,2,inf", "\"inf\" is not a finite number"},
         {"box:1,0,3", "side length is 0, needs > 0 m"},
         {"box:1,-2,3", "side length is -2, needs > 0 m"},
         {"box:1,2,3@0,0", "has 2 coordinates after @, needs 3"},
-        {"box:1,2,3@0,0,", "\"\" is no finite number"},
+        {"box:1,2,3@0,0,", "\"\" is not a finite number"},
     };
     for (const auto& [robot, wanted] : cases) {
         CHECK_THROWS_AS(load_robot(robot), ArgumentError);
@@ -101,7 +101,7 @@ TEST_CASE("a box robot that makes no sense is wrong usage, and told why")
     }
 }
 
-TEST_CASE("robot.yaml holds boxes, spheres, cylinders, capsules and contacts")
+TEST_CASE("robot.yaml can have boxes, spheres, cylinders, capsules and contacts")
 {
     const TempFolder folder;
     const Robot robot = load_parts(
@@ -122,17 +122,17 @@ TEST_CASE("robot.yaml holds boxes, spheres, cylinders, capsules and contacts")
     CHECK(robot.parts[1].centre() == Vec3(2, 0, 0));
 }
 
-TEST_CASE("the Husky of maps/robots is the thesis's")
+TEST_CASE("the Husky of maps/robots is the one of the thesis")
 {
     const Robot robot = load_robot((std::filesystem::path(source_folder()) / "maps/robots/husky.yaml").string());
     check_bounds(robot.bounds(), {-0.495, -0.335, 0}, {0.495, 0.335, 0.39});
     CHECK(robot.contacts.size() == 4);
 }
 
-TEST_CASE("a robot's mesh becomes its convex hull: scaled, turned up, turned, moved")
+TEST_CASE("the mesh of a robot becomes its convex hull, with scale, up axis, rotation and position")
 {
     const TempFolder folder;
-    // An L of two boxes: the hull bridges the corner.
+    // An L of two boxes. The hull fills the inner corner.
     folder.write("l.obj", mesh_text::obj({{.name = "a", .mesh = mesh_text::box({0, 0, 0}, {4, 1, 1})},
                                           {.name = "b", .mesh = mesh_text::box({0, 1, 0}, {1, 3, 1})}}));
     const Robot robot = load_parts(folder, "  - {mesh: l.obj, scale: 0.5, xyz: [10, 0, 0], rpy_deg: [0, 0, 90]}\n");
@@ -140,7 +140,7 @@ TEST_CASE("a robot's mesh becomes its convex hull: scaled, turned up, turned, mo
     const RobotPart& hull = robot.parts[0];
     CHECK(hull.shape.kind == ShapeKind::Hull);
     check_bounds(hull.bounds(), {10 - 1.5, 0, 0}, {10, 2, 0.5});
-    CHECK(hull.hull_vertices.size() == 10);  // of 16 corners four lie in walls of the hull and two are shared
+    CHECK(hull.hull_vertices.size() == 10);  // of 16 corners four are inside faces of the hull and two are shared
     double volume = 0;
     for (const auto& f : hull.hull_faces) {
         const Vec3 a = hull.hull_vertices[std::size_t(f[0])] - hull.centre(),
@@ -149,12 +149,12 @@ TEST_CASE("a robot's mesh becomes its convex hull: scaled, turned up, turned, mo
         CHECK(a.dot(b.cross(c)) >= 0);  // counterclockwise from outside
         volume += a.dot(b.cross(c)) / 6;
     }
-    // Area of (0,0) (4,0) (4,1) (1,3) (0,3) is 9.
+    // The area of (0,0) (4,0) (4,1) (1,3) (0,3) is 9.
     CHECK(volume == Approx(9 * 0.125));
     check_bounds(load_parts(folder, "  - {mesh: l.obj, up: y}\n").bounds(), {0, -1, 0}, {4, 0, 3});
 }
 
-TEST_CASE("the hull of a cloud of points holds them all, and its corners are among them")
+TEST_CASE("the hull of a cloud of points contains all of them, and its corners are some of them")
 {
     std::vector<Vec3> points;
     for (int i = 0; i < 500; ++i) points.emplace_back(std::sin(i * 1.1), std::sin(i * 1.7 + 1), std::sin(i * 2.3 + 2));
@@ -170,20 +170,20 @@ TEST_CASE("the hull of a cloud of points holds them all, and its corners are amo
     CHECK(farthest < 1e-9);
     for (const Vec3& vertex : hull.hull_vertices)
         CHECK(std::find(points.begin(), points.end(), vertex) != points.end());
-    std::set<std::pair<int, int>> edges;  // closed: each edge once in each direction
+    std::set<std::pair<int, int>> edges;  // a closed hull has each edge once in each direction
     for (const auto& f : hull.hull_faces)
         for (std::size_t i = 0; i < 3; ++i) CHECK(edges.insert({f[i], f[(i + 1) % 3]}).second);
     for (const auto& [from, to] : edges) CHECK(edges.count({to, from}) == 1);
 }
 
-TEST_CASE("a grown hull holds the margin on every side")
+TEST_CASE("a grown hull keeps the margin on every side")
 {
     const hand::Mesh cube = hand::box({1, 2, 3});
     const RobotPart hull = grown(convex_hull(cube.vertices), 0.1);
     check_bounds(hull.bounds(), {-0.6, -1.1, -1.6}, {0.6, 1.1, 1.6});
 }
 
-TEST_CASE("a URDF is the union of its links' collision shapes at zero joints")
+TEST_CASE("a URDF is the union of the collision shapes of its links with all joints at zero")
 {
     const TempFolder folder;
     const Robot robot = load_urdf(folder, link_of("base", small_box, "xyz=\"0 0 1\"") +
@@ -193,7 +193,7 @@ TEST_CASE("a URDF is the union of its links' collision shapes at zero joints")
                                               link_of("ball", "<sphere radius=\"0.5\"/>") +
                                               joint_of("base", "ball", "xyz=\"0 3 0\""));
     CHECK(robot.name == "test");
-    REQUIRE(robot.parts.size() == 2);  // never what is only seen
+    REQUIRE(robot.parts.size() == 2);  // visual shapes do not count
     check_bounds(robot.parts[0].bounds(), {-0.1, -0.2, 0.7}, {0.1, 0.2, 1.3});
     check_bounds(robot.parts[1].bounds(), {-0.5, 2.5, -0.5}, {0.5, 3.5, 0.5});
 }
@@ -211,7 +211,7 @@ TEST_CASE("several collisions of one link all count")
     check_bounds(robot.bounds(), {-0.5, -1, -1}, {6, 1, 1});
 }
 
-TEST_CASE("origins add up along a chain of joints, whatever their type and limits")
+TEST_CASE("origins add up along a chain of joints of any type and limits")
 {
     const TempFolder folder;
     const std::string type = GENERATE("fixed", "revolute", "continuous", "prismatic");
@@ -221,8 +221,8 @@ TEST_CASE("origins add up along a chain of joints, whatever their type and limit
             "<link name=\"arm\"/>" + joint_of("arm", "hand", "xyz=\"2 0 0\" rpy=\"1.5707963267948966 0 0\"", type) +
             link_of("hand", small_box, "xyz=\"0 0 3\" rpy=\"0 0 0\""));
     REQUIRE(robot.parts.size() == 1);
-    // hand frame: x is the base's y, y its z, z its x. Its origin is at (1, 2, 0), the box's centre 3 further along its
-    // z.
+    // In the frame of the hand, x is the base's y, y its z, and z its x. Its origin is at (1, 2, 0), and the centre of
+    // the box is 3 further along its z.
     const Pose& pose = robot.parts[0].shape.pose;
     const Vec3 centre = Vec3(1, 2, 0) + 3 * Vec3::UnitX();
     CHECK(pose.position.isApprox(centre, 1e-12));
@@ -251,14 +251,15 @@ TEST_CASE("package:// is found by --model-path first, then by looking upward fro
     check_bounds(load_robot(outside.string(), {{folder / "ws"}}).bounds(), {-1, -0.5, -0.5}, {1, 0.5, 0.5});
     check_bounds(load_robot(inside.string(), {{folder / "none", folder / "other"}}).bounds(), {-3, -1.5, -1.5},
                  {3, 1.5, 1.5});
-    CHECK_THROWS_WITH(load_robot(outside.string()),
-                      outside.string() +
-                          ": link \"a\": <mesh> package://my_robot/meshes/hull.stl is found neither beside the file, "
-                          "nor in --model-path, "
-                          "GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor in the folders above the file");
+    CHECK_THROWS_WITH(
+        load_robot(outside.string()),
+        outside.string() +
+            ": link \"a\": <mesh> package://my_robot/meshes/hull.stl was not found beside the file, "
+            "in --model-path, in GZ_SIM_RESOURCE_PATH, in GAZEBO_MODEL_PATH or in the folders above the file; "
+            "add its folder to --model-path or fix the URI");
 }
 
-TEST_CASE("file:// and relative mesh names work too; COLLADA's unit counts, its up axis does not")
+TEST_CASE("file:// and relative mesh names work, too; COLLADA's unit applies, its up axis does not")
 {
     const TempFolder folder;
     const auto file = folder.write(
@@ -268,7 +269,7 @@ TEST_CASE("file:// and relative mesh names work too; COLLADA's unit counts, its 
                      {0.1, 0.2, 0.3}, 1e-7);
 }
 
-TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
+TEST_CASE("a robot that cannot be used is refused by file, place, value and limit")
 {
     const TempFolder folder;
     folder.write("flat.obj", mesh_text::obj(hand::rectangle(1, 1)));
@@ -277,9 +278,10 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
         {"  - {box: [1, 0, 1]}\n", "part 1: box has 0, needs > 0 (line 4)"},
         {"  - {box: [1, 1, 1]}\n  - {sphere: .nan}\n", "part 2: sphere is .nan, needs a finite number (line 5)"},
         {"  - {box: [1, 1, 1], colour: red}\n",
-         "part 1: colour is no known key; known: name, xyz, rpy, rpy_deg, box (line 4)"},
+         "part 1: colour is not a known key; known keys: name, xyz, rpy, rpy_deg, box (line 4)"},
         {"  - {name: a}\n", "part 1: has no geometry, needs one of box, sphere, cylinder, capsule, mesh (line 4)"},
-        {"  - {box: [1, 1, 1], sphere: 1}\n", "part 1: sphere stands beside box, needs one geometry per part (line 4)"},
+        {"  - {box: [1, 1, 1], sphere: 1}\n",
+         "part 1: sphere is given together with box, needs one geometry per part (line 4)"},
         {"  []\n", "parts is empty, needs at least one part (line 3)"},
         {"  - {mesh: none.stl}\n", "part 1: mesh cannot be used: " + (folder / "none.stl").string() +
                                        ": does not exist; is the path right? (line 4)"},
@@ -291,54 +293,56 @@ TEST_CASE("a robot that cannot be used is told by file, place, value and limit")
     for (const auto& [text, wanted] : parts) CHECK_THROWS_WITH(load_parts(folder, text), yaml + ": " + wanted);
 
     const std::pair<std::string, std::string> links[] = {
-        {"<link name=\"a\"/>", "has no <collision>, needs at least one (<visual> does not count)"},
+        {"<link name=\"a\"/>", "has no <collision>, needs at least one (<visual> elements are not used)"},
         {link_of("a", "<box size=\"1 0 1\"/>"), "link \"a\": <box size> is 0, needs > 0"},
         {link_of("a", "<sphere radius=\"-0.5\"/>"), "link \"a\": <sphere radius> is -0.5, needs > 0"},
         {link_of("a", "<cylinder radius=\"1\" length=\"0\"/>"), "link \"a\": <cylinder> is 0, needs > 0"},
         {link_of("a", "<mesh filename=\"none.stl\"/>"),
-         "link \"a\": <mesh> none.stl is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, "
-         "GAZEBO_MODEL_PATH, nor in the folders above the file"},
+         "link \"a\": <mesh> none.stl was not found beside the file, in --model-path, in GZ_SIM_RESOURCE_PATH, "
+         "in GAZEBO_MODEL_PATH or in the folders above the file; add its folder to --model-path or fix the URI"},
         {link_of("a", "<mesh filename=\"flat.obj\"/>"),
          "link \"a\": <mesh> cannot be used: " + (folder / "flat.obj").string() +
              ": its convex hull has no volume: its points lie in a plane"},
-        {"<link", "line 3: is no valid XML (xml error parsing element): is a tag left open or misspelt?"},
+        {"<link", "line 3: is not valid XML (xml error parsing element): is a tag not closed, or misspelt?"},
         {link_of("a", small_box + "<sphere radius=\"9\"/>"),
-         "line 3: <geometry> holds 2 shapes, needs one; give each a <collision> of its own"},
+         "line 3: <geometry> contains 2 shapes, needs one; give each a <collision> of its own"},
         {link_of("a", small_box) + link_of("b", small_box) +
              "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0\" "
              "quat_xyzw=\"0 0 1 0\"/></joint>",
-         "line 5: <origin quat_xyzw> is not read, and a part would stand unturned; write it as rpy"},
+         "line 5: <origin quat_xyzw> cannot be read here; write the rotation as rpy"},
         {link_of("a", small_box) + link_of("b", small_box),
-         "is no valid URDF: Failed to find root link: Two root links found: [a] and [b]"},
+         "is not valid URDF: Failed to find root link: Two root links found: [a] and [b]"},
         {link_of("a", "<box size=\"1 x 1\"/>"),
-         "is no valid URDF: Unable to parse component [x] to a double (while parsing a vector value)"},
+         "is not valid URDF: Unable to parse component [x] to a double (while parsing a vector value)"},
         {link_of("a", "<box size=\"1 nan 1\"/>"),
-         "is no valid URDF: Unable to parse component [nan] to a double (while parsing a vector value)"},
-        // urdfdom would drop the link's box for this and go on.
+         "is not valid URDF: Unable to parse component [nan] to a double (while parsing a vector value)"},
+        // urdfdom alone would drop the box of the link because of this, and continue.
         {"<link name=\"a\"><inertial><mass value=\"x\"/></inertial><collision><geometry>" + small_box +
              "</geometry></collision></link>" + link_of("b", small_box) + joint_of("a", "b", "xyz=\"0 0 0\""),
-         "is no valid URDF: Inertial: mass [x] is not a float"},
+         "is not valid URDF: Inertial: mass [x] is not a float"},
     };
     for (const auto& [text, wanted] : links) CHECK_THROWS_WITH(load_urdf(folder, text), xml + ": " + wanted);
 
     CHECK_THROWS_WITH(load_urdf(folder, "<xacro:property name=\"a\" value=\"1\"/>"),
-                      xml + ": holds xacro macros; expand them first: xacro robot.urdf > robot.urdf");
+                      xml + ": contains xacro macros; expand them first: xacro robot.urdf > robot.urdf");
     const auto xacro = folder.write("husky.urdf.xacro", "");
     CHECK_THROWS_WITH(
         load_robot(xacro.string()),
-        xacro.string() + ": is a xacro file, which is not read; expand it first: xacro husky.urdf.xacro > robot.urdf");
+        xacro.string() +
+            ": is a xacro file, which cannot be read here; expand it first: xacro husky.urdf.xacro > robot.urdf");
 
     CHECK_THROWS_WITH(load_robot((folder / "none.yaml").string()),
                       (folder / "none.yaml").string() +
                           ": does not exist; a robot is a robot.yaml, a .urdf, an SDF model (.sdf or its folder) or "
                           "box:LX,LY,LZ[@x,y,z]");
     const auto odd = folder.write("robot.txt", "");
-    CHECK_THROWS_WITH(load_robot(odd.string()), odd.string() +
-                                                    ": is no known robot format, needs a robot.yaml, a .urdf, an SDF "
-                                                    "model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
+    CHECK_THROWS_WITH(load_robot(odd.string()),
+                      odd.string() +
+                          ": is not in a known robot format; a robot is a robot.yaml, a .urdf, an SDF "
+                          "model (.sdf or its folder) or box:LX,LY,LZ[@x,y,z]");
 }
 
-TEST_CASE("joints turn and slide what hangs on them about their own axes")
+TEST_CASE("joints rotate and move the links behind them, about their own axes")
 {
     const TempFolder folder;
     const std::string arm = "<link name=\"base\"/>" +
@@ -347,7 +351,7 @@ TEST_CASE("joints turn and slide what hangs on them about their own axes")
                             axis_joint("slide", "prismatic", "arm", "hand", "xyz=\"1 0 0\"", "1 0 0",
                                        "lower=\"-1\" upper=\"0.5\"") +
                             link_of("hand", small_box);
-    // The arm points along y from (1, 0, 0); the hand slides out along it.
+    // The arm points along y from (1, 0, 0), and the hand slides along it.
     const Robot robot = load_urdf(folder, arm, {.joints = {{"turn", std::numbers::pi / 2}, {"slide", 0.5}}});
     check_bounds(robot.bounds(), {1 - 0.2, 1.5 - 0.1, -0.3}, {1 + 0.2, 1.5 + 0.1, 0.3});
     check_bounds(load_urdf(folder, arm).bounds(), {2 - 0.1, -0.2, -0.3}, {2 + 0.1, 0.2, 0.3});
@@ -355,7 +359,7 @@ TEST_CASE("joints turn and slide what hangs on them about their own axes")
     CHECK(robot.notices.empty());
 }
 
-TEST_CASE("a joint that mimics follows, and is told where that leads out of its limits")
+TEST_CASE("a joint that mimics another follows it, with a notice if that exceeds its limits")
 {
     const TempFolder folder;
     const std::string limits = "lower=\"-1\" upper=\"1\"";
@@ -370,10 +374,10 @@ TEST_CASE("a joint that mimics follows, and is told where that leads out of its 
     check_bounds(robot.parts[1].bounds(), {-0.1, -2.7, -0.3}, {0.1, -2.3, 0.3});
     REQUIRE(robot.notices.size() == 1);
     CHECK(robot.notices[0] == (folder / "robot.urdf").string() +
-                                  ": joint \"b\" stands at -2.5 m, as \"a\" has it, though its limits are -1 to 1 m");
+                                  ": joint \"b\" is at -2.5 m, because it mimics \"a\", outside its limits -1 to 1 m");
 }
 
-TEST_CASE("joints that cannot stand so are refused with what can be given")
+TEST_CASE("impossible joint positions are refused with the allowed values")
 {
     const TempFolder folder;
     const std::string limits = "lower=\"0.5\" upper=\"1\"", file = (folder / "robot.urdf").string();
@@ -385,11 +389,12 @@ TEST_CASE("joints that cannot stand so are refused with what can be given")
         axis_joint("wheel", "continuous", "base", "d", "xyz=\"0 0 0\"", "0 0 1", "", "<mimic joint=\"turn\"/>") +
         "<link name=\"d\"/>";
     const std::pair<JointPosition, std::string> cases[] = {
-        {{"tern", 0.7}, "joint \"tern\" is not in " + file + "; those that move: turn"},
-        {{"glue", 0}, "joint \"glue\" is fixed in " + file + "; those that move: turn"},
-        {{"free", 0}, "joint \"free\" is of type floating, which cannot be moved by one number; those that move: turn"},
-        {{"wheel", 0}, "joint \"wheel\" follows joint \"turn\"; give that one"},
-        {{"turn", 1.25}, "joint \"turn\" is 1.25, its limits in " + file + " are 0.5 to 1 rad"},
+        {{"tern", 0.7}, "joint \"tern\" is not in " + file + "; joints that can be moved: turn"},
+        {{"glue", 0}, "joint \"glue\" is fixed in " + file + "; joints that can be moved: turn"},
+        {{"free", 0},
+         "joint \"free\" is of type floating, which cannot be moved by one number; joints that can be moved: turn"},
+        {{"wheel", 0}, "joint \"wheel\" mimics joint \"turn\"; give that one instead"},
+        {{"turn", 1.25}, "joint \"turn\" is 1.25, outside its limits in " + file + ", 0.5 to 1 rad"},
         {{"turn", NAN}, "joint \"turn\" is nan, needs a finite number"},
     };
     for (const auto& [joint, wanted] : cases) {
@@ -402,10 +407,10 @@ TEST_CASE("joints that cannot stand so are refused with what can be given")
                       "load_robot: joint \"a\" is given, but box:1,1,1 has no joints");
     const Robot at_zero = load_urdf(folder, robot);
     REQUIRE(at_zero.notices.size() == 1);
-    CHECK(at_zero.notices[0] == file + ": joint \"turn\" stands at 0 rad, though its limits are 0.5 to 1 rad");
+    CHECK(at_zero.notices[0] == file + ": joint \"turn\" is at 0 rad, outside its limits 0.5 to 1 rad");
 }
 
-TEST_CASE("mimics of nothing and of themselves are told")
+TEST_CASE("joints that mimic nothing or themselves get a notice")
 {
     const TempFolder folder;
     const auto with_mimic = [&](const std::string& of) {
@@ -415,11 +420,11 @@ TEST_CASE("mimics of nothing and of themselves are told")
                "<link name=\"x\"/>";
     };
     const std::string file = (folder / "robot.urdf").string();
-    CHECK_THROWS_WITH(load_urdf(folder, with_mimic("q")), file + ": joint \"a\" mimics \"q\", which is no joint");
+    CHECK_THROWS_WITH(load_urdf(folder, with_mimic("q")), file + ": joint \"a\" mimics \"q\", which is not a joint");
     CHECK_THROWS_WITH(load_urdf(folder, with_mimic("a")), file + ": joint \"a\" mimics itself");
 }
 
-TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not known")
+TEST_CASE("a notice states how much larger the hull is than its mesh, or that this is unknown")
 {
     const TempFolder folder;
     hand::Mesh open = mesh_text::box({0, 0, 0}, {1, 1, 1});
@@ -438,13 +443,13 @@ TEST_CASE("the growth of a mesh's hull is told in numbers, or that it is not kno
     CHECK(*robot.meshes[2].growth() == Approx(0).margin(1e-9));
     const std::string file = (folder / "robot.yaml").string() + ": ";
     REQUIRE(robot.notices.size() == 2);
-    CHECK(robot.notices[0] == file + "\"bend\": l.obj counts as its convex hull, 72 m3, 50 % more than the mesh");
+    CHECK(robot.notices[0] == file + "\"bend\": l.obj is replaced by its convex hull, 72 m3, 50 % more than the mesh");
     CHECK(robot.notices[1] == file +
-                                  "open.obj counts as its convex hull, 1 m3; how much more than the mesh is not known, "
-                                  "as that is not watertight or overlaps itself");
+                                  "open.obj is replaced by its convex hull, 1 m3; the mesh's own volume is unknown, "
+                                  "because the mesh is not watertight or overlaps itself");
 }
 
-TEST_CASE("a robot beyond all measure is refused, a chain longer than the call stack is not")
+TEST_CASE("a far too large robot is refused, a chain longer than the call stack is not")
 {
     CHECK_THROWS_WITH(load_robot("box:1e10,1,1"),
                       "box:1e10,1,1: reaches 5e+09 m from its origin, needs at most 1000 "
@@ -461,18 +466,19 @@ TEST_CASE("a robot beyond all measure is refused, a chain longer than the call s
     chain += "<link name='tail'>" + box + "</link><joint name='t' type='fixed'><parent link='l" +
              std::to_string(links) + "'/><child link='tail'/></joint></robot>";
     CHECK(load_robot(folder.write("snake.urdf", chain).string()).bounds().max.x() == Approx(200.5));
-    CHECK_THROWS_WITH(load_robot(folder.write("torn.urdf", "<robot name='a'>\n<link name='b'>\n</robot>").string()),
-                      (folder / "torn.urdf").string() +
-                          ": line 2: is no valid XML (xml error mismatched element): is a tag left open or misspelt?");
+    CHECK_THROWS_WITH(
+        load_robot(folder.write("torn.urdf", "<robot name='a'>\n<link name='b'>\n</robot>").string()),
+        (folder / "torn.urdf").string() +
+            ": line 2: is not valid XML (xml error mismatched element): is a tag not closed, or misspelt?");
     std::string deep = "<robot name='a'>";
     for (int i = 0; i < 50000; ++i) deep += "<a>";
     CHECK_THROWS_WITH(load_robot(folder.write("deep.urdf", deep).string()),
-                      Catch::Contains("elements may be nested 500 deep"));
+                      Catch::Contains("elements may be nested at most 500 deep"));
     CHECK(load_robot(folder.write("BIG.URDF", "<robot name='a'><link name='l'>" + box + "</link></robot>").string())
               .parts.size() == 1);
 }
 
-TEST_CASE("real robots have the bounds that their sources tell")
+TEST_CASE("real robots have the bounds that their sources document")
 {
     const auto shared = shared_scenes();
     if (!shared) return;

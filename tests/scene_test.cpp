@@ -32,7 +32,8 @@ std::size_t count(const Scene& scene, Label label)
                                      [&](const auto& p) { return p.label == label; }));
 }
 
-/// Voxel (0, 0, 0) to (0.5, 0.5, 0.5), the pruned cube of eight at (2, 0, 0), and a free one.
+/// Returns an OctoMap file with a voxel from (0, 0, 0) to (0.5, 0.5, 0.5), a pruned cube of eight voxels at (2, 0, 0),
+/// and a free voxel.
 std::string octomap_bytes(bool full = false)
 {
     octomap::OcTree tree(0.5);
@@ -97,7 +98,8 @@ TEST_CASE("bounds of each primitive are those of the solid itself")
     check_near(bounds("sphere: 2, xyz: [1, 0, 0]").min, {-1, -2, -2});
     check_near(size_of(bounds("cylinder: {radius: 1, length: 4}, rpy_deg: [90, 0, 0]")), {2, 4, 2});
     check_near(size_of(bounds("capsule: {radius: 1, length: 4}, rpy_deg: [0, 90, 0]")), {6, 2, 2});
-    const double tilted = 4 * std::sqrt(0.5) + 2 * std::sqrt(0.5);  // cylinder at 45 degrees: axis and disc
+    // A cylinder at 45 degrees: the extents of its axis and of its disc.
+    const double tilted = 4 * std::sqrt(0.5) + 2 * std::sqrt(0.5);
     check_near(size_of(bounds("cylinder: {radius: 1, length: 4}, rpy_deg: [45, 0, 0]")), {2, tilted, tilted});
 }
 
@@ -115,7 +117,7 @@ TEST_CASE("roll, pitch and yaw turn about fixed axes, in radians or degrees")
     CHECK(rotation("xyz: [1, 2, 3]") == Mat3::Identity());
 }
 
-TEST_CASE("a plane is a sheet of two triangles that look up")
+TEST_CASE("a plane is a sheet of two triangles that face up")
 {
     const TempFolder folder;
     const Scene scene = load_parts(folder,
@@ -140,7 +142,7 @@ TEST_CASE("a plane is a sheet of two triangles that look up")
     CHECK(area == Approx(24));
 }
 
-TEST_CASE("a tilted plane goes with its pose")
+TEST_CASE("a tilted plane has the pose of its part")
 {
     const TempFolder folder;
     const Scene scene = load_parts(
@@ -150,7 +152,7 @@ TEST_CASE("a tilted plane goes with its pose")
     CHECK(column.layers[0] == Approx(1 + std::tan(std::numbers::pi / 6)));
 }
 
-TEST_CASE("labels come from the part, and are obstacle where it has none")
+TEST_CASE("labels come from the part, and are obstacle if it has none")
 {
     const TempFolder folder;
     const Scene scene = load_parts(
@@ -163,11 +165,11 @@ TEST_CASE("labels come from the part, and are obstacle where it has none")
     CHECK(scene.primitives[2].label == Label::Water);
     CHECK(scene.parts.size() == 4);
     CHECK(scene.parts[3].solid_pieces == 0);
-    check_near(scene.bounds().max, {1, 1, 1});  // what is ignored widens nothing
+    check_near(scene.bounds().max, {1, 1, 1});  // ignored parts do not widen the bounds
     CHECK(scene.has_terrain());
 }
 
-TEST_CASE("label rules of the call come first, the first match wins, case does not count")
+TEST_CASE("label rules of the call come first, the first match wins, case does not matter")
 {
     const TempFolder folder;
     const std::string parts =
@@ -182,7 +184,7 @@ TEST_CASE("label rules of the call come first, the first match wins, case does n
     CHECK(count(scene, Label::Water) == 0);
 }
 
-TEST_CASE("a scene without a name is called as its file")
+TEST_CASE("a scene without a name has the name of its file")
 {
     const TempFolder folder;
     const auto file = folder.write("yard.yaml", "format: spawnfield-scene/1\nparts: [{name: a, sphere: 1}]\n");
@@ -211,14 +213,14 @@ TEST_CASE("each occupied leaf of an OctoMap part is a solid box of its size")
     if (small->size[0] > large->size[0]) std::swap(small, large);
     CHECK(small->size == Vec3(0.5, 0.5, 0.5));
     CHECK(large->size == Vec3(1, 1, 1));
-    check_near(small->pose.position, {10 - 0.25, 0.25, 1.25});  // (x, y) turns to (-y, x)
+    check_near(small->pose.position, {10 - 0.25, 0.25, 1.25});  // (x, y) becomes (-y, x)
     check_near(large->pose.position, {10 - 0.5, 2.5, 1.5});
     const Column column = column_at(Geometry(scene), 9.5, 2.5);
     REQUIRE(column.layers.size() == 1);
     CHECK(column.layers[0] == Approx(2));
 }
 
-TEST_CASE("an OctoMap is a scene by itself: terrain with a notice, or as its label says")
+TEST_CASE("an OctoMap can be a scene: terrain with a notice, or with its label")
 {
     const TempFolder folder;
     const auto file = folder.write("house.bt", octomap_bytes());
@@ -227,7 +229,7 @@ TEST_CASE("an OctoMap is a scene by itself: terrain with a notice, or as its lab
     CHECK(count(plain, Label::Terrain) == 2);
     REQUIRE(plain.notices.size() == 2);
     CHECK_THAT(plain.notices[1], Contains("are unknown"));
-    CHECK_THAT(plain.notices[0], Contains(file.string() + ": no label given, so everything is terrain"));
+    CHECK_THAT(plain.notices[0], Contains(file.string() + ": no label is given, so everything is terrain"));
     check_near(plain.bounds().min, {0, 0, 0});
     check_near(plain.bounds().max, {3, 1, 1});
 
@@ -235,12 +237,12 @@ TEST_CASE("an OctoMap is a scene by itself: terrain with a notice, or as its lab
     CHECK(count(labelled, Label::Obstacle) == 2);
     CHECK(labelled.notices.size() == 1);
     CHECK_THROWS_WITH(load_scene(file, {.labels = {{"*", Label::Ignore}}}),
-                      file.string() + ": has no geometry: all of it is ignored");
+                      file.string() + ": has no geometry: all parts are ignored");
     CHECK_THROWS_AS(load_scene(file, {.scale = 2}), ArgumentError);
     CHECK_THROWS_AS(load_scene(file, {.up = 'y'}), ArgumentError);
 }
 
-TEST_CASE("a full OctoMap holds the same boxes as a binary one")
+TEST_CASE("a full OctoMap has the same boxes as a binary one")
 {
     const TempFolder folder;
     const Scene binary = load_scene(folder.write("a.bt", octomap_bytes())),
@@ -250,7 +252,7 @@ TEST_CASE("a full OctoMap holds the same boxes as a binary one")
         CHECK(full.primitives[i].shape.pose.position == binary.primitives[i].shape.pose.position);
 }
 
-TEST_CASE("a bare mesh without labels is terrain, and says so")
+TEST_CASE("a mesh file without labels is terrain, with a notice")
 {
     const TempFolder folder;
     const auto file = folder.write("hill.obj", mesh_text::obj(hand::box({2, 4, 6})));
@@ -263,7 +265,7 @@ TEST_CASE("a bare mesh without labels is terrain, and says so")
     CHECK_THAT(scene.notices[0], Contains("everything is terrain"));
 }
 
-TEST_CASE("a bare mesh takes labels by node or material, and what no rule names is an obstacle")
+TEST_CASE("a mesh file takes labels by node or material, and everything without a rule is an obstacle")
 {
     const TempFolder folder;
     const auto file = folder.write(
@@ -277,7 +279,7 @@ TEST_CASE("a bare mesh takes labels by node or material, and what no rule names 
     CHECK(scene.notices.empty());
 }
 
-TEST_CASE("a bare mesh is scaled, then turned up")
+TEST_CASE("a mesh file is scaled, and then its up axis is applied")
 {
     const TempFolder folder;
     const auto file = folder.write("a.obj", mesh_text::obj(mesh_text::box({0, 0, 0}, {1, 2, 3})));
@@ -286,27 +288,27 @@ TEST_CASE("a bare mesh is scaled, then turned up")
     check_near(bounds.max, {0.5, 0, 1});
 }
 
-TEST_CASE("the training arena has the thesis's heights")
+TEST_CASE("the training arena has the heights of the thesis")
 {
     const Scene scene = load_scene(std::filesystem::path(source_folder()) / "maps/training/scene.yaml");
     const Geometry geometry(scene);
     CHECK(scene.parts.size() == 16);
     const auto layers = [&](double x, double y) { return column_at(geometry, x, y).layers; };
     CHECK(layers(0, 0) == std::vector<double>{-0.1 + 0.05});
-    REQUIRE(layers(-1.84, 7).size() == 1);  // the platform stands in the floor: one layer
+    REQUIRE(layers(-1.84, 7).size() == 1);  // the platform reaches into the floor, so there is one layer
     CHECK(layers(-1.84, 7)[0] == Approx(0.93));
-    REQUIRE(layers(-7, 7).size() == 2);  // the underground box lies 0.4 m below the floor
+    REQUIRE(layers(-7, 7).size() == 2);  // the underground box is 0.4 m below the floor
     CHECK(layers(-7, 7)[1] == Approx(-0.55));
     REQUIRE(layers(6, 2.5).size() == 2);
     CHECK(layers(6, 2.5)[0] == Approx(2.45));
-    // The ramp's high end, at smaller x, meets the platform's height; its low end dives into the floor.
+    // The high end of the ramp, at smaller x, is at the height of the platform. Its low end is inside the floor.
     const double slope = std::tan(10 * std::numbers::pi / 180);
     CHECK(layers(1, 7)[0] == Approx(-0.254 + 0.5 / std::cos(10 * std::numbers::pi / 180) + 3 * slope));
     CHECK(layers(7.8, 7)[0] == Approx(-0.05));
     CHECK(column_at(geometry, 7.3, -7.4).water == std::vector<double>{1.45});
 }
 
-TEST_CASE("real scenes have as many triangles of each label as their sources tell")
+TEST_CASE("real scenes have as many triangles of each label as their sources document")
 {
     const auto shared = shared_scenes();
     if (!shared) return;
@@ -316,10 +318,10 @@ TEST_CASE("real scenes have as many triangles of each label as their sources tel
     };
     const Wanted scenes[] = {
         {"inspection/scene.yaml", 3360 + 340, 2067 + 7462,
-         2},  // materials; two triangles of the base station have no area
+         2},  // labels by materials; two triangles of the base station have no area
         {"kaykit_town/scene.yaml", 3642 + 720, 54985 - 3642 - 720 - 18,
-         0},                                           // nodes; 18 triangles are ignored or have no area
-        {"interchange/scene.yaml", 448 + 900, 84, 0},  // materials of an OBJ
+         0},                                           // labels by nodes; 18 triangles are ignored or have no area
+        {"interchange/scene.yaml", 448 + 900, 84, 0},  // labels by materials of an OBJ
     };
     for (const Wanted& wanted : scenes) {
         INFO(wanted.file);
@@ -332,7 +334,7 @@ TEST_CASE("real scenes have as many triangles of each label as their sources tel
     }
 }
 
-TEST_CASE("a label rule that matches nothing is told")
+TEST_CASE("a label rule that matches nothing gets a notice")
 {
     const TempFolder temp;
     temp.write("cube.obj", "o road_1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

@@ -4,7 +4,7 @@
 
 #include <spawnfield/scene.h>
 
-/// Reads a scene.yaml whose `parts` are these lines, written into the folder.
+/// Writes a scene.yaml with these lines as its `parts` into the folder, and reads it.
 inline spawnfield::Scene load_parts(const TempFolder& folder, const std::string& parts,
                                     const spawnfield::SceneOptions& options = {})
 {

@@ -44,7 +44,7 @@ const std::string unit_box = "<box><size>1 1 1</size></box>";
 const std::string ground = "<model name='ground_plane'><static>1</static><link name='l'>" +
                            collision("<plane><normal>0 0 1</normal><size>40 40</size></plane>") + "</link></model>";
 
-/// A folder of models of one box each, `names` by their side lengths.
+/// Writes a model with this content into the folder `models`.
 void write_model(const TempFolder& folder, const std::string& name, const std::string& content)
 {
     folder.write(
@@ -58,7 +58,7 @@ Scene load_world(const TempFolder& folder, const std::string& content, const Sce
     return load_scene(folder.write("worlds/test.world", world_of(content)), options);
 }
 
-/// Middle of the part's box.
+/// Returns the middle of the box around each part.
 std::map<std::string, Vec3> places(const Scene& scene)
 {
     std::map<std::string, Bounds> boxes;
@@ -108,7 +108,7 @@ bool has_notice(const Scene& scene, const std::string& part)
                        [&](const std::string& text) { return has(text, part); });
 }
 
-/// Vertical solids at (x, y), from all parts.
+/// Returns the layers at (x, y), from all parts.
 std::vector<double> layers_at(const Scene& scene, double x, double y)
 {
     return column_at(Geometry(scene), x, y).layers;
@@ -127,7 +127,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("collisions stand where frames, nested models, includes and placement frames put them")
+TEST_CASE("collisions are where frames, nested models, includes and placement frames put them")
 {
     const TempFolder folder;
     write_model(folder, "cart",
@@ -156,7 +156,7 @@ TEST_CASE("collisions stand where frames, nested models, includes and placement 
         "<model name='beside'><pose relative_to='turned'>0 0 3 0 0 0</pose><link name='l'>" + collision(unit_box) +
         "</link></model>";
     for (const std::string& content :
-         {plain, framed}) {  // without frames the includes are read once each, with them by libsdformat alone
+         {plain, framed}) {  // without frames each include is read once, with frames libsdformat reads all
         const Scene scene = load_world(folder, content);
         CAPTURE(scene.notices);
         check_place(scene, "cart::body::c", {5.5, 0, 1});
@@ -171,7 +171,7 @@ TEST_CASE("collisions stand where frames, nested models, includes and placement 
     check_place(scene, "docked::body::c", {100.5, 1, 1});
     check_place(scene, "hooked::body::c", {0, 60, 0});
     check_place(scene, "beside::l::c", {10, 20, 3});
-    // A model by itself stands where its own pose puts it, as where it is included without one.
+    // A single model is at its own pose, as if it were included without a pose.
     check_place(load_scene(folder / "models/cart"), "cart::body::c", {5.5, 0, 1});
     check_place(load_scene(folder / "models/tug/tug.sdf"), "tug::body::c", {-2, 0, 0});
 }
@@ -210,7 +210,7 @@ TEST_CASE("every geometry of SDF has its size")
     CHECK((boxes["mesh::l::c"].max - Vec3(22, 2, 51)).norm() < 1e-6);
     CHECK((boxes["part::l::c"].min - Vec3(10, 0, 60)).norm() < 1e-6);
     CHECK((boxes["centred::l::c"].min - Vec3(-0.5, -0.5, 69.5)).norm() < 1e-6);
-    // The mesh lies around the ellipsoid, nowhere by more than it says.
+    // The mesh encloses the ellipsoid, and nowhere exceeds it by more than the stated amount.
     const Vec3 radii(3, 2, 1);
     double most = 0;
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
@@ -221,17 +221,17 @@ TEST_CASE("every geometry of SDF has its size")
             corners[k] = from_middle.cwiseQuotient(radii);
             most = std::max(most, (from_middle - from_middle / corners[k].norm()).norm());
         }
-        // In the frame in which it is a unit sphere, no face may come closer than 1 to the middle.
+        // In the frame in which the ellipsoid is a unit sphere, no face may come closer than 1 to the middle.
         const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
         CHECK(std::abs(normal.dot(corners[0])) >= 1 - 1e-12);
     }
     CHECK(most > 0);
-    CHECK(has_notice(scene, "1 ellipsoid is a mesh around it, at most 0.0035 m larger"));
+    CHECK(has_notice(scene, "1 ellipsoid is replaced by a mesh around it, at most 0.0035 m larger"));
     CHECK(most <= 0.0035);
     CHECK(scene.pieces.size() >= 6);
 }
 
-TEST_CASE("a polyline is extruded from its pose upwards, an outline within another is a hole")
+TEST_CASE("a polyline is extruded upwards from its pose, and an outline inside another is a hole")
 {
     const TempFolder folder;
     const std::string outer =
@@ -273,7 +273,7 @@ TEST_CASE("a polyline is extruded from its pose upwards, an outline within anoth
               "outline 1 has 2 points, needs 3 or more"));
 }
 
-TEST_CASE("a plane is infinite: it goes on beyond the bounds, whatever its drawn size")
+TEST_CASE("a plane is infinite: it continues beyond the bounds, with any drawn size")
 {
     const TempFolder folder;
     const auto plane = [](const std::string& visual) {
@@ -291,8 +291,8 @@ TEST_CASE("a plane is infinite: it goes on beyond the bounds, whatever its drawn
         CHECK((of.map_bounds.min - min).norm() < 1e-9);
         CHECK((of.map_bounds.max - max).norm() < 1e-9);
     };
-    const std::string around = "no <visual> draws it larger than the rest of the world";
-    // The <size> of the collision says nothing, nor does a drawing that is no larger than the rest.
+    const std::string around = "no <visual> shows it larger than the rest of the world";
+    // The <size> of the collision has no effect, nor has a drawn plane that is no larger than the rest.
     for (const std::string& unknown :
          {plane(""), drawn("1"), drawn("50"), plane("<sphere><radius>500</radius></sphere>")}) {
         const Scene scene = load_world(folder, unknown + far);
@@ -311,21 +311,20 @@ TEST_CASE("a plane is infinite: it goes on beyond the bounds, whatever its drawn
         CHECK_FALSE(has_notice(scene, around));
     }
     has_bounds(load_world(folder, drawn("4")), {-2, -2, 0.25}, {2, 2, 0.25});
-    has_bounds(load_world(folder, plane("")), {-10, -10, 0.25},
-               {10, 10, 0.25});  // nothing but a plane that nobody draws
-    // Bounds that are given are those of the cut.
+    has_bounds(load_world(folder, plane("")), {-10, -10, 0.25}, {10, 10, 0.25});  // only a plane without a drawing
+    // Given bounds are the bounds of the map.
     const Scene given = load_world(folder, drawn("2"), {.bounds = {Vec3(200, 200, 0), Vec3(210, 220, 5)}});
     CHECK(layers_at(given, 205, 210).size() == 1);
     CHECK(given.map_bounds.min.x() == 200);
     CHECK_FALSE(has_notice(load_world(folder, plane("") + far, {.bounds = {Vec3(0, 0, 0), Vec3(9, 9, 5)}}), around));
-    // A ramp: normal (-1, 0, 1) rises with x.
+    // A ramp: with the normal (-1, 0, 1) it rises with x.
     const Scene ramp = load_world(folder, model_of("p", "<plane><normal>-1 0 1</normal><size>20 20</size></plane>"));
     const auto at = layers_at(ramp, 4, 3);
     REQUIRE(at.size() == 1);
     CHECK(std::abs(at[0] - 4) < 1e-9);
 }
 
-TEST_CASE("a heightmap's brightest pixel is its size high, and sampling interpolates between pixels")
+TEST_CASE("the brightest pixel of a heightmap has the height of its size, and sampling interpolates between pixels")
 {
     const TempFolder folder;
     const std::vector<std::uint16_t> pixels = {0, 1000, 2000, 3000, 20000, 5000, 6000, 7000, 8000};
@@ -345,7 +344,7 @@ TEST_CASE("a heightmap's brightest pixel is its size high, and sampling interpol
         CHECK(std::abs(layers_at(scene, 110, -5)[0] - (16 - 5)) < 1e-9);
         CHECK(std::abs(layers_at(scene, 95, 5)[0] - (1 - 5)) < 1e-9);
     }
-    // Between pixels bilinear: in the middle of a cell the mean of its four pixels.
+    // Heights between pixels are bilinear: the middle of a cell has the mean of its four pixels.
     CHECK(std::abs(layers_at(heights(2), 95, 2.5)[0] - ((0 + 1000 + 3000 + 20000) / 4.0 / 20000 * 40 - 5)) < 1e-9);
 }
 
@@ -366,17 +365,17 @@ TEST_CASE("an elevation model as <heightmap> keeps its lowest height, and is str
             CHECK(std::abs(layers_at(scene, -8, 7)[0] - 100) < 1e-9);
             CHECK(std::abs(layers_at(scene, 8, 7)[0] - (100 + 80 * share)) < 1e-9);
             CHECK(std::abs(layers_at(scene, -6, 8)[0] - (100 + 10 * share)) < 1e-9);
-            CHECK(layers_at(scene, 0, 0).empty());  // there is no height
+            CHECK(layers_at(scene, 0, 0).empty());  // the file has no height here
             CHECK(layers_at(scene, -4, 4).size() == 1);
-            CHECK(has_notice(scene, "dem.asc: is taken as an elevation model"));
+            CHECK(has_notice(scene, "dem.asc: is read as an elevation model"));
             CHECK_FALSE(has_notice(scene, "2^n + 1"));
         }
     folder.write("worlds/dem.asc",
                  "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3 4\n1 2 3 4\n1 2 3 4\n");
-    CHECK(has_notice(load("3", "1"), "is 4 x 3 pixels large; Gazebo draws it anew to a square of 2^n + 1"));
+    CHECK(has_notice(load("3", "1"), "is 4 x 3 pixels large; Gazebo resamples it to a square of 2^n + 1"));
 }
 
-TEST_CASE("what SDF does not know, or nothing touches, is told, with the file's own lines")
+TEST_CASE("elements that SDF does not know, or that have no effect, get a notice with their line in the file")
 {
     const TempFolder folder;
     write_model(folder, "crate",
@@ -390,12 +389,12 @@ TEST_CASE("what SDF does not know, or nothing touches, is told, with the file's 
     CAPTURE(scene.notices);
     CHECK(has_notice(
         scene,
-        "test.world: line 9: /sdf/world[@name=\"test\"]/modle[@name=\"b\"]: is no element that SDF has at this place"));
-    CHECK(has_notice(
-        scene,
-        "model.sdf: line 2: /sdf/model[@name=\"crate\"]/link[@name=\"l\"]/colision[@name=\"d\"]: is no element"));
-    CHECK(has_notice(scene, "collision with name[c] already exists. It is left out"));
-    CHECK(has_notice(scene, "<collision>: 1 without a shape left out"));
+        "test.world: line 9: /sdf/world[@name=\"test\"]/modle[@name=\"b\"]: is not an SDF element at this place"));
+    CHECK(has_notice(scene,
+                     "model.sdf: line 2: /sdf/model[@name=\"crate\"]/link[@name=\"l\"]/colision[@name=\"d\"]: is not "
+                     "an SDF element"));
+    CHECK(has_notice(scene, "collision with name[c] already exists. It is ignored"));
+    CHECK(has_notice(scene, "<collision>: 1 without a shape ignored"));
     CHECK(scene.parts.size() == 3);
     CHECK(has(refusal_of(folder, world, {.strict = true}), "already exists"));
 
@@ -410,21 +409,21 @@ TEST_CASE("what SDF does not know, or nothing touches, is told, with the file's 
         CHECK(zone.parts.size() == 1);
         CHECK(has_notice(
             zone,
-            "<collision>: 1 left out, as by <collide_bitmask> or <collide_without_contact> nothing touches them"));
+            "<collision>: 1 ignored, because nothing touches them (<collide_bitmask> or <collide_without_contact>)"));
     }
     CHECK(with_surface("<collide_bitmask>0x01</collide_bitmask>").parts.size() == 2);
 
     const fs::path both = folder.write("worlds/both.sdf", "<sdf version='1.9'><world name='w'>" + ground +
                                                               "</world>\n" + model_of("beside", unit_box) + "</sdf>");
-    CHECK(has_notice(load_scene(both), "line 2: <model> stands beside <world>: it is left out"));
+    CHECK(has_notice(load_scene(both), "line 2: <model> is beside <world>: it is ignored"));
     folder.write("worlds/wedge.obj", mesh_text::obj(mesh_text::box(Vec3(0, 0, 0), Vec3(1, 1, 1))));
     const Scene lost = load_world(
         folder, ground + model_of("m", "<mesh><uri>wedge.obj</uri><submesh><name>none</name></submesh></mesh>"));
-    CHECK(has_notice(lost, "\"m::l::c\": <submesh> \"none\" is no node of "));
+    CHECK(has_notice(lost, "\"m::l::c\": <submesh> \"none\" is not a node of "));
     CHECK(lost.parts.size() == 1);
 }
 
-TEST_CASE("a file that is named as one of libsdformat's own is read, not that one")
+TEST_CASE("a file with the name of a file of libsdformat is read instead of that one")
 {
     const TempFolder folder;
     const fs::path before = fs::current_path();
@@ -451,7 +450,7 @@ TEST_CASE("COLLADA in SDF has its unit, but keeps its axes")
     }
 }
 
-TEST_CASE("what is ground is found by rules, and --label comes first")
+TEST_CASE("rules decide what is ground, and --label comes first")
 {
     const TempFolder folder;
     const std::string world = ground + model_of("warehouse_GroundB_01", unit_box) + model_of("Sidewalk_7", unit_box) +
@@ -476,19 +475,19 @@ TEST_CASE("what is ground is found by rules, and --label comes first")
     CHECK(counts["name floor*"] == 1);
     CHECK(counts["all else"] == 2);
 
-    const Scene told = load_world(folder, world,
-                                  {.labels = {{"house", Label::Water},
-                                              {"sidewalk_7::*", Label::Ignore},
-                                              {"wall", Label::Terrain},
-                                              {"nothing*", Label::Terrain}}});
-    auto changed = labels(told);
+    const Scene labelled = load_world(folder, world,
+                                      {.labels = {{"house", Label::Water},
+                                                  {"sidewalk_7::*", Label::Ignore},
+                                                  {"wall", Label::Terrain},
+                                                  {"nothing*", Label::Terrain}}});
+    auto changed = labels(labelled);
     CHECK(changed["house::l::wall"] == "water");  // the first rule that matches
     CHECK(changed["house::l::floor_1"] == "water");
     CHECK(changed["Sidewalk_7::l::c"] == "ignore");
     CHECK(changed["ground_plane::l::c"] == "terrain");
-    for (const NameRule& rule : told.rules)  // what the options decided, no rule did
+    for (const NameRule& rule : labelled.rules)  // the rules did not decide what the options decided
         if (rule.what == "name sidewalk*" || rule.what == "name floor*") CHECK(rule.count == 0);
-    CHECK(has_notice(told, "label \"nothing*\" matches no model, link, collision, node or material"));
+    CHECK(has_notice(labelled, "label \"nothing*\" matches no model, link, collision, node or material"));
 
     const std::string furniture =
         "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, "
@@ -509,7 +508,7 @@ TEST_CASE("what is ground is found by rules, and --label comes first")
     CHECK(has_notice(unnamed, "so everything is terrain"));
 }
 
-TEST_CASE("names are split into words, and walls, ceilings and the like are no ground whatever else they are called")
+TEST_CASE("names are split into words, and walls and ceilings are not ground, with any other words in their names")
 {
     const TempFolder folder;
     const auto label_of = [&](const std::string& name, const std::string& link = "link",
@@ -532,13 +531,13 @@ TEST_CASE("names are split into words, and walls, ceilings and the like are no g
         CAPTURE(name);
         CHECK(label_of(name) == "obstacle");
     }
-    // The innermost name that says something decides.
+    // The innermost name that matches a rule decides.
     CHECK(label_of("ground_floor", "wall_1") == "obstacle");
     CHECK(label_of("house_wall", "link", "floor") == "terrain");
     CHECK(label_of("bridge", "link", "railing") == "obstacle");
 }
 
-TEST_CASE("what is missing is told by its name, and refused where the caller is strict")
+TEST_CASE("missing files get a notice with their name, and are refused if the caller is strict")
 {
     const TempFolder folder;
     const std::string world =
@@ -551,19 +550,19 @@ TEST_CASE("what is missing is told by its name, and refused where the caller is 
     const Scene scene = load_world(folder, world, {.allow_missing = true});
     CAPTURE(scene.notices);
     CHECK(has_notice(scene,
-                     "test.world: line 3: <include> <uri> model://nowhere is not found (2 includes): it is left out"));
-    CHECK(has_notice(scene, "\"statue::l::c\": model://statue/lost.dae is not found: it is left out"));
-    CHECK(has_notice(scene, "1 model has no collision and is not there for a robot: ghost"));
-    CHECK(has_notice(scene, "<actor>: 1 left out"));
-    CHECK(has_notice(scene, "<road>: 1 left out"));
+                     "test.world: line 3: <include> <uri> model://nowhere is not found (2 includes): it is ignored"));
+    CHECK(has_notice(scene, "\"statue::l::c\": model://statue/lost.dae is not found: it is ignored"));
+    CHECK(has_notice(scene, "1 model has no collision, so robots pass through it: ghost"));
+    CHECK(has_notice(scene, "<actor>: 1 ignored"));
+    CHECK(has_notice(scene, "<road>: 1 ignored"));
     CHECK(scene.parts.size() == 1);
     const std::string strict = refusal_of(
         folder, ground + model_of("statue", "<mesh><uri>model://statue/lost.dae</uri></mesh>"), {.strict = true});
     CHECK(has(strict, "model://statue/lost.dae"));
-    CHECK(has(strict, "--strict does not allow it"));
+    CHECK(has(strict, "--strict does not allow this"));
 }
 
-TEST_CASE("a world with includes that are not found is refused, with all of them")
+TEST_CASE("a world with includes that are not found is refused, with a list of all")
 {
     const TempFolder folder;
     write_model(folder, "cart",
@@ -576,19 +575,19 @@ TEST_CASE("a world with includes that are not found is refused, with all of them
     const std::string refused = refusal_of(folder, ground + includes);
     CAPTURE(refused);
     CHECK(has(refused,
-              "test.world: 3 models that it includes are not found; name the folder that holds them with "
+              "test.world: 3 models that it includes are not found; give the folder that contains them with "
               "--model-path, download models of Fuel with `gz fuel "
-              "download -u URI`, or pass --allow-missing to leave them out:\n"));
+              "download -u URI`, or ignore them with --allow-missing:\n"));
     CHECK(has(refused, "\n  line 3: <include> <uri> model://desk is not found (2 includes)\n"));
     CHECK(has(refused, "line 5: <include> <uri> https://fuel.gazebosim.org/1.0/Somebody/models/Chair is not found\n"));
     CHECK(has(refused, "model.sdf: line 1: <include> <uri> model://wheel is not found"));
     CHECK(has(refusal_of(folder, ground + "<include><uri>model://desk</uri></include>"),
-              "1 model that it includes is not found; name the folder that holds it with --model-path, or pass"));
+              "1 model that it includes is not found; give the folder that contains it with --model-path, or"));
     CHECK(load_world(folder, ground + includes, {.allow_missing = true}).parts.size() == 2);
-    // All of them missing: they are named.
+    // If all of them are missing, the message lists them.
     const std::string empty = refusal_of(folder, "<include><uri>model://desk</uri></include>", {.allow_missing = true});
-    CHECK(has(empty, "has no models but those that are missing, so nothing to stand on:\n"));
-    CHECK(has(empty, "model://desk is not found: it is left out"));
+    CHECK(has(empty, "has only models that are missing, so robots cannot stand anywhere:\n"));
+    CHECK(has(empty, "model://desk is not found: it is ignored"));
 }
 
 TEST_CASE("nothing becomes terrain because a file is missing")
@@ -596,12 +595,12 @@ TEST_CASE("nothing becomes terrain because a file is missing")
     const TempFolder folder;
     const std::string desk = model_of("desk", unit_box),
                       lost_mesh = model_of("floor", "<mesh><uri>model://house/floor.dae</uri></mesh>");
-    CHECK(load_world(folder, desk).has_terrain());  // nothing is missing: everything is terrain
+    CHECK(load_world(folder, desk).has_terrain());  // nothing is missing, so everything is terrain
     for (const std::string& lost : {lost_mesh, std::string("<include><uri>model://house</uri></include>")}) {
         const Scene scene = load_world(folder, desk + lost, {.allow_missing = true});
         CAPTURE(lost);
         CHECK_FALSE(scene.has_terrain());
-        CHECK(has_notice(scene, "nothing is made terrain"));
+        CHECK(has_notice(scene, "none of it is made terrain"));
         CHECK(load_world(folder, desk + lost, {.labels = {{"desk", Label::Terrain}}, .allow_missing = true})
                   .has_terrain());
     }
@@ -627,9 +626,9 @@ TEST_CASE("ground_plane and sun are built in, by all of their names, unless they
         CHECK(scene.parts[1].name == "ground_plane::link::collision");
         CHECK(scene.parts[1].label == Label::Terrain);
         CHECK(scene.parts[0].label == Label::Obstacle);
-        CHECK(scene.map_bounds.max.x() == 50);  // Gazebo's is drawn 100 x 100 m
+        CHECK(scene.map_bounds.max.x() == 50);  // Gazebo draws its plane with 100 x 100 m
         CHECK(layers_at(scene, 99, 0) == std::vector<double>{0});
-        CHECK(has_notice(scene, uri + std::string(" is not on disk; the built-in ground plane stands for it")));
+        CHECK(has_notice(scene, uri + std::string(" is not on disk; the built-in ground plane replaces it")));
     }
     for (const char* const uri :
          {"model://sun", "model://Sun", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Sun",
@@ -641,7 +640,7 @@ TEST_CASE("ground_plane and sun are built in, by all of their names, unless they
           "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Sun Flower", "package://ground_plane"})
         CHECK(has(refusal_of(folder, desk + include(uri)), "is not found"));
 
-    // At the pose of its include, under its name, in another model, with frames.
+    // The built-in plane is at the pose of its include, with its name, in another model, and with frames.
     const Scene high = load_world(folder,
                                   desk + include("model://ground_plane", "<name>deck</name><pose>0 0 2 0 0 0</pose>"));
     CHECK(high.parts[1].name == "deck::link::collision");
@@ -654,13 +653,13 @@ TEST_CASE("ground_plane and sun are built in, by all of their names, unless they
 
     write_model(folder, "ground_plane",
                 "<model name='mine'><link name='l'>" + collision("<box><size>7 7 1</size></box>") + "</link></model>");
-    write_model(folder, "sun", "<light type='directional' name='sun'/>");  // as Gazebo ships it
+    write_model(folder, "sun", "<light type='directional' name='sun'/>");  // like the file of Gazebo
     const Scene own = load_world(folder, desk + include("model://ground_plane") + include("model://sun"));
     CHECK(places(own).contains("mine::l::c"));
     CHECK_FALSE(has_notice(own, "built-in"));
 }
 
-TEST_CASE("models are found by --model-path, Gazebo's variables and above the file")
+TEST_CASE("models are found by --model-path, by the variables of Gazebo and above the file")
 {
     const TempFolder folder, elsewhere;
     elsewhere.write("lib/crate/model.sdf", "<sdf version='1.6'><model name='crate'><link name='l'>" +
@@ -691,17 +690,17 @@ TEST_CASE("faulty worlds are refused with file, line and element")
         CHECK(has(message, "test.world"));
         for (const std::string& word : words) CHECK(has(message, word));
     };
-    expect("<model name='a'><link></model>", {"line 3", "is no valid XML"});
+    expect("<model name='a'><link></model>", {"line 3", "is not valid XML"});
     expect(ground + "<include><name>x</name></include>", {"line 3: <include>: has no <uri>"});
-    expect(model_of("a", "<box><size>1 x 1</size></box>"), {"line 3: <box> <size>: \"x\" is no finite number"});
+    expect(model_of("a", "<box><size>1 x 1</size></box>"), {"line 3: <box> <size>: \"x\" is not a finite number"});
     expect(model_of("a", "<sphere><radius>1,5</radius></sphere>"),
-           {"line 3: <sphere> <radius>: \"1,5\" is no finite number"});
+           {"line 3: <sphere> <radius>: \"1,5\" is not a finite number"});
     expect("\n" + model_of("a", "<box><size>1 2 3 4</size></box>"), {"line 4: <box> <size>: has 4 numbers, needs 3"});
     expect(model_of("a", "<cylinder><radius>1</radius></cylinder>"), {"line 3: <cylinder>: has no <length>"});
     expect(model_of("a", "<heightmap><uri>a.png</uri><size>4 4 -1</size></heightmap>"),
            {"\"a::l::c\": <heightmap> <size> is -1, needs > 0 and at most 1000 km (line 3)"});
     expect(model_of("a", unit_box + "\n<sphere><radius>1</radius></sphere>"),
-           {"\"a::l::c\": <geometry> holds <box>, <sphere>, needs one shape"});
+           {"\"a::l::c\": <geometry> contains <box>, <sphere>, needs one shape"});
     expect(model_of("a", "<box><size>1 -1 1</size></box>"), {"\"a::l::c\": <box> <size> is -1, needs > 0"});
     expect(model_of("a", "<sphere><radius>0</radius></sphere>"), {"<sphere> <radius> is 0, needs > 0"});
     expect(model_of("a", "<box><size>1 1e12 1</size></box>"), {"<box> <size> is 1e+12, needs > 0 and at most 1000 km"});
@@ -710,19 +709,19 @@ TEST_CASE("faulty worlds are refused with file, line and element")
     expect(model_of("a", unit_box, "<pose relative_to='nobody'>0 0 0 0 0 0</pose>"), {"nobody"});
     expect(model_of("a", unit_box, "<pose>0 0 0 0 0</pose>"), {"line 3", "pose"});
     expect(model_of("a", unit_box, "<pose>inf 0 0 0 0 0</pose>"),
-           {"line 3: <model> <pose>: \"inf\" is no finite number"});
+           {"line 3: <model> <pose>: \"inf\" is not a finite number"});
     expect("<population name='crowd'><model_count>3</model_count></population>",
-           {"line 3: <population> \"crowd\" is not expanded here"});
+           {"line 3: <population> \"crowd\" cannot be read here"});
     expect("", {"has no models"});
-    CHECK(has(refusal(folder.write("bare.world", "hello")), "is no valid XML"));
+    CHECK(has(refusal(folder.write("bare.world", "hello")), "is not valid XML"));
     CHECK(has(refusal(folder.write("empty.world", "")), "is empty"));
-    CHECK(has(refusal(folder.write("other.sdf", "<mujoco/>")), "line 1: <mujoco> stands where"));
+    CHECK(has(refusal(folder.write("other.sdf", "<mujoco/>")), "line 1: the root element is <mujoco>"));
     CHECK(has(refusal(folder.write("noversion.sdf", "<sdf><world name='w'/></sdf>")), "line 1: <sdf> has no version"));
     CHECK(has(refusal(folder.write("version.sdf", "<sdf version='abc'><world name='w'/></sdf>")),
-              "line 1: <sdf> has version \"abc\", needs such as version=\"1.6\""));
+              "line 1: <sdf> has version \"abc\", needs 1.0 to 2.x, for example version=\"1.6\""));
     const std::string only_lost = refusal(
         folder.write("lost.sdf", world_of(model_of("a", "<mesh><uri>nothere.dae</uri></mesh>"))));
-    CHECK(has(only_lost, "has no geometry: all of it is ignored, missing or without collision"));
+    CHECK(has(only_lost, "has no geometry: all parts are ignored, missing or without collision"));
     CHECK(has(only_lost, "nothere.dae is not found"));
     CHECK(has(refusal(folder.write("two.sdf", "<sdf version='1.9'><world name='a'/><world name='b'/></sdf>")),
               "has 2 worlds, needs one"));
@@ -739,7 +738,7 @@ TEST_CASE("models that include each other in a circle are refused, with the circ
     const std::string message = refusal_of(folder, ground + "<include><uri>model://hen</uri></include>");
     CAPTURE(message);
     CHECK(has(message, "egg/model.sdf: line 2: <include> <uri> model://hen"));
-    CHECK(has(message, "leads back to itself"));
+    CHECK(has(message, "includes itself"));
     CHECK(has(message, "hen/model.sdf includes "));
 }
 
@@ -755,10 +754,10 @@ TEST_CASE("models that include the next one twice, and so on, are refused before
     write_model(folder, "m" + std::to_string(doublings),
                 "<model name='m'><link name='l'>" + collision(unit_box) + "</link></model>");
     CHECK(has(refusal_of(folder, ground + "<include><uri>model://m0</uri></include>"),
-              "is the one with which all includes come to more than 100000"));
+              "makes more than 100000 includes in total"));
 }
 
-TEST_CASE("the real worlds hold what an independent reader finds in them")
+TEST_CASE("the real worlds contain what an independent reader finds in them")
 {
     const auto folder = shared_scenes();
     if (!folder) return;
@@ -771,7 +770,7 @@ TEST_CASE("the real worlds hold what an independent reader finds in them")
         const TempFolder temp;
         const Scene other = load_scene(scene_of_world(temp, *folder / world, *folder / models));
         CHECK(other.primitives.size() == scene.primitives.size());
-        // The other reader's planes are as large as drawn, its pavements' lids fans.
+        // In the other reader planes have their drawn size, and the lids of pavements are fans.
         const auto sorted_middles = [](const Scene& of) {
             std::vector<std::array<double, 3>> out;
             for (const Primitive& p : of.primitives)

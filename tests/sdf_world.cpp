@@ -42,7 +42,7 @@ Eigen::Isometry3d pose_of(const Xml* element)
     return out;
 }
 
-/// A wall around the points with a lid and a floor of fans: each edge has two faces.
+/// Returns a wall around the points, with a lid and a floor that are fans of triangles. Each edge has two faces.
 std::string prism_obj(const Xml* polyline)
 {
     std::string points, faces;
@@ -64,7 +64,7 @@ class WorldReader {
 public:
     WorldReader(const TempFolder& folder, std::filesystem::path models) : folder_(folder), models_(std::move(models)) {}
 
-    /// Everything in a world or a model; `names` are those of the models around it.
+    /// Adds everything in a world or a model; `names` are the names of the models around it.
     void add_children(const Xml* parent, const Eigen::Isometry3d& frame, const std::string& names)
     {
         for (const Xml* child = parent->FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
@@ -79,7 +79,7 @@ public:
     {
         tinyxml2::XMLDocument document;
         if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS)
-            throw std::runtime_error("not read: " + file.string());
+            throw std::runtime_error("cannot read " + file.string());
         add_children(document.FirstChildElement("sdf")->FirstChildElement("world"), Eigen::Isometry3d::Identity(), "");
     }
 
@@ -133,9 +133,9 @@ private:
         for (const char* const word : {"Ground", "sidewalk", "bridge", "pier", "parking_garage", "asphalt"})
             ground |= names.find(word) != names.npos;
         const Mat3 r = pose.linear();
-        const Vec3 at = pose.translation();
+        const Vec3 position = pose.translation();
         parts_ += "  - {name: p" + std::to_string(count_++) + ", label: " + (ground ? "terrain" : "obstacle") + ", " +
-                  shape + ", xyz: " + list({at.x(), at.y(), at.z()}) + ", rpy: " +
+                  shape + ", xyz: " + list({position.x(), position.y(), position.z()}) + ", rpy: " +
                   list({std::atan2(r(2, 1), r(2, 2)), -std::asin(std::clamp(r(2, 0), -1.0, 1.0)),
                         std::atan2(r(1, 0), r(0, 0))}) +
                   "}\n";

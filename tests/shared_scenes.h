@@ -7,7 +7,8 @@
 #include <iostream>
 #include <optional>
 
-/// Folder of the real scenes beside the repository, or SPAWNFIELD_SCENES; says so where there is none.
+/// Returns the folder of the real scenes: SPAWNFIELD_SCENES, or else the one beside the repository. Prints a line if it
+/// does not exist.
 inline std::optional<std::filesystem::path> shared_scenes()
 {
     const char* const given = std::getenv("SPAWNFIELD_SCENES");
@@ -15,6 +16,7 @@ inline std::optional<std::filesystem::path> shared_scenes()
                                              ? given
                                              : std::filesystem::path(source_folder()) / ".." / "shared" / "scenes";
     if (std::filesystem::is_directory(folder)) return std::filesystem::canonical(folder);
-    std::cout << "skipped: no shared scenes at " << folder.string() << " (SPAWNFIELD_SCENES says where they are)\n";
+    std::cout << "skipped: there are no shared scenes at " << folder.string()
+              << "; set SPAWNFIELD_SCENES to their folder\n";
     return std::nullopt;
 }

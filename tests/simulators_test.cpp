@@ -45,7 +45,7 @@ std::vector<RobotStart> random_robots(std::size_t count)
     return out;
 }
 
-/// The one world of a file, by libsdformat.
+/// Returns a file as libsdformat reads it.
 sdf::Root sdf_root(const fs::path& file, const fs::path& models = {})
 {
     sdf::ParserConfig config;
@@ -85,11 +85,11 @@ std::string message_of(const std::function<void()>& act)
 
 }  // namespace
 
-TEST_CASE("names have the robot's number, from 1 on, as the pattern tells")
+TEST_CASE("names have the number of the robot, from 1 on, in the place that the pattern gives")
 {
     CHECK(numbered_names("--name", "husky_{i}", 3) == std::vector<std::string>{"husky_1", "husky_2", "husky_3"});
     CHECK(numbered_names("--name", "{i:03}_husky", 2) == std::vector<std::string>{"001_husky", "002_husky"});
-    CHECK(numbered_names("--name", "r{i:01}", 11).back() == "r11");  // more digits than asked for
+    CHECK(numbered_names("--name", "r{i:01}", 11).back() == "r11");  // more digits than the pattern requires
     CHECK(numbered_names("--name", "alone", 1) == std::vector<std::string>{"alone"});
     CHECK(numbered_names("--name", "alone", 0).empty());
     CHECK(numbered_names("--name", "r{i}", 120).size() == 120);
@@ -103,7 +103,7 @@ TEST_CASE("bad patterns and names are refused, and the message names them")
     CHECK(refused("husky", 2) == "--name \"husky\" gives all 2 robots one name, needs {i} or {i:03}");
     for (const char* const pattern :
          {"r{", "r}", "r}{", "r{}", "r{j}", "r{i:3}", "r{i:00}", "r{i:012}", "r{i:0x}", "r{i", "r{i:03d}"})
-        CHECK_THAT(refused(pattern, 2), Contains("has braces that are no {i} or {i:03}"));
+        CHECK_THAT(refused(pattern, 2), Contains("has braces that are neither {i} nor {i:03}"));
     CHECK_THAT(refused("r{i}{i}", 2), Contains("has braces twice"));
     CHECK_THAT(refused("", 1), Contains("is empty"));
     CHECK_THAT(refused("a\n{i}", 1), Contains("control character"));
@@ -136,7 +136,7 @@ TEST_CASE("names for ROS and SDF keep their rules")
     for (const char* const name : {"a::b", "a b", "__a__", "a<b", "a'b"}) CHECK_FALSE(model(name).empty());
 }
 
-TEST_CASE("libsdformat reads a new world's robots at their poses, of a URDF and of a model")
+TEST_CASE("in a new world libsdformat reads the robots at their poses, from a URDF and from a model")
 {
     const TempFolder folder;
     const std::vector<RobotStart> robots = random_robots(40);
@@ -154,10 +154,10 @@ TEST_CASE("libsdformat reads a new world's robots at their poses, of a URDF and 
     folder.write("model.sdf", sdf_world(robots, {.uri = "model://cart"}));
     const sdf::Root of_model = sdf_root(folder / "model.sdf", folder / "models");
     CHECK(of_model.WorldByIndex(0)->Name() == "spawns");
-    check_models(*of_model.WorldByIndex(0), robots);  // its own pose does not count
+    check_models(*of_model.WorldByIndex(0), robots);  // the pose of the model itself has no effect
 }
 
-TEST_CASE("a world's file keeps all that it has, and gets the robots")
+TEST_CASE("a world file keeps all its contents, and the robots are added")
 {
     const TempFolder folder;
     const std::vector<RobotStart> robots = random_robots(5);
@@ -165,8 +165,8 @@ TEST_CASE("a world's file keeps all that it has, and gets the robots")
     const std::string text = sdf_world(robots,
                                        {.uri = urdf.string(), .world_text = world_text, .world_file = "yard.world"});
     const std::size_t end = world_text.rfind("  </world>");
-    CHECK(text.starts_with(world_text.substr(0, end) +
-                           "    <include>\n      <uri>"));  // the rest stays as it is, to the letter
+    CHECK(
+        text.starts_with(world_text.substr(0, end) + "    <include>\n      <uri>"));  // the other text does not change
     CHECK(text.ends_with("</include>\n" + world_text.substr(end)));
     folder.write("yard.sdf", text);
     const sdf::Root root = sdf_root(folder / "yard.sdf");
@@ -178,7 +178,7 @@ TEST_CASE("a world's file keeps all that it has, and gets the robots")
     check_models(world, robots);
 }
 
-TEST_CASE("robots get into the right world, however its file is written")
+TEST_CASE("robots are added to the right world, for every form of its file")
 {
     const TempFolder folder;
     const std::vector<RobotStart> robots = random_robots(2);
@@ -206,7 +206,7 @@ TEST_CASE("robots get into the right world, however its file is written")
     CHECK(in_second.find("cart_1") > in_second.find("<world name='b'>"));
 }
 
-TEST_CASE("a file that is no world, or whose names are taken, is refused with its name and line")
+TEST_CASE("a file that is not a world, or in which the names are used, is refused with its name and line")
 {
     const std::vector<RobotStart> robots = random_robots(1);
     const auto refused = [&](const std::string& text, const std::string& name = "") {
@@ -214,7 +214,7 @@ TEST_CASE("a file that is no world, or whose names are taken, is refused with it
             sdf_world(robots, {.uri = "model://cart", .world_name = name, .world_text = text, .world_file = "a.world"});
         });
     };
-    CHECK_THAT(refused("<sdf version='1.6'>\n<world>\n</sdf>"), Contains("a.world: line 2: is no valid XML"));
+    CHECK_THAT(refused("<sdf version='1.6'>\n<world>\n</sdf>"), Contains("a.world: line 2: is not valid XML"));
     CHECK(refused("<robot name='a'/>") == "a.world: has no <sdf> as its outermost element, needs an SDF world");
     CHECK(refused("<sdf version='1.6'><model name='a'/></sdf>") == "a.world: <sdf> has no <world>, needs one");
     CHECK_THAT(refused("<sdf><world name='a'/><world name='b'/></sdf>"), Contains("has several worlds, \"a\", \"b\""));
@@ -235,12 +235,12 @@ TEST_CASE("a file that is no world, or whose names are taken, is refused with it
                }),
                Contains("has a \"cart_1\" already"));
     CHECK_FALSE(message_of([&] { sdf_world(robots, {}); }).empty());
-    for (std::size_t size = 1; size < world_text.size(); ++size)  // cut anywhere, it is refused or whole
+    for (std::size_t size = 1; size < world_text.size(); ++size)  // if it is cut anywhere, it is refused or complete
         if (const std::string message = refused(world_text.substr(0, size)); message.empty())
             CHECK(size >= world_text.find("</sdf>") + 6);
 }
 
-TEST_CASE("launch files need something to spawn that is a URDF or SDF")
+TEST_CASE("launch files need a robot as URDF or SDF")
 {
     const std::vector<RobotStart> robots = random_robots(1);
     for (const auto writer : {ros1_launch, ros2_launch_py, ros2_launch_xml}) {
@@ -253,15 +253,15 @@ TEST_CASE("launch files need something to spawn that is a URDF or SDF")
                Contains("-file $(find-pkg-share a)/b.urdf "));
 }
 
-TEST_CASE("each tile of the terrain has its patches, an empty one is named")
+TEST_CASE("each tile of the terrain has its patches, and the message names an empty tile")
 {
     const std::vector<Vec3> points = {{0.5, 0.4, 1}, {-3, 7, 2}, {1.5, 0.4, 3}};
     const TileGrid grid{.rows = 2, .cols = 1, .bounds = {Vec3(0, 0, 0), Vec3(2, 1, 0)}};
     const TerrainPatches patches = terrain_patches(points, grid);
-    CHECK(patches.patches_per_tile == 2);  // what lies outside belongs to the nearest tile
+    CHECK(patches.patches_per_tile == 2);  // points outside belong to the nearest tile
     CHECK(patches.flat_patches.size() == 128 + 2 * 1 * 2 * 3 * 4);
     CHECK(message_of([&] { terrain_patches(points, {.rows = 2, .cols = 2, .bounds = grid.bounds}); }) ==
-          "tile 1,1 (row, column, from 0) has no spawn, needs one in each: more spawns, or fewer tiles");
+          "tile 1,1 (row, column, from 0) has no spawn, needs one in each; ask for more spawns or fewer tiles");
     CHECK_FALSE(message_of([&] { terrain_patches(points, {.rows = 0}); }).empty());
     CHECK(terrain_patches({}, grid).patches_per_tile == 0);
 }
@@ -313,7 +313,7 @@ TEST_CASE("sample and search write the robots of their CSV file in every format"
     }
 }
 
-TEST_CASE("export writes the poses of a CSV file in every format, with roll and pitch and their own names")
+TEST_CASE("export writes the poses of a CSV file in every format, with roll, pitch and their own names")
 {
     const Arena arena;
     arena.write("cart.urdf", urdf_text);
@@ -343,7 +343,7 @@ TEST_CASE("export writes the poses of a CSV file in every format, with roll and 
     output("isaaclab -o isaac");
     CHECK(bytes_of(arena / "isaac/root_pose.npy") == root_poses_npy(robots, QuaternionOrder::Wxyz));
     const auto json = nlohmann::json::parse(output("json --name 'r{i}'"));
-    CHECK(json["poses"][1]["name"] == "r2");  // --name goes before the file's names
+    CHECK(json["poses"][1]["name"] == "r2");  // --name takes precedence over the names in the file
     CHECK(json["poses"][1]["rpy"][1] == Approx(1.5707963267948966).epsilon(1e-15));
     CHECK_FALSE(json.contains("robot"));
 
@@ -362,7 +362,7 @@ TEST_CASE("export writes the poses of a CSV file in every format, with roll and 
     CHECK_FALSE(fs::exists(arena / "new"));
 }
 
-TEST_CASE("patches lie on the ground below the spawns")
+TEST_CASE("patches are on the ground below the spawns")
 {
     const Arena arena;
     CHECK(arena("sample map -n 20 --offset 0.3 --robot box:0.3,0.3,0.3 --layers top --region 3,-9,9,9 --format "
@@ -378,12 +378,12 @@ TEST_CASE("patches lie on the ground below the spawns")
     }
 }
 
-TEST_CASE("the commands of each simulator's page and of the page on floors work as they are written")
+TEST_CASE("the commands of the tour, of each simulator's page and of the page on floors work as they are written")
 {
     const TempFolder folder;  // stands for /tmp and for the source folder
     fs::create_symlink(program_file(), folder / "spawnfield");
     fs::create_symlink(source_folder() + "/maps", folder / "maps");
-    std::vector<fs::path> pages{source_folder() + "/docs/floors.md"};
+    std::vector<fs::path> pages{source_folder() + "/docs/floors.md", source_folder() + "/docs/getting-started.md"};
     for (const auto& page : fs::directory_iterator(source_folder() + "/docs/simulators")) pages.push_back(page.path());
     for (const fs::path& page : pages) {
         std::istringstream text(bytes_of(page));
@@ -392,7 +392,8 @@ TEST_CASE("the commands of each simulator's page and of the page on floors work 
         for (std::string line; std::getline(text, line);) {
             if (line.starts_with("```"))
                 is_code = line == "```" && !is_code;
-            else if (is_code && (line.starts_with("spawnfield ") || line.starts_with("cp ")))
+            else if (is_code &&
+                     (line.starts_with("spawnfield ") || line.starts_with("cp ") || line.starts_with("printf ")))
                 script += line + "\n";
         }
         for (std::size_t at = script.find("/tmp"); at != std::string::npos; at = script.find("/tmp"))
@@ -403,7 +404,7 @@ TEST_CASE("the commands of each simulator's page and of the page on floors work 
     }
 }
 
-TEST_CASE("what a simulator would add to a pose, or not know, is refused or told")
+TEST_CASE("things that a simulator would add to a pose, or does not know, are refused or get a notice")
 {
     const Arena arena;
     const std::string link =
@@ -432,13 +433,13 @@ TEST_CASE("what a simulator would add to a pose, or not know, is refused or told
     CHECK(folder.status == 0);
     CHECK_THAT(folder.out,
                Contains("-sdf -file " + (arena / "plain/model.sdf").string()) && Contains(" -J hinge 0.25"));
-    CHECK(folder.err.find("says nothing about joints") == std::string::npos);
+    CHECK(folder.err.find("does not contain joints") == std::string::npos);
     CHECK_THAT(run("--robot plain --format sdf --joints hinge=0.25").err,
-               Contains("notice: --format sdf says nothing about joints"));
+               Contains("notice: --format sdf does not contain joints"));
     CHECK(run("--robot plain --format sdf --robot-file 'a/$(x)/b.urdf'").status == 2);
 }
 
-TEST_CASE("what a format lacks or cannot use is told before all work")
+TEST_CASE("missing options and options that a format cannot use are reported before all work")
 {
     const Arena arena;
     arena.write("yard.world", world_text);
@@ -451,19 +452,20 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
         return run.err;
     };
     CHECK_THAT(refused("--format ros1-launch", 2),
-               Contains("needs --robot-file FILE") && Contains("box:0.5,0.5,0.5 is neither"));
+               Contains("needs --robot-file FILE") && Contains("box:0.5,0.5,0.5 is not such a file"));
     CHECK_THAT(refused("--format sdf", 2), Contains("needs --robot-uri URI"));
     CHECK_THAT(refused("--format isaaclab", 2), Contains("needs -o FOLDER"));
-    CHECK_THAT(refused("--format isaaclab -o isaac", 1), Contains("holds notes.txt"));
+    CHECK_THAT(refused("--format isaaclab -o isaac", 1), Contains("contains notes.txt"));
     CHECK_THAT(refused("--format isaaclab --tiles 2 -o new", 2), Contains("--tiles is \"2\", needs ROWS,COLS"));
     CHECK_THAT(refused("--format isaaclab --tiles 40,40 -o new", 2), Contains("has no spawn"));
-    CHECK_THAT(refused("--format mujoco --joint-qpos 1,a", 2), Contains("--joint-qpos: \"a\" is no finite number"));
+    CHECK_THAT(refused("--format mujoco --joint-qpos 1,a", 2), Contains("--joint-qpos: \"a\" is not a finite number"));
     CHECK_THAT(refused("--format ros2-launch-py --robot-file none.urdf", 4),
                Contains("none.urdf: does not exist (--robot-file)"));
     CHECK_THAT(refused("--format ros2-launch-py --topic a --robot-file none.urdf", 2),
                Contains("--topic and --robot-file"));
     CHECK_THAT(refused("--format ros2-launch-py --topic a --name 'a-{i}'", 2), Contains("\"a-1\" has \"-\""));
-    CHECK_THAT(refused("--format sdf --robot-uri model://a --name 'a::{i}'", 2), Contains("which no model's name may"));
+    CHECK_THAT(refused("--format sdf --robot-uri model://a --name 'a::{i}'", 2),
+               Contains("which is not allowed in a model's name"));
     CHECK_THAT(refused("--format sdf --robot-uri model://a --world none.world", 4),
                Contains("none.world: does not exist"));
     CHECK_THAT(refused("--format sdf --robot-uri model://a --world yard.world --world-name meadow", 4),
@@ -471,21 +473,21 @@ TEST_CASE("what a format lacks or cannot use is told before all work")
     CHECK_THAT(refused("--name robot", 2), Contains("gives all 3 robots one name"));
     const ProgramRun idle = arena(query + "--format csv --tiles 1,1 --topic a");
     CHECK(idle.status == 0);
-    CHECK_THAT(idle.err, Contains("notice: --tiles has no effect: --format csv does not ask for it"));
+    CHECK_THAT(idle.err, Contains("notice: --tiles has no effect: --format csv does not use it"));
     CHECK_THAT(idle.err, Contains("notice: --topic has no effect"));
     const ProgramRun thesis = arena(query + "--format thesis --name 'a{i}' -o thesis");
     CHECK(thesis.status == 0);
-    CHECK_THAT(thesis.err, Contains("notice: --name has no effect: --format thesis does not ask for it"));
-    const auto told_relative = [&](const std::string& world, const std::string& out) {
+    CHECK_THAT(thesis.err, Contains("notice: --name has no effect: --format thesis does not use it"));
+    const auto warns_of_relative_paths = [&](const std::string& world, const std::string& out) {
         const ProgramRun run = arena(query + "--format sdf --robot-uri model://a --world " + world + " -o " + out);
         CHECK(run.status == 0);
         return run.err.find("are relative to this file") != std::string::npos;
     };
     arena.write("near/a.world",
                 "<sdf version='1.6'><world name='a'><include><uri>\n  models/b </uri></include></world></sdf>");
-    CHECK_FALSE(told_relative("yard.world", "new.sdf"));
-    CHECK_FALSE(told_relative("yard.world", "near/new.sdf"));  // has no paths
-    CHECK_FALSE(told_relative("near/a.world", "near/new.sdf"));
-    CHECK(told_relative("near/a.world", "new.sdf"));
+    CHECK_FALSE(warns_of_relative_paths("yard.world", "new.sdf"));
+    CHECK_FALSE(warns_of_relative_paths("yard.world", "near/new.sdf"));  // the world has no paths
+    CHECK_FALSE(warns_of_relative_paths("near/a.world", "near/new.sdf"));
+    CHECK(warns_of_relative_paths("near/a.world", "new.sdf"));
     CHECK(arena.names() == std::set<std::string>{"map", "yard.world", "isaac", "thesis", "new.sdf", "near"});
 }

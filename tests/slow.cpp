@@ -17,12 +17,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // ---- Convex bodies ----
 
-/// All points within `radius` of the hull of `corners`: a point, a segment, a triangle or a solid polytope.
+/// All points within `radius` of the hull of `corners`. The hull is a point, a segment, a triangle or a solid polytope.
 struct Convex {
     std::vector<Vec3> corners;
-    std::vector<std::array<int, 2>> edges;  ///< a point's only one leads to itself
+    std::vector<std::array<int, 2>> edges;  ///< a point has one edge, which leads to itself
     std::vector<std::array<int, 3>> faces;
-    std::vector<Vec3> normals, directions;  ///< of faces and edges, unit length; one of parallel ones is enough
+    std::vector<Vec3> normals, directions;  ///< of faces and edges, unit length; one of several parallel ones is enough
     double radius = 0;
 
     bool has_volume() const { return faces.size() > 1; }
@@ -53,7 +53,7 @@ Convex polytope(std::vector<Vec3> corners, std::vector<std::array<int, 3>> faces
     return body;
 }
 
-/// Upright prism over a polygon that is symmetric about the origin, moved to its place.
+/// Returns an upright prism over a polygon that is symmetric about the origin, moved to its pose.
 Convex prism(const std::vector<Eigen::Vector2d>& polygon, double half_height, const Pose& pose)
 {
     const int n = int(polygon.size());
@@ -67,7 +67,7 @@ Convex prism(const std::vector<Eigen::Vector2d>& polygon, double half_height, co
         body.edges.insert(body.edges.end(), {{i, next}, {n + i, n + next}, {i, n + i}});
         body.faces.insert(body.faces.end(), {{i, next, n + next}, {i, n + next, n + i}});
         if (i > 1) body.faces.insert(body.faces.end(), {{0, i - 1, i}, {n, n + i - 1, n + i}});
-        if (i >= n / 2) continue;  // parallel to the side across
+        if (i >= n / 2) continue;  // this side is parallel to the opposite one
         body.directions.push_back((body.corners[next] - body.corners[i]).normalized());
         body.normals.push_back(body.directions.back().cross(axis).normalized());
     }
@@ -95,7 +95,7 @@ Convex convex_of(const Shape& shape, const Pose& pose, Rounding rounding)
     case ShapeKind::Cylinder: return prism(polygon_of_circle(shape.size.x(), rounding), half.y(), pose);
     case ShapeKind::Capsule: return segment(pose.position - along, pose.position + along, shape.size.x());
     case ShapeKind::Sphere:
-    case ShapeKind::Hull: break;  // hulls have their corners elsewhere
+    case ShapeKind::Hull: break;  // hulls store their corners elsewhere
     }
     return {{pose.position}, {{0, 0}}, {}, {}, {}, shape.size.x()};
 }
@@ -124,21 +124,23 @@ double distance_to_segment(const Vec3& point, const Vec3& a, const Vec3& b)
     return (a + t * (b - a) - point).norm();
 }
 
-/// The least is where the two lines are nearest, if that is on both segments, or else at one of the four ends.
+/// Returns the distance of two segments. It is reached where the two lines are nearest, if that point is on both
+/// segments, or else at one of the four ends.
 double distance_of_segments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
     double best = std::min({distance_to_segment(a, c, d), distance_to_segment(b, c, d), distance_to_segment(c, a, b),
                             distance_to_segment(d, a, b)});
     const Vec3 u = b - a, v = d - c, w = a - c;
     const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), determinant = uu * vv - uv * uv;
-    if (!(determinant > 1e-18 * uu * vv)) return best;  // parallel, or a point: an end is as near as any
+    if (!(determinant > 1e-18 * uu * vv))
+        return best;  // parallel segments or a point: an end is one of the nearest points
     const double s = (uv * v.dot(w) - vv * u.dot(w)) / determinant;
     const double t = (uu * v.dot(w) - uv * u.dot(w)) / determinant;
     if (s < 0 || s > 1 || t < 0 || t > 1) return best;
     return std::min(best, (w + s * u - t * v).norm());
 }
 
-/// Whether the line through `point` along the triangle's normal runs through the triangle.
+/// Returns whether the line through `point` along the normal of the triangle runs through the triangle.
 bool is_over(const Vec3& point, const std::array<Vec3, 3>& triangle, const Vec3& normal)
 {
     for (int i = 0; i < 3; ++i) {
@@ -165,7 +167,7 @@ bool crosses(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& triang
     return is_over(from + (to - from) * (before / (before - after)), triangle, normal);
 }
 
-/// From the corners and edges of one body to the faces of the other.
+/// Returns the distance from the corners and edges of one body to the faces of the other.
 double distance_to_faces(const Convex& body, const Convex& other)
 {
     double best = infinity;
@@ -178,8 +180,8 @@ double distance_to_faces(const Convex& body, const Convex& other)
     return best;
 }
 
-/// Between the hulls of the corners, radii aside; 0 if their surfaces meet. Two convex bodies are nearest each other
-/// between a corner and a face, or between two edges.
+/// Returns the distance between the hulls of the corners, without the radii; 0 if their surfaces meet. Two convex
+/// bodies are nearest each other between a corner and a face, or between two edges.
 double distance(const Convex& a, const Convex& b)
 {
     double best = std::min(distance_to_faces(a, b), distance_to_faces(b, a));
@@ -206,8 +208,8 @@ double gap_along(const Vec3& axis, const Convex& a, const Convex& b)
     return std::max(b0 - a1, a0 - b1);
 }
 
-/// The widest gap between the hulls along any axis that matters; below 0, minus the shift that would part them.
-/// Stops at the first gap wider than `enough`. Source: Gottschalk, Separating axis theorem, 1996.
+/// Returns the widest gap between the hulls along any axis that matters. A negative value is minus the shift that would
+/// separate them. Stops at the first gap wider than `enough`. Source: Gottschalk, Separating axis theorem, 1996.
 double widest_gap(const Convex& a, const Convex& b, double enough)
 {
     std::vector<Vec3> axes = a.normals;
@@ -216,7 +218,7 @@ double widest_gap(const Convex& a, const Convex& b, double enough)
         for (const Vec3& v : b.directions) axes.push_back(u.cross(v));
     double widest = -infinity;
     for (const Vec3& axis : axes) {
-        if (axis.norm() < 1e-9) continue;  // parallel edges: the faces beside them give the axis
+        if (axis.norm() < 1e-9) continue;  // the edges are parallel; the faces beside them give the axis
         widest = std::max(widest, gap_along(axis.normalized(), a, b));
         if (widest > enough) break;
     }
@@ -227,8 +229,8 @@ bool touches(const Convex& a, const Convex& b, double grow)
 {
     const double reach = a.radius + b.radius + grow;
     for (int i = 0; i < 3; ++i)
-        if (gap_along(Vec3::Unit(i), a, b) > reach) return false;  // quick, as any axis may tell them apart
-    if (a.has_volume() || b.has_volume()) {  // else the axes would miss those within a common plane
+        if (gap_along(Vec3::Unit(i), a, b) > reach) return false;  // a quick test: any axis may separate them
+    if (a.has_volume() || b.has_volume()) {                        // in a common plane the axes would miss contacts
         const double gap = widest_gap(a, b, reach);
         if (gap > reach) return false;
         if (gap <= 0) return true;
@@ -238,7 +240,7 @@ bool touches(const Convex& a, const Convex& b, double grow)
 
 // ---- Lines through meshes ----
 
-/// Line through a point; rises by 1 while it moves by `lean`. Vertical where lean is 0.
+/// A line through a point. While it rises by 1, it moves by `lean_x` and `lean_y`. It is vertical if both are 0.
 struct Line {
     Vec3 through;
     double lean_x = 0, lean_y = 0;
@@ -247,7 +249,7 @@ struct Line {
 struct Crossing {
     double z = 0;
     Label label = Label::Obstacle;
-    bool from_above = false;  ///< the side from which the triangle is wound counterclockwise looks up
+    bool from_above = false;  ///< whether the side from which the triangle is counterclockwise faces up
 };
 
 using Point2 = std::array<Real, 2>;
@@ -257,7 +259,8 @@ Real area(const Point2& a, const Point2& b, const Point2& c)
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/// One decision per edge, whichever of its triangles asks: so a line through an edge crosses just one of them.
+/// Returns the same answer for an edge in both of its triangles, so that a line through an edge crosses only one of
+/// them.
 bool is_left_of(const Point2& from, const Point2& to, const Point2& point)
 {
     if (to < from) return !is_left_of(to, from, point);
@@ -266,7 +269,7 @@ bool is_left_of(const Point2& from, const Point2& to, const Point2& point)
 
 std::optional<Crossing> crossing(const Scene& scene, std::uint32_t triangle, const Line& line)
 {
-    std::array<Point2, 3> seen;  // along the line
+    std::array<Point2, 3> seen;  // seen along the line
     std::array<Real, 3> z;
     for (int i = 0; i < 3; ++i) {
         const Vec3& vertex = scene.vertices[scene.triangles[triangle][i]];
@@ -284,7 +287,7 @@ std::optional<Crossing> crossing(const Scene& scene, std::uint32_t triangle, con
     return Crossing{double(height), scene.triangle_labels[triangle], left};
 }
 
-/// From the lowest up.
+/// Returns the crossings of a piece, sorted from the lowest to the highest.
 std::vector<Crossing> crossings(const Scene& scene, const Piece& piece, const Line& line)
 {
     std::vector<Crossing> found;
@@ -297,7 +300,7 @@ std::vector<Crossing> crossings(const Scene& scene, const Piece& piece, const Li
 bool is_inside(const Scene& scene, const Piece& piece, const Vec3& point)
 {
     if (!piece.solid || scene.triangle_labels[piece.first_triangle] == Label::Water) return false;
-    // Leaning by no round number, the line meets no edge of walls and floors but by chance.
+    // The slopes of the line are not round numbers, so that it meets edges of walls and floors only by chance.
     const auto found = crossings(scene, piece, {point, 0.0917, 0.0583});
     return std::count_if(found.begin(), found.end(), [&](const Crossing& hit) { return hit.z > point.z(); }) % 2 == 1;
 }
@@ -331,7 +334,8 @@ bool touches_primitives(const Scene& scene, const Convex& body, double grow, Rou
     });
 }
 
-/// A part that touches no triangle lies wholly inside a filled mesh or wholly outside.
+/// Returns whether the body is inside a filled mesh. A body that touches no triangle is completely inside or completely
+/// outside.
 bool is_inside_mesh(const Scene& scene, const Convex& body)
 {
     const Vec3 point = middle(body);
@@ -341,7 +345,7 @@ bool is_inside_mesh(const Scene& scene, const Convex& body)
 
 // ---- Vertical lines through primitives ----
 
-/// Stretch of a line, by its parameter.
+/// An interval of a line, by the parameter of the line.
 struct Stretch {
     Real from = -infinity, to = infinity;
 
@@ -350,7 +354,7 @@ struct Stretch {
 };
 constexpr Stretch nowhere = {1, 0};
 
-/// Where |start + t * step| <= half.
+/// Returns the interval in which |start + t * step| <= half.
 Stretch within_slab(Real start, Real step, Real half)
 {
     if (std::abs(step) < 1e-15L) return std::abs(start) <= half ? Stretch{} : nowhere;
@@ -358,7 +362,7 @@ Stretch within_slab(Real start, Real step, Real half)
     return {std::min(s, t), std::max(s, t)};
 }
 
-/// Where a t^2 + 2 b t + c <= 0, a >= 0.
+/// Returns the interval in which a t^2 + 2 b t + c <= 0, for a >= 0.
 Stretch below_zero(Real a, Real b, Real c)
 {
     if (a < 1e-24L) return c <= 0 ? Stretch{} : nowhere;
@@ -398,7 +402,7 @@ Stretch within_capsule(const Real3& start, const Real3& step, Real radius, Real 
     return all;
 }
 
-/// z of the vertical line through (x, y) within the shape.
+/// Returns the interval of z in which the vertical line through (x, y) is inside the shape.
 Stretch vertical_stretch(const Shape& shape, double x, double y)
 {
     const Eigen::Matrix<Real, 3, 3> shape_from_scene = shape.pose.rotation.transpose().cast<Real>();
@@ -410,7 +414,7 @@ Stretch vertical_stretch(const Shape& shape, double x, double y)
     case ShapeKind::Cylinder: return within_tube(start, step, size.x(), size.y() / 2);
     case ShapeKind::Capsule: return within_capsule(start, step, size.x(), size.y() / 2);
     case ShapeKind::Box:
-    case ShapeKind::Hull: break;  // scenes hold no hulls
+    case ShapeKind::Hull: break;  // scenes contain no hulls
     }
     Stretch stretch;
     for (int i = 0; i < 3; ++i) stretch.clip(within_slab(start[i], step[i], size[i] / 2));
@@ -419,9 +423,9 @@ Stretch vertical_stretch(const Shape& shape, double x, double y)
 
 // ---- Columns ----
 
-constexpr double touch = 1e-9;  // DESIGN.md: closer surfaces are one, and terrain wins
+constexpr double touch = 1e-9;  // surfaces that are closer than this are one, and terrain wins
 
-/// The part of a solid that lies under one triangle or primitive.
+/// Adds the interval of a solid that lies under one triangle or primitive.
 void add_solid(Column& column, double bottom, double top, Label label, std::size_t owner)
 {
     if (label == Label::Water)
@@ -430,7 +434,8 @@ void add_solid(Column& column, double bottom, double top, Label label, std::size
         column.spans.push_back({bottom, top, label == Label::Terrain, owner});
 }
 
-/// Solid between odd and even crossings. Where one interval ends and the next begins there is no gap to stand in.
+/// Adds a filled piece, which is solid between odd and even crossings. Joins two intervals if the second begins where
+/// the first ends, because there is no gap to stand in.
 void add_filled_piece(Column& column, const std::vector<Crossing>& hits, std::size_t owner)
 {
     for (std::size_t i = 0; i + 1 < hits.size(); i += 2) {
@@ -455,7 +460,7 @@ struct Limits {
     double max_height, max_water_depth;
 };
 
-/// A verdict that leaves collisions aside: Valid where nothing else applies.
+/// A verdict without collisions: Valid if nothing else applies.
 struct Footing {
     Verdict verdict = Verdict::Valid;
     std::optional<Span> ground;
@@ -471,7 +476,7 @@ std::optional<Span> ground_below(const Column& column, double z)
     return ground;
 }
 
-/// `rise` lifts the water.
+/// Returns the verdict without collisions. Raises the water by `rise` m.
 Footing footing(const Column& column, const Vec3& position, const Limits& limits, double rise)
 {
     const std::optional<Span> ground = ground_below(column, position.z());
@@ -485,7 +490,8 @@ Footing footing(const Column& column, const Vec3& position, const Limits& limits
     return {wet ? Verdict::Submerged : Verdict::Valid, ground};
 }
 
-/// Steep ground of one piece may change quickly; between two pieces any step is another ground.
+/// Returns whether two footings are the same. The ground of one piece may change quickly because it is steep; between
+/// two pieces any step is another ground.
 bool is_same(const Footing& a, const Footing& b, double margin)
 {
     if (a.verdict != b.verdict || a.ground.has_value() != b.ground.has_value()) return false;
@@ -494,11 +500,13 @@ bool is_same(const Footing& a, const Footing& b, double margin)
     return std::abs(a.ground->top - b.ground->top) <= limit;
 }
 
-bool is_settled(const Scene& scene, const Vec3& position, const Limits& limits, const Footing& here, double margin)
+bool is_unchanged_nearby(const Scene& scene, const Vec3& position, const Limits& limits, const Footing& here,
+                         double margin)
 {
     for (int i = 0; i < 8; ++i) {
-        const Vec3 beside = position + margin * Vec3{std::cos(M_PI / 4 * i), std::sin(M_PI / 4 * i), 0};
-        if (!is_same(here, footing(column(scene, beside.x(), beside.y()), beside, limits, 0), margin)) return false;
+        const Vec3 neighbour = position + margin * Vec3{std::cos(M_PI / 4 * i), std::sin(M_PI / 4 * i), 0};
+        if (!is_same(here, footing(column(scene, neighbour.x(), neighbour.y()), neighbour, limits, 0), margin))
+            return false;
     }
     const Column centre = column(scene, position.x(), position.y());
     for (const double shift : {-margin, margin}) {
@@ -570,7 +578,7 @@ Decision decide(const Scene& scene, const Bounds& map_bounds, const Robot& robot
     const Footing here = footing(column(scene, position.x(), position.y()), position, limits, 0);
     Decision decision;
     if (here.ground) decision.ground = here.ground->top;
-    if (!is_settled(scene, position, limits, here, margin)) return decision;
+    if (!is_unchanged_nearby(scene, position, limits, here, margin)) return decision;
     decision.verdict = here.verdict;
     if (here.verdict != Verdict::Valid) return decision;
     switch (collision(scene, robot, scene_from_robot, margin)) {
@@ -585,7 +593,7 @@ Decision decide(const Scene& scene, const Bounds& map_bounds, const Robot& robot
 
 namespace {
 
-/// What of a pose decides on its footing.
+/// The data of a pose that decide its footing.
 struct Stand {
     std::vector<Vec3> contacts;  ///< scene frame
     Vec3 origin;                 ///< on the ground
@@ -593,7 +601,7 @@ struct Stand {
     double limit;                ///< tangent of the steepest slope
 };
 
-/// From the highest solid that begins at or below z, up through all that touches it.
+/// Returns the upper end of the highest solid that begins at or below z, joined with everything that touches it above.
 std::optional<double> surface(const Scene& scene, const Vec3& above, double z)
 {
     const Column here = column(scene, above.x(), above.y());
@@ -611,7 +619,7 @@ std::optional<double> surface(const Scene& scene, const Vec3& above, double z)
     return top;
 }
 
-/// z = a + b x + c y through points, by least squares.
+/// Returns a, b and c of the plane z = a + b x + c y that fits the points best (least squares).
 Real3 plane_through(const std::vector<Vec3>& points)
 {
     Eigen::Matrix<Real, 3, 3> normal = Eigen::Matrix<Real, 3, 3>::Zero();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-Pose at(double x, double y, double z, double roll = 0, double pitch = 0, double yaw = 0)
+Pose pose_at(double x, double y, double z, double roll = 0, double pitch = 0, double yaw = 0)
 {
     return {{x, y, z}, rotation_of_rpy(roll, pitch, yaw)};
 }
@@ -39,8 +39,8 @@ Robot robot_of(const hand::Mesh& hull)
     return robot;
 }
 
-/// Unit cube that stands on its origin.
-Robot cube() { return robot_of(box({1, 1, 1}, at(0, 0, 0.5))); }
+/// Returns a unit cube that stands on its origin.
+Robot cube() { return robot_of(box({1, 1, 1}, pose_at(0, 0, 0.5))); }
 
 Scene scene_of(const Shape& shape, Label label = Label::Obstacle)
 {
@@ -56,7 +56,7 @@ Scene scene_of(const hand::Mesh& mesh, Label label = Label::Obstacle, const hand
     return scene;
 }
 
-/// A plane at z = 0, 20 x 20 m.
+/// Returns a plane at z = 0 of 20 x 20 m.
 Scene plane(Label label = Label::Terrain) { return scene_of(hand::rectangle(20, 20), label, {.kind = "plane"}); }
 
 slow::Decision decide(const Scene& scene, const Pose& pose, double max_water_depth = unlimited)
@@ -64,7 +64,7 @@ slow::Decision decide(const Scene& scene, const Pose& pose, double max_water_dep
     return slow::decide(scene, {{-10, -10, -10}, {10, 10, 10}}, cube(), pose, 1.0, max_water_depth);
 }
 
-/// Parts of the robot stop where the two bodies are `distance` apart, to the millimetre's tenth.
+/// Checks that the two bodies are `distance` apart, by default to 0.1 mm.
 void check_distance(const Scene& scene, const Robot& robot, const Pose& pose, double distance, double tolerance = 1e-4)
 {
     CHECK(slow::collides(scene, robot, pose, distance + tolerance));
@@ -75,131 +75,131 @@ void check_distance(const Scene& scene, const Robot& robot, const Pose& pose, do
 
 // ---- Collisions ----
 
-TEST_CASE("a box above a plane is as far from it as it is high")
+TEST_CASE("the distance of a box above a plane is its height above the plane")
 {
-    check_distance(plane(), cube(), at(0.3, 0.2, 0.1), 0.1);
-    check_distance(plane(), cube(), at(0.3, 0.2, -0.1), -0.1);
-    CHECK(slow::collision(plane(), cube(), at(0.3, 0.2, 0.1)) == Answer::No);
-    CHECK(slow::collision(plane(), cube(), at(0.3, 0.2, 0.0)) == Answer::TooClose);
-    CHECK(slow::collision(plane(), cube(), at(0.3, 0.2, -0.1)) == Answer::Yes);
-    CHECK(slow::collision(plane(), cube(), at(0.3, 0.2, -0.9)) == Answer::Yes);
-    CHECK(slow::collision(plane(), cube(), at(0.3, 0.2, -1.1)) == Answer::No);  // a sheet has no inside
+    check_distance(plane(), cube(), pose_at(0.3, 0.2, 0.1), 0.1);
+    check_distance(plane(), cube(), pose_at(0.3, 0.2, -0.1), -0.1);
+    CHECK(slow::collision(plane(), cube(), pose_at(0.3, 0.2, 0.1)) == Answer::No);
+    CHECK(slow::collision(plane(), cube(), pose_at(0.3, 0.2, 0.0)) == Answer::TooClose);
+    CHECK(slow::collision(plane(), cube(), pose_at(0.3, 0.2, -0.1)) == Answer::Yes);
+    CHECK(slow::collision(plane(), cube(), pose_at(0.3, 0.2, -0.9)) == Answer::Yes);
+    CHECK(slow::collision(plane(), cube(), pose_at(0.3, 0.2, -1.1)) == Answer::No);  // a sheet has no inside
 }
 
-TEST_CASE("a tilted box reaches down with its edge")
+TEST_CASE("a tilted box reaches down to its lowest edge")
 {
     const double edge = std::sqrt(0.5);
-    check_distance(plane(), robot_of(box({1, 1, 1})), at(0, 0, 1, M_PI / 4), 1 - edge);
-    check_distance(plane(), robot_of(box({1, 1, 1})), at(0, 0, 1, M_PI / 4, 0, 1.1), 1 - edge);
+    check_distance(plane(), robot_of(box({1, 1, 1})), pose_at(0, 0, 1, M_PI / 4), 1 - edge);
+    check_distance(plane(), robot_of(box({1, 1, 1})), pose_at(0, 0, 1, M_PI / 4, 0, 1.1), 1 - edge);
 }
 
-TEST_CASE("a sphere is as far from a box's corner as Pythagoras says")
+TEST_CASE("the distance of a sphere from the corner of a box follows from Pythagoras")
 {
     const Robot ball = robot_of({ShapeKind::Sphere, {0.5, 0, 0}, {}});
     const double gap = std::sqrt(3) * 0.4 - 0.5;
-    check_distance(scene_of(box({2, 2, 2})), ball, at(1.4, 1.4, 1.4), gap);
-    check_distance(scene_of(hand::box({2, 2, 2})), ball, at(1.4, 1.4, 1.4), gap);
-    check_distance(scene_of(box({2, 2, 2})), ball, at(0.2, 0.1, 1.7), 0.2);
-    check_distance(scene_of({ShapeKind::Sphere, {1, 0, 0}, {}}), ball, at(1, 2, 2), 1.5);
+    check_distance(scene_of(box({2, 2, 2})), ball, pose_at(1.4, 1.4, 1.4), gap);
+    check_distance(scene_of(hand::box({2, 2, 2})), ball, pose_at(1.4, 1.4, 1.4), gap);
+    check_distance(scene_of(box({2, 2, 2})), ball, pose_at(0.2, 0.1, 1.7), 0.2);
+    check_distance(scene_of({ShapeKind::Sphere, {1, 0, 0}, {}}), ball, pose_at(1, 2, 2), 1.5);
 }
 
-TEST_CASE("a capsule is as far from an edge as its axis, less its radius")
+TEST_CASE("the distance of a capsule from an edge is that of its axis, minus its radius")
 {
     const Robot capsule = robot_of({ShapeKind::Capsule, {0.2, 3, 0}, {}});
-    const Pose lying = at(1.3, 0.2, 1.4, M_PI / 2);  // along y, beside the edge along y
+    const Pose lying = pose_at(1.3, 0.2, 1.4, M_PI / 2);  // along y, beside the edge that is along y
     check_distance(scene_of(box({2, 2, 2})), capsule, lying, 0.5 - 0.2);
     check_distance(scene_of(hand::box({2, 2, 2})), capsule, lying, 0.5 - 0.2);
-    const Pose across = at(1.5, 0, 1.5, 0, -M_PI / 4);  // rises to the left over the edge at right angles
+    const Pose across = pose_at(1.5, 0, 1.5, 0, -M_PI / 4);  // rises to the left, at right angles over the edge
     check_distance(scene_of(box({2, 2, 2})), capsule, across, std::sqrt(0.5) - 0.2);
-    check_distance(scene_of({ShapeKind::Capsule, {0.1, 2, 0}, at(0, 0, 0, 0, M_PI / 2)}), capsule,
-                   at(0.4, 0, 0.9, M_PI / 2), 0.9 - 0.3);
+    check_distance(scene_of({ShapeKind::Capsule, {0.1, 2, 0}, pose_at(0, 0, 0, 0, M_PI / 2)}), capsule,
+                   pose_at(0.4, 0, 0.9, M_PI / 2), 0.9 - 0.3);
 }
 
 TEST_CASE("a capsule through a thin sheet collides")
 {
     const Robot needle = robot_of({ShapeKind::Capsule, {0.01, 2, 0}, {}});
-    CHECK(slow::collision(plane(), needle, at(0.3, 0.4, 0.2)) == Answer::Yes);
-    CHECK(slow::collision(plane(), needle, at(11, 0.4, 0.2)) == Answer::No);
+    CHECK(slow::collision(plane(), needle, pose_at(0.3, 0.4, 0.2)) == Answer::Yes);
+    CHECK(slow::collision(plane(), needle, pose_at(11, 0.4, 0.2)) == Answer::No);
 }
 
-TEST_CASE("cylinders are bracketed by prisms")
+TEST_CASE("prisms bound cylinders from inside and outside")
 {
     const Robot drum = robot_of({ShapeKind::Cylinder, {0.5, 1, 0}, {}});
     for (const double yaw : {0.0, 0.01, 0.02, 0.03}) {
-        const Pose pose = at(1.7, 0.3, 0, 0, 0, yaw);
+        const Pose pose = pose_at(1.7, 0.3, 0, 0, 0, yaw);
         const double gap = std::hypot(1.7, 0.3) - 1.5;
         const Scene drums = scene_of({ShapeKind::Cylinder, {1, 2, 0}, {}});
         CHECK(slow::collides(drums, drum, pose, gap));
         CHECK_FALSE(slow::collides(drums, drum, pose, gap - 1e-3));
-        CHECK(slow::collision(drums, drum, at(1.499, 0, 0, 0, 0, yaw)) == Answer::TooClose);
-        CHECK(slow::collision(drums, drum, at(1.49, 0, 0, 0, 0, yaw)) == Answer::Yes);
+        CHECK(slow::collision(drums, drum, pose_at(1.499, 0, 0, 0, 0, yaw)) == Answer::TooClose);
+        CHECK(slow::collision(drums, drum, pose_at(1.49, 0, 0, 0, 0, yaw)) == Answer::Yes);
     }
-    check_distance(plane(), drum, at(0, 0, 1, M_PI / 2), 0.5, 5e-4);
-    check_distance(plane(), drum, at(0, 0, 1), 0.5);
+    check_distance(plane(), drum, pose_at(0, 0, 1, M_PI / 2), 0.5, 5e-4);
+    check_distance(plane(), drum, pose_at(0, 0, 1), 0.5);
 }
 
 TEST_CASE("a hull box collides like a box")
 {
-    const Robot hull = robot_of(hand::moved(hand::box({1, 1, 1}), at(0, 0, 0.5)));
+    const Robot hull = robot_of(hand::moved(hand::box({1, 1, 1}), pose_at(0, 0, 0.5)));
     Random random{11};
-    const Scene target = scene_of(box({1, 2, 0.5}, at(0, 0, 1, 0.3, 0.2, 0.5)));
+    const Scene target = scene_of(box({1, 2, 0.5}, pose_at(0, 0, 1, 0.3, 0.2, 0.5)));
     for (int i = 0; i < 200; ++i) {
         const double x = random.between(-2, 2), y = random.between(-2, 2), z = random.between(-0.5, 2);
-        const Pose pose = at(x, y, z, random.between(-3, 3));
+        const Pose pose = pose_at(x, y, z, random.between(-3, 3));
         CHECK(slow::collision(target, hull, pose) == slow::collision(target, cube(), pose));
     }
 }
 
-TEST_CASE("edges that cross in the air are as far apart as their lines")
+TEST_CASE("the distance of two edges that cross is the distance of their lines")
 {
-    const Scene beam = scene_of(box({4, 1, 1}, at(0, 0, 0, M_PI / 4)));       // an edge up, along x
-    const Robot across = robot_of(box({1, 4, 1}, at(0, 0, 0, 0, M_PI / 4)));  // an edge down, along y
-    check_distance(beam, across, at(0.3, 0.2, 2), 2 - 2 * std::sqrt(0.5));
+    const Scene beam = scene_of(box({4, 1, 1}, pose_at(0, 0, 0, M_PI / 4)));       // an edge points up, along x
+    const Robot across = robot_of(box({1, 4, 1}, pose_at(0, 0, 0, 0, M_PI / 4)));  // an edge points down, along y
+    check_distance(beam, across, pose_at(0.3, 0.2, 2), 2 - 2 * std::sqrt(0.5));
 }
 
-TEST_CASE("a robot inside a closed house collides, and is free where a face is missing")
+TEST_CASE("a robot inside a closed house collides, and is free if a face is missing")
 {
-    const hand::Mesh house = hand::moved(hand::box({6, 6, 4}), at(0, 0, 2));
-    const Pose inside = at(0.5, 0.4, 1);
+    const hand::Mesh house = hand::moved(hand::box({6, 6, 4}), pose_at(0, 0, 2));
+    const Pose inside = pose_at(0.5, 0.4, 1);
     CHECK(slow::collision(scene_of(house), cube(), inside) == Answer::Yes);
     CHECK(slow::collision(scene_of(hand::flipped(house)), cube(), inside) == Answer::Yes);
     CHECK(slow::collision(scene_of(house, Label::Obstacle, {.fill = false}), cube(), inside) == Answer::No);
     for (std::size_t face = 0; face < 12; face += 2)
         CHECK(slow::collision(scene_of(hand::without(house, face, 2)), cube(), inside) == Answer::No);
-    CHECK(slow::collision(scene_of(hand::without(house, 0, 2)), cube(), at(2.7, 0.4, 1)) == Answer::Yes);
-    CHECK(slow::collision(scene_of(house), cube(), at(8, 0.4, 1)) == Answer::No);
+    CHECK(slow::collision(scene_of(hand::without(house, 0, 2)), cube(), pose_at(2.7, 0.4, 1)) == Answer::Yes);
+    CHECK(slow::collision(scene_of(house), cube(), pose_at(8, 0.4, 1)) == Answer::No);
 }
 
-TEST_CASE("a robot inside a primitive collides, and one that holds a thing inside itself")
+TEST_CASE("a robot inside a primitive collides, and so does a robot around a thing")
 {
     for (const Shape& shape : {box({5, 5, 5}), Shape{ShapeKind::Sphere, {3, 0, 0}, {}},
                                Shape{ShapeKind::Cylinder, {3, 6, 0}, {}}, Shape{ShapeKind::Capsule, {3, 2, 0}, {}}})
-        CHECK(slow::collision(scene_of(shape), cube(), at(0.1, 0.2, -0.3)) == Answer::Yes);
+        CHECK(slow::collision(scene_of(shape), cube(), pose_at(0.1, 0.2, -0.3)) == Answer::Yes);
     const Vec3 small = Vec3::Constant(0.1);
-    CHECK(slow::collision(scene_of(box(small)), cube(), at(0, 0, -0.5)) == Answer::Yes);
-    CHECK(slow::collision(scene_of(hand::box(small)), cube(), at(0, 0, -0.5)) == Answer::Yes);
-    CHECK(slow::collision(scene_of(hand::rectangle(0.1, 0.1)), cube(), at(0, 0, -0.5)) == Answer::Yes);
+    CHECK(slow::collision(scene_of(box(small)), cube(), pose_at(0, 0, -0.5)) == Answer::Yes);
+    CHECK(slow::collision(scene_of(hand::box(small)), cube(), pose_at(0, 0, -0.5)) == Answer::Yes);
+    CHECK(slow::collision(scene_of(hand::rectangle(0.1, 0.1)), cube(), pose_at(0, 0, -0.5)) == Answer::Yes);
 }
 
 TEST_CASE("a closed piece within another makes no cavity")
 {
     Scene scene = scene_of(hand::box({6, 6, 6}));
     hand::add_piece(scene, hand::flipped(hand::box({5, 5, 5})));
-    CHECK(slow::collision(scene, cube(), at(0.1, 0.2, -0.3)) == Answer::Yes);
+    CHECK(slow::collision(scene, cube(), pose_at(0.1, 0.2, -0.3)) == Answer::Yes);
 }
 
-TEST_CASE("the hollow of an L is free")
+TEST_CASE("the inner corner of an L is free")
 {
     const hand::Mesh corner = hand::extruded({{1, 1}, {1, 6}, {0, 6}, {0, 0}, {6, 0}, {6, 1}}, 0, 3);
-    CHECK(slow::collision(scene_of(corner), cube(), at(2, 2, 1)) == Answer::No);
-    CHECK(slow::collision(scene_of(corner), cube(), at(1.3, 2, 1)) == Answer::Yes);
-    CHECK(slow::collision(scene_of(corner), cube(), at(0.5, 2, 4)) == Answer::No);
+    CHECK(slow::collision(scene_of(corner), cube(), pose_at(2, 2, 1)) == Answer::No);
+    CHECK(slow::collision(scene_of(corner), cube(), pose_at(1.3, 2, 1)) == Answer::Yes);
+    CHECK(slow::collision(scene_of(corner), cube(), pose_at(0.5, 2, 4)) == Answer::No);
 }
 
 TEST_CASE("water collides with nothing")
 {
-    CHECK(slow::collision(plane(Label::Water), cube(), at(0, 0, -0.5)) == Answer::No);
-    CHECK(slow::collision(scene_of(box({5, 5, 5}), Label::Water), cube(), at(0, 0, 0)) == Answer::No);
+    CHECK(slow::collision(plane(Label::Water), cube(), pose_at(0, 0, -0.5)) == Answer::No);
+    CHECK(slow::collision(scene_of(box({5, 5, 5}), Label::Water), cube(), pose_at(0, 0, 0)) == Answer::No);
 }
 
 // ---- Layers ----
@@ -207,42 +207,42 @@ TEST_CASE("water collides with nothing")
 TEST_CASE("a bridge has a layer on it and one below it")
 {
     Scene scene = plane();
-    hand::add_shape(scene, Label::Terrain, box({4, 2, 0.5}, at(0, 0, 3)));
+    hand::add_shape(scene, Label::Terrain, box({4, 2, 0.5}, pose_at(0, 0, 3)));
     CHECK(slow::layers(scene, 0.3, 0.2) == std::vector<double>{3.25, 0});
     CHECK(slow::layers(scene, 0.3, 1.2) == std::vector<double>{0});
     CHECK(slow::layers(scene, 11, 0).empty());
 }
 
-TEST_CASE("a ramp has a layer only where it sticks out of the floor")
+TEST_CASE("a ramp has a layer only where it is above the floor")
 {
-    Scene scene = scene_of(box({20, 20, 2}, at(0, 0, -1)), Label::Terrain);
-    hand::add_shape(scene, Label::Terrain, box({8, 2, 0.2}, at(0, 0, 0, 0, -0.2)));  // rises along x
+    Scene scene = scene_of(box({20, 20, 2}, pose_at(0, 0, -1)), Label::Terrain);
+    hand::add_shape(scene, Label::Terrain, box({8, 2, 0.2}, pose_at(0, 0, 0, 0, -0.2)));  // rises along x
     const std::vector<double> high = slow::layers(scene, 0.5, 0), low = slow::layers(scene, -3, 0);
     REQUIRE(high.size() == 1);
     CHECK(high[0] == Approx(0.1 / std::cos(0.2) + 0.5 * std::tan(0.2)));
     CHECK(low == std::vector<double>{0});
-    CHECK(slow::layers(scene, 3.5, 0).size() == 2);  // off the floor
+    CHECK(slow::layers(scene, 3.5, 0).size() == 2);  // above the floor
 }
 
-TEST_CASE("round bodies are as high as their equations say")
+TEST_CASE("round bodies have the heights of their equations")
 {
-    CHECK(slow::layers(scene_of({ShapeKind::Sphere, {3, 0, 0}, at(1, 0, 1)}, Label::Terrain), 2, 2) ==
+    CHECK(slow::layers(scene_of({ShapeKind::Sphere, {3, 0, 0}, pose_at(1, 0, 1)}, Label::Terrain), 2, 2) ==
           std::vector<double>{3});
-    const Scene lying = scene_of({ShapeKind::Cylinder, {1, 4, 0}, at(0, 0, 0, 0, M_PI / 2)}, Label::Terrain);
+    const Scene lying = scene_of({ShapeKind::Cylinder, {1, 4, 0}, pose_at(0, 0, 0, 0, M_PI / 2)}, Label::Terrain);
     CHECK(slow::layers(lying, 1.9, 0.6)[0] == Approx(0.8));
     CHECK(slow::layers(lying, 2.1, 0.6).empty());
-    const Scene capsule = scene_of({ShapeKind::Capsule, {1, 4, 0}, at(0, 0, 0, 0, M_PI / 2)}, Label::Terrain);
+    const Scene capsule = scene_of({ShapeKind::Capsule, {1, 4, 0}, pose_at(0, 0, 0, 0, M_PI / 2)}, Label::Terrain);
     CHECK(slow::layers(capsule, 1.9, 0.6)[0] == Approx(0.8));
     CHECK(slow::layers(capsule, 2.6, 0)[0] == Approx(0.8));
     CHECK(slow::layers(capsule, -2.6, 0)[0] == Approx(0.8));
     CHECK(slow::layers(capsule, 2.7, 0.8).empty());
-    const Scene leaning = scene_of({ShapeKind::Cylinder, {1, 10, 0}, at(0, 0, 0, 0, M_PI / 4)}, Label::Terrain);
+    const Scene leaning = scene_of({ShapeKind::Cylinder, {1, 10, 0}, pose_at(0, 0, 0, 0, M_PI / 4)}, Label::Terrain);
     CHECK(slow::layers(leaning, 1, 0)[0] == Approx(1 + std::sqrt(2)));
 }
 
 TEST_CASE("a mesh and the primitive of its shape have the same columns")
 {
-    const Pose pose = at(0.3, -0.2, 1, 0.7, 0.4, 2);
+    const Pose pose = pose_at(0.3, -0.2, 1, 0.7, 0.4, 2);
     const Scene mesh = scene_of(hand::moved(hand::box({3, 2, 1}), pose), Label::Terrain);
     const Scene primitive = scene_of(box({3, 2, 1}, pose), Label::Terrain);
     Random random{3};
@@ -264,7 +264,7 @@ TEST_CASE("a line through edges and corners of a mesh crosses it once")
         for (double y = -1.5; y <= 1.5; y += 0.5) CHECK(slow::layers(scene, x, y) == std::vector<double>{slope(x, y)});
 }
 
-TEST_CASE("what a solid mesh is to stand on, the face on top says")
+TEST_CASE("the label of the top face decides whether robots may stand on a solid mesh")
 {
     const hand::Mesh mesh = hand::box({2, 2, 2});
     std::vector<Label> labels(12, Label::Obstacle);
@@ -273,14 +273,14 @@ TEST_CASE("what a solid mesh is to stand on, the face on top says")
         painted[8 + face] = painted[10 + face] = Label::Terrain;
         return slow::layers(scene_of(mesh, Label::Obstacle, {.labels = painted}), 0.3, 0.2);
     };
-    CHECK(layers_with(0).empty());  // triangles 8 and 10: the bottom
+    CHECK(layers_with(0).empty());  // triangles 8 and 10 are the bottom
     CHECK(layers_with(1) == std::vector<double>{1});
 }
 
-TEST_CASE("two storeys of one piece that share a face leave no gap")
+TEST_CASE("two storeys of one piece that share a face have no gap between them")
 {
     hand::Mesh tower = hand::box({2, 2, 2});
-    const hand::Mesh upper = hand::moved(hand::box({2, 2, 2}), at(0, 0, 2));
+    const hand::Mesh upper = hand::moved(hand::box({2, 2, 2}), pose_at(0, 0, 2));
     for (std::uint32_t i = 4; i < 8; ++i) tower.vertices.push_back(upper.vertices[i]);
     for (const Triangle& t : upper.triangles) tower.triangles.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
     const Scene scene = scene_of(tower, Label::Terrain);
@@ -289,10 +289,10 @@ TEST_CASE("two storeys of one piece that share a face leave no gap")
     REQUIRE(column.spans.size() == 1);
     CHECK(column.spans[0].bottom == -1);
     CHECK(column.spans[0].top == 3);
-    CHECK(decide(scene, at(0.3, 0.2, 2)).verdict == Verdict::Aerial);
+    CHECK(decide(scene, pose_at(0.3, 0.2, 2)).verdict == Verdict::Aerial);
 }
 
-TEST_CASE("a sheet is a layer from both sides, unless its part says up")
+TEST_CASE("a sheet is a layer from both sides, unless its part has sides: up")
 {
     const hand::Mesh sheet = hand::rectangle(4, 4);
     CHECK(slow::layers(scene_of(sheet, Label::Terrain, {.sides_up = true}), 0.5, 0.4).size() == 1);
@@ -305,74 +305,77 @@ TEST_CASE("a sheet is a layer from both sides, unless its part says up")
 TEST_CASE("the first verdict that applies is given")
 {
     Scene scene = plane();
-    hand::add_shape(scene, Label::Obstacle, box({1, 1, 1}, at(5, 0, 0.5)));
-    CHECK(decide(scene, at(11, 0, 0.5)).verdict == Verdict::Outside);
-    CHECK(decide(scene, at(0.3, 0.2, 1.1)).verdict == Verdict::Aerial);
-    CHECK(decide(scene, at(0.3, 0.2, -0.1)).verdict == Verdict::Aerial);
-    CHECK(decide(scene, at(5.3, 0.2, 1.1)).verdict == Verdict::OffTerrain);
-    CHECK(decide(scene, at(5.3, 0.2, 0.5)).verdict == Verdict::Collision);  // in the box, on the floor
-    CHECK(decide(scene, at(4.2, 0.2, 0.1)).verdict == Verdict::Collision);
-    CHECK(decide(scene, at(3.9, 0.2, 0.1)).verdict == Verdict::Valid);
-    CHECK(decide(scene, at(5.3, 0.2, 1.1)).ground == 1.0);
-    CHECK_FALSE(decide(scene, at(0.3, 0.2, -0.1)).ground.has_value());
+    hand::add_shape(scene, Label::Obstacle, box({1, 1, 1}, pose_at(5, 0, 0.5)));
+    CHECK(decide(scene, pose_at(11, 0, 0.5)).verdict == Verdict::Outside);
+    CHECK(decide(scene, pose_at(0.3, 0.2, 1.1)).verdict == Verdict::Aerial);
+    CHECK(decide(scene, pose_at(0.3, 0.2, -0.1)).verdict == Verdict::Aerial);
+    CHECK(decide(scene, pose_at(5.3, 0.2, 1.1)).verdict == Verdict::OffTerrain);
+    CHECK(decide(scene, pose_at(5.3, 0.2, 0.5)).verdict == Verdict::Collision);  // inside the box, on the floor
+    CHECK(decide(scene, pose_at(4.2, 0.2, 0.1)).verdict == Verdict::Collision);
+    CHECK(decide(scene, pose_at(3.9, 0.2, 0.1)).verdict == Verdict::Valid);
+    CHECK(decide(scene, pose_at(5.3, 0.2, 1.1)).ground == 1.0);
+    CHECK_FALSE(decide(scene, pose_at(0.3, 0.2, -0.1)).ground.has_value());
 }
 
 TEST_CASE("a pose near a limit gets no verdict")
 {
     Scene scene = plane();
-    hand::add_shape(scene, Label::Obstacle, box({1, 1, 1}, at(5, 0, 0.5)));
-    CHECK_FALSE(decide(scene, at(10, 0, 0.5)).verdict.has_value());
-    CHECK_FALSE(decide(scene, at(0.3, 0.2, 1.0005)).verdict.has_value());
-    CHECK_FALSE(decide(scene, at(0.3, 0.2, 0.0005)).verdict.has_value());
-    CHECK_FALSE(decide(scene, at(4.0005, 0.2, 0.1)).verdict.has_value());  // touches the box
-    CHECK_FALSE(decide(scene, at(5.4995, 0.2, 1.1)).verdict.has_value());  // over the box's edge
-    hand::add_shape(scene, Label::Terrain, box({1, 1, 0.01}, at(-5, 0, 0)));
-    CHECK_FALSE(decide(scene, at(-4.5005, 0.2, 0.1)).verdict.has_value());  // over a step of 5 mm, so which ground?
-    CHECK(decide(scene, at(-4.502, 0.2, 0.1)).ground == 0.005);
+    hand::add_shape(scene, Label::Obstacle, box({1, 1, 1}, pose_at(5, 0, 0.5)));
+    CHECK_FALSE(decide(scene, pose_at(10, 0, 0.5)).verdict.has_value());
+    CHECK_FALSE(decide(scene, pose_at(0.3, 0.2, 1.0005)).verdict.has_value());
+    CHECK_FALSE(decide(scene, pose_at(0.3, 0.2, 0.0005)).verdict.has_value());
+    CHECK_FALSE(decide(scene, pose_at(4.0005, 0.2, 0.1)).verdict.has_value());  // touches the box
+    CHECK_FALSE(decide(scene, pose_at(5.4995, 0.2, 1.1)).verdict.has_value());  // above the edge of the box
+    hand::add_shape(scene, Label::Terrain, box({1, 1, 0.01}, pose_at(-5, 0, 0)));
+    CHECK_FALSE(decide(scene, pose_at(-4.5005, 0.2, 0.1))
+                    .verdict.has_value());  // above a step of 5 mm, so the ground is not certain
+    CHECK(decide(scene, pose_at(-4.502, 0.2, 0.1)).ground == 0.005);
 }
 
-TEST_CASE("a pose in a hill has no ground, and one in a box on the floor has the floor")
+TEST_CASE("a pose inside a hill has no ground, and one inside a box on the floor has the floor as ground")
 {
     const Scene hill = scene_of({ShapeKind::Sphere, {3, 0, 0}, {}}, Label::Terrain);
-    CHECK(decide(hill, at(0.5, 0.2, 1)).verdict == Verdict::Aerial);
-    CHECK(decide(hill, at(0.5, 0.2, 3.2)).verdict == Verdict::Valid);
-    Scene nested = scene_of(box({4, 4, 4}, at(0, 0, 2)), Label::Terrain);
-    hand::add_shape(nested, Label::Terrain, box({1, 1, 1}, at(0, 0, 2)));
-    CHECK(decide(nested, at(0.2, 0.1, 3)).verdict == Verdict::Collision);  // the ground is a single piece's
-    CHECK(decide(nested, at(0.2, 0.1, 3)).ground == 2.5);
+    CHECK(decide(hill, pose_at(0.5, 0.2, 1)).verdict == Verdict::Aerial);
+    CHECK(decide(hill, pose_at(0.5, 0.2, 3.2)).verdict == Verdict::Valid);
+    Scene nested = scene_of(box({4, 4, 4}, pose_at(0, 0, 2)), Label::Terrain);
+    hand::add_shape(nested, Label::Terrain, box({1, 1, 1}, pose_at(0, 0, 2)));
+    CHECK(decide(nested, pose_at(0.2, 0.1, 3)).verdict == Verdict::Collision);  // the ground belongs to a single piece
+    CHECK(decide(nested, pose_at(0.2, 0.1, 3)).ground == 2.5);
 }
 
-TEST_CASE("where terrain and obstacle are equally high the ground is terrain")
+TEST_CASE("if terrain and obstacle are equally high, the ground is terrain")
 {
     Scene scene = plane(Label::Obstacle);
     hand::add_mesh(scene, Label::Terrain, hand::rectangle(4, 4), {.kind = "plane"});
-    CHECK(decide(scene, at(0.3, 0.2, 0.1)).verdict == Verdict::Valid);
-    CHECK(decide(scene, at(5.3, 0.2, 0.1)).verdict == Verdict::OffTerrain);
+    CHECK(decide(scene, pose_at(0.3, 0.2, 0.1)).verdict == Verdict::Valid);
+    CHECK(decide(scene, pose_at(5.3, 0.2, 0.1)).verdict == Verdict::OffTerrain);
 }
 
-TEST_CASE("the lower side of a sheet that looks up is no terrain")
+TEST_CASE("the lower side of a sheet with sides: up is not terrain")
 {
     const hand::Mesh below = hand::flipped(hand::rectangle(20, 20));
-    CHECK(decide(scene_of(below, Label::Terrain, {.sides_up = true}), at(0, 0.2, 0.1)).verdict == Verdict::OffTerrain);
-    CHECK(decide(scene_of(below, Label::Terrain), at(0, 0.2, 0.1)).verdict == Verdict::Valid);
+    CHECK(decide(scene_of(below, Label::Terrain, {.sides_up = true}), pose_at(0, 0.2, 0.1)).verdict ==
+          Verdict::OffTerrain);
+    CHECK(decide(scene_of(below, Label::Terrain), pose_at(0, 0.2, 0.1)).verdict == Verdict::Valid);
 }
 
-TEST_CASE("ground under water is submerged to the greatest depth that counts")
+TEST_CASE("ground under water is submerged up to the maximum water depth")
 {
     Scene scene = plane();
-    hand::add_mesh(scene, Label::Water, hand::moved(hand::rectangle(4, 4), at(0, 0, 2)), {.kind = "plane"});
-    hand::add_shape(scene, Label::Water, box({2, 2, 1}, at(6, 0, -0.5)));
-    CHECK(decide(scene, at(0.3, 0.2, 0.1)).verdict == Verdict::Submerged);
-    CHECK(decide(scene, at(0.3, 0.2, 0.1), 2.1).verdict == Verdict::Submerged);
-    CHECK_FALSE(decide(scene, at(0.3, 0.2, 0.1), 2.0).verdict.has_value());
-    CHECK(decide(scene, at(0.3, 0.2, 0.1), 1.9).verdict == Verdict::Valid);
-    CHECK(decide(scene, at(4, 0.2, 0.1)).verdict == Verdict::Valid);
-    CHECK_FALSE(decide(scene, at(6, 0.2, 0.1)).verdict.has_value());  // its surface is level with the ground
+    hand::add_mesh(scene, Label::Water, hand::moved(hand::rectangle(4, 4), pose_at(0, 0, 2)), {.kind = "plane"});
+    hand::add_shape(scene, Label::Water, box({2, 2, 1}, pose_at(6, 0, -0.5)));
+    CHECK(decide(scene, pose_at(0.3, 0.2, 0.1)).verdict == Verdict::Submerged);
+    CHECK(decide(scene, pose_at(0.3, 0.2, 0.1), 2.1).verdict == Verdict::Submerged);
+    CHECK_FALSE(decide(scene, pose_at(0.3, 0.2, 0.1), 2.0).verdict.has_value());
+    CHECK(decide(scene, pose_at(0.3, 0.2, 0.1), 1.9).verdict == Verdict::Valid);
+    CHECK(decide(scene, pose_at(4, 0.2, 0.1)).verdict == Verdict::Valid);
+    CHECK_FALSE(
+        decide(scene, pose_at(6, 0.2, 0.1)).verdict.has_value());  // the surface of the water is level with the ground
 }
 
 // ---- Random scenes ----
 
-TEST_CASE("random scenes are the same for the same seed and hold what they say")
+TEST_CASE("random scenes are the same for the same seed, and contain what their description lists")
 {
     const Scene scene = random_scene(5), again = random_scene(5);
     CHECK(scene.vertices == again.vertices);
@@ -393,7 +396,7 @@ TEST_CASE("random scenes are the same for the same seed and hold what they say")
     }
 }
 
-TEST_CASE("a grown robot collides wherever the shrunk one does")
+TEST_CASE("a grown robot collides everywhere the shrunk one does")
 {
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
         const Scene scene = random_scene(seed);
@@ -403,7 +406,7 @@ TEST_CASE("a grown robot collides wherever the shrunk one does")
     }
 }
 
-TEST_CASE("random poses meet every verdict but footings, and few are too close to call")
+TEST_CASE("random poses give every verdict except footings, and few are too close to a limit")
 {
     std::array<int, verdict_count> counts{};
     int unclear = 0;
@@ -426,18 +429,18 @@ TEST_CASE("random poses meet every verdict but footings, and few are too close t
     CHECK(unclear < 60);
 }
 
-TEST_CASE("footings are valid on a plane, steep on a slope, unstable over an edge, and nothing at a limit")
+TEST_CASE("footings are valid on a plane, steep on a slope, unstable over an edge, and undecided at a limit")
 {
     const std::vector<Vec3> contacts = {{0.5, 0.5, 0}, {-0.5, 0.5, 0}, {-0.5, -0.5, 0}, {0.5, -0.5, 0}};
     const auto footing = [&](const Scene& scene, const Pose& pose, double max_slope) {
         return slow::footing(scene, cube(), contacts, pose, 0, max_slope);
     };
-    CHECK(footing(plane(), at(0, 0, 0.1), 0.2) == Verdict::Valid);
-    CHECK(footing(plane(), at(9.6, 0, 0.1), 0.2) == Verdict::Unstable);
-    CHECK(footing(plane(), at(9.5, 0, 0.1), 0.2) == std::nullopt);
-    const Scene slope = scene_of(hand::moved(hand::rectangle(20, 20), at(0, 0, 0, 0, 0.3, 0)), Label::Terrain,
+    CHECK(footing(plane(), pose_at(0, 0, 0.1), 0.2) == Verdict::Valid);
+    CHECK(footing(plane(), pose_at(9.6, 0, 0.1), 0.2) == Verdict::Unstable);
+    CHECK(footing(plane(), pose_at(9.5, 0, 0.1), 0.2) == std::nullopt);
+    const Scene slope = scene_of(hand::moved(hand::rectangle(20, 20), pose_at(0, 0, 0, 0, 0.3, 0)), Label::Terrain,
                                  {.kind = "plane"});
-    CHECK(footing(slope, at(0, 0, 0.7, 0, 0, 1), 0.31) == Verdict::Valid);
-    CHECK(footing(slope, at(0, 0, 0.7, 0, 0, 1), 0.3) == std::nullopt);
-    CHECK(footing(slope, at(0, 0, 0.7, 0, 0, 1), 0.1) == Verdict::Steep);
+    CHECK(footing(slope, pose_at(0, 0, 0.7, 0, 0, 1), 0.31) == Verdict::Valid);
+    CHECK(footing(slope, pose_at(0, 0, 0.7, 0, 0, 1), 0.3) == std::nullopt);
+    CHECK(footing(slope, pose_at(0, 0, 0.7, 0, 0, 1), 0.1) == Verdict::Steep);
 }

@@ -34,7 +34,7 @@ SampleOptions sample_options(std::size_t count, double min_distance)
     return {.count = count, .min_distance = min_distance, .random_yaw = true, .seed = 11, .offset = 0.1};
 }
 
-/// Search by its definition: one draw after the other, all distances.
+/// Returns the result of search by its definition: one draw after the other, with all distances.
 std::vector<Vec3> slow_search(const Judge& judge, const SearchOptions& options)
 {
     const Judge exhaustive = without_mask(judge);
@@ -57,7 +57,7 @@ std::vector<Vec3> slow_search(const Judge& judge, const SearchOptions& options)
     return found;
 }
 
-/// A valid pose in one of the chosen layers at (x, y), NaN if there is none. The judge is that of any height.
+/// Returns a valid pose in one of the chosen layers at (x, y); NaN if there is none.
 Spawn valid_at(const Judge& judge, const SampleOptions& options, double x, double y, Random& random)
 {
     const Column column = column_at(judge.map().geometry, x, y);
@@ -71,7 +71,7 @@ Spawn valid_at(const Judge& judge, const SampleOptions& options, double x, doubl
     return {Vec3::Constant(std::nan("")), 0};
 }
 
-/// How many points of a grid could still be added.
+/// Returns how many points of a grid could still be added.
 std::size_t room_left(const Judge& judge, const SampleOptions& options, const SpawnList& list, int cells)
 {
     const Judge exhaustive = at_any_height(judge);
@@ -94,14 +94,14 @@ std::size_t room_left(const Judge& judge, const SampleOptions& options, const Sp
     return count;
 }
 
-/// A pose on each layer, so many metres apart.
+/// Returns a raster with a pose on each layer and columns `step` m apart.
 RasterResult raster_of_tops(const Judge& judge, double step)
 {
     RasterOptions options{.step = step};
     return raster(judge, options);
 }
 
-/// 10 x 10 m of floor: a sheet, a box, a closed mesh; a ramp with things on it and in it.
+/// Returns a floor of 10 x 10 m (a sheet, a box or a closed mesh) with a ramp that has things on it and inside it.
 Scene floor_scene(int kind)
 {
     Scene scene;
@@ -137,7 +137,7 @@ TEST_CASE("every sample is valid by check and keeps its distance")
     CHECK(found > 300);
 }
 
-TEST_CASE("search is its definition, draw by draw")
+TEST_CASE("search follows its definition, draw by draw")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -152,7 +152,7 @@ TEST_CASE("search is its definition, draw by draw")
     }
 }
 
-TEST_CASE("search stops after the failures in a row that it is given")
+TEST_CASE("search stops after the given number of failures in a row")
 {
     const TestMap map = training_map();
     const Judge judge(map, load_robot("box:30,30,30"));
@@ -162,7 +162,7 @@ TEST_CASE("search stops after the failures in a row that it is given")
     CHECK(list.draws == 777);
 }
 
-TEST_CASE("the same seed gives the same bytes at any thread count, another seed others")
+TEST_CASE("the same seed gives the same bytes with any number of threads, another seed gives others")
 {
     const TestMap map = map_of(random_scene(6));
     const Judge judge(map, random_robot(6));
@@ -186,7 +186,8 @@ TEST_CASE("the same seed gives the same bytes at any thread count, another seed 
 
 TEST_CASE("20,000 samples are uniform by area over the feasible region")
 {
-    // Two storeys over each other, a slope of twice its horizontal area, and a gap: by horizontal area 36 + 9 + 18 m2.
+    // Two storeys above each other, a slope with twice its horizontal area, and a gap. The horizontal areas are 36 + 9
+    // + 18 m2.
     Scene scene;
     hand::add_mesh(scene, Label::Terrain, hand::rectangle(6, 6));
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(3, 3), {{0, 0, 2}, Mat3::Identity()}));
@@ -213,7 +214,7 @@ TEST_CASE("20,000 samples are uniform by area over the feasible region")
     double chi_square = 0;
     const double expected = 20000.0 / 63;
     for (const double n : observed) chi_square += (n - expected) * (n - expected) / expected;
-    CHECK(chi_square < 103.4);  // 62 degrees of freedom: 0.1 % of honest runs are above; 0.1 % below 31.7
+    CHECK(chi_square < 103.4);  // 62 degrees of freedom: 0.1 % of correct runs are above, 0.1 % below 31.7
     CHECK(chi_square > 31.7);
 }
 
@@ -231,7 +232,7 @@ TEST_CASE("random yaw is uniform and a fixed yaw is kept")
     for (const Spawn& spawn : sample(judge, options).spawns) CHECK(spawn.yaw == 0.7);
 }
 
-TEST_CASE("a region narrows a sample and layers choose a storey")
+TEST_CASE("a region restricts a sample, and layers select a storey")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -245,7 +246,7 @@ TEST_CASE("a region narrows a sample and layers choose a storey")
     }
 }
 
-TEST_CASE("a sample that does not fit gives what it found")
+TEST_CASE("if not all spawns fit, sample returns those it found")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -255,7 +256,7 @@ TEST_CASE("a sample that does not fit gives what it found")
     CHECK(smallest_distance(list.spawns) >= 6);
 }
 
-TEST_CASE("a full region is proven: nothing can be added, by dense probing")
+TEST_CASE("a full region is proven full, and dense probing shows that nothing can be added")
 {
     const int kind = GENERATE(0, 1, 2, 3);
     CAPTURE(kind);
@@ -271,7 +272,7 @@ TEST_CASE("a full region is proven: nothing can be added, by dense probing")
     CHECK(room_left(judge, options, list, 250) == 0);
 }
 
-TEST_CASE("as many as fit are found by asking for so many; one more is too many")
+TEST_CASE("as many spawns as fit are found on request; one more is too many")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -288,7 +289,7 @@ TEST_CASE("as many as fit are found by asking for so many; one more is too many"
     CHECK(spawns_csv(sample(judge, options)) == spawns_csv(all));
 }
 
-TEST_CASE("filling gives the same bytes at any thread count, and exhaustively")
+TEST_CASE("filling a region gives the same bytes with any number of threads, and exhaustively")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());
@@ -319,7 +320,7 @@ TEST_CASE("a small island in a large map is found")
     if (around > 0) add(Label::Terrain, {500, 500, 1}, {0, 0, -0.5});
     if (around == 1)
         hand::add_mesh(scene, Label::Water, hand::moved(hand::rectangle(500, 500), {{0, 0, 0.5}, Mat3::Identity()}));
-    if (around == 2) {  // a slab over all but the island
+    if (around == 2) {  // a slab over everything except the island
         add(Label::Obstacle, {250 + place.x() - 1, 500, 3}, {(place.x() - 1 - 250) / 2, 0, 1.5});
         add(Label::Obstacle, {250 - place.x() - 1, 500, 3}, {(place.x() + 1 + 250) / 2, 0, 1.5});
         add(Label::Obstacle, {2, 250 + place.y() - 1, 3}, {place.x(), (place.y() - 1 - 250) / 2, 1.5});
@@ -341,7 +342,7 @@ TEST_CASE("a small island in a large map is found")
     CHECK(full.spawns.size() >= 5);
 }
 
-TEST_CASE("where nothing is feasible, that is proven")
+TEST_CASE("if no pose is valid, sample proves it")
 {
     Scene scene;
     hand::add_shape(scene, Label::Terrain, {ShapeKind::Box, {20, 20, 1}, {{0, 0, -0.5}, Mat3::Identity()}});
@@ -369,7 +370,7 @@ TEST_CASE("two floors above each other are filled equally")
     CHECK(room_left(judge, options, list, 200) == 0);
 }
 
-TEST_CASE("cells that are proven closed hold no valid pose, in hard scenes")
+TEST_CASE("cells that are proven closed contain no valid pose, in hard scenes")
 {
     std::size_t closed = 0, open = 0, valid = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -418,7 +419,7 @@ TEST_CASE("cells that are proven closed hold no valid pose, in hard scenes")
     CHECK(valid > 1000);
 }
 
-TEST_CASE("counts and distances out of their limits are refused")
+TEST_CASE("counts and distances beyond their limits are refused")
 {
     const TestMap map = training_map();
     const Judge judge(map, husky());

@@ -10,13 +10,13 @@
 #include <string>
 #include <string_view>
 
-/// A fresh folder that goes with all it holds.
+/// A new folder that is removed with all its contents at the end.
 class TempFolder {
 public:
     TempFolder()
     {
         std::string name = (std::filesystem::temp_directory_path() / "spawnfield-test-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for tests: " + name);
+        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot create a folder for tests: " + name);
         path_ = name;
     }
     TempFolder(const TempFolder&) = delete;
@@ -30,15 +30,15 @@ public:
     const std::filesystem::path& path() const { return path_; }
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
-    /// Writes a file in it, with the folders on the way, and tells where it is.
+    /// Writes a file into the folder, creates missing folders, and returns its path.
     std::filesystem::path write(const std::string& name, std::string_view bytes) const
     {
         const std::filesystem::path file = path_ / name;
         std::filesystem::create_directories(file.parent_path());
-        std::filesystem::remove(file);  // ext4 waits for the disk where a file is truncated and written anew
+        std::filesystem::remove(file);  // ext4 waits for the disk if a file is truncated and written again
         std::ofstream stream(file, std::ios::binary);
         stream.write(bytes.data(), std::streamsize(bytes.size()));
-        if (!stream.flush()) throw std::runtime_error("no room for tests: " + file.string());
+        if (!stream.flush()) throw std::runtime_error("cannot write the file for tests: " + file.string());
         return file;
     }
 
@@ -46,7 +46,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// All bytes of a file; empty if there is none.
+/// Returns all bytes of a file; empty if it does not exist.
 inline std::string bytes_of(const std::filesystem::path& file)
 {
     std::ifstream stream(file, std::ios::binary);

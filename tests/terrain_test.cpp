@@ -23,7 +23,7 @@ std::vector<HeightImage> images(const TerrainMap& terrain, const std::string& na
 
 }  // namespace
 
-TEST_CASE("pages hold the layers and the water of the column at each cell's centre, row 0 the largest y")
+TEST_CASE("pages have the layers and the water of the column at the centre of each cell, with row 0 at the largest y")
 {
     const TestMap map = training_map();
     const TerrainMap terrain = rasterized(map, 0.25);
@@ -45,7 +45,7 @@ TEST_CASE("pages hold the layers and the water of the column at each cell's cent
     CHECK(std::isnan(page_image(terrain, "no such page")(0, 0)));
 }
 
-TEST_CASE("a ball is as high as its equation says")
+TEST_CASE("a ball has the heights of its equation")
 {
     Scene scene;
     Shape ball;
@@ -65,7 +65,7 @@ TEST_CASE("a ball is as high as its equation says")
         }
 }
 
-TEST_CASE("the page of obstacles holds the highest solid of a column that is no terrain")
+TEST_CASE("the page of obstacles has the highest solid of a column that is not terrain")
 {
     std::size_t obstacles = 0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -85,7 +85,7 @@ TEST_CASE("the page of obstacles holds the highest solid of a column that is no 
     CHECK(obstacles > 100);
 }
 
-TEST_CASE("there is no page of nothing but the first of heights")
+TEST_CASE("there is no empty page, except the first page of heights")
 {
     const auto pages_of = [](Label label) {
         Scene scene;
@@ -99,7 +99,7 @@ TEST_CASE("there is no page of nothing but the first of heights")
     CHECK(pages_of(Label::Obstacle) == std::vector<std::string>{"height.0", "obstacle"});
 }
 
-TEST_CASE("terrain pages are the same bytes at any thread count")
+TEST_CASE("terrain pages are the same bytes with any number of threads")
 {
     const TestMap map = map_of(random_scene(9));
     const TerrainMap one = rasterized(map, 0.02, 1);
@@ -113,7 +113,7 @@ TEST_CASE("terrain pages are the same bytes at any thread count")
     }
 }
 
-TEST_CASE("a frame refuses cells of no size and too many columns")
+TEST_CASE("a frame refuses cells of size 0 and too many columns")
 {
     const Bounds bounds{Vec3(0, 0, 0), Vec3(2000, 2000, 1)};
     CHECK_THROWS_WITH(frame_around(bounds, 0), "frame_around: cell is 0, needs > 0 m");

@@ -8,13 +8,13 @@
 
 #include <memory>
 
-/// A map together with the scene that it was made of.
+/// A map with the scene from which it was made.
 struct TestMap : spawnfield::Map {
     spawnfield::Scene scene;
 };
 
-/// A scene with what queries need, without files, and a mask of this resolution (m). Poses beyond the bounds (empty:
-/// the scene's) are `outside`, solids there still count.
+/// Returns a map of the scene, made without files, with a mask of this resolution (m). Poses beyond the bounds (empty:
+/// those of the scene) are `outside`, but solids there still collide.
 inline TestMap map_of(spawnfield::Scene scene, double resolution = 0.1, const spawnfield::Bounds& bounds = {})
 {
     TestMap map;

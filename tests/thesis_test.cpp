@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Lines "x, y, z" as a plain reader of numbers sees them, in our frame again.
+/// Returns the numbers of lines "x, y, z", converted back to our frame.
 std::vector<Vec3> locations(const fs::path& file)
 {
     std::istringstream stream(bytes_of(file));
@@ -48,7 +48,7 @@ TEST_CASE("Unity's frame is left-handed with y up")
     CHECK(unity_from({1, 2, 3}) == Vec3(1, 3, 2));
     Mat3 unity_axes;
     for (int axis = 0; axis < 3; ++axis) unity_axes.col(axis) = unity_from(Vec3::Unit(axis));
-    CHECK(unity_axes.determinant() == -1);  // the handedness turns over
+    CHECK(unity_axes.determinant() == -1);  // the handedness changes
     const TempFolder folder;
     SpawnList list;
     list.spawns = {{{1.5, -2.25, 0.125}, 0.3}};
@@ -58,7 +58,7 @@ TEST_CASE("Unity's frame is left-handed with y up")
     CHECK(names_in(folder.path()) == std::set<std::string>{"Valid_Locations.txt", "Invalid_Locations.txt"});
 }
 
-TEST_CASE("in the thesis's terms valid is valid, aerial and off_terrain are aerial, all the rest is invalid")
+TEST_CASE("in the terms of the thesis valid is valid, aerial and off_terrain are aerial, and all others are invalid")
 {
     for (const Verdict verdict : {Verdict::Outside, Verdict::Submerged, Verdict::Collision})
         CHECK(thesis_class_of(verdict) == ThesisClass::Invalid);
@@ -67,7 +67,7 @@ TEST_CASE("in the thesis's terms valid is valid, aerial and off_terrain are aeri
     CHECK(thesis_class_of(Verdict::Valid) == ThesisClass::Valid);
 }
 
-TEST_CASE("locations of rasters read back to the same poses, class by class, with and without the aerial ones")
+TEST_CASE("locations of rasters are read back as the same poses, class by class, with and without aerial poses")
 {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const TestMap map = seed == 1 ? training_map() : map_of(random_scene(seed));
@@ -124,7 +124,7 @@ TEST_CASE("raster --format thesis writes a folder whose counts are those of the 
     CHECK(std::stod(value_of(times, "Load (s)")) + std::stod(value_of(times, "Query (s)")) <=
           std::stod(value_of(times, "Total (s)")));
 
-    CHECK(arena(command).status == 0);  // over its own result
+    CHECK(arena(command).status == 0);  // replaces its own result
     CHECK_FALSE(fs::exists(arena / "out/Air_Locations.txt"));
     CHECK(value_of(bytes_of(arena / "out/Stats.txt"), "Aerial") == value_of(stats, "Aerial"));
     CHECK(arena.names() == std::set<std::string>{"map", "out"});
@@ -133,7 +133,7 @@ TEST_CASE("raster --format thesis writes a folder whose counts are those of the 
     CHECK(fs::exists(arena / "out/Air_Locations.txt"));
 }
 
-TEST_CASE("search and sample write their spawns as valid locations, and say what they did not keep")
+TEST_CASE("search and sample write their spawns as valid locations, and report what they do not store")
 {
     const Arena arena;
     for (const std::string command : {"sample", "search"}) {
@@ -158,7 +158,7 @@ TEST_CASE("search and sample write their spawns as valid locations, and say what
     CHECK_FALSE(locations(arena / "few/Valid_Locations.txt").empty());
 }
 
-TEST_CASE("a folder that holds anything else is refused, and stays as it was")
+TEST_CASE("a folder with other contents is refused, and does not change")
 {
     const Arena arena;
     const std::string command = "raster map --dims 2 --step 1 --format thesis" + husky_option;
@@ -167,12 +167,13 @@ TEST_CASE("a folder that holds anything else is refused, and stays as it was")
     const ProgramRun run = arena(command + "-o out");
     CHECK(run.status == 1);
     CHECK(run.err ==
-          "spawnfield: out: holds notes.txt, which is no part of a thesis result; choose another name or remove it\n");
+          "spawnfield: out: contains notes.txt, which is not part of a thesis result; choose another name or remove "
+          "it\n");
     CHECK(bytes_of(arena / "out/Stats.txt") == "old");
     CHECK(bytes_of(arena / "out/notes.txt") == "mine");
     arena.write("file", "mine");
     CHECK(arena(command + "-o file").err ==
-          "spawnfield: file: exists and is no folder; choose another name or remove it\n");
+          "spawnfield: file: exists and is not a folder; choose another name or remove it\n");
     arena.write("nested/Stats.txt/deep", "mine");
     CHECK(arena(command + "-o nested").status == 1);
     CHECK(bytes_of(arena / "nested/Stats.txt/deep") == "mine");

@@ -20,7 +20,7 @@ TEST_CASE("a step is rounded to 1, 2, 2.5 or 5 times a power of ten")
     CHECK(round_down(value).value == Approx(down));
 }
 
-TEST_CASE("labels have the decimals that their step needs")
+TEST_CASE("labels have as many decimals as their step needs")
 {
     const auto [step, label] = GENERATE(table<double, std::string>(
         {{0.09, "0.3"}, {0.025, "0.075"}, {2.5, "7.5"}, {25, "75"}, {0.2, "0.6"}, {10, "30"}}));
@@ -29,7 +29,7 @@ TEST_CASE("labels have the decimals that their step needs")
 
 TEST_CASE("zero has no sign") { CHECK(ticks_within(-1, 1, round_up(0.5)).label(2) == "0.0"); }
 
-TEST_CASE("ticks within a range are those in it, its ends included")
+TEST_CASE("ticks of a range are those in it, including its ends")
 {
     const Ticks ticks = ticks_within(0.1, 0.5, round_up(0.1));
     CHECK(ticks.count == 5);
@@ -52,14 +52,14 @@ TEST_CASE("4 to 6 ticks cover any range")
     CHECK(ticks.highest() >= low + length - 1e-8 * ticks.step);
 }
 
-TEST_CASE("a range of no length gets ticks around it")
+TEST_CASE("a range of length 0 gets ticks around it")
 {
     const Ticks ticks = ticks_around(7, 7);
     CHECK(ticks.lowest() < 7);
     CHECK(ticks.highest() > 7);
 }
 
-TEST_CASE("thousands are set apart")
+TEST_CASE("thousands are separated")
 {
     CHECK(with_commas(0) == "0");
     CHECK(with_commas(999) == "999");

@@ -20,7 +20,7 @@ struct TiffTags {
     const char* mode = "w";
 };
 
-/// All pixels are 0 if no function tells them.
+/// Writes a TIFF image. All pixels are 0 if no function is given.
 std::filesystem::path write_tiff(const TempFolder& folder, const TiffTags& tags,
                                  const std::function<double(std::uint32_t row, std::uint32_t col)>& pixel = {})
 {
@@ -79,7 +79,7 @@ std::filesystem::path write_tiff(const TempFolder& folder, const TiffTags& tags,
 
 }  // namespace
 
-TEST_CASE("TIFF images are read whatever their layout, byte order and compression")
+TEST_CASE("TIFF images of every layout, byte order and compression are read")
 {
     const TempFolder folder;
     const auto [bits, format] = GENERATE(std::pair{8, SAMPLEFORMAT_UINT}, std::pair{16, SAMPLEFORMAT_UINT},
@@ -106,7 +106,7 @@ TEST_CASE("TIFF images are read whatever their layout, byte order and compressio
     CHECK(same);
 }
 
-TEST_CASE("integers with a sign, and those of 32 bits, stand for themselves")
+TEST_CASE("signed integers and integers of 32 bits keep their values")
 {
     const TempFolder folder;
     const int bits = GENERATE(8, 16, 32);
@@ -119,7 +119,7 @@ TEST_CASE("integers with a sign, and those of 32 bits, stand for themselves")
           Pixels{4294967290, 4294967291, 4294967292, 4294967293, 4294967294, 4294967295});
 }
 
-TEST_CASE("a TIFF image whose 0 is white has the values that it stores, and says so")
+TEST_CASE("a TIFF image whose 0 is white keeps its stored values, and is marked as such")
 {
     const TempFolder folder;
     const auto pixel = [](std::uint32_t row, std::uint32_t col) { return double(row * 3 + col); };
@@ -129,11 +129,11 @@ TEST_CASE("a TIFF image whose 0 is white has the values that it stores, and says
     const GreyImage image = read_grey_tiff(
         write_tiff(folder, {.bits = bits, .format = format, .photometric = PHOTOMETRIC_MINISWHITE}, pixel));
     CHECK(image.pixels == Pixels{0, 1, 2, 3, 4, 5});
-    CHECK(image.zero_is_white == (image.largest > 0));  // what has no white is no picture
+    CHECK(image.zero_is_white == (image.largest > 0));  // only a picture has a white value
     CHECK_FALSE(read_grey_tiff(write_tiff(folder, {.bits = 8}, pixel)).zero_is_white);
 }
 
-TEST_CASE("TIFF images that are damaged or no grey heights are refused with their name and the reason")
+TEST_CASE("TIFF images that are damaged or not grey heights are refused with their name and the reason")
 {
     const TempFolder folder;
     const std::string file = (folder / "a.tiff").string() + ": ";
@@ -142,20 +142,20 @@ TEST_CASE("TIFF images that are damaged or no grey heights are refused with thei
     };
     const std::string wanted = ", needs integers of 8, 16 or 32 bits, or float of 32 or 64";
     check_refused({.bits = 8, .channels = 3, .photometric = PHOTOMETRIC_RGB},
-                  "has 3 channels, needs 1 (grey); gdal_translate -b 1 takes the first");
-    check_refused({.bits = 8, .channels = 2}, "has 2 channels, needs 1 (grey); gdal_translate -b 1 takes the first");
+                  "has 3 channels, needs 1 (grey); extract one with gdal_translate -b 1");
+    check_refused({.bits = 8, .channels = 2}, "has 2 channels, needs 1 (grey); extract one with gdal_translate -b 1");
     check_refused({.bits = 8, .photometric = PHOTOMETRIC_PALETTE}, "has a palette, needs 1 channel (grey)");
-    check_refused({.bits = 64, .format = SAMPLEFORMAT_INT}, "has pixels of 64 bits with sign" + wanted);
+    check_refused({.bits = 64, .format = SAMPLEFORMAT_INT}, "has pixels of 64 bits (signed)" + wanted);
     check_refused({.bits = 4}, "has pixels of 4 bits" + wanted);
     CHECK_THROWS_WITH(read_grey_tiff(write_tiff(folder, {.cols = 90, .rows = 70}), 6299),
                       file + "has 90 x 70 pixels, needs at most 6299");
     check_refused({.format = SAMPLEFORMAT_IEEEFP}, "has pixels of 16-bit float" + wanted);
     check_refused({.orientation = ORIENTATION_BOTLEFT},
-                  "is stored turned or mirrored (orientation 4), needs its upper left corner first (1)");
+                  "is stored rotated or mirrored (orientation 4), needs its upper left corner first (1)");
 
     const std::filesystem::path whole = write_tiff(folder, {.cols = 90, .rows = 70});
     const std::string good = bytes_of(whole);
-    folder.write("a.tiff", good.substr(0, good.size() / 2));  // libtiff puts its tags last
+    folder.write("a.tiff", good.substr(0, good.size() / 2));  // libtiff writes its tags at the end
     CHECK_THROWS_WITH(read_grey_tiff(whole), file + "is cut short or a damaged TIFF image");
     folder.write("a.tiff", "II*");
     CHECK_THROWS_WITH(read_grey_tiff(whole), file + "is cut short or a damaged TIFF image");

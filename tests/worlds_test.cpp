@@ -21,7 +21,7 @@ Scene read_back(const worlds::World& world)
     return load_scene(folder / "scene.yaml");
 }
 
-/// All that a world writes, file after file.
+/// Returns the contents of all files that a world writes.
 std::string bytes_of_all(const worlds::World& world)
 {
     const TempFolder folder;
@@ -37,7 +37,7 @@ Bounds where(const worlds::World& world, const std::string& landmark)
     return {};
 }
 
-/// Primitives in a region whose names begin and end so.
+/// Returns the number of primitives in a region whose names begin and end like this.
 int count_in(const worlds::World& world, const Bounds& region, const std::string& kind, const std::string& element)
 {
     const auto is_meant = [&](const Primitive& primitive) {
@@ -47,7 +47,7 @@ int count_in(const worlds::World& world, const Bounds& region, const std::string
     return int(std::count_if(world.scene.primitives.begin(), world.scene.primitives.end(), is_meant));
 }
 
-/// Of a box of the Husky's size, at the thesis's offset (2D) and greatest height (3D).
+/// Returns counts for a box of the size of the Husky, with the offset (2D) and the maximum height (3D) of the thesis.
 VerdictCounts thesis_counts(const Map& map, int dims, double step, const Bounds& bounds)
 {
     const Judge judge(map, load_robot("box:0.99,0.67,0.39"));
@@ -101,7 +101,7 @@ namespace {
 constexpr worlds::Bridge both_bridges[] = {worlds::Bridge::OneObject, worlds::Bridge::DeckAlone};
 
 struct ComplexDistrict {
-    TestMap map;  ///< as it is read back
+    TestMap map;  ///< map of the scene that was read back
     std::vector<worlds::Landmark> landmarks;
 };
 
@@ -115,7 +115,7 @@ const ComplexDistrict& complex_district(worlds::Bridge bridge)
     return made[bridge];
 }
 
-/// The Husky's box, 1 m above each layer.
+/// Returns a 2D raster of the Husky's box, 1 m above each layer.
 RasterResult husky_raster(const TestMap& map, const Bounds& bounds, double step)
 {
     RasterOptions options{.step = step, .bounds = bounds, .offset = 1};
@@ -124,7 +124,7 @@ RasterResult husky_raster(const TestMap& map, const Bounds& bounds, double step)
 
 double count_of(const RasterResult& result, Verdict verdict) { return double(result.counts[verdict]); }
 
-/// Bounds of the triangles of parts whose names begin so.
+/// Returns the bounds of the triangles of each part whose name begins like this.
 std::vector<Bounds> bounds_of(const Scene& scene, const std::string& beginning)
 {
     std::map<std::uint32_t, Bounds> bounds;
@@ -140,7 +140,7 @@ std::vector<Bounds> bounds_of(const Scene& scene, const std::string& beginning)
 
 }  // namespace
 
-TEST_CASE("the complex district has the extents of its model, and nothing on its rim but sea")
+TEST_CASE("the complex district has the extents of its model, and only sea on its rim")
 {
     const TestMap& map = complex_district(worlds::Bridge::OneObject).map;
     CHECK(map.bounds.min.head<2>() == Eigen::Vector2d(-128, -212));
@@ -156,7 +156,7 @@ TEST_CASE("the complex district has the extents of its model, and nothing on its
         }
 }
 
-TEST_CASE("of the complex district's columns as many are valid, invalid and without terrain as of its model's")
+TEST_CASE("the complex district has as many valid, invalid and empty columns as its model")
 {
     const TestMap& map = complex_district(worlds::Bridge::OneObject).map;
     const RasterResult result = husky_raster(map, {}, 10);
@@ -169,7 +169,7 @@ TEST_CASE("of the complex district's columns as many are valid, invalid and with
     CHECK(count_of(result, Verdict::Collision) > 0.04 * columns);
 }
 
-TEST_CASE("the same seed gives the same complex district, another seed another")
+TEST_CASE("the same seed gives the same complex district, another seed gives another")
 {
     const auto files_of = [](std::uint64_t seed) {
         const TempFolder folder;
@@ -181,7 +181,7 @@ TEST_CASE("the same seed gives the same complex district, another seed another")
         return files;
     };
     const auto files = files_of(5);
-    CHECK(files.size() < 400);  // houses and cars share theirs
+    CHECK(files.size() < 400);  // houses and cars share their files
     CHECK(files == files_of(5));
     CHECK(files != files_of(6));
 }
@@ -205,7 +205,7 @@ TEST_CASE("houses, cars and the bridge are solid when they are read back")
     }
 }
 
-TEST_CASE("a Husky finds room on the bridge's deck under its frames, which are layers only where they are terrain")
+TEST_CASE("a Husky fits on the deck of the bridge under its frames, which are layers only if they are terrain")
 {
     const Scene& scene = complex_district(worlds::Bridge::DeckAlone).map.scene;
     const std::vector<Bounds> frames = bounds_of(scene, "bridge-frame");
@@ -215,7 +215,7 @@ TEST_CASE("a Husky finds room on the bridge's deck under its frames, which are l
         const Judge judge(map, husky());
         for (const Bounds& frame : frames) {
             const Vec3 middle = (frame.min + frame.max) / 2;
-            const double deck = frame.min.z() + 0.1;  // the frame's feet reach into it
+            const double deck = frame.min.z() + 0.1;  // the feet of the frame reach into the deck
             const std::vector<double> layers = column_at(map.geometry, middle.x(), middle.y()).layers;
             REQUIRE(layers.size() == (bridge == worlds::Bridge::OneObject ? 3 : 2));
             CHECK(layers[layers.size() - 2] == Approx(deck).margin(1e-4));
@@ -225,7 +225,7 @@ TEST_CASE("a Husky finds room on the bridge's deck under its frames, which are l
     }
 }
 
-TEST_CASE("landmarks of the complex district hold what they say")
+TEST_CASE("landmarks of the complex district contain what their names state")
 {
     const auto& [map, landmarks] = complex_district(worlds::Bridge::OneObject);
     std::map<std::string, Bounds> regions;
@@ -257,7 +257,7 @@ TEST_CASE("landmarks of the complex district hold what they say")
     }
 }
 
-TEST_CASE("the low-complexity world is as high, as wide and as primitive as the thesis's")
+TEST_CASE("the low-complexity world has the size of the one in the thesis, and consists of primitives")
 {
     const worlds::World world = worlds::low_complexity();
     REQUIRE(world.scene.parts.front().kind == "heightmap");
@@ -281,7 +281,7 @@ TEST_CASE("the low-complexity world is as high, as wide and as primitive as the 
     }
 }
 
-TEST_CASE("of the low-complexity world the thesis's share is valid, whatever the seed")
+TEST_CASE("the valid share of the low-complexity world is that of the thesis, for every seed")
 {
     const std::uint64_t seed = GENERATE(1, 2);
     const TestMap map = map_of(worlds::low_complexity(seed).scene, 2.0);
@@ -293,25 +293,25 @@ TEST_CASE("of the low-complexity world the thesis's share is valid, whatever the
     CHECK(share(tall, Verdict::Valid) == Approx(0.870).margin(0.015));
 }
 
-TEST_CASE("a raster that reaches 500 m leaves the low-complexity ground in its last row and column")
+TEST_CASE("a raster that reaches 500 m has no ground in its last row and column in the low-complexity world")
 {
     const TestMap map = map_of(worlds::low_complexity().scene, 2.0);
     const auto poses = [&](double step) {
         const VerdictCounts counts = thesis_counts(map, 2, step, {});
         return std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
     };
-    CHECK(poses(4) == 125 * 125);    // of 126 x 126
+    CHECK(poses(4) == 125 * 125);    // of 126 x 126 columns
     CHECK(poses(4.5) == 112 * 112);  // the last column is at 499.5 m
 }
 
-TEST_CASE("the low-complexity world is the same bytes for the same seed, and others for another")
+TEST_CASE("the low-complexity world has the same bytes for the same seed, and others for another seed")
 {
     const std::string bytes = bytes_of_all(worlds::low_complexity(7));
     CHECK(bytes == bytes_of_all(worlds::low_complexity(7)));
     CHECK(bytes != bytes_of_all(worlds::low_complexity(8)));
 }
 
-TEST_CASE("the low-complexity landmarks hold what they say")
+TEST_CASE("landmarks of the low-complexity world contain what their names state")
 {
     const worlds::World world = worlds::low_complexity();
     const TestMap map = map_of(world.scene, 2.0);

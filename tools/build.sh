@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Configures and builds a preset: build.sh PRESET [-DNAME=VALUE...] [TARGET...]. Prints the log only if something fails.
+# Configures and builds a preset: build.sh PRESET [-DNAME=VALUE...] [TARGET...]. Prints the log only if a step fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

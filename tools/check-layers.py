@@ -56,23 +56,26 @@ def by_includes():
 
 
 def by_symbols(build):
-    """The same from the object files of a build. Symbols that several folders define are inline and do not count."""
+    """The same from the object files of a Ninja build. Symbols that several folders define are inline: left out."""
+    if not (build / "build.ninja").exists():
+        fail(f"{build} is no build folder of Ninja")
+    listed = (build / "build.ninja").read_text(encoding="utf-8")  # objects src/FOLDER/X.cpp.o, unity_FOLDER_cxx.cxx.o
+    objects = re.findall(r"^build (\S+/(?:src/|unity_)(\w+?)(?:/\w+\.cpp|_cxx\.cxx)\.o): ", listed, re.MULTILINE)
+    folders = {name: folder for name, folder in objects if (ROOT / "src" / folder).is_dir()}
+    if missing := [name for name in folders if not (build / name).exists()]:
+        fail(f"{build / missing[0]} is missing; build the library first")
+    nm = subprocess.run(["nm", "-A", "-C", "-P", "-g", *folders], cwd=build, capture_output=True, text=True, check=True)
     defined, undefined = {}, {}
-    sources = {file: ROOT / "src" / file.parent.name / file.stem for file in build.glob("CMakeFiles/*.dir/src/*/*.o")}
-    objects = sorted(file for file, source in sources.items() if source.exists())  # a build may have stale files
-    if not objects:
-        fail(f"{build} has no object files of src/; build the library first")
-    lines = subprocess.run(["nm", "-A", "-C", "-P", "-g", *objects], capture_output=True, text=True, check=True).stdout
-    for file, symbol, kind in re.findall(r"^(.*?\.o): (.*?) ([A-Za-z])(?: [0-9a-f]+)*\s*$", lines, re.MULTILINE):
+    for name, symbol, kind in re.findall(r"^(\S+): (.*?) ([A-Za-z])(?: [0-9a-f]+)*\s*$", nm.stdout, re.MULTILINE):
         if "spawnfield" in symbol:
             table = undefined if kind == "U" else defined
-            table.setdefault(symbol, set()).add(sources[Path(file)].relative_to(ROOT))
-    found = {file.parent.name: {} for file in (source.relative_to(ROOT) for source in sources.values())}
-    for symbol, files in sorted(undefined.items()):
-        owners = {file.parent.name for file in defined.get(symbol, ())}
-        for file in sorted(files):
-            if len(owners) == 1 and file.parent.name not in owners:
-                found[file.parent.name].setdefault(*owners, []).append(f"{file}: {symbol}")
+            table.setdefault(symbol, set()).add(name)
+    found = {folder: {} for folder in folders.values()}
+    for symbol, users in sorted(undefined.items()):
+        owners = {folders[name] for name in defined.get(symbol, ())}
+        for name in sorted(users):
+            if len(owners) == 1 and folders[name] not in owners:
+                found[folders[name]].setdefault(*owners, []).append(f"{name}: {symbol}")
     return found
 
 

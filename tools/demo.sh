@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# From a fresh clone to spawn poses and a picture: installs what is missing, builds a release, bakes the training arena,
-# samples 50 spawns for a Husky and draws where it can stand. Without the tests' packages, the tests are not configured.
+# Shows spawnfield from a fresh clone on: installs missing packages, builds a release, bakes the training arena, samples
+# 50 spawns for a Husky and draws where it can stand. If packages of the tests are missing, it builds without tests.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The thesis's eight experiments: experiments.sh [FOLDER] [--quick]. Installs what is missing, builds a release, makes
-# and bakes the environments, runs the tests and writes FOLDER/experiments.md with its plots (default: out/experiments).
+# Runs the eight experiments of the thesis: experiments.sh [FOLDER] [--quick]. Installs missing packages, builds a
+# release, makes and bakes the environments, runs the tests and writes FOLDER/experiments.md with plots. The default of
+# FOLDER is out/experiments.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -9,7 +10,7 @@ quick=()
 for argument in "$@"; do
   case "$argument" in
     --quick) quick=(--quick) ;;
-    -*) echo "experiments.sh: no such option: $argument; usage: tools/experiments.sh [FOLDER] [--quick]" >&2; exit 2 ;;
+    -*) echo "experiments.sh: unknown option $argument; usage: tools/experiments.sh [FOLDER] [--quick]" >&2; exit 2 ;;
     *) folder=$argument ;;
   esac
 done

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Formats all C++ files with clang-format 14: format.sh [--check]. With --check it changes nothing and fails if a file is
-# not formatted, or if a line of a script or a Markdown text is longer than 120 columns. Markdown tables, code blocks and
-# lines without a space (one long link) are exempt.
+# Formats all C++ files with clang-format 14: format.sh [--check]. With --check it changes nothing, and fails if a file
+# is not formatted or if a line of a script or a Markdown file is longer than 120 columns. Markdown tables, code blocks
+# and lines without a space (one long link) may be longer.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

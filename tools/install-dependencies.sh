@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Debian/Ubuntu packages that are missing: install-dependencies.sh [--tests] [--experiments].
-# Without an option: what spawnfield itself is built from. --tests adds what only tests and benchmarks need,
-# --experiments what the plots need. Needs root or sudo, but only if a package is missing.
+# Without an option it installs what the build of spawnfield needs. --tests adds the packages that only tests and
+# benchmarks need, --experiments those of the plots. It needs root or sudo only if a package is missing.
 set -euo pipefail
 
-# ccache is here because adding it later changes every compile command, and so builds everything again.
+# ccache is in the list because installing it later changes every compile command, so that everything is built again.
 packages=(
   ccache cmake g++ ninja-build pkg-config
   libassimp-dev libccd-dev libcli11-dev libdeflate-dev libeigen3-dev libfcl-dev libhpdf-dev liboctomap-dev

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# From a fresh clone to passed tests: test.sh [--no-skips]. Installs what is missing, builds a release and runs every
-# test. With --no-skips a test that ctest reports as skipped is a failure, as CI wants it.
+# Runs all tests from a fresh clone on: test.sh [--no-skips]. Installs missing packages, builds a release and runs every
+# test. With --no-skips, which CI uses, a test that ctest reports as skipped is a failure.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -18,6 +18,6 @@ tools/build.sh release
 results=$PWD/build/release/tests.xml
 ctest --preset release -j "$(nproc)" --output-junit "$results"
 if [ -n "$no_skips" ] && grep -q '<skipped' "$results"; then
-  echo "test.sh: --no-skips: some tests were skipped, see above" >&2
+  echo "test.sh: some tests were skipped (see above), which --no-skips does not allow" >&2
   exit 1
 fi

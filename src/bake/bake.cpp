@@ -24,18 +24,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Others have a map.yaml too: nav2's map server.
+/// Returns why a folder cannot be replaced by a map; an empty text if it is a map. The content of map.yaml decides,
+/// because nav2's map server uses that name too.
 std::string objection_to(const fs::path& folder)
 {
     const fs::path file = folder / "map.yaml";
     const bool is_map = fs::is_regular_file(file) && read_file(file).starts_with("format: spawnfield-map/");
-    return is_map ? "" : "exists and is no map";
+    return is_map ? "" : "exists and is not a map";
 }
 
-/// What people put into the old folder moves to the new one.
+/// Moves files that do not belong to the map, which users put into its folder, from the old folder to the new one.
 void keep_foreign_files(const fs::path& old, const fs::path& now)
 {
-    const std::vector<fs::directory_entry> entries(fs::directory_iterator(old), {});  // read first: some will leave
+    const std::vector<fs::directory_entry> entries(fs::directory_iterator(old),
+                                                   {});  // listed first, because the loop moves some
     for (const fs::directory_entry& entry : entries) {
         const fs::path name = entry.path().filename();
         if (name == "map.yaml" || std::find(map_files.begin(), map_files.end(), name) != map_files.end()) continue;
@@ -53,7 +55,8 @@ double default_resolution(const Bounds& bounds, BakeReport& report)
     if (resolution > 0.1)
         report.notices.push_back(
             "resolution is " + number(resolution) +
-            " m, as 0.1 m would pass 100 million columns, or a million along one side (--resolution sets it)");
+            " m, because 0.1 m would give more than 100 million columns, or more than a million along one side; "
+            "--resolution sets it");
     return resolution;
 }
 
@@ -65,13 +68,13 @@ double default_occupancy_resolution(const Bounds& bounds, double resolution, Bak
     while (reach / voxel > 32767) voxel *= 2;
     if (voxel > wanted)
         report.notices.push_back("occupancy resolution is " + number(voxel) +
-                                 " m, as OctoMap reaches 32768 voxels from the origin and the scene lies " +
-                                 number(reach) + " m out (--occupancy-resolution sets it)");
+                                 " m, because OctoMap reaches 32768 voxels from the origin and the map reaches " +
+                                 number(reach) + " m; --occupancy-resolution sets it");
     return voxel;
 }
 
-/// 16-bit image of the top layer: 0 where there is none, 1 .. 65535 from the lowest height to the highest. The pair is
-/// what 0 and 65535 stand for, as `heightmap: {z: [..]}` in a scene file takes it.
+/// Writes a 16-bit image of the top layer: 0 where there is none, 1 .. 65535 from the lowest height to the highest.
+/// Returns the heights that 0 and 65535 stand for, m; a scene file takes them as `heightmap: {z: [..]}`.
 std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::path& file)
 {
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -91,14 +94,15 @@ std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::
     return {low - step, low + 65534 * step};
 }
 
-/// Most terrain layers above one cell's centre.
+/// Returns the largest number of terrain layers above one cell's centre.
 int count_layers(const TerrainMap& terrain, const HeightImage& top)
 {
     const bool is_empty = std::all_of(top.values.begin(), top.values.end(), [](float z) { return std::isnan(z); });
     return is_empty ? 0 : terrain.layers();
 }
 
-/// terrain.tiff, heightmap.png and preview.png side by side. Sets map.layers; returns heightmap.png's range.
+/// Writes terrain.tiff, heightmap.png and preview.png at the same time. Sets map.layers. Returns the range of
+/// heightmap.png.
 std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path& folder, Map& map, int threads)
 {
     std::pair<double, double> z_range;
@@ -114,14 +118,15 @@ std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path
     return z_range;
 }
 
-/// The stages' share of the progress bar.
+/// Returns the progress function of one stage: its progress 0 .. 1 becomes from .. to of the whole.
 Progress part_of(const Progress& progress, double from, double to)
 {
     if (!progress) return {};
     return [=](double share) { progress(from + share * (to - from)); };
 }
 
-/// The map without what takes long. `refuse` throws for what is wrong with the scene.
+/// Checks the options. Returns a map with its names, bounds and resolutions, but without geometry, layers and floors.
+/// `refuse` throws an error with a reason to refuse the scene.
 Map plan_map(const char* function, const Scene& scene, const BakeOptions& options, BakeReport& report,
              const std::function<void(const std::string&)>& refuse)
 {
@@ -144,7 +149,7 @@ Map plan_map(const char* function, const Scene& scene, const BakeOptions& option
     if (!map.bounds.meets(extent))
         refuse("bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
     const Vec3 size = map.bounds.max - map.bounds.min;
-    constexpr double tiny = 1 + 1e-9;  // m: no robot's world is smaller, but what is left of one may be
+    constexpr double tiny = 1 + 1e-9;  // m; a smaller map is likely only the remainder of a scene
     if (options.bounds.is_empty() && size.x() <= tiny && size.y() <= tiny)
         report.notices.push_back("the map is only " + number(size.x()) + " x " + number(size.y()) +
                                  " m; is a part of the scene missing or in the wrong unit?");

@@ -14,7 +14,8 @@ namespace spawnfield {
 static_assert(std::endian::native == std::endian::little,
               "the map's binary files are little-endian; this machine needs a byte swap");
 
-/// Appends plain values one by one: never a struct with padding.
+/// Collects numbers, arrays and texts as bytes. Numbers are appended one by one, never as a struct, whose padding has
+/// no defined value.
 class BinaryWriter {
 public:
     template <class T>
@@ -23,7 +24,7 @@ public:
         static_assert(std::is_arithmetic_v<T>);
         bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
     }
-    /// A u64 count, then the values, which must have no padding.
+    /// Appends a u64 count, then the values. Their type must have no padding.
     template <class T>
     void put_array(const std::vector<T>& values)
     {
@@ -31,7 +32,7 @@ public:
         put(std::uint64_t(values.size()));
         bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
     }
-    /// A u32 length, then the text.
+    /// Appends a u32 length, then the text.
     void put_text(const std::string& text)
     {
         put(std::uint32_t(text.size()));
@@ -43,7 +44,7 @@ private:
     std::string bytes_;
 };
 
-/// Reads what BinaryWriter wrote; throws std::out_of_range past the end.
+/// Reads what BinaryWriter wrote, in the same order. Throws std::out_of_range if the bytes end too early.
 class BinaryReader {
 public:
     explicit BinaryReader(std::string_view bytes) : rest_(bytes) {}
@@ -74,9 +75,9 @@ private:
     const char* take(std::size_t size)
     {
         if (size > rest_.size()) throw std::out_of_range("value");
-        const char* const at = rest_.data();
+        const char* const start = rest_.data();
         rest_.remove_prefix(size);
-        return at;
+        return start;
     }
     std::string_view rest_;
 };

@@ -12,8 +12,8 @@ namespace spawnfield {
 
 Bytes bytes_of(std::string bytes)
 {
-    const auto kept = std::make_shared<const std::string>(std::move(bytes));
-    return {kept, *kept};
+    const auto owner = std::make_shared<const std::string>(std::move(bytes));
+    return {owner, *owner};
 }
 
 Bytes map_file(const std::filesystem::path& file)
@@ -30,7 +30,8 @@ Bytes map_file(const std::filesystem::path& file)
     close(descriptor);
     if (size == 0) return {};
     if (start == MAP_FAILED) throw FileError(file.string(), "cannot be mapped into memory");
-    const std::shared_ptr<const void> owner(start, [size](const void* at) { munmap(const_cast<void*>(at), size); });
+    const std::shared_ptr<const void> owner(start,
+                                            [size](const void* mapped) { munmap(const_cast<void*>(mapped), size); });
     return {owner, {static_cast<const char*>(start), size}};
 }
 

@@ -7,17 +7,19 @@
 
 namespace spawnfield {
 
-/// Bytes that somebody keeps alive: a string in memory, or a file that is mapped.
+/// Bytes with a shared owner that keeps them alive: a string in memory, or a file mapped into memory.
 struct Bytes {
     std::shared_ptr<const void> owner;
     std::string_view view;
 
+    /// Returns the bytes from `offset` on, at most `size` of them. They share the owner.
     Bytes part(std::size_t offset, std::size_t size) const { return {owner, view.substr(offset, size)}; }
 };
 
+/// Takes the string over.
 Bytes bytes_of(std::string bytes);
 
-/// A whole file, read-only, page by page as it is touched (mmap). Throws FileError.
+/// Maps a whole file into memory, read-only (mmap): the system reads a page when it is first used. Throws FileError.
 Bytes map_file(const std::filesystem::path& file);
 
 }  // namespace spawnfield

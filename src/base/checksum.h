@@ -9,7 +9,7 @@
 
 namespace spawnfield {
 
-/// XXH64 (Collet, xxHash) as 16 hexadecimal digits.
+/// Returns the XXH64 hash of the bytes (Collet, xxHash) as 16 hexadecimal digits.
 inline std::string checksum(std::string_view bytes)
 {
     char text[17];

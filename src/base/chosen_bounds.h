@@ -7,8 +7,9 @@
 
 namespace spawnfield {
 
-/// What the caller asked for, or `fallback` for default Bounds; of the first `axes` axes, the others are the
-/// fallback's. Throws ArgumentError unless they are finite and the lower corner comes first.
+/// Returns the bounds that a caller chose, or `fallback` if `wanted` is a default Bounds. Only the first `axes` axes
+/// are chosen; the others are those of `fallback`. Throws ArgumentError unless the chosen numbers are finite and each
+/// minimum is at most the maximum.
 inline Bounds chosen_bounds(const char* function, const Bounds& wanted, const Bounds& fallback, int axes = 3)
 {
     const Bounds unset;

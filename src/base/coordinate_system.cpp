@@ -16,28 +16,29 @@ std::optional<CoordinateSystem> coordinate_system(const std::string& definition)
     return functions->find(definition);
 }
 
-void tell_unit(const std::string& file, const std::string& what, double unit, std::vector<std::string>& notices)
+void add_unit_notice(const std::string& file, const std::string& what, double unit, std::vector<std::string>& notices)
 {
     if (std::abs(unit) != 1)
         notices.push_back(file + ": " + what + " are in units of " + number(std::abs(unit)) +
                           " m and were converted to metres");
 }
 
-void tell_height_unit(const std::string& file, double unit, const std::string& place, std::vector<std::string>& notices)
+void add_height_unit_notice(const std::string& file, double unit, const std::string& place,
+                            std::vector<std::string>& notices)
 {
-    tell_unit(file, "heights", unit, notices);
+    add_unit_notice(file, "heights", unit, notices);
     if (unit < 0)
-        notices.push_back(file + ": has depths by " + place +
-                          ", which counts downwards; the heights are their negatives");
+        notices.push_back(file + ": its values are depths (" + place +
+                          " counts downwards); heights are their negatives");
 }
 
-void refuse_globe(const std::string& file, bool is_geocentric, const std::string& name)
+void refuse_unprojected(const std::string& file, bool is_geocentric, const std::string& name)
 {
-    throw FileError(file, std::string("is in ") +
-                              (is_geocentric ? "coordinates of the whole globe (geocentric" : "degrees (geographic") +
+    throw FileError(file, std::string("has coordinates ") +
+                              (is_geocentric ? "from the Earth's centre (geocentric" : "in degrees (geographic") +
                               (name.empty() ? "" : ", " + name) +
                               "), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE is a projection in "
-                              "metres such as the UTM zone's");
+                              "metres, such as that of the UTM zone");
 }
 
 }  // namespace spawnfield

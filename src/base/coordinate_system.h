@@ -6,41 +6,46 @@
 
 namespace spawnfield {
 
-/// What a coordinate reference system says of the numbers in it.
+/// The properties of a coordinate reference system that decide how its numbers are read.
 struct CoordinateSystem {
     enum class Place {
-        None,     ///< it has no x and y: heights alone
+        None,     ///< no x and y, only heights
         Plane,    ///< x and y are lengths
         Degrees,  ///< longitude and latitude
-        Globe     ///< x, y and z from the Earth's centre
+        Globe     ///< x, y and z, measured from the Earth's centre
     };
-    std::string name;  ///< in the register's or the file's own words, printable ASCII
+    std::string name;  ///< as in the EPSG register or in the file; printable ASCII only
     Place place = Place::None;
-    double unit = 1;                    ///< m, of x and y on a plane
-    std::optional<double> height_unit;  ///< m; < 0 where it counts downwards (depths); nothing: it has no heights
+    double unit = 1;  ///< m per unit of x and y; only for Plane
+    /// m per unit of height, < 0 if it counts downwards (depths); empty: no heights.
+    std::optional<double> height_unit;
 };
 
-/// By PROJ, of "EPSG:2263", or of a WKT of any kind (ESRI's .prj too); nothing if PROJ does not know it, or it is none.
+/// Returns what PROJ knows about a definition: "EPSG:2263", or WKT text of any kind (also ESRI's .prj). Empty if PROJ
+/// does not know it or it is not a coordinate system.
 ///
-/// What asks PROJ is a module of its own (src/crs), loaded at the first call: PROJ brings libcurl and SQLite with it,
-/// 30 ms that every start of a program would pay. Throws std::runtime_error if it cannot be loaded, or has no database.
+/// PROJ is used by a module of its own (src/crs), which is loaded at the first call: PROJ needs libcurl and SQLite, and
+/// loading these would make every start of a program 30 ms longer. Throws std::runtime_error if the module cannot be
+/// loaded or PROJ finds no database.
 std::optional<CoordinateSystem> coordinate_system(const std::string& definition);
 
-/// Adds the notice that `what` ("heights") was converted; none for metres.
-void tell_unit(const std::string& file, const std::string& what, double unit, std::vector<std::string>& notices);
+/// Adds a notice that the numbers named `what` ("heights") were converted to metres. Adds nothing if the unit is 1 m.
+void add_unit_notice(const std::string& file, const std::string& what, double unit, std::vector<std::string>& notices);
 
-/// The same for heights; and if `unit` is < 0, that by `place`, which says so, they are depths.
-void tell_height_unit(const std::string& file, double unit, const std::string& place,
-                      std::vector<std::string>& notices);
+/// Adds the same notice for heights. If `unit` is negative, also adds a notice that they are depths; it names `place`,
+/// the entry of the file that gives the unit.
+void add_height_unit_notice(const std::string& file, double unit, const std::string& place,
+                            std::vector<std::string>& notices);
 
-/// Throws the FileError of a file in coordinates that are no lengths on a plane; `name` ("EPSG:4326") may be empty.
-[[noreturn]] void refuse_globe(const std::string& file, bool is_geocentric, const std::string& name);
+/// Throws FileError for a file whose coordinates are not lengths on a plane. `name` ("EPSG:4326") may be empty.
+[[noreturn]] void refuse_unprojected(const std::string& file, bool is_geocentric, const std::string& name);
 
 namespace crs_module {
 
+/// Does the work of coordinate_system(), inside the module.
 std::optional<CoordinateSystem> find_system(const std::string& definition);
 
-/// What the module's only symbol points to.
+/// The module's functions. Its only exported symbol has this type.
 struct Functions {
     decltype(&find_system) find;
 };

@@ -8,7 +8,7 @@
 namespace spawnfield {
 namespace {
 
-/// Whether fields are separated by semicolons: then a comma can only be the point of a decimal.
+/// Returns whether semicolons separate the fields of the line. Each comma must then be a decimal comma.
 bool has_semicolons(std::string_view line)
 {
     if (line.find(';') == std::string_view::npos) return false;

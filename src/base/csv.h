@@ -6,19 +6,20 @@
 
 namespace spawnfield {
 
-/// Before the first line of files that some spreadsheets write.
+/// The UTF-8 mark that some spreadsheets write before the first line.
 inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-/// Fields of one line without its end (RFC 4180: quotes around a field, doubled within), spaces around them left out.
+/// Returns the fields of one line, which comes without its line end. Quotes follow RFC 4180: they enclose a field, and
+/// two of them stand for one. Spaces around a field are removed.
 std::vector<std::string> csv_fields(std::string_view line);
 
-/// Whether all fields are numbers, as in a file without a header. False for no fields.
+/// Returns whether all fields are numbers, as in a file without a header line. False if there are no fields.
 bool are_numbers(const std::vector<std::string>& fields);
 
-/// Why a line has no comma-separated fields, and what to do, if it is separated by semicolons or tabs; else empty.
+/// Returns a message, with the remedy, if semicolons or tabs separate the fields of the line; else "".
 std::string separator_complaint(std::string_view line);
 
-/// A field: in quotes if it needs them.
+/// Returns the text as a CSV field: in quotes if it contains a comma, a quote or a line end.
 std::string csv_quoted(std::string_view text);
 
 }  // namespace spawnfield

@@ -15,7 +15,7 @@ constexpr int level = 1;
 
 template <auto release>
 struct Releaser {
-    void operator()(auto* one) const { release(one); }
+    void operator()(auto* object) const { release(object); }
 };
 using Compressor = std::unique_ptr<libdeflate_compressor, Releaser<libdeflate_free_compressor>>;
 using Decompressor = std::unique_ptr<libdeflate_decompressor, Releaser<libdeflate_free_decompressor>>;
@@ -35,9 +35,9 @@ std::string deflate_bytes(std::string_view bytes)
 {
     thread_local const Compressor compressor(libdeflate_alloc_compressor(level));
     if (!compressor) throw std::bad_alloc();
-    const std::size_t most = libdeflate_zlib_compress_bound(compressor.get(), bytes.size());
-    const auto out = std::make_unique_for_overwrite<char[]>(most);
-    const std::size_t size = libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.get(), most);
+    const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), bytes.size());
+    const auto out = std::make_unique_for_overwrite<char[]>(bound);
+    const std::size_t size = libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), out.get(), bound);
     if (size == 0) throw std::runtime_error("libdeflate cannot compress");
     return {out.get(), size};
 }
@@ -59,7 +59,7 @@ std::string deflate_floats(std::span<const float> values, std::size_t cols)
             for (std::size_t plane = 0; plane < 4; ++plane)
                 row[plane * cols + col] = std::uint8_t(bits >> (24 - 8 * plane));
         }
-        for (std::size_t at = 4 * cols - 1; at > 0; --at) row[at] = std::uint8_t(row[at] - row[at - 1]);
+        for (std::size_t byte = 4 * cols - 1; byte > 0; --byte) row[byte] = std::uint8_t(row[byte] - row[byte - 1]);
     }
     return deflate_bytes({bytes.get(), values.size_bytes()});
 }
@@ -70,7 +70,7 @@ void inflate_floats(std::string_view stream, std::size_t cols, std::span<float> 
     inflate_into(stream, bytes.get(), values.size_bytes());
     for (std::size_t first = 0; first < values.size(); first += cols) {
         auto* const row = reinterpret_cast<std::uint8_t*>(bytes.get()) + first * sizeof(float);
-        for (std::size_t at = 1; at < 4 * cols; ++at) row[at] = std::uint8_t(row[at] + row[at - 1]);
+        for (std::size_t byte = 1; byte < 4 * cols; ++byte) row[byte] = std::uint8_t(row[byte] + row[byte - 1]);
         for (std::size_t col = 0; col < cols; ++col) {
             std::uint32_t bits = 0;
             for (std::size_t plane = 0; plane < 4; ++plane) bits = bits << 8 | row[plane * cols + col];

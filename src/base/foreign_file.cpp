@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 struct ForeignKind {
     std::array<const char*, 4> extensions;
     const char* name;
-    const char* as_scene;  ///< what to do if it is meant as a scene; FILE stands for its name
-    const char* as_robot;
+    const char* as_scene;  ///< the remedy if the user gave it as a scene; FILE stands for its name
+    const char* as_robot;  ///< the remedy if the user gave it as a robot
 };
 
 constexpr const char* give_urdf = "give the robot's URDF, or a robot.yaml (docs/robots.md)";
@@ -56,14 +56,14 @@ constexpr ForeignKind mjcf{
     "write its geoms as parts of a scene.yaml (docs/input-files.md), or give the meshes that it names",
     give_urdf};
 
-/// Name of the first element of an XML file; empty if it has none within the first 64 KiB.
+/// Returns the name of the first element of an XML file, or "" if the first 64 KiB contain none.
 std::string first_element(const fs::path& file)
 {
     const std::string text = read_start(file, 1 << 16);
-    for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
-        if (text.compare(at, 4, "<!--") == 0) at = text.find("-->", at);
-        if (at == std::string::npos) break;
-        const std::size_t start = at + 1;
+    for (std::size_t tag = text.find('<'); tag != std::string::npos; tag = text.find('<', tag + 1)) {
+        if (text.compare(tag, 4, "<!--") == 0) tag = text.find("-->", tag);
+        if (tag == std::string::npos) break;
+        const std::size_t start = tag + 1;
         if (start < text.size() && std::isalpha(static_cast<unsigned char>(text[start])) != 0)
             return text.substr(start, text.find_first_of(" \t\r\n/>", start) - start);
     }
@@ -85,9 +85,9 @@ void refuse(const fs::path& file, const char* const ForeignKind::*advice)
     const ForeignKind* const kind = kind_of(file);
     if (kind == nullptr) return;
     std::string words = kind->*advice;
-    if (const std::size_t at = words.find("FILE"); at != std::string::npos)
-        words.replace(at, 4, file.filename().string());
-    throw FileError(file.string(), std::string("is ") + kind->name + ", which is not read; " + words);
+    if (const std::size_t place = words.find("FILE"); place != std::string::npos)
+        words.replace(place, 4, file.filename().string());
+    throw FileError(file.string(), std::string("is ") + kind->name + ", which cannot be read here; " + words);
 }
 
 }  // namespace

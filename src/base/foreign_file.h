@@ -5,8 +5,8 @@
 
 namespace spawnfield {
 
-/// Files of other programs that are not read, but that users give: the complaint names the kind and says how to get the
-/// data in. Each throws FileError for such a file. The file must be regular.
+/// Throw FileError if the file belongs to another program and is not read here, but users often give it. The message
+/// names the kind of file and the way to convert it. The file must be a regular file.
 void refuse_foreign_scene(const std::filesystem::path& file);
 void refuse_foreign_robot(const std::filesystem::path& file);
 

@@ -4,13 +4,13 @@
 
 namespace spawnfield {
 
-/// Where the pixels of an elevation model lie in the coordinates of its survey; row 0 is the largest y.
+/// Place of an elevation model's pixels in survey coordinates. Row 0 has the largest y.
 struct GeoFrame {
-    double x = 0, y = 0;        ///< of the upper left pixel's centre, in units
-    double dx = 1, dy = 1;      ///< between neighbouring centres, in units, > 0
-    double unit = 1;            ///< m
-    bool is_projected = false;  ///< the file says that these are no degrees
-    std::string crs;            ///< "EPSG:32611", or the file's own words; empty: it does not tell
+    double x = 0, y = 0;        ///< centre of the upper left pixel, in units
+    double dx = 1, dy = 1;      ///< distance between neighbouring centres, in units, > 0
+    double unit = 1;            ///< m per unit
+    bool is_projected = false;  ///< the file states that x and y are not degrees
+    std::string crs;            ///< "EPSG:32611", or the name that the file gives; empty: unknown
 };
 
 }  // namespace spawnfield

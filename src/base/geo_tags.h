@@ -4,7 +4,7 @@
 
 namespace spawnfield {
 
-/// Tags of TIFF files that GeoTIFF and GDAL add.
+/// TIFF tags that GeoTIFF and GDAL define.
 enum GeoTag : std::uint32_t {
     model_pixel_scale = 33550,
     model_tiepoint = 33922,
@@ -16,7 +16,7 @@ enum GeoTag : std::uint32_t {
     gdal_no_data = 42113,
 };
 
-/// Registers the types of these tags with libtiff. open_tiff() calls it.
+/// Registers the types of these tags with libtiff. Only open_tiff() needs to call it.
 void register_geo_tags();
 
 }  // namespace spawnfield

@@ -50,15 +50,16 @@ bool second_page_is_mask(TIFF* tiff)
            (kind & FILETYPE_MASK) != 0;
 }
 
-/// The GeoKeyDirectory: a head of four numbers, then four for each key: id, tag that holds its value (0: the last
-/// number is it), count, offset in that tag.
+/// The GeoKeyDirectory. It starts with four numbers; the fourth is the number of keys. Then come four numbers for each
+/// key: its id, the tag that contains the value (0: the fourth number is the value), a count, and the offset of the
+/// value in that tag.
 class GeoKeys {
 public:
     GeoKeys(const GeoTags& tags, const std::string& file) : tags_(tags), file_(file)
     {
         if (tags.keys.empty()) return;
         if (tags.keys.size() < 4 || tags.keys.size() < 4 + 4 * std::size_t(tags.keys[3]))
-            throw FileError(file, "has a GeoKeyDirectory that is cut short");
+            throw FileError(file, "has an incomplete GeoKeyDirectory; is it cut short?");
     }
 
     std::optional<unsigned> number(GeoKey key) const
@@ -97,7 +98,7 @@ private:
     const std::string& file_;
 };
 
-/// "EPSG:32611"; empty if the key is not there or says that the system is the file's own.
+/// Returns "EPSG:32611", or "" if the key is missing or the coordinate system is user-defined.
 std::string epsg_code(const GeoKeys& keys, GeoKey key)
 {
     const unsigned code = keys.number(key).value_or(0);
@@ -115,9 +116,9 @@ std::optional<double> metres_of(unsigned unit)
     }
 }
 
-/// Pixel (col, row) to the survey's coordinates.
+/// Maps pixel (col, row) to survey coordinates.
 struct Affine {
-    double x, dx, y, dy;  ///< x + col dx, y - row dy
+    double x, dx, y, dy;  ///< pixel (col, row) is at x + col dx, y - row dy
 };
 
 Affine affine(const GeoTags& tags, const std::string& file)
@@ -127,7 +128,7 @@ Affine affine(const GeoTags& tags, const std::string& file)
         if (m[1] != 0 || m[4] != 0)
             throw FileError(file,
                             "is rotated against its coordinates (ModelTransformation), needs rows from west to east; "
-                            "gdalwarp makes it so");
+                            "gdalwarp turns it");
         return {m[3], m[0], m[7], -m[5]};
     }
     const std::vector<double>&scale = tags.pixel_scale, &tie = tags.tiepoints;
@@ -135,43 +136,42 @@ Affine affine(const GeoTags& tags, const std::string& file)
         throw FileError(
             file,
             "has " + std::to_string(tie.size() / 6) + " tie points and " + (scale.size() < 2 ? "no" : "a") +
-                " pixel scale (ModelPixelScale), needs one of each, or a ModelTransformation; gdalwarp makes it so");
+                " pixel scale (ModelPixelScale), needs one of each, or a ModelTransformation; gdalwarp writes them");
     return {tie[3] - tie[0] * scale[0], scale[0], tie[4] + tie[1] * scale[1], scale[1]};
 }
 
 void check(const Affine& a, const std::string& file)
 {
     if (!std::isfinite(a.x) || !std::isfinite(a.y) || !std::isfinite(a.dx) || !std::isfinite(a.dy))
-        throw FileError(file, "has a place or pixel scale that is not finite");
+        throw FileError(file, "has a position or pixel scale that is not finite");
     if (!(a.dx > 0) || !(a.dy > 0))
         throw FileError(file, "has a pixel scale of " + number(a.dx) + ", " + number(a.dy) +
-                                  ", needs > 0: rows from west to east, the northern one first; gdalwarp makes it so");
+                                  ", needs > 0: rows from west to east, the northern one first; gdalwarp turns it");
 }
 
 void refuse_degrees(const GeoKeys& keys, const std::string& file)
 {
     const unsigned type = keys.number(model_type).value_or(1);
     if (type != 2 && type != 3) return;
-    refuse_globe(file, type == 3, epsg_code(keys, geodetic_crs));
+    refuse_unprojected(file, type == 3, epsg_code(keys, geodetic_crs));
 }
 
-/// m; of a file that has no ProjLinearUnitsGeoKey.
+/// Returns metres per unit for a file without ProjLinearUnitsGeoKey.
 double unit_by_system(const GeoKeys& keys, const std::string& file, std::vector<std::string>& notices)
 {
     using Place = CoordinateSystem::Place;
     const std::string code = epsg_code(keys, projected_crs);
     if (code.empty()) {
-        notices.push_back(file + ": does not tell the unit of x and y, which are taken as metres");
+        notices.push_back(file + ": does not state the unit of x and y; they are taken as metres");
         return 1;
     }
     const std::optional<CoordinateSystem> found = coordinate_system(code);
     if (found && (found->place == Place::Degrees || found->place == Place::Globe))
-        refuse_globe(file, found->place == Place::Globe, code);
+        refuse_unprojected(file, found->place == Place::Globe, code);
     if (!found || found->place != Place::Plane)
         throw FileError(file, "is in " + code +
-                                  ", which PROJ does not know as a projection, so that nobody knows its unit; "
-                                  "gdal_edit.py -a_srs gives it "
-                                  "another, or tell its spacing in metres with the key cell");
+                                  ", which PROJ does not know as a projection, so its unit is unknown; give it another "
+                                  "with gdal_edit.py -a_srs, or give the spacing in metres with the key cell");
     return found->unit;
 }
 
@@ -182,27 +182,27 @@ double linear_unit(const GeoKeys& keys, const std::string& file, std::vector<std
                                        : *code == user_defined ? keys.real(linear_unit_size)
                                                                : metres_of(*code);
     if (!size || !std::isfinite(*size) || !(*size > 0))
-        throw FileError(file, "has x and y in unit " + std::to_string(*code) +
+        throw FileError(file, "has x and y in the unit " + std::to_string(*code) +
                                   " (ProjLinearUnitsGeoKey), needs metres (9001), kilometres (9036) or feet (9002, "
                                   "9003); reproject it with gdalwarp -t_srs");
-    tell_unit(file, "x and y", *size, notices);
+    add_unit_notice(file, "x and y", *size, notices);
     return *size;
 }
 
 std::string crs_of(const GeoKeys& keys)
 {
     if (const std::string code = epsg_code(keys, projected_crs); !code.empty()) return code;
-    std::string words = keys.text(projected_citation);
-    if (words.empty()) words = keys.text(citation);
-    std::erase_if(words, [](unsigned char c) { return c < ' ' || c > '~'; });
-    return words;
+    std::string name = keys.text(projected_citation);
+    if (name.empty()) name = keys.text(citation);
+    std::erase_if(name, [](unsigned char c) { return c < ' ' || c > '~'; });
+    return name;
 }
 
-/// The text of an <Item> in GDAL's metadata whose role is as given; empty if there is none.
+/// Returns the text of the <Item> with this role in GDAL's metadata, or "" if there is none.
 std::string metadata_item(const std::string& metadata, const std::string& role)
 {
-    const std::size_t at = metadata.find("role=\"" + role + "\"");
-    const std::size_t start = at == std::string::npos ? at : metadata.find('>', at);
+    const std::size_t item = metadata.find("role=\"" + role + "\"");
+    const std::size_t start = item == std::string::npos ? item : metadata.find('>', item);
     if (start == std::string::npos) return "";
     return metadata.substr(start + 1, metadata.find('<', start) - start - 1);
 }
@@ -213,59 +213,62 @@ void refuse_scaled(const GeoTags& tags, const std::string& file)
         const std::string text = metadata_item(tags.metadata, role);
         double value = none;
         if (text.empty() || (parse_number(text, value) && value == none)) continue;
-        throw FileError(file, std::string("has heights with a ") + role + " of " + text +
-                                  ", needs plain ones; gdal_translate -unscale -ot Float32 makes them");
+        throw FileError(
+            file, std::string("has heights with a ") + role + " of " + text +
+                      ", needs heights without scale and offset; gdal_translate -unscale -ot Float32 applies them");
     }
 }
 
-/// What one place of a file says of the unit of its heights.
-struct UnitWord {
-    std::string place;             ///< for complaints
-    std::optional<double> metres;  ///< < 0 of depths; nothing: a unit that is not known
+/// A unit of heights that an entry of the file states.
+struct StatedUnit {
+    std::string place;             ///< the entry, for messages
+    std::optional<double> metres;  ///< per unit, < 0 for depths; empty: the unit is unknown
 };
 
-UnitWord unit_of_band(const std::string& type)
+StatedUnit unit_of_band(const std::string& type)
 {
-    UnitWord word{"\"" + type + "\"", {}};
+    StatedUnit stated{"\"" + type + "\"", {}};
     if (type == "m" || type == "metre" || type == "meter" || type == "metres" || type == "meters" || type == "Meter")
-        word.metres = 1;
-    if (type == "ft" || type == "foot" || type == "feet" || type == "Foot") word.metres = metres_of(9002);
-    if (type == "sft" || type == "us-ft" || type == "US survey foot") word.metres = metres_of(9003);
-    return word;
+        stated.metres = 1;
+    if (type == "ft" || type == "foot" || type == "feet" || type == "Foot") stated.metres = metres_of(9002);
+    if (type == "sft" || type == "us-ft" || type == "US survey foot") stated.metres = metres_of(9003);
+    return stated;
 }
 
-UnitWord unit_of_system(const std::string& code)
+StatedUnit unit_of_system(const std::string& code)
 {
     const std::optional<CoordinateSystem> found = coordinate_system(code);
     return {code + " (VerticalGeoKey)", found ? found->height_unit : std::nullopt};
 }
 
-/// All that the file says, in the order in which GDAL 3.6 believes it; a system that PROJ does not know comes last.
-std::vector<UnitWord> height_units(const GeoTags& tags, const std::string& file)
+/// Returns all units that the file states, in the order of precedence of GDAL 3.6. A coordinate system that PROJ does
+/// not know comes last.
+std::vector<StatedUnit> height_units(const GeoTags& tags, const std::string& file)
 {
     const GeoKeys keys(tags, file);
-    std::vector<UnitWord> words;
+    std::vector<StatedUnit> units;
     if (const std::string type = metadata_item(tags.metadata, "unittype"); !type.empty())
-        words.push_back(unit_of_band(type));
+        units.push_back(unit_of_band(type));
     const std::string system = epsg_code(keys, vertical_crs);
-    const UnitWord by_system = system.empty() ? UnitWord{} : unit_of_system(system);
-    if (by_system.metres) words.push_back(by_system);
+    const StatedUnit by_system = system.empty() ? StatedUnit{} : unit_of_system(system);
+    if (by_system.metres) units.push_back(by_system);
     if (const auto code = keys.number(vertical_units))
-        words.push_back({std::to_string(*code) + " (VerticalUnitsGeoKey)", metres_of(*code)});
-    if (!system.empty() && !by_system.metres) words.push_back(by_system);
-    return words;
+        units.push_back({std::to_string(*code) + " (VerticalUnitsGeoKey)", metres_of(*code)});
+    if (!system.empty() && !by_system.metres) units.push_back(by_system);
+    return units;
 }
 
-/// Of the units by which heights are not taken.
-void tell_other_units(const std::vector<UnitWord>& words, const std::string& file, std::vector<std::string>& notices)
+/// Adds a notice for each stated unit that differs from the first one, which is used.
+void add_other_unit_notices(const std::vector<StatedUnit>& units, const std::string& file,
+                            std::vector<std::string>& notices)
 {
-    constexpr double feet_apart = 1e-5;  // relative: the two feet are 2e-6 apart, and often taken for each other
-    const double unit = std::abs(*words[0].metres);
-    for (const UnitWord& word : words)
-        if (word.metres && std::abs(std::abs(*word.metres) - unit) > feet_apart * unit)
-            notices.push_back(file + ": says that heights are in units of " + number(unit) + " m by " + words[0].place +
-                              ", and of " + number(std::abs(*word.metres)) + " m by " + word.place +
-                              "; they are taken by the first");
+    constexpr double feet_apart = 1e-5;  // relative; US survey feet and feet differ by 2e-6 and are often confused
+    const double unit = std::abs(*units[0].metres);
+    for (const StatedUnit& stated : units)
+        if (stated.metres && std::abs(std::abs(*stated.metres) - unit) > feet_apart * unit)
+            notices.push_back(file + ": heights are in units of " + number(unit) + " m by " + units[0].place +
+                              ", but of " + number(std::abs(*stated.metres)) + " m by " + stated.place +
+                              "; the first is used");
 }
 
 }  // namespace
@@ -326,18 +329,18 @@ std::optional<double> no_data_value(const GeoTags& tags, const std::string& file
 double height_unit(const GeoTags& tags, const std::string& file, std::vector<std::string>& notices)
 {
     refuse_scaled(tags, file);
-    const std::vector<UnitWord> words = height_units(tags, file);
-    if (words.empty()) return 1;
-    if (!words[0].metres)
-        throw FileError(file, "has heights in unit " + words[0].place +
-                                  ", needs metres (9001), kilometres (9036) or feet (9002, 9003); gdal_edit.py -units "
-                                  "m or ft says which they are");
-    tell_other_units(words, file, notices);
-    const auto depths = std::find_if(words.begin(), words.end(),
-                                     [](const UnitWord& word) { return word.metres.value_or(1) < 0; });
-    const bool is_depth = depths != words.end();
-    const double unit = std::abs(*words[0].metres) * (is_depth ? -1 : 1);
-    tell_height_unit(file, unit, is_depth ? depths->place : words[0].place, notices);
+    const std::vector<StatedUnit> units = height_units(tags, file);
+    if (units.empty()) return 1;
+    if (!units[0].metres)
+        throw FileError(file, "has heights in the unit " + units[0].place +
+                                  ", needs metres (9001), kilometres (9036) or feet (9002, 9003); set the unit with "
+                                  "gdal_edit.py -units m or ft");
+    add_other_unit_notices(units, file, notices);
+    const auto depths = std::find_if(units.begin(), units.end(),
+                                     [](const StatedUnit& stated) { return stated.metres.value_or(1) < 0; });
+    const bool is_depth = depths != units.end();
+    const double unit = std::abs(*units[0].metres) * (is_depth ? -1 : 1);
+    add_height_unit_notice(file, unit, is_depth ? depths->place : units[0].place, notices);
     return unit;
 }
 

@@ -5,15 +5,15 @@
 
 namespace spawnfield {
 
-constexpr std::uint64_t max_pixels = std::uint64_t(1) << 30;  ///< that an image may have
+constexpr std::uint64_t max_pixels = std::uint64_t(1) << 30;  ///< default limit for an image
 
-/// One channel, rows from the top.
+/// An image of one channel. Row 0 is at the top.
 struct GreyImage {
     int rows = 0, cols = 0;
-    double largest = 0;  ///< what white is in an unsigned image: 255 or 65535; 0: values stand for themselves (float,
-                         ///< signed, 32 bits)
-    std::vector<double> pixels;
-    bool zero_is_white = false;  ///< a viewer shows largest as black (TIFF's MINISWHITE)
+    /// Value of white in an unsigned image: 255 or 65535. 0: pixels are plain numbers (float, signed or 32 bits).
+    double largest = 0;
+    std::vector<double> pixels;  ///< row after row
+    bool zero_is_white = false;  ///< viewers show 0 as white and `largest` as black (TIFF's MINISWHITE)
     bool is_float32 = false;
 };
 

@@ -17,8 +17,8 @@ std::string complaint_about(fs::file_type type, const std::error_code& error)
     case fs::file_type::not_found: return "does not exist; is the path right?";
     case fs::file_type::directory: return "is a folder, needs a file";
     case fs::file_type::fifo:
-        return "is a pipe, needs a regular file; write it to one first, or give - (standard input) where the option "
-               "takes it";
+        return "is a pipe, needs a regular file; write it to one first, or give - (standard input) if the option "
+               "accepts it";
     case fs::file_type::character:
     case fs::file_type::block: return "is a device, needs a regular file";
     case fs::file_type::socket: return "is a socket, needs a regular file";

@@ -21,7 +21,7 @@ const void* module_symbol(const char* file_name, const char* symbol, const std::
     if (found != nullptr) return found;
     const char* const reason = dlerror();
     throw std::runtime_error(failure + ": " + file.string() +
-                             " cannot be loaded: " + (reason != nullptr ? reason : "no reason is told"));
+                             " cannot be loaded: " + (reason != nullptr ? reason : "no reason is known"));
 }
 
 }  // namespace spawnfield

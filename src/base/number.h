@@ -6,7 +6,7 @@
 
 namespace spawnfield {
 
-/// Shortest text that reads back to the same double.
+/// Appends the shortest text that reads back to the same double.
 inline void append_number(std::string& text, double value)
 {
     char buffer[32];
@@ -14,6 +14,7 @@ inline void append_number(std::string& text, double value)
     text.append(buffer, end);
 }
 
+/// Returns the shortest text that reads back to the same double.
 inline std::string number(double value)
 {
     std::string text;
@@ -21,7 +22,7 @@ inline std::string number(double value)
     return text;
 }
 
-/// The whole of text as a number; false if any of it is something else.
+/// Reads the whole text as a number. Returns false if any part of it is not a number; a single + in front is allowed.
 inline bool parse_number(std::string_view text, double& value)
 {
     if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);

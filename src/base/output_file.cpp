@@ -12,17 +12,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Pipes, devices, and whatever standard output is where it goes by a name (/dev/stdout, /proc/self/fd/1).
+/// Returns whether the file is a pipe, a device, or a system link to the standard output (/dev/stdout,
+/// /proc/self/fd/1), even if that is redirected to a regular file. Such files are written directly.
 bool is_special(const fs::path& file)
 {
     std::error_code ignored;
     if (!fs::exists(file, ignored)) return false;
     const std::string name = fs::absolute(file, ignored).lexically_normal().string();
-    const bool of_system = name.starts_with("/dev/") || name.starts_with("/proc/");
-    return !fs::is_regular_file(file, ignored) || (of_system && fs::is_symlink(file, ignored));
+    const bool is_of_system = name.starts_with("/dev/") || name.starts_with("/proc/");
+    return !fs::is_regular_file(file, ignored) || (is_of_system && fs::is_symlink(file, ignored));
 }
 
-/// Links are followed, so that they stay links.
+/// Follows links, so that the target is replaced and the links stay.
 fs::path target_of(const fs::path& file)
 {
     std::error_code error;
@@ -42,7 +43,7 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file))
         target_ = target_of(file_);
         written_ = target_.string() + ".tmp-" + std::to_string(getpid());
     }
-    // A file behind /dev/stdout may hold something already.
+    // A file behind /dev/stdout may have content already; it is kept.
     stream_.open(written_, std::ios::binary | (target_.empty() ? std::ios::app : std::ios::trunc));
     if (!stream_) fail(std::strerror(errno));
 }
@@ -82,8 +83,8 @@ void OutputFile::keep_old()
     if (target_.empty() || !fs::exists(target_, error)) return;
     const fs::path old = target_.string() + ".old-" + std::to_string(getpid());
     fs::remove(old, error);
-    fs::create_hard_link(target_, old, error);      // so that there is a file of this name at all times
-    if (error) fs::copy_file(target_, old, error);  // file systems without links
+    fs::create_hard_link(target_, old, error);      // a link, so that a file of this name exists at any time
+    if (error) fs::copy_file(target_, old, error);  // for file systems without hard links
     if (error) fail(error.message());
     old_ = old;
 }

@@ -29,7 +29,8 @@ void refuse_foreign(const fs::path& target, const std::function<std::string(cons
     if (!reason.empty()) throw OutputError(target.string(), reason + "; choose another name or remove it");
 }
 
-/// At one blow, so that there is a target at any moment; false where the file system cannot.
+/// Exchanges two folders atomically, so that the target exists at any time. Returns false if the file system cannot do
+/// this.
 bool exchange(const fs::path& a, const fs::path& b)
 {
     return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
@@ -46,7 +47,7 @@ OutputFolder::OutputFolder(const Path& target, const std::function<std::string(c
     old_ = target_.string() + ".old" + suffix;
     std::error_code error;
     fs::create_directories(folder_, error);
-    if (error) throw OutputError(folder_.string(), "cannot be made: " + error.message());
+    if (error) throw OutputError(folder_.string(), "cannot be created: " + error.message());
 }
 
 OutputFolder::~OutputFolder()
@@ -79,14 +80,14 @@ void OutputFolder::commit(const std::function<void(const Path& old, const Path& 
 std::function<std::string(const fs::path&)> holds_only(std::span<const char* const> names, const std::string& kind)
 {
     return [names, kind](const fs::path& folder) -> std::string {
-        if (!fs::is_directory(folder)) return "exists and is no folder";
-        std::string foreign;  // the first by name: folders have no order
+        if (!fs::is_directory(folder)) return "exists and is not a folder";
+        std::string foreign;  // the first by name, as the order of entries in a folder is not defined
         for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
             const std::string name = entry.path().filename().string();
             const bool known = entry.is_regular_file() && std::find(names.begin(), names.end(), name) != names.end();
             if (!known && (foreign.empty() || name < foreign)) foreign = name;
         }
-        return foreign.empty() ? "" : "holds " + foreign + ", which is no part of a " + kind;
+        return foreign.empty() ? "" : "contains " + foreign + ", which is not part of a " + kind;
     };
 }
 

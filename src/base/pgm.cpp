@@ -16,34 +16,35 @@ class PgmReader {
 public:
     PgmReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
-    /// The next whole number, after white space and comments.
+    /// Returns the next whole number; skips white space and comments before it.
     std::uint32_t number(const std::string& what)
     {
-        for (; at_ < text_.size() && (is_space(text_[at_]) || text_[at_] == '#'); ++at_)
-            if (text_[at_] == '#') at_ = std::min(text_.find('\n', at_), text_.size() - 1);
+        for (; position_ < text_.size() && (is_space(text_[position_]) || text_[position_] == '#'); ++position_)
+            if (text_[position_] == '#') position_ = std::min(text_.find('\n', position_), text_.size() - 1);
         std::uint64_t value = 0;
-        const std::size_t start = at_;
-        for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9' && value < 1u << 31; ++at_)
-            value = 10 * value + std::uint64_t(text_[at_] - '0');
-        if (at_ == start || value >= 1u << 31)
-            throw FileError(file_, "is cut short or a damaged PGM image: " + what + " is no whole number");
+        const std::size_t start = position_;
+        for (; position_ < text_.size() && text_[position_] >= '0' && text_[position_] <= '9' && value < 1u << 31;
+             ++position_)
+            value = 10 * value + std::uint64_t(text_[position_] - '0');
+        if (position_ == start || value >= 1u << 31)
+            throw FileError(file_, "is cut short or a damaged PGM image: " + what + " is not a whole number");
         return std::uint32_t(value);
     }
 
-    /// All that follows one white space.
+    /// Skips one white space and returns the rest.
     std::string_view rest()
     {
-        if (at_ < text_.size() && is_space(text_[at_])) ++at_;
-        return text_.substr(at_);
+        if (position_ < text_.size() && is_space(text_[position_])) ++position_;
+        return text_.substr(position_);
     }
 
 private:
     std::string_view text_;
     const std::string& file_;
-    std::size_t at_ = 2;
+    std::size_t position_ = 2;
 };
 
-std::uint32_t within(std::uint32_t value, std::uint32_t most, const std::string& file, const std::string& what)
+std::uint32_t checked(std::uint32_t value, std::uint32_t most, const std::string& file, const std::string& what)
 {
     if (value < 1 || value > most)
         throw FileError(file,
@@ -73,15 +74,15 @@ bool is_pgm(std::string_view start) { return start.starts_with("P2") || start.st
 GreyImage read_pgm(const std::filesystem::path& path, std::uint64_t most)
 {
     const std::string file = path.string(), text = read_file(path);
-    if (!is_pgm(text)) throw FileError(file, "is no PGM image (P2 or P5)");
+    if (!is_pgm(text)) throw FileError(file, "is not a PGM image (P2 or P5)");
     PgmReader reader(text, file);
     constexpr std::uint32_t most_side = 2147483647;
-    const std::uint32_t cols = within(reader.number("the width"), most_side, file, "width"),
-                        rows = within(reader.number("the height"), most_side, file, "height");
+    const std::uint32_t cols = checked(reader.number("the width"), most_side, file, "width"),
+                        rows = checked(reader.number("the height"), most_side, file, "height");
     if (std::uint64_t(rows) * cols > most)
         throw FileError(file, "has " + std::to_string(cols) + " x " + std::to_string(rows) + " pixels, needs at most " +
                                   std::to_string(most));
-    const std::uint32_t largest = within(reader.number("the largest value"), 65535, file, "largest value");
+    const std::uint32_t largest = checked(reader.number("the largest value"), 65535, file, "largest value");
     GreyImage image{int(rows), int(cols), double(largest), {}};
     const std::size_t count = std::size_t(rows) * cols;
     if (text[1] == '2')

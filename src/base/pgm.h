@@ -7,10 +7,12 @@
 
 namespace spawnfield {
 
-bool is_pgm(std::string_view start);  ///< its first 2 bytes or more: P2 or P5
+/// Returns whether a file that starts with these bytes (2 or more) is a PGM image: P2 or P5.
+bool is_pgm(std::string_view start);
 
-/// Grey pixels in text (P2) or bytes (P5), of one byte or two (largest value 1 .. 65535), with comments in the head.
-/// Throws FileError; for more than `most` pixels before any is read. Source: netpbm's pgm(5).
+/// Reads grey pixels as text (P2) or bytes (P5), of one or two bytes each (largest value 1 .. 65535). The header may
+/// contain comments. Throws FileError; an image of more than `most` pixels is refused before its pixels are read.
+/// Source: netpbm's pgm(5).
 GreyImage read_pgm(const std::filesystem::path& file, std::uint64_t most = max_pixels);
 
 }  // namespace spawnfield

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-// libpng reports errors with longjmp. The functions that set the place to jump back to, and those that libpng calls,
-// hold plain data only, so that no destructor is jumped over; what has one lives in their callers.
+// libpng reports errors with longjmp, which skips destructors. So the functions that call setjmp, and those that libpng
+// calls back, have only local variables without destructors. Their callers own everything else.
 namespace spawnfield {
 namespace {
 
@@ -37,7 +37,7 @@ void on_warning(png_structp, png_const_charp) {}
 
 class PngReader {
 public:
-    explicit PngReader(std::string_view bytes) : left_(bytes)
+    explicit PngReader(std::string_view bytes) : remaining_(bytes)
     {
         png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message_, on_error, on_warning);
         if (png_) info_ = png_create_info_struct(png_);
@@ -45,7 +45,7 @@ public:
             png_destroy_read_struct(&png_, nullptr, nullptr);
             throw std::bad_alloc();
         }
-        png_set_read_fn(png_, &left_, take);
+        png_set_read_fn(png_, &remaining_, read_bytes);
     }
     PngReader(const PngReader&) = delete;
     PngReader& operator=(const PngReader&) = delete;
@@ -58,8 +58,8 @@ public:
         return true;
     }
 
-    bool prepare(
-        bool in_full)  ///< whole bytes for each sample; in full: palettes and transparency as colours and alpha
+    /// Makes each sample whole bytes. In full: also converts palettes to colours, and transparency to alpha.
+    bool prepare(bool in_full)
     {
         if (setjmp(png_jmpbuf(png_))) return false;
         if (in_full)
@@ -87,15 +87,15 @@ public:
     const char* message() const { return message_.text; }
 
 private:
-    static void take(png_structp png, png_bytep to, std::size_t count)
+    static void read_bytes(png_structp png, png_bytep to, std::size_t count)
     {
-        auto& left = *static_cast<std::string_view*>(png_get_io_ptr(png));
-        if (count > left.size()) png_error(png, "cut short");
-        std::memcpy(to, left.data(), count);
-        left.remove_prefix(count);
+        auto& remaining = *static_cast<std::string_view*>(png_get_io_ptr(png));
+        if (count > remaining.size()) png_error(png, "cut short");
+        std::memcpy(to, remaining.data(), count);
+        remaining.remove_prefix(count);
     }
 
-    std::string_view left_;
+    std::string_view remaining_;
     Message message_;
     png_structp png_ = nullptr;
     png_infop info_ = nullptr;
@@ -114,13 +114,14 @@ void append_chunk(std::string& out, const char* type, std::string_view data)
     append_big_endian(out, libdeflate_crc32(0, out.data() + start, out.size() - start));
 }
 
-/// Every row as differences from the one above (filter 2): good for heights and pictures alike, and the same choice
-/// always. libpng, which deflates with zlib, would take three times as long. put_row(row, out) writes the bytes of one.
+/// Returns a PNG file whose rows are all stored as differences from the row above (filter 2), which suits heights and
+/// pictures. The bytes are compressed with libdeflate, three times as fast as libpng, which uses zlib. put_row(row,
+/// out) writes the bytes of one row.
 template <class PutRow>
 std::string png_bytes(const std::string& name, int rows, int cols, int bits, int colour, std::size_t row_bytes,
                       const PutRow& put_row)
 {
-    constexpr int most = 1000000;  // that libpng reads
+    constexpr int most = 1000000;  // libpng's limit for reading
     if (rows < 1 || cols < 1 || rows > most || cols > most)
         throw OutputError(name, "cannot be written as PNG: it has " + std::to_string(cols) + " x " +
                                     std::to_string(rows) + " pixels, needs 1 to " + std::to_string(most) +
@@ -131,11 +132,12 @@ std::string png_bytes(const std::string& name, int rows, int cols, int bits, int
     for (std::size_t row = 0; row < count; ++row) {
         put_row(row, here.data());
         char* const out = filtered.data() + row * (row_bytes + 1) + 1;
-        for (std::size_t at = 0; at < row_bytes; ++at) out[at] = char(here[at] - above[at]);
+        for (std::size_t byte = 0; byte < row_bytes; ++byte) out[byte] = char(here[byte] - above[byte]);
         std::swap(here, above);
     }
     const std::string pixels = deflate_bytes(filtered);
-    if (pixels.size() > PNG_UINT_31_MAX) throw OutputError(name, "cannot be written as PNG: it would pass 2 GB");
+    if (pixels.size() > PNG_UINT_31_MAX)
+        throw OutputError(name, "cannot be written as PNG: its pixels need more than 2 GB");
     std::string head, bytes = "\x89PNG\r\n\x1a\n";
     append_big_endian(head, std::uint32_t(cols));
     append_big_endian(head, std::uint32_t(rows));
@@ -169,13 +171,13 @@ void check_size(const PngReader& reader, const std::string& file, std::uint64_t 
                                   " pixels, needs at most " + std::to_string(most));
 }
 
-/// All samples of a prepared reader, of one byte or two, row after row.
+/// Reads all samples, of one byte or two, row after row. The reader must be prepared.
 PngBytes read_samples(PngReader& reader, const std::string& file)
 {
     const std::size_t rows = std::size_t(reader.rows());
     const std::size_t row_bytes = std::size_t(reader.cols()) * std::size_t(reader.channels()) *
                                   (reader.bits() == 16 ? 2 : 1);
-    // Not cleared, so that a damaged header which tells of a giant costs nothing.
+    // The memory is not cleared: a damaged header that claims a giant image then costs nothing.
     PngBytes data = std::make_unique_for_overwrite<png_byte[]>(rows * row_bytes);
     const auto starts = std::make_unique_for_overwrite<png_bytep[]>(rows);
     for (std::size_t row = 0; row < rows; ++row) starts[row] = data.get() + row * row_bytes;
@@ -188,7 +190,7 @@ std::uint16_t sample(const PngBytes& data, std::size_t i, bool wide)
     return wide ? std::uint16_t(data[2 * i] * 256 + data[2 * i + 1]) : data[i];
 }
 
-/// Of an image that is stored in colours, or with transparency, but has none.
+/// Converts an image that is stored with colours or alpha. Throws FileError unless all pixels are grey and opaque.
 GreyImage grey_of(const ColourImage& image, const std::string& file)
 {
     GreyImage grey{image.rows, image.cols, double(image.largest), {}};
@@ -198,9 +200,10 @@ GreyImage grey_of(const ColourImage& image, const std::string& file)
     for (std::size_t i = 0; i < image.samples.size(); i += std::size_t(image.channels)) {
         const std::uint16_t* const pixel = &image.samples[i];
         const auto refuse = [&](const char* what) {
-            const std::size_t at = grey.pixels.size(), cols = std::size_t(image.cols);
-            throw FileError(file, "has a pixel that is " + std::string(what) + " (column " + std::to_string(at % cols) +
-                                      ", row " + std::to_string(at / cols) + "), needs to be a grey image");
+            const std::size_t index = grey.pixels.size(), cols = std::size_t(image.cols);
+            throw FileError(file, "has a pixel that is " + std::string(what) + " (column " +
+                                      std::to_string(index % cols) + ", row " + std::to_string(index / cols) +
+                                      "), needs only grey, opaque pixels");
         };
         if (std::any_of(pixel + 1, pixel + colours, [&](std::uint16_t value) { return value != pixel[0]; }))
             refuse("coloured");
@@ -248,10 +251,10 @@ std::string bgr_png(const std::string& name, int rows, int cols, const std::uint
     const std::size_t row_bytes = 3 * std::size_t(cols);
     return png_bytes(name, rows, cols, 8, PNG_COLOR_TYPE_RGB, row_bytes, [&](std::size_t row, std::uint8_t* out) {
         const std::uint8_t* const from = pixels + row * row_bytes;
-        for (std::size_t at = 0; at < row_bytes; at += 3) {
-            out[at] = from[at + 2];
-            out[at + 1] = from[at + 1];
-            out[at + 2] = from[at];
+        for (std::size_t byte = 0; byte < row_bytes; byte += 3) {
+            out[byte] = from[byte + 2];
+            out[byte + 1] = from[byte + 1];
+            out[byte + 2] = from[byte];
         }
     });
 }

@@ -8,14 +8,15 @@ namespace spawnfield {
 
 using Vec2 = Eigen::Vector2d;
 
-/// A convex polygon, counterclockwise.
+/// Corners of a convex polygon, counterclockwise.
 using Polygon2 = std::vector<Vec2>;
 
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Of the edge from p to q of a counterclockwise polygon, outwards, as long as the edge.
+/// Returns the outward normal of the edge from p to q of a counterclockwise polygon. It is as long as the edge.
 inline Vec2 normal_of(const Vec2& p, const Vec2& q) { return {q.y() - p.y(), p.x() - q.x()}; }
 
+/// Returns the area, < 0 if the corners run clockwise.
 template <class Polygon>
 double area_of(const Polygon& polygon)
 {
@@ -25,7 +26,7 @@ double area_of(const Polygon& polygon)
     return twice / 2;
 }
 
-/// The part of a convex polygon at most at `offset` along the normal: one more corner at most.
+/// Returns the part of a convex polygon where normal · point <= offset. It has at most one corner more.
 template <class Polygon>
 Polygon cut(const Polygon& polygon, const Vec2& normal, double offset)
 {
@@ -39,10 +40,10 @@ Polygon cut(const Polygon& polygon, const Vec2& normal, double offset)
     return out;
 }
 
-/// Convex hull of points (Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979).
+/// Returns the convex hull of points (Andrew, Another efficient algorithm for convex hulls in two dimensions, 1979).
 Polygon2 convex_hull(Polygon2 points);
 
-/// Whether a point is in a convex polygon, rim included; in one without corners none is.
+/// Returns whether a point lies in a convex polygon or on its edge. A polygon without corners contains no point.
 inline bool contains(const Polygon2& polygon, const Vec2& point)
 {
     for (std::size_t k = 0; k < polygon.size(); ++k) {

@@ -2,7 +2,7 @@
 
 namespace spawnfield {
 
-/// A rectangle as seen from above, m.
+/// An axis-aligned rectangle, seen from above, m.
 struct Rect {
     double low_x, low_y, high_x, high_y;
 

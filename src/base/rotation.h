@@ -5,8 +5,9 @@
 namespace spawnfield {
 
 /// Returns the smallest rotation that turns the z axis to `direction`, which must not be zero. For a direction that is
-/// straight down (to 1e-12), it is a half turn about the x axis. The numbers are those of Eigen's
-/// Quaterniond::FromTwoVectors, whose singular value decomposition costs seconds of compile time in each file.
+/// straight down (to 1e-12), this is a half turn about the x axis. The numbers are the same as those of Eigen's
+/// Quaterniond::FromTwoVectors, but that function instantiates a singular value decomposition, which takes seconds to
+/// compile in each file.
 Mat3 rotation_from_z_to(const Vec3& direction);
 
 }  // namespace spawnfield

@@ -5,14 +5,14 @@
 
 namespace spawnfield {
 
-/// The largest float that is not above value.
+/// Returns the largest float that is not above value.
 inline float rounded_down(double value)
 {
     const float nearest = float(value);
     return double(nearest) > value ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
 }
 
-/// The smallest float that is not below value.
+/// Returns the smallest float that is not below value.
 inline float rounded_up(double value) { return -rounded_down(-value); }
 
 }  // namespace spawnfield

@@ -7,7 +7,7 @@
 namespace spawnfield {
 namespace {
 
-/// The vertical line in a shape's own frame: origin + t * direction, where t is the height above the shape's centre.
+/// A vertical line in a shape's own frame: origin + t * direction, where t is the height above the shape's centre.
 struct LocalLine {
     Vec3 origin, direction;
 };
@@ -18,7 +18,8 @@ LocalLine local_line(const Shape& shape, double x, double y)
     return {shape.pose.rotation.transpose() * offset, shape.pose.rotation.row(2).transpose()};
 }
 
-/// Part of [t.bottom, t.top] where |origin + t * direction| <= half on one axis.
+/// Clips [t.bottom, t.top] to the part where |origin + t * direction| <= half on one axis. Returns false if nothing
+/// remains.
 bool clip_slab(double origin, double direction, double half, Interval& t)
 {
     const double reach = half + touch_tolerance;
@@ -29,7 +30,7 @@ bool clip_slab(double origin, double direction, double half, Interval& t)
     t.bottom = std::max(t.bottom, near);
     t.top = std::min(t.top, far);
     if (t.bottom <= t.top) return true;
-    // A line that grazes an edge misses by rounding only.
+    // A line that grazes an edge misses it only by rounding.
     if (t.bottom - t.top > touch_tolerance) return false;
     t.bottom = t.top;
     return true;
@@ -70,7 +71,8 @@ std::optional<Interval> box_interval(const Vec3& size, const LocalLine& line)
     return t;
 }
 
-/// A capsule is convex: its interval spans those of its cylinder and of its two ends.
+/// Returns the interval of a capsule. It is convex, so the interval spans those of the cylinder and of the two end
+/// balls.
 std::optional<Interval> capsule_interval(double radius, double length, const LocalLine& line)
 {
     std::optional<Interval> joined = cylinder_interval(radius, length, line);

@@ -4,10 +4,10 @@
 
 namespace spawnfield {
 
-/// Wall-clock seconds.
+/// Measures wall-clock time.
 class Stopwatch {
 public:
-    /// Since the start or the last lap.
+    /// Returns the seconds since the construction or the last lap.
     double lap()
     {
         const auto now = Clock::now();

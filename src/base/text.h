@@ -7,7 +7,7 @@
 
 namespace spawnfield {
 
-/// ASCII letters alone change.
+/// Returns the text with ASCII capitals in lower case. Other bytes do not change.
 inline std::string lower_case(std::string_view text)
 {
     std::string out(text);
@@ -15,7 +15,7 @@ inline std::string lower_case(std::string_view text)
     return out;
 }
 
-/// Without the white space around it.
+/// Returns the text without the white space at both ends.
 inline std::string trimmed(std::string_view text)
 {
     constexpr std::string_view space = " \t\r\n";
@@ -24,7 +24,7 @@ inline std::string trimmed(std::string_view text)
                                            : std::string(text.substr(first, text.find_last_not_of(space) + 1 - first));
 }
 
-/// Returns the text with spaces for control characters, so that it fits on one line.
+/// Returns the text with each control character replaced by a space, so that it fits on one line.
 inline std::string one_line(std::string text)
 {
     std::replace_if(

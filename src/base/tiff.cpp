@@ -11,7 +11,7 @@
 namespace spawnfield {
 namespace {
 
-/// What a page's tags tell of its pixels.
+/// Properties of a page's pixels, from its tags.
 struct Layout {
     std::uint32_t rows = 0, cols = 0, tile_rows = 0, tile_cols = 0;
     std::uint16_t bits = 0, format = 0, channels = 0, photometric = 0, orientation = 0, compression = 0;
@@ -44,33 +44,31 @@ bool is_signed(const Layout& l)
 {
     return l.format == SAMPLEFORMAT_INT && (l.bits == 8 || l.bits == 16 || l.bits == 32);
 }
-bool has_white(const Layout& l)
-{
-    return is_unsigned(l) && l.bits < 32;
-}  ///< a picture, perhaps, of which the largest value is white
+/// Returns whether the image may be a picture, whose largest value is white.
+bool has_white(const Layout& l) { return is_unsigned(l) && l.bits < 32; }
 
 void check(const Layout& l, const std::string& file, std::uint64_t most)
 {
     if (l.photometric == PHOTOMETRIC_PALETTE) throw FileError(file, "has a palette, needs 1 channel (grey)");
     if (l.channels != 1)
         throw FileError(file, "has " + std::to_string(l.channels) +
-                                  " channels, needs 1 (grey); gdal_translate -b 1 takes the first");
+                                  " channels, needs 1 (grey); extract one with gdal_translate -b 1");
     if (!is_float(l) && !is_unsigned(l) && !is_signed(l))
         throw FileError(file, "has pixels of " + std::to_string(l.bits) +
                                   (l.format == SAMPLEFORMAT_UINT     ? " bits"
-                                   : l.format == SAMPLEFORMAT_INT    ? " bits with sign"
+                                   : l.format == SAMPLEFORMAT_INT    ? " bits (signed)"
                                    : l.format == SAMPLEFORMAT_IEEEFP ? "-bit float"
-                                                                     : " bits of no known kind") +
+                                                                     : " bits of an unknown kind") +
                                   ", needs integers of 8, 16 or 32 bits, or float of 32 or 64");
     if (l.orientation != ORIENTATION_TOPLEFT)
-        throw FileError(file, "is stored turned or mirrored (orientation " + std::to_string(l.orientation) +
+        throw FileError(file, "is stored rotated or mirrored (orientation " + std::to_string(l.orientation) +
                                   "), needs its upper left corner first (1)");
     if (std::max({std::uint64_t(l.rows), std::uint64_t(l.cols), std::uint64_t(l.rows) * l.cols}) > most)
         throw FileError(file, "has " + std::to_string(l.cols) + " x " + std::to_string(l.rows) +
                                   " pixels, needs at most " + std::to_string(most));
     if (!TIFFIsCODECConfigured(l.compression))
-        throw FileError(file, "is compressed in a way that libtiff cannot decode here (scheme " +
-                                  std::to_string(l.compression) + "); save it with deflate");
+        throw FileError(file, "is compressed with a scheme that libtiff cannot decode here (" +
+                                  std::to_string(l.compression) + "); save it with deflate compression");
 }
 
 template <typename Pixel>
@@ -93,7 +91,7 @@ double value(const Layout& l, const std::byte* bytes)
                           : value<std::uint32_t>(bytes);
 }
 
-/// Adds the pixels of rows from .. to, line after line. Returns false if they cannot be decoded.
+/// Adds the pixels of all rows, row after row. Returns false if they cannot be decoded.
 bool read_lines(TIFF* tiff, const Layout& l, std::vector<double>& pixels)
 {
     const auto line = std::make_unique_for_overwrite<std::byte[]>(std::size_t(TIFFScanlineSize(tiff)));

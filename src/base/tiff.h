@@ -15,15 +15,17 @@ struct TiffCloser {
 };
 using Tiff = std::unique_ptr<TIFF, TiffCloser>;
 
-/// TIFFOpen, without libtiff's own messages: ours name the file and what to do. Null if it cannot be opened.
+/// Calls TIFFOpen and turns off libtiff's own messages, because ours name the file and the remedy. Returns null if the
+/// file cannot be opened.
 Tiff open_tiff(const std::filesystem::path& file, const char* mode);
 
-bool is_tiff(std::string_view start);  ///< its first 4 bytes or more; BigTIFF too
+/// Returns whether a file that starts with these bytes (4 or more) is a TIFF or BigTIFF image.
+bool is_tiff(std::string_view start);
 
-/// The first page: integers of 8, 16 or 32 bits, with sign or without, or float of 32 or 64, in strips or tiles, of any
-/// compression that libtiff decodes; all as they are stored. White is the largest value of unsigned ones of 8 and 16
-/// bits (or 0, of which the image tells), the others have none. Throws FileError; for more than `most` pixels before
-/// any is read.
+/// Reads the first page as it is stored: signed or unsigned integers of 8, 16 or 32 bits, or floats of 32 or 64 bits,
+/// in strips or tiles, in any compression that libtiff decodes. In unsigned images of 8 and 16 bits the largest value
+/// is white, or black if zero_is_white; other images have no white. Throws FileError; an image of more than `most`
+/// pixels is refused before its pixels are read.
 GreyImage read_grey_tiff(const std::filesystem::path& file, std::uint64_t most = max_pixels);
 
 }  // namespace spawnfield

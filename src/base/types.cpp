@@ -32,10 +32,10 @@ Mat3 rotation_from_rpy(double roll, double pitch, double yaw)
 
 std::string to_string(const Bounds& bounds, int axes)
 {
-    const auto corner = [&](const Vec3& at) {
+    const auto corner = [&](const Vec3& point) {
         std::ostringstream text;
         text.precision(9);
-        for (int axis = 0; axis < axes; ++axis) text << (axis > 0 ? ", " : "") << at[axis];
+        for (int axis = 0; axis < axes; ++axis) text << (axis > 0 ? ", " : "") << point[axis];
         return text.str();
     };
     return corner(bounds.min) + " to " + corner(bounds.max) + " m";

@@ -27,9 +27,9 @@ std::unique_ptr<tinyxml2::XMLDocument> read_xml(const std::filesystem::path& fil
     const std::string line = document->ErrorLineNum() > 0 ? "line " + std::to_string(document->ErrorLineNum()) + ": "
                                                           : "";
     throw FileError(file.string(),
-                    line + "is no valid XML (" + name + ")" +
-                        (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED ? ": elements may be nested 500 deep"
-                                                                       : ": is a tag left open or misspelt?"));
+                    line + "is not valid XML (" + name + ")" +
+                        (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED ? ": elements may be nested at most 500 deep"
+                                                                       : ": is a tag not closed, or misspelt?"));
 }
 
 std::string text_of(const Xml& parent, const char* name)

@@ -10,17 +10,17 @@ namespace spawnfield {
 
 using Xml = tinyxml2::XMLElement;
 
-/// A file that is XML and has a root element; elements may be nested 500 deep (tinyxml2's own limit). Throws FileError
-/// with the line; `expected` says what an empty file lacks: "an <sdf> element".
+/// Reads an XML file that has a root element. Elements may be nested 500 deep (tinyxml2's own limit). Throws FileError,
+/// with the line. `expected` names what an empty file lacks, for example "an <sdf> element".
 std::unique_ptr<tinyxml2::XMLDocument> read_xml(const std::filesystem::path& file, const std::string& expected);
 
-std::string text_of(const Xml& parent,
-                    const char* name);    ///< of its first child of that name, trimmed; "" if there is none
-std::string line_of(const Xml& element);  ///< "line 3: "
-std::string attribute_of(const Xml& element, const char* name);  ///< "" if it has none
+/// Returns the trimmed text of the first child with this name; "" if there is none.
+std::string text_of(const Xml& parent, const char* name);
+std::string line_of(const Xml& element);                         ///< "line 3: "
+std::string attribute_of(const Xml& element, const char* name);  ///< "" if it is missing
 bool is_named(const Xml& element, const char* name);
 
-/// `name` is null: every child.
+/// Calls visit(child) for each child element with this name, or for each child element if `name` is null.
 template <class Visit>
 void for_each_child(const Xml& parent, const char* name, const Visit& visit)
 {
@@ -28,7 +28,7 @@ void for_each_child(const Xml& parent, const char* name, const Visit& visit)
         visit(*child);
 }
 
-/// The element and all that is in it.
+/// Calls visit(e) for the element itself and for each element within it, at any depth.
 template <class Visit>
 void for_each_element(const Xml& element, const Visit& visit)
 {

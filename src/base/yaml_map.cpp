@@ -37,7 +37,7 @@ void YamlMap::only(const std::vector<std::string>& known) const
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         std::string names;
         for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-        fail(key, "is no known key; known: " + names);
+        fail(key, "is not a known key; known keys: " + names);
     }
 }
 
@@ -52,7 +52,7 @@ std::string YamlMap::text(const std::string& key) const
 {
     if (!has(key)) fail(key, "is missing");
     if (!node_[key].IsScalar() || node_[key].Scalar().empty())
-        fail(key, "is " + scalar_of(node_[key]) + ", needs a text");
+        fail(key, "is " + scalar_of(node_[key]) + ", needs text");
     return node_[key].Scalar();
 }
 
@@ -70,7 +70,7 @@ double YamlMap::number_in(const YAML::Node& node, const std::string& key) const
 {
     double value = 0;
     const std::string text = scalar_of(node);
-    // YAML's own spellings of no finite number (.inf, .nan) are left to yaml-cpp.
+    // yaml-cpp decodes YAML's own spellings of numbers that are not finite (.inf, .nan).
     const bool is_number = node.IsScalar() && (parse_number(text, value) || YAML::convert<double>::decode(node, value));
     if (!is_number) fail(key, "is \"" + text + "\", needs a number");
     if (!std::isfinite(value)) fail(key, "is " + text + ", needs a finite number");
@@ -164,7 +164,7 @@ Pose YamlMap::pose() const
 {
     Pose pose;
     if (has("xyz")) pose.position = vector("xyz");
-    if (has("rpy") && has("rpy_deg")) fail("rpy_deg", "stands beside rpy, needs one of them");
+    if (has("rpy") && has("rpy_deg")) fail("rpy_deg", "is given together with rpy, needs only one of them");
     const Vec3 rpy = has("rpy")       ? vector("rpy")
                      : has("rpy_deg") ? Vec3(vector("rpy_deg") * (std::numbers::pi / 180))
                                       : Vec3(Vec3::Zero());
@@ -215,7 +215,7 @@ std::string only_key(const YamlMap& map, std::initializer_list<const char*> keys
     for (const char* key : keys) {
         names += (names.empty() ? "" : ", ") + std::string(key);
         if (!map.has(key)) continue;
-        if (!found.empty()) map.fail(key, "stands beside " + found + ", needs one geometry per part");
+        if (!found.empty()) map.fail(key, "is given together with " + found + ", needs one geometry per part");
         found = key;
     }
     if (!found.empty()) return found;

@@ -57,14 +57,14 @@ Transform transform_of(const Pose& pose)
     return transform;
 }
 
-/// A robot's part, grown by the touch margin. A hull's corners are in the robot's frame already.
+/// A part of the robot, grown by touch_margin. The corners of a hull are already in the robot's frame.
 struct CheckedPart {
     FclShape shape;
     Pose robot_from_shape;
     Vec3 centre;
-    Shape bounds_shape;  ///< for bounds at a pose; unused by hulls
+    Shape bounds_shape;  ///< for bounds_at(); not used for hulls
     std::vector<Vec3> hull_vertices;
-    Vec3 box_centre, box_half;  ///< of the box around it, along the shape's own axes
+    Vec3 box_centre, box_half;  ///< of the part's bounding box along the shape's own axes
 
     explicit CheckedPart(const RobotPart& part)
         : shape(part.shape.kind == ShapeKind::Hull ? fcl_convex(part) : fcl_shape(part.shape)),
@@ -97,20 +97,21 @@ bool overlap(const ElementBox& a, const Bounds& b)
            a.min[2] <= b.max[2] && a.max[2] >= b.min[2];
 }
 
-/// A robot's part at one pose. Everything is told FCL relative to the robot's position, so that coordinates stay small
-/// and keep their precision far from the scene's origin.
+/// A part of the robot at one pose. FCL gets all coordinates relative to the robot's position, so that they are small
+/// and precise even far from the scene's origin.
 struct PlacedPart {
     const CheckedPart* part;
-    Transform robot_from_shape;  ///< turned like the scene, origin at the robot's position
+    Transform robot_from_shape;  ///< the robot's frame here: axes of the scene, origin at the robot's position
     Bounds bounds;               ///< in the scene's frame
 };
 
-/// Whether the box around a part lies beside a triangle or off its plane: most triangles near a robot, far sooner than
-/// FCL tells. By more than the margin within which FCL's answer depends on its own tolerance.
+/// Returns whether the box around a part lies beside a triangle, or on one side of its plane, by more than
+/// FreeSpace::margin. Closer than that, FCL's answer depends on its own tolerance. This excludes most triangles near a
+/// robot, and is much faster than FCL.
 bool is_apart(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
 {
     const Vec3& half = placed.part->box_half;
-    std::array<Vec3, 3> seen;  // from the middle of the box, along its axes
+    std::array<Vec3, 3> seen;  // corners relative to the middle of the box, along its axes
     for (std::size_t k = 0; k < 3; ++k)
         seen[k] = placed.robot_from_shape.linear().transpose() * (corners[k] - placed.robot_from_shape.translation()) -
                   placed.part->box_centre;
@@ -121,7 +122,7 @@ bool is_apart(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
     return std::abs(normal.dot(seen[0])) > normal.cwiseAbs().dot(half) + FreeSpace::margin * normal.norm();
 }
 
-/// Whether rounding decides where a triangle's normal points.
+/// Returns whether a triangle is so thin that rounding decides the direction of its normal.
 bool is_sliver(const std::array<Vec3, 3>& corners)
 {
     const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], bc = corners[2] - corners[1];
@@ -138,21 +139,21 @@ bool meets_triangle(const PlacedPart& placed, const std::array<Vec3, 3>& corners
                                              static_cast<Vec3*>(nullptr), static_cast<double*>(nullptr),
                                              static_cast<Vec3*>(nullptr));
     };
-    // FCL's own answer for spheres rests on the normal, and is wrong for slivers that are nowhere near; a capsule's
-    // does not.
+    // FCL's answer for a sphere depends on the triangle's normal, and is wrong for slivers even if they are far away.
+    // Its answer for a capsule does not depend on the normal.
     if (const auto* sphere = std::get_if<fcl::Sphere<double>>(&placed.part->shape);
         sphere != nullptr && is_sliver(corners))
         return meets(fcl::Capsule<double>(sphere->radius, 0));
     return std::visit(meets, placed.part->shape);
 }
 
-bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& at_a,
-                 const fcl::CollisionGeometry<double>* b, const Transform& at_b)
+bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& frame_from_a,
+                 const fcl::CollisionGeometry<double>* b, const Transform& frame_from_b)
 {
     fcl::CollisionRequest<double> request;
     request.gjk_solver_type = fcl::GST_LIBCCD;
     fcl::CollisionResult<double> result;
-    return fcl::collide(a, at_a, b, at_b, request, result) > 0;
+    return fcl::collide(a, frame_from_a, b, frame_from_b, request, result) > 0;
 }
 
 }  // namespace
@@ -186,16 +187,18 @@ struct CollisionChecker::Impl {
             } else {
                 const Shape shape = tile.primitive(element).shape();
                 const FclShape other = fcl_shape(shape);
-                const Transform at = transform_of({shape.pose.position - origin, shape.pose.rotation});
-                if (fcl_collide(geometry_of(part.part->shape), part.robot_from_shape, geometry_of(other), at))
+                const Transform robot_from_other = transform_of({shape.pose.position - origin, shape.pose.rotation});
+                if (fcl_collide(geometry_of(part.part->shape), part.robot_from_shape, geometry_of(other),
+                                robot_from_other))
                     return true;
             }
         }
         return false;
     }
 
-    /// The first part, below `best`, in whose filled meshes a part of the robot lies. Its surface is not touched, so
-    /// one point of each convex part tells for all of it.
+    /// Returns the first part of the scene before `best` in whose filled meshes a part of the robot lies; `best` if
+    /// there is none. The robot touches no surface of the parts before `best`, so one point of each convex part of the
+    /// robot decides for all of it.
     std::uint32_t first_around(const Pose& pose, std::uint32_t best) const
     {
         if (!geometry.impl().has_filled_meshes) return best;
@@ -229,10 +232,10 @@ struct CollisionChecker::Impl {
 
     std::optional<CollisionHit> find_in_octree(const std::vector<PlacedPart>& placed, const Vec3& origin) const
     {
-        Transform at = Transform::Identity();
-        at.translation() = -origin;
+        Transform robot_from_tree = Transform::Identity();
+        robot_from_tree.translation() = -origin;
         for (const PlacedPart& part : placed)
-            if (fcl_collide(octree.get(), at, geometry_of(part.part->shape), part.robot_from_shape))
+            if (fcl_collide(octree.get(), robot_from_tree, geometry_of(part.part->shape), part.robot_from_shape))
                 return CollisionHit{};
         return std::nullopt;
     }

@@ -17,10 +17,10 @@ void extend(Interval& range, double value)
 
 using Polygon = std::vector<Vec3>;
 
-/// The part of a convex polygon where sign * (p.y - limit) <= 0.
+/// Writes to `out` the part of a convex polygon where sign * (p.y - limit) <= 0.
 void clip_y(const Polygon& in, double limit, double sign, Polygon& out)
 {
-    out.resize(2 * in.size());  // each corner is kept, or a cut takes its place
+    out.resize(2 * in.size());  // each corner gives at most itself and a cut
     std::size_t count = 0;
     double dp = in.empty() ? 0 : sign * (in[0].y() - limit);
     for (std::size_t i = 0; i < in.size(); ++i) {
@@ -44,7 +44,7 @@ Interval range_of(const Polygon& polygon, int axis)
     return range;
 }
 
-/// Height range of a convex planar polygon in each cell of a block that it meets.
+/// Finds the height range of a convex planar polygon in each cell of a block that it meets.
 class PolygonScanner {
 public:
     explicit PolygonScanner(const CellBlock& block)
@@ -52,22 +52,22 @@ public:
     {
     }
 
-    /// visit(i, j, range)
+    /// Calls visit(i, j, range) for each cell that the polygon meets, to touch_tolerance.
     template <class Visit>
     void scan(const Vec3* corners, std::size_t count, const Visit& visit)
     {
-        rest_.assign(corners, corners + count);
-        const Interval y = range_of(rest_, 1);
+        remaining_.assign(corners, corners + count);
+        const Interval y = range_of(remaining_, 1);
         const int j0 = first_cell(y.bottom - block_.y0), j1 = last_cell(y.top - block_.y0, block_.rows);
         if (j0 > j1) return;
         if (j0 == 0 && y.bottom < block_.y0 - touch_tolerance) cut_below(block_.y0);
-        for (int j = j0; j <= j1 && !rest_.empty(); ++j) {
+        for (int j = j0; j <= j1 && !remaining_.empty(); ++j) {
             const double upper = block_.y0 + (j + 1) * block_.cell;
             if (y.top > upper + touch_tolerance) {
-                clip_y(rest_, upper + touch_tolerance, 1, strip_);
+                clip_y(remaining_, upper + touch_tolerance, 1, strip_);
                 if (!strip_.empty()) scan_row(strip_, j, visit);
             } else {
-                scan_row(rest_, j, visit);
+                scan_row(remaining_, j, visit);
             }
             if (j < j1) cut_below(upper);
         }
@@ -76,8 +76,8 @@ public:
 private:
     void cut_below(double y)
     {
-        clip_y(rest_, y - touch_tolerance, -1, next_);
-        rest_.swap(next_);
+        clip_y(remaining_, y - touch_tolerance, -1, next_);
+        remaining_.swap(next_);
     }
 
     template <class Visit>
@@ -90,8 +90,7 @@ private:
             visit(i0, j, range_of(strip, 2));
             return;
         }
-        // A plane over a convex polygon is highest and lowest at the polygon's corners and where its rim crosses cell
-        // borders.
+        // In a cell the polygon is highest and lowest at its corners and where its edges cross the cell's borders.
         std::fill(cells_.begin() + i0, cells_.begin() + i1 + 1, none);
         std::fill(borders_.begin() + i0, borders_.begin() + i1 + 2, none);
         for (std::size_t k = 0; k < strip.size(); ++k) {
@@ -142,14 +141,14 @@ private:
     }
 
     const CellBlock& block_;
-    Polygon rest_, next_, strip_;
+    Polygon remaining_, next_, strip_;
     std::vector<Interval> cells_, borders_;
 };
 
-constexpr double prism_excess = 4e-6;  // m that a prism may be wider than its cylinder
+constexpr double prism_excess = 4e-6;  // m by which a prism may be wider than its cylinder
 constexpr int most_sides = 4096;
 
-/// So that radius * (1 / cos(pi / sides) - 1) <= prism_excess.
+/// Returns the number of sides for which radius * (1 / cos(pi / sides) - 1) <= prism_excess, but at most most_sides.
 int prism_sides(double radius)
 {
     const double sides = std::ceil(std::numbers::pi * std::sqrt(radius / (2 * prism_excess)) * 1.01);
@@ -170,7 +169,7 @@ public:
         });
     }
 
-    /// Its faces give one span for each cell, as it is convex.
+    /// Adds a primitive: one interval for each cell, which joins those of its faces, because it is convex.
     void add_primitive(const Shape& shape)
     {
         own_.clear();
@@ -237,7 +236,7 @@ private:
             }
     }
 
-    /// The prism around a cylinder, or around the straight part of a capsule.
+    /// Adds the prism around a cylinder, or around the straight part of a capsule.
     void add_prism(const Shape& shape)
     {
         const int sides = prism_sides(shape.size[0]);
@@ -259,7 +258,7 @@ private:
         add_face(high);
     }
 
-    /// A ball over a cell reaches as high as over the cell's point nearest to its centre.
+    /// Adds a ball. In each cell it is as high as at the cell's point that is nearest to the ball's centre.
     void add_ball(const Vec3& centre, double radius)
     {
         const auto cells = [&](double c, double origin, int count) {
@@ -275,9 +274,10 @@ private:
                 const double x = block_.x0 + i * block_.cell, y = block_.y0 + j * block_.cell;
                 const double dx = std::max({x - centre.x(), 0.0, centre.x() - x - block_.cell});
                 const double dy = std::max({y - centre.y(), 0.0, centre.y() - y - block_.cell});
-                const double rest = reach * reach - dx * dx - dy * dy;
-                if (rest < 0) continue;
-                own_.push_back({block_.id(i, j), {centre.z() - std::sqrt(rest), centre.z() + std::sqrt(rest)}});
+                const double half_squared = reach * reach - dx * dx - dy * dy;
+                if (half_squared < 0) continue;
+                own_.push_back(
+                    {block_.id(i, j), {centre.z() - std::sqrt(half_squared), centre.z() + std::sqrt(half_squared)}});
             }
     }
 

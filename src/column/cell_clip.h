@@ -4,7 +4,8 @@
 
 namespace spawnfield {
 
-/// A rectangle of square cells: cell (i, j) spans x0 + i * cell .. x0 + (i + 1) * cell, likewise in y.
+/// A rectangle of square cells. Cell (i, j) extends from x0 + i * cell to x0 + (i + 1) * cell in x, and from y0 + j *
+/// cell to y0 + (j + 1) * cell in y.
 struct CellBlock {
     double x0 = 0, y0 = 0, cell = 1;
     int cols = 0, rows = 0;
@@ -12,21 +13,23 @@ struct CellBlock {
     std::uint32_t id(int i, int j) const { return std::uint32_t(j) * std::uint32_t(cols) + std::uint32_t(i); }
 };
 
-/// Heights between which solid surfaces, and the filling of primitives, lie anywhere in the closed cells of a block;
-/// water left out. Of the inside of meshes it knows nothing, but for meshes with holes that are filled by wish: those
-/// count down to their lowest vertex.
+/// The height intervals in which the surfaces of solids and sheets, and the insides of primitives, lie in each closed
+/// cell of a block. Water is left out. The insides of meshes are not included, with one exception: a surface of a mesh
+/// with holes that the user asked to fill (Piece::open) counts from its top down to the mesh's lowest vertex.
 ///
-/// Upper ends are attained: some solid point of the cell, or within 1e-8 m of it, is as high. Cylinders become prisms
-/// around them that are at most 4e-6 m wider, or 4096-sided: then is_tight() is false.
-/// Source of the clipping: Sutherland, Hodgman, Reentrant polygon clipping, 1974. O(triangles + cells they cover).
+/// Each upper end is the height of a solid point in the cell or at most 1e-8 m beside it. Cylinders are replaced by
+/// prisms around them that are at most 4e-6 m wider. If that takes more than 4096 sides, the prism has 4096 sides and
+/// is_tight() is false. O(triangles + cells that they cover). Source of the clipping: Sutherland, Hodgman, Reentrant
+/// polygon clipping, 1974.
 class CellSpans {
 public:
     CellSpans(const Geometry& geometry, const CellBlock& block);
 
-    /// Whether there is more than one interval to a cell, before they are joined; if not, it is this one, if not empty.
+    /// Returns whether a cell has several intervals, before they are joined. If not, first() is its only interval;
+    /// bottom > top means that the cell has none.
     bool has_more(std::uint32_t cell) const { return more_[cell]; }
     const Interval& first(std::uint32_t cell) const { return first_[cell]; }
-    /// Of one cell, joined, from the bottom up.
+    /// Writes the intervals of one cell to `out`, joined, from the bottom up.
     void get(std::uint32_t cell, std::vector<Interval>& out) const;
     bool is_tight() const { return tight_; }
 
@@ -37,17 +40,17 @@ private:
         Interval z;
     };
     std::vector<Interval> first_;        ///< one for each cell; bottom > top: none
-    std::vector<bool> more_;             ///< whether the cell has further ones
-    std::vector<Further> further_;       ///< what does not touch the first one; sorted by cell
-    std::vector<std::uint32_t> starts_;  ///< in further_, by row of the block
+    std::vector<bool> more_;             ///< whether the cell has further intervals
+    std::vector<Further> further_;       ///< intervals that did not touch the cell's first one; sorted by cell
+    std::vector<std::uint32_t> starts_;  ///< where each row of the block begins in further_
     int cols_;
     bool tight_ = true;
 };
 
-/// Unions intervals that overlap; sorts them from the bottom up.
+/// Joins intervals that overlap or touch (to touch_tolerance), and sorts them from the bottom up.
 void join_spans(std::vector<Interval>& spans);
 
-/// Solid intervals of a column, terrain and obstacles joined, from the bottom up.
+/// Returns the solid intervals of a column, terrain and obstacles joined, from the bottom up.
 std::vector<Interval> solid_intervals(const ColumnView& column);
 
 }  // namespace spawnfield

@@ -12,8 +12,9 @@ struct Hit {
     bool terrain;
 };
 
-/// Inside intervals of a filled piece from its crossings, bottom up. An odd count can only come from a piece that is
-/// filled by the user's wish: what lies under its lowest crossing is inside down to the piece's bottom.
+/// Adds the intervals inside a filled piece, from the bottom up: its crossings in pairs. The number of crossings is odd
+/// only in a piece with holes that the user asked to fill; there the column is inside from the lowest crossing down to
+/// the piece's bottom.
 void pair_crossings(std::vector<Hit>& crossings, double piece_bottom, std::vector<Hit>& intervals)
 {
     std::sort(crossings.begin(), crossings.end(), [](const Hit& l, const Hit& r) { return l.z.top < r.z.top; });
@@ -26,7 +27,8 @@ void pair_crossings(std::vector<Hit>& crossings, double piece_bottom, std::vecto
         intervals.push_back({{crossings[i].z.top, crossings[i + 1].z.top}, crossings[i + 1].terrain});
 }
 
-/// Unions intervals that overlap or lie within `tolerance` of each other; the highest top gives label and height.
+/// Joins intervals that overlap or lie within `tolerance` of each other. The highest top gives the height and the label
+/// of the joined interval.
 void join(std::vector<Hit>& intervals, double tolerance)
 {
     std::sort(intervals.begin(), intervals.end(), [](const Hit& l, const Hit& r) { return l.z.bottom < r.z.bottom; });
@@ -47,14 +49,14 @@ void join(std::vector<Hit>& intervals, double tolerance)
     intervals.resize(kept);
 }
 
-/// Puts columns together from the hits of their lines; keeps its scratch memory between them.
+/// Builds columns from the hits of their vertical lines. Reuses its temporary memory for the next column.
 class ColumnBuilder {
 public:
-    /// Appends what the hits, in the order of their elements, amount to.
+    /// Appends one column to `out`. The hits must be in the order of their elements.
     void build(std::span<const SurfaceHit> hits, Column& out)
     {
         if (hits.empty()) return;
-        if (hits.size() == 1 && !hits[0].filled) {  // open ground
+        if (hits.size() == 1 && !hits[0].filled) {  // the most frequent case: open ground
             add(hits[0].z, hits[0], hits[0].terrain, out);
             if (hits[0].terrain) out.layers.push_back(hits[0].z.top);
             return;
@@ -84,7 +86,7 @@ private:
             out.spans.push_back({z.bottom, z.top, hit.part, terrain, !hit.open});
     }
 
-    /// Of a filled piece, which is water throughout or nowhere.
+    /// Adds a filled piece. It consists entirely of water or has no water.
     void add_piece(std::span<const SurfaceHit> hits, Column& out)
     {
         intervals_.clear();
@@ -113,7 +115,7 @@ private:
                 if (l.terrain != r.terrain) return l.terrain;
                 return std::tie(l.part, l.bottom, l.sealed) < std::tie(r.part, r.bottom, r.sealed);
             });
-            // A sheet's triangles share corners and edges.
+            // A line through a corner or an edge of a sheet hits several of its triangles.
             out.spans.erase(std::unique(first, out.spans.end(), is_same), out.spans.end());
         }
         std::sort(out.water.begin() + std::ptrdiff_t(first_water), out.water.end(), std::greater<>());
@@ -145,7 +147,7 @@ bool counts(const Tile& tile, std::uint32_t element, Surfaces surfaces)
            tile.pieces[tile.triangles[element].piece].solid != 0;
 }
 
-/// Hits of the line through (x, y) in the order of their elements.
+/// Finds the hits of the vertical line through (x, y), in the order of their elements.
 void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, std::vector<SurfaceHit>& hits)
 {
     hits.clear();
@@ -199,7 +201,7 @@ Columns::Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surf
     starts_.reserve(count + 1);
     starts_.push_back({});
     if (count == 0) return;
-    // Looking at an element costs about as much as a tenth of looking a column up.
+    // Scanning one element costs about a tenth of looking up one column.
     const double elements = geometry.impl().elements_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
                                                           grid.x_of(grid.first_col + grid.cols),
                                                           grid.y_of(grid.first_row + grid.rows));
@@ -222,23 +224,25 @@ void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces
 
 namespace {
 
-/// Indices of a block along one axis.
+/// A range of indices of columns or rows.
 struct IndexRange {
     int first, last;  ///< inclusive
     bool is_empty() const { return first > last; }
 };
 
-/// Those whose coordinate may lie in [low, high], from the block's first on; a_step is 1 / step.
-inline IndexRange indices_in(double low, double high, double origin, double a_step, double shift, int first, int count)
+/// Returns the indices, counted from the block's first one, whose coordinates may lie in [low, high]. inverse_step is 1
+/// / step.
+inline IndexRange indices_in(double low, double high, double origin, double inverse_step, double shift, int first,
+                             int count)
 {
-    constexpr double rounding = 1e-6;  // of a step: more than indices up to 2^31 lose
-    const double from = std::max(std::ceil((low - origin) * a_step - shift - rounding) - first, 0.0);
-    const double to = std::min(std::floor((high - origin) * a_step - shift + rounding) - first, count - 1.0);
+    constexpr double rounding = 1e-6;  // of a step; more than the rounding error of indices up to 2^31
+    const double from = std::max(std::ceil((low - origin) * inverse_step - shift - rounding) - first, 0.0);
+    const double to = std::min(std::floor((high - origin) * inverse_step - shift + rounding) - first, count - 1.0);
     if (!(from <= to)) return {0, -1};
     return {int(from), int(to)};
 }
 
-/// The hits of each column of a block, each column's in a list.
+/// The hits of a block of columns, in one list for each column.
 class HitLists {
 public:
     void start(std::size_t columns)
@@ -247,15 +251,15 @@ public:
         hits_.clear();
         next_.clear();
     }
-    bool are_none() const { return hits_.empty(); }
-    /// To be written. Until the next call.
+    bool is_empty() const { return hits_.empty(); }
+    /// Adds a hit to a column and returns it, for the caller to write. The reference is valid until the next call.
     SurfaceHit& add(std::size_t column)
     {
         next_.push_back(heads_[column]);
         heads_[column] = std::uint32_t(next_.size() - 1);
         return hits_.emplace_back();
     }
-    /// Takes the column's last hit away again if the one before it is the same: a sheet's triangles share corners.
+    /// Removes the column's last hit if the one before it is the same: triangles of a sheet share corners and edges.
     void drop_repeated(std::size_t column)
     {
         const std::uint32_t last = heads_[column], before = next_[last];
@@ -264,7 +268,7 @@ public:
         next_.pop_back();
         hits_.pop_back();
     }
-    /// In the order of their elements. Until the next call.
+    /// Returns the hits of a column in the order of their elements. The span is valid until the next call.
     std::span<const SurfaceHit> of(std::size_t column)
     {
         const std::uint32_t head = heads_[column];
@@ -296,14 +300,14 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
     thread_local HitLists hits;
     const std::size_t count = std::size_t(grid.cols) * std::size_t(grid.rows);
     hits.start(count);
-    const double a_step = 1 / grid.step;
+    const double inverse_step = 1 / grid.step;
     const auto visit = [&](const Tile& tile, std::uint32_t element) {
         if (!counts(tile, element, surfaces)) return;
         const ElementBox& box = tile.boxes[element];
-        const IndexRange cols = indices_in(box.min[0], box.max[0], grid.x0, a_step, grid.shift, grid.first_col,
+        const IndexRange cols = indices_in(box.min[0], box.max[0], grid.x0, inverse_step, grid.shift, grid.first_col,
                                            grid.cols);
         if (cols.is_empty()) return;
-        const IndexRange rows = indices_in(box.min[1], box.max[1], grid.y0, a_step, grid.shift, grid.first_row,
+        const IndexRange rows = indices_in(box.min[1], box.max[1], grid.y0, inverse_step, grid.shift, grid.first_row,
                                            grid.rows);
         if (rows.is_empty()) return;
         const auto visit_columns = [&](auto seen) {
@@ -324,7 +328,7 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
     geometry.impl().visit_in(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
                              grid.x_of(grid.first_col + grid.cols - 1), grid.y_of(grid.first_row + grid.rows - 1),
                              visit);
-    if (hits.are_none()) {
+    if (hits.is_empty()) {
         starts_.resize(count + 1);
         return;
     }

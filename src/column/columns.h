@@ -7,7 +7,7 @@
 
 namespace spawnfield {
 
-/// A Column whose arrays somebody else keeps.
+/// A view of a Column. Another object owns the arrays.
 struct ColumnView {
     std::span<const Span> spans;
     std::span<const double> layers, water;
@@ -20,12 +20,13 @@ struct ColumnView {
     ColumnView(const Column& column) : spans(column.spans), layers(column.layers), water(column.water) {}
 };
 
+/// Does the same as ground_below for a Column.
 std::optional<Ground> ground_below(const ColumnView& column, double z);
 
-/// Writes column_at(geometry, x, y) to `out`, whose memory is used again.
+/// Writes column_at(geometry, x, y) to `out`, and uses the memory of `out` again.
 void read_column(const Geometry& geometry, double x, double y, Column& out);
 
-/// The part of `heights` (a column's layers or water surfaces, from the top down) that lies in the range, to
+/// Returns the part of `heights` (a column's layers or water surfaces, from the top down) that lies in the range, to
 /// touch_tolerance.
 inline std::span<const double> heights_within(std::span<const double> heights, const ZRange& z)
 {
@@ -35,8 +36,9 @@ inline std::span<const double> heights_within(std::span<const double> heights, c
     return heights.subspan(first, end - first);
 }
 
-/// Top of the highest obstacle that begins within or below the range and ends within or above it, where it stands above
-/// the highest of the column's `layers` or there are none.
+/// Returns the top of the highest span that overlaps the range, if it is higher than the highest of `layers` or if
+/// there are no layers. `layers` are the column's layers within the range. Such a span is an obstacle there, even if it
+/// is terrain, whose top is then above the range.
 inline std::optional<double> obstacle_above(const ColumnView& column, std::span<const double> layers, const ZRange& z)
 {
     for (const Span& span : column.spans) {
@@ -47,29 +49,29 @@ inline std::optional<double> obstacle_above(const ColumnView& column, std::span<
     return std::nullopt;
 }
 
-/// Columns x0 + (col + shift) * step, y0 + (row + shift) * step.
+/// A grid of columns at x = x0 + (col + shift) * step, y = y0 + (row + shift) * step.
 struct ColumnGrid {
     double x0 = 0, y0 = 0, step = 1;
-    int first_col = 0, first_row = 0, cols = 0, rows = 0;  ///< the part of the grid that is asked for
+    int first_col = 0, first_row = 0, cols = 0, rows = 0;  ///< the block of the grid that is wanted
     double shift = 0;                                      ///< 0.5: at the centres of cells
 
     double x_of(int col) const { return x0 + (col + shift) * step; }
     double y_of(int row) const { return y0 + (row + shift) * step; }
 };
 
-/// What of a scene columns are made of: all, or only what has an inside.
+/// The surfaces of a scene that columns are made of: all, or only those of solids.
 enum class Surfaces { All, Filled };
 
-/// The columns of a block of a grid, the very same as column_at gives one by one.
+/// The columns of a block of a grid. They are identical to those that column_at returns one by one.
 ///
-/// Elements that are small beside the step are looked up column by column, others are scan-converted: O(elements +
-/// columns).
+/// If there are many more elements than columns, each column is looked up by itself. Otherwise the elements are
+/// scan-converted: O(elements + columns).
 class Columns {
 public:
     Columns() = default;
     Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces = Surfaces::All);
 
-    /// Column grid.first_col + i, row grid.first_row + j.
+    /// Returns the column in column grid.first_col + i and row grid.first_row + j of the grid.
     ColumnView at(int i, int j) const
     {
         const std::size_t column = std::size_t(j) * std::size_t(cols_) + std::size_t(i);
@@ -92,7 +94,7 @@ private:
     }
 
     int cols_ = 0;
-    Column column_;  ///< of all columns, one after the other
+    Column column_;  ///< the contents of all columns, one after the other
     std::vector<Start> starts_;
 };
 

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double squared_tolerance = touch_tolerance * touch_tolerance;
 
-/// Whether the edge a-b crosses the ray from p towards +x. One answer per edge, whichever triangle asks: the ends are
-/// put in a fixed order first, so two triangles never disagree on their common edge.
+/// Returns whether the edge a-b, seen from above, crosses the ray from (x, y) towards +x. The ends are first put in a
+/// fixed order, so that two triangles always get the same answer for their common edge.
 bool edge_crosses(const Vec3& a, const Vec3& b, double x, double y)
 {
     if ((a.y() > y) == (b.y() > y)) return false;
@@ -22,7 +22,7 @@ bool edge_crosses(const Vec3& a, const Vec3& b, double x, double y)
     return side > 0;
 }
 
-/// Joins the heights at which the line meets the edge p-q, if it does.
+/// Extends `joined` by the heights at which the vertical line meets the edge p-q, if it meets it.
 void extend(const Vec3& p, const Vec3& q, double x, double y, std::optional<Interval>& joined)
 {
     const Vec2 edge = (q - p).head<2>(), to(x - p.x(), y - p.y());
@@ -39,7 +39,7 @@ void extend(const Vec3& p, const Vec3& q, double x, double y, std::optional<Inte
     joined = joined ? Interval{std::min(joined->bottom, here.bottom), std::max(joined->top, here.top)} : here;
 }
 
-/// The segment in which the line runs along a vertical triangle.
+/// Returns the segment in which the vertical line runs along a vertical triangle, if it does.
 std::optional<Interval> segment(const std::array<Vec3, 3>& corners, double x, double y)
 {
     std::optional<Interval> joined;
@@ -67,7 +67,8 @@ bool is_crossed(const std::array<Vec3, 3>& corners, double x, double y)
     return edge_crosses(a, b, x, y) ^ edge_crosses(b, c, x, y) ^ edge_crosses(c, a, x, y);
 }
 
-/// Whether the line passes through a triangle with this sign of its area, edges included to touch_tolerance.
+/// Returns whether the vertical line passes through a triangle, edges included to touch_tolerance. `sign` is the sign
+/// of the triangle's area, seen from above.
 bool is_touched(const std::array<Vec3, 3>& corners, double sign, double x, double y)
 {
     const auto is_left = [&](const Vec3& p, const Vec3& q) {
@@ -87,7 +88,7 @@ void SeenTriangle::prepare()
     const Interval z = extent(corners_, 2);
     const double acx = c.x() - a.x(), acy = c.y() - a.y(), abz = b.z() - a.z(), acz = c.z() - a.z();
     twice_area_ = edges_[0].x * acy - edges_[0].y * acx;
-    low_ = twice_area_ != 0 ? z.bottom : z.top;  // without an area its height over a point means nothing
+    low_ = twice_area_ != 0 ? z.bottom : z.top;  // without an area, the height at a point is undefined
     high_ = z.top;
     if (twice_area_ != 0) {
         slope_x_ = (abz * acy - acz * edges_[0].y) / twice_area_;
@@ -120,10 +121,10 @@ std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x, double y)
     out.crosses = out.filled && is_crossed(corners_, x, y);
     if (out.crosses) out.crossing = height_at_rim(x, y);
     const double longest = std::max({edges_[0].squared_length, edges_[1].squared_length, edges_[2].squared_length});
-    // Thinner than the tolerance, its height over a point means nothing.
+    // If the triangle is thinner than the tolerance, its height at a point is undefined.
     const bool is_vertical = twice_area_ * twice_area_ <= squared_tolerance * longest;
     if (is_vertical) {
-        // Also where it is crossed: by rounding, a line along it may cross it as well.
+        // Also looked for if the line crosses the triangle: through rounding, a line along it may cross it as well.
         const auto met = out.filled ? segment(corners_, x, y) : std::nullopt;
         out.touches = met.has_value();
         if (met) out.z = *met;

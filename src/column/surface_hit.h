@@ -10,18 +10,19 @@
 
 namespace spawnfield {
 
-/// Where a vertical line meets one element of a scene.
+/// Describes where a vertical line meets one element of a scene.
 struct SurfaceHit {
-    std::uint32_t element, piece, part;  ///< of the scene; primitives have no piece
+    std::uint32_t element, piece, part;  ///< indices in the scene; piece is 0 for primitives
     bool is_primitive, filled, open, terrain, water;
-    bool crosses;  ///< goes through a triangle of a filled piece at `crossing`, each edge counted once
-    bool touches;  ///< meets it in z, edges included
+    bool crosses;  ///< the line goes through a triangle of a filled piece at `crossing`; an edge counts for one
+                   ///< triangle only
+    bool touches;  ///< the line meets the element in the interval z, edges included
     Interval z;
-    double crossing;      ///< height, m
-    double piece_bottom;  ///< as Piece, m
+    double crossing;      ///< height of the crossing, m
+    double piece_bottom;  ///< Piece::bottom, m
 };
 
-/// A triangle as vertical lines see it, one line after the other.
+/// A triangle that is intersected with one vertical line after the other.
 class SeenTriangle {
 public:
     SeenTriangle(const Tile& tile, std::uint32_t triangle)
@@ -37,19 +38,20 @@ public:
         }
     }
 
-    /// Of the lines to come, m.
+    /// Sets y, m, for the following `meet()` calls.
     void set_y(double y)
     {
         y_ = y;
         for (std::size_t k = 0; k < 3; ++k) edges_[k].across = edges_[k].x * (y - corners_[k].y());
     }
 
-    /// Where the vertical line through (x, y) meets it: new_hit(), a SurfaceHit&, is written if it does. Sheets seen
-    /// edge-on give nothing.
+    /// Returns whether the vertical line through (x, y) meets the triangle. If it does, the hit is written to the
+    /// SurfaceHit& that new_hit() returns. A vertical triangle of a sheet is never met.
     template <class NewHit>
     bool meet(double x, const NewHit& new_hit)
     {
-        // Well to the left of all edges, or to the right, or not: far from what rounding or a tolerance decides.
+        // Clear lines are far from all edges, so that neither rounding nor a tolerance decides. If a clear line is on
+        // the same side of all edges, it goes through the triangle.
         double low = std::numeric_limits<double>::infinity(), high = -low;
         bool is_clear = true;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -71,6 +73,7 @@ public:
         return true;
     }
 
+    /// Returns the hit of the vertical line through (x, y), if it meets the triangle.
     std::optional<SurfaceHit> hit(double x, double y)
     {
         std::optional<SurfaceHit> out;
@@ -83,13 +86,15 @@ private:
     struct Edge {
         double x, y;            ///< m
         double squared_length;  ///< seen from above, m2
-        double rim;     ///< what the square of a cross product passes well off the edge; upright edges have none
-        double across;  ///< the line's part of that product, m2
+        double
+            rim;  ///< a line is well off the edge if the squared cross product exceeds this; -1 if the edge is vertical
+        double across;  ///< the part of that cross product which depends on y, m2
     };
 
     void prepare();
     std::optional<SurfaceHit> hit_at_rim(double x, double y);
-    /// Of its plane, within its own limits; at a corner just the corner's, whichever triangle asks.
+    /// Returns the height of the triangle's plane, limited to the triangle's own heights. At a corner it is exactly the
+    /// corner's height, so that all triangles at that corner agree.
     double height_at_rim(double x, double y) const
     {
         for (const Vec3& corner : corners_)
@@ -108,16 +113,17 @@ private:
     std::array<Edge, 3> edges_;  ///< from corner k to the next
     double y_ = 0;
 
-    // Of those that are hit:
+    // Set by prepare(), for triangles that are hit:
     bool is_prepared_ = false;
-    double twice_area_ = 0;  ///< seen from above; above 0 where it looks up
+    double twice_area_ = 0;  ///< seen from above, m2; > 0 if the triangle faces upwards
     double slope_x_ = 0, slope_y_ = 0, low_ = 0, high_ = 0;
-    SurfaceHit within_;  ///< of a line that goes well through it, but for the height
+    SurfaceHit within_;  ///< the hit of a line that is well inside, without the heights
 };
 
+/// Returns where the vertical line through (x, y) meets an element of a tile, if it does.
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y);
 
-/// A primitive, asked as a SeenTriangle is.
+/// A primitive with the same functions as SeenTriangle.
 class SeenPrimitive {
 public:
     SeenPrimitive(const Tile& tile, std::uint32_t element) : tile_(tile), element_(element) {}

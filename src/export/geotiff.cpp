@@ -38,19 +38,19 @@ std::vector<Band> bands_of(int layers, bool has_verdicts)
     return bands;
 }
 
-/// Layers are counted anew: finer cells may see more of them than the map's own.
+/// The tiles of a frame.
 struct Tiles {
     const GridFrame& frame;
     int rows, cols;
 
     explicit Tiles(const GridFrame& f) : frame(f), rows((f.rows + side - 1) / side), cols((f.cols + side - 1) / side) {}
 
-    /// visit(row, col, column) for the cells of a tile and a border around it, as far as the frame goes; row and col
-    /// count within the tile, row 0 being the largest y.
+    /// Calls visit(row, col, column) for the cells of a tile and of a border around it that are in the frame. row and
+    /// col are relative to the tile; row 0 has the largest y.
     template <class Visit>
     void visit_cells(const Geometry& geometry, std::size_t tile, int border, const Visit& visit) const
     {
-        constexpr int part = 64;  // whose columns stay in a core's cache
+        constexpr int part = 64;  // cells; the columns of part x part cells stay in a core's cache
         const int top = int(tile) / cols * side, left = int(tile) % cols * side;
         const int row0 = std::max(0, top - border), row1 = std::min(frame.rows, top + side + border);
         const int col0 = std::max(0, left - border), col1 = std::min(frame.cols, left + side + border);
@@ -68,6 +68,8 @@ struct Tiles {
 
 ZRange ground_z(const Map& map, const GeoTiffOptions& options) { return overlap(map.z_limits, options.z); }
 
+/// Returns the largest number of layers at a cell's centre. Layers are counted again for this frame, because finer
+/// cells may have more layers than the map's own cells.
 int most_layers(const Map& map, const GridFrame& frame, const GeoTiffOptions& options)
 {
     const ZRange z = ground_z(map, options);
@@ -81,7 +83,7 @@ int most_layers(const Map& map, const GridFrame& frame, const GeoTiffOptions& op
     return *std::max_element(most.begin(), most.end());
 }
 
-/// From a layer up to what begins above it; NaN if nothing does.
+/// Returns the free height above a layer, up to the next span; NaN if there is none.
 float clearance(const ColumnView& column, double height)
 {
     double lowest = std::numeric_limits<double>::infinity();
@@ -99,7 +101,7 @@ public:
     {
     }
 
-    /// A tile's bands as deflated streams.
+    /// Returns the bands of a tile as deflated streams.
     std::vector<std::string> streams(std::size_t tile) const
     {
         constexpr int border = 1;
@@ -162,7 +164,7 @@ private:
     const Tiles& tiles_;
     const VerdictImage* verdicts_;
     const LayerChoice& layers_;
-    const ZRange z_;  ///< layers elsewhere are left out
+    const ZRange z_;  ///< layers outside this range are left out
     const std::size_t layer_bands_;
 };
 
@@ -204,7 +206,7 @@ std::string metadata(const Map& map, const std::vector<Band>& bands, const Layer
     return text + "</GDALMetadata>\n";
 }
 
-/// The code of "EPSG:32611"; nothing if it is none that a GeoTIFF can name.
+/// Returns the code of a text like "EPSG:32611"; nothing if a GeoTIFF cannot contain the code.
 std::optional<std::uint16_t> epsg_code(const std::string& crs)
 {
     std::uint16_t code = 0;
@@ -214,13 +216,14 @@ std::optional<std::uint16_t> epsg_code(const std::string& crs)
     return code;
 }
 
-/// Keys of a projected system by its code, or of a frame of the scene's own, in metres, that lies nowhere on Earth.
+/// Sets the keys of a projected coordinate system by its code. Without a code, sets those of the scene's own frame, in
+/// metres, which has no place on Earth.
 void set_geo_keys(TIFF* tiff, const std::optional<std::uint16_t>& code)
 {
     static const std::string citation = "spawnfield scene, m, x right, y up|";
     const std::uint16_t user_defined = 32767, projected = 1, pixel_is_area = 1, metre = 9001,
                         length = std::uint16_t(citation.size());
-    // Version, revision, number of keys; then key, place, count, value.
+    // Version, revision, minor revision and number of keys; then key, place, count and value of each key.
     const std::uint16_t survey[] = {1,    1, 0, 3,                  //
                                     1024, 0, 1, projected,          // GTModelType
                                     1025, 0, 1, pixel_is_area,      // GTRasterType
@@ -255,7 +258,7 @@ void set_geo_tags(TIFF* tiff, const GridFrame& frame, const std::optional<GeoOri
     TIFFSetField(tiff, gdal_no_data_tag, "nan");
 }
 
-/// What the file's coordinates are to be: the survey's, or nothing for the map's own.
+/// Returns the map's origin if the file gets the coordinates of the survey; nothing if it gets the map's own.
 std::optional<GeoOrigin> survey_of(const Map& map, const GeoTiffOptions& options)
 {
     return options.survey && map.origin && epsg_code(map.origin->crs) ? map.origin : std::nullopt;
@@ -278,7 +281,7 @@ void set_tags(TIFF* tiff, const GridFrame& frame, std::size_t bands)
     TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, int(kinds.size()), kinds.data());
 }
 
-/// Row of tiles after row of tiles. Returns false if one cannot be written.
+/// Writes the tiles, row after row. Returns false if one cannot be written.
 bool write_tiles(TIFF* tiff, const TileBands& source, const Tiles& tiles, std::size_t bands,
                  const GeoTiffOptions& options)
 {
@@ -307,9 +310,11 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
                    const std::filesystem::path& file)
 {
     if (options.layers.kind == LayerChoice::Kind::All)
-        throw ArgumentError("write_geotiff", "layers is all, needs top, bottom or a number: a cell has one clearance");
+        throw ArgumentError("write_geotiff",
+                            "layers is all, needs top, bottom or a number, because a cell has one clearance");
     if (verdicts != nullptr && (verdicts->frame.rows != frame.rows || verdicts->frame.cols != frame.cols))
-        throw ArgumentError("write_geotiff", "verdicts are of another frame, needs the same rows and columns");
+        throw ArgumentError("write_geotiff",
+                            "verdicts have another frame than the file, need the same rows and columns");
     const int layers = std::max(1, most_layers(map, frame, options));
     const std::vector<Band> bands = bands_of(layers, verdicts != nullptr);
     const Tiles tiles(frame);
@@ -318,7 +323,7 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
     OutputFile out(file);
     Tiff tiff = open_tiff(out.path(), most_bytes < 4e9 ? "w" : "w8");
     const auto failed = [&] {
-        return OutputError(file.string(), "cannot be written; is there space, and is it a file?");
+        return OutputError(file.string(), "cannot be written; is there enough space, and is it a file?");
     };
     if (!tiff) throw failed();
     set_tags(tiff.get(), frame, bands.size());

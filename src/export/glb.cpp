@@ -25,7 +25,7 @@ std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::er
 // ---------------------------------------------------------------- the scene's elements, in its order
 
 struct CornersOfTriangle {
-    std::array<Point, 3> corners;  ///< y up, from the origin of the file
+    std::array<Point, 3> corners;  ///< y up, relative to the file's origin
     std::uint32_t part = 0;
     Label label = Label::Terrain;
 };
@@ -41,7 +41,8 @@ Point rounded(const Vec3& point, const Vec3& origin)
     return {float(p.x()), float(p.y()), float(p.z())};
 }
 
-/// Tiles are in an order of their own; an element's number is its place in the scene.
+/// Returns the scene's elements in the scene's order. Tiles have another order; an element's number is its place in the
+/// scene.
 Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
 {
     const Geometry::Impl& impl = geometry.impl();
@@ -57,7 +58,7 @@ Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
             for (std::uint32_t element = 0; element < tile.elements(); ++element) {
                 const Home home = tile.home(element);
                 const std::uint64_t id = tile.ids[element];
-                if (home.col == 0 || home.row == 0) continue;  // another tile has it too, and that one tells
+                if (home.col == 0 || home.row == 0) continue;  // taken from its home tile
                 if (id >= impl.elements || tile.is_triangle(element) != (id < triangles))
                     throw FileError(impl.file, "contradicts itself; bake the map again");
                 if (tile.is_triangle(element)) {
@@ -75,7 +76,7 @@ Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
     return out;
 }
 
-/// Round solids are many triangles each.
+/// Returns the number of sides of round solids: fewer if there are many, because each has many triangles.
 int sides_for(const Elements& elements)
 {
     const auto round = std::count_if(elements.primitives.begin(), elements.primitives.end(),
@@ -94,7 +95,7 @@ struct PointHash {
     }
 };
 
-/// A JSON array as text: a million nodes as objects would take gigabytes.
+/// A JSON array that is kept as text, because a million nodes as objects would take gigabytes.
 class JsonArray {
 public:
     std::size_t add(const Json& json)
@@ -110,7 +111,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Triangles of one material with equal corners welded; without those that float32 leaves no area.
+/// The triangles of one material, with equal corners welded. Triangles with two equal corners, after rounding to
+/// float32, are left out.
 class Surface {
 public:
     void add(const Point& a, const Point& b, const Point& c)
@@ -134,7 +136,8 @@ private:
     std::vector<std::uint32_t> indices_;
 };
 
-/// Of light, as glTF has colours, from what screens show (IEC 61966-2-1); four digits are more than a screen has.
+/// Returns the light of a colour channel, which glTF needs, from the value for a screen (sRGB, IEC 61966-2-1). Four
+/// digits are more than a screen can show.
 double linear(std::uint32_t channel)
 {
     const double c = double(channel) / 255;
@@ -158,7 +161,7 @@ public:
         return materials_.add(json);
     }
 
-    /// Its corners and indices, as a mesh takes them.
+    /// Adds the corners and indices of a surface to the file. Returns the primitive for a mesh.
     Json primitive(const Surface& surface, std::size_t material)
     {
         Point low = surface.points().front(), high = low;
@@ -193,7 +196,7 @@ public:
     {
         std::string json = head(map, root);
         json.resize((json.size() + 3) / 4 * 4, ' ');
-        const std::uint64_t data = points_.size() + indices_.size();  // multiples of 4 both
+        const std::uint64_t data = points_.size() + indices_.size();  // both are multiples of 4
         const std::uint64_t total = 12 + 8 + json.size() + (data > 0 ? 8 + data : 0);
         if (total > 0xffffffff)
             throw OutputError(map.name + " as GLB",
@@ -208,7 +211,8 @@ public:
         sink(word(data) + std::string("BIN\0", 4));
         for (const std::string* part : {&points_, &indices_}) {
             constexpr std::size_t piece = 1 << 20;
-            for (std::size_t at = 0; at < part->size(); at += piece) sink(std::string_view(*part).substr(at, piece));
+            for (std::size_t begin = 0; begin < part->size(); begin += piece)
+                sink(std::string_view(*part).substr(begin, piece));
         }
     }
 
@@ -254,7 +258,7 @@ struct Look {
     double alpha;
 };
 
-/// Told apart by lightness, and from the verdicts' colours by having none.
+/// Returns the look of a label. Labels differ in lightness. Terrain and obstacles are nearly grey, unlike the verdicts.
 Look look_of(Label label)
 {
     switch (label) {
@@ -264,7 +268,7 @@ Look look_of(Label label)
     }
 }
 
-/// From .. to of the elements that a part has, as they stand together.
+/// The elements of a part, which are consecutive: from `from` to before `to`.
 struct Range {
     std::size_t from = 0, to = 0;
 };
@@ -281,7 +285,7 @@ std::vector<Range> ranges_by_part(const std::vector<Element>& elements, std::siz
     return out;
 }
 
-/// A node of the part's name; nothing if all of it is ignored.
+/// Adds a node with the part's name and returns its number; nothing if the whole part is ignored.
 std::optional<std::size_t> add_part(GlbFile& file, const Elements& elements, const Range& triangles,
                                     const Range& primitives, const std::string& name, const Vec3& origin, int sides)
 {
@@ -327,7 +331,7 @@ Surface marker_surface(const Robot* robot)
     return out;
 }
 
-/// Corners are shared by the meshes of all verdicts.
+/// Adds the markers of poses to a file. The meshes of all verdicts share their corners.
 class Markers {
 public:
     Markers(GlbFile& file, const GlbMarkers& markers) : file_(file), markers_(markers)
@@ -341,7 +345,7 @@ public:
         const Vec3 place = point_in(Frame::Gltf, position - origin);
         Eigen::Quaterniond q(rotation_in(Frame::Gltf, rotation));
         if (q.w() < 0) q.coeffs() = -q.coeffs();
-        q.coeffs().array() += 0.0;  // never -0
+        q.coeffs().array() += 0.0;  // turns -0 into 0
         Json json{{"name", markers_.names.empty() ? "spawn " + std::to_string(pose) : markers_.names[pose]},
                   {"mesh", mesh_of(pose)},
                   {"translation", {place.x(), place.y(), place.z()}},

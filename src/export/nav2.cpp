@@ -34,7 +34,7 @@ std::string yaml_text(const GridFrame& frame, const std::string& image, const st
     name << image;
     text += std::string("image: ") + name.c_str() + "\nmode: trinary\nresolution: " + number(frame.cell) + "\n";
     text += "origin: [" + number(frame.x0) + ", " + number(frame.y0) + ", 0]\nnegate: 0\noccupied_thresh: 0.65\n";
-    // 205 is 0.19608 occupied: not free. The 0.25 that many files have makes it free.
+    // A pixel of 205 means 0.19608 occupied and must not count as free. It would with 0.25, which many files have.
     return text + "free_thresh: 0.196\n";
 }
 
@@ -46,7 +46,7 @@ std::filesystem::path nav2_image_of(const std::filesystem::path& yaml)
     if (extension != ".yaml" && extension != ".yml")
         throw ArgumentError("nav2_image_of",
                             "the file's name is \"" + yaml.string() +
-                                "\", needs .yaml or .yml at its end: the image stands beside it as .pgm");
+                                "\", needs the ending .yaml or .yml; the image gets the same name with .pgm");
     return std::filesystem::path(yaml).replace_extension(".pgm");
 }
 

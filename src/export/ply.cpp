@@ -32,11 +32,11 @@ void put(BinaryWriter& out, const RasterPose& pose)
 void write_ply(const RasterResult& raster, const std::vector<std::string>& comment,
                const std::function<void(std::string_view)>& sink)
 {
-    constexpr std::size_t points_a_piece = 10000;
+    constexpr std::size_t points_per_piece = 10000;
     sink(header(raster.poses.size(), comment));
-    for (std::size_t first = 0; first < raster.poses.size(); first += points_a_piece) {
+    for (std::size_t first = 0; first < raster.poses.size(); first += points_per_piece) {
         BinaryWriter piece;
-        for (std::size_t p = first; p < std::min(first + points_a_piece, raster.poses.size()); ++p)
+        for (std::size_t p = first; p < std::min(first + points_per_piece, raster.poses.size()); ++p)
             put(piece, raster.poses[p]);
         sink(piece.take());
     }

@@ -22,12 +22,12 @@ void tessellate_box(const Shape& box, const VisitTriangle& visit)
     }
 }
 
-/// Radius and height of a point of an outline.
+/// Radius and height of a point of an outline, m.
 struct OutlinePoint {
     double radius, z;
 };
 
-/// The outline, from a pole below to a pole above (radius 0), turned about z.
+/// Turns an outline about z. It must go from a pole below to a pole above, which have radius 0.
 void turn(const std::vector<OutlinePoint>& outline, const Pose& pose, int sides, const VisitTriangle& visit)
 {
     const auto point = [&](std::size_t ring, int side) -> Vec3 {
@@ -44,7 +44,7 @@ void turn(const std::vector<OutlinePoint>& outline, const Pose& pose, int sides,
         }
 }
 
-/// A ball that is cut in two halves, moved apart.
+/// Returns the outline of a ball that is cut into two halves, which are `length` apart.
 std::vector<OutlinePoint> capsule_outline(double radius, double length, int sides)
 {
     const int rings = sides / 2, equator = rings / 2;

@@ -9,13 +9,14 @@ namespace {
 
 constexpr int strip_rows = 256;
 
-/// The centres of rows first .. last of a frame, which count from the top, as a raster.
+/// Returns the options of a raster at the centres of the cells in rows first .. last of a frame. Rows count from the
+/// top.
 RasterOptions strip_options(const GridFrame& frame, int first, int last, const RasterOptions& options)
 {
     RasterOptions out = options;
     out.dims = 2;
     out.step = frame.cell;
-    const double beyond = frame.cell / 4;  // no centre is lost to rounding
+    const double beyond = frame.cell / 4;  // so that rounding excludes no centre
     out.bounds = {Vec3(frame.x_of(0), frame.y_of(last), 0),
                   Vec3(frame.x_of(frame.cols - 1) + beyond, frame.y_of(first) + beyond, 0)};
     if (options.progress)
@@ -42,7 +43,8 @@ void add_strip(VerdictImage& image, int last, const RasterResult& strip)
 VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const RasterOptions& options)
 {
     if (options.layers.kind == LayerChoice::Kind::All)
-        throw ArgumentError("verdict_image", "layers is all, needs top, bottom or a number: a cell has one verdict");
+        throw ArgumentError("verdict_image",
+                            "layers is all, needs top, bottom or a number, because a cell has one verdict");
     VerdictImage image{frame, {}, {}, 0};
     image.verdicts.assign(std::size_t(frame.rows) * std::size_t(frame.cols), VerdictImage::no_pose);
     for (int first = 0; first < frame.rows; first += strip_rows) {

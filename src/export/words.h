@@ -4,7 +4,7 @@
 
 namespace spawnfield {
 
-/// What numbers of verdicts mean: "0 outside, 1 aerial, …".
+/// Returns the meaning of the verdicts' numbers: "0 outside, 1 aerial, …".
 inline std::string verdict_numbers()
 {
     std::string text;

@@ -13,11 +13,11 @@ namespace spawnfield {
 namespace {
 
 constexpr double pad = 1e-8;   // m; wider than touch_tolerance, so a line on an edge finds its triangle
-constexpr int refinement = 4;  // between the cell sizes of two levels
-constexpr double elements_a_tile = 256;
-constexpr double most_tiles_along = 1024;  // so that thin scenes have no more tiles than others
-constexpr double refs_an_element = 6;
-constexpr std::size_t tile_alignment = 64;  // of tiles
+constexpr int refinement = 4;  // factor between the cell sizes of two consecutive levels
+constexpr double elements_per_tile = 256;
+constexpr double most_tiles_along = 1024;  // along one side; limits the tiles of long, narrow scenes
+constexpr double refs_per_element = 6;
+constexpr std::size_t tile_alignment = 64;  // of a tile's size, bytes
 
 ElementBox box_of(const Scene& scene, std::uint32_t element)
 {
@@ -30,15 +30,16 @@ ElementBox box_of(const Scene& scene, std::uint32_t element)
     return box;
 }
 
+/// Returns the `count` values that begin at `next`, and moves `next` behind them.
 template <class T>
-std::span<const T> take(const char*& at, std::size_t count)
+std::span<const T> take(const char*& next, std::size_t count)
 {
-    const std::span<const T> out(reinterpret_cast<const T*>(at), count);
-    at += count * sizeof(T);
+    const std::span<const T> out(reinterpret_cast<const T*>(next), count);
+    next += count * sizeof(T);
     return out;
 }
 
-/// The elements of every tile of a level.
+/// The elements in every tile of a level: those of tile t are elements[starts[t]] .. elements[starts[t + 1] - 1].
 struct Members {
     std::vector<std::uint32_t> starts, elements;
 };
@@ -64,7 +65,7 @@ Members sort_into_tiles(const Geometry::Impl& geometry, const TileLevel& level,
     return out;
 }
 
-/// Writes one tile.
+/// Builds the bytes of one tile.
 class TileBuilder {
 public:
     TileBuilder(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements,
@@ -105,6 +106,7 @@ public:
     }
 
 private:
+    /// Collects the vertices and the pieces of the tile's triangles. Their order gives them their numbers in the tile.
     void number_corners()
     {
         triangles_ = std::uint32_t(std::partition_point(elements_.begin(), elements_.end(),
@@ -125,7 +127,8 @@ private:
         return std::uint32_t(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
     }
 
-    /// Bins as fine as two for each element, coarser where elements would lie in too many.
+    /// Sorts the elements into about two bins for each element, or into larger bins if elements would lie in too many
+    /// of them.
     void sort_into_bins(TileHead& head, double side)
     {
         std::uint32_t along = std::uint32_t(std::ceil(std::sqrt(2.0 * double(elements_.size()))));
@@ -137,7 +140,7 @@ private:
                 const auto [col0, col1, row0, row1] = bins_of(head, boxes_[element]);
                 refs += double(col1 - col0 + 1) * (row1 - row0 + 1);
             }
-            if (along == 1 || refs <= refs_an_element * double(elements_.size())) break;
+            if (along == 1 || refs <= refs_per_element * double(elements_.size())) break;
         }
         starts_.assign(std::size_t{along} * along + 1, 0);
         visit_bins(head, [&](std::size_t bin, std::uint32_t) { ++starts_[bin + 1]; });
@@ -228,6 +231,7 @@ private:
     std::string out_;
 };
 
+/// Returns whether all counts and indices of a tile fit its bytes and the number of parts.
 bool is_consistent(std::string_view view, std::size_t parts)
 {
     if (view.size() < sizeof(TileHead)) return false;
@@ -266,15 +270,15 @@ std::uint64_t tile_size(const TileHead& head)
 
 Tile::Tile(std::string_view bytes) : head(reinterpret_cast<const TileHead*>(bytes.data()))
 {
-    const char* at = bytes.data() + sizeof(TileHead);
-    vertices = take<Vec3>(at, head->vertices);
-    primitives = take<TilePrimitive>(at, head->primitives);
-    pieces = take<TilePiece>(at, head->pieces);
-    triangles = take<TileTriangle>(at, head->triangles);
-    boxes = take<ElementBox>(at, elements());
-    ids = take<std::uint32_t>(at, elements());
-    starts = take<std::uint32_t>(at, std::size_t{head->bin_cols} * head->bin_rows + 1);
-    refs = take<std::uint32_t>(at, head->refs);
+    const char* next = bytes.data() + sizeof(TileHead);
+    vertices = take<Vec3>(next, head->vertices);
+    primitives = take<TilePrimitive>(next, head->primitives);
+    pieces = take<TilePiece>(next, head->pieces);
+    triangles = take<TileTriangle>(next, head->triangles);
+    boxes = take<ElementBox>(next, elements());
+    ids = take<std::uint32_t>(next, elements());
+    starts = take<std::uint32_t>(next, std::size_t{head->bin_cols} * head->bin_rows + 1);
+    refs = take<std::uint32_t>(next, head->refs);
 }
 
 void Geometry::Impl::make_states()
@@ -302,11 +306,11 @@ const HeightRun* Geometry::Impl::make_height_runs(std::size_t level, std::size_t
         run.low = std::min(run.low, box.min[2]);
         run.high = std::max(run.high, box.max[2]);
     }
-    const HeightRun* there = nullptr;  // another thread may have been quicker
-    if (runs_[level][number].compare_exchange_strong(there, made.get(), std::memory_order_acq_rel,
+    const HeightRun* existing = nullptr;  // remains nullptr unless another thread was quicker
+    if (runs_[level][number].compare_exchange_strong(existing, made.get(), std::memory_order_acq_rel,
                                                      std::memory_order_acquire))
         return made.release();
-    return there;
+    return existing;
 }
 
 void Geometry::Impl::verify(std::string_view view, const TileEntry& entry) const
@@ -325,10 +329,11 @@ Geometry::Impl::Visits& Geometry::Impl::visits_of_thread()
 
 double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, double high_y) const
 {
-    constexpr double bytes_an_element = 100;
+    constexpr double bytes_per_element = 100;
     double sum = 0;
     for (const TileLevel& level : levels) {
-        const auto share = [&](double low, double high, double origin, std::uint32_t n) {  // of the cell that is met
+        // The share of the side of cell n that lies in low .. high.
+        const auto share = [&](double low, double high, double origin, std::uint32_t n) {
             const double start = origin + n * level.cell;
             return std::clamp((std::min(high, start + level.cell) - std::max(low, start)) / level.cell, 0.0, 1.0);
         };
@@ -341,7 +346,7 @@ double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, 
                 sum += double(level.tiles[std::size_t{row} * level.cols + col].size) * share(low_x, high_x, x0, col) *
                        share(low_y, high_y, y0, row);
     }
-    return sum / bytes_an_element;
+    return sum / bytes_per_element;
 }
 
 Geometry::Geometry() : impl_(std::make_shared<const Impl>()) {}
@@ -371,7 +376,7 @@ Geometry::Geometry(const Scene& scene, int threads)
         impl->y0 = bounds.min.y() - pad;
         const double width = bounds.max.x() - bounds.min.x() + 2 * pad,
                      depth = bounds.max.y() - bounds.min.y() + 2 * pad;
-        double cell = std::max(std::sqrt(width * depth * elements_a_tile / elements),
+        double cell = std::max(std::sqrt(width * depth * elements_per_tile / elements),
                                std::max(width, depth) / most_tiles_along);
 
         std::vector<std::vector<std::uint32_t>> members(1);

@@ -13,30 +13,31 @@
 
 namespace spawnfield {
 
-// What a tile consists of, as it lies in memory and in geometry.bin: no padding, multiples of 8 bytes or followed by
-// some.
+// The records of a tile have the same bytes in memory and in geometry.bin, without padding. The arrays of records that
+// contain doubles come first in a tile, and their sizes are multiples of 8 bytes, so that all arrays are aligned.
 
-/// Smallest box around an element, widened by touch_tolerance and rounded outwards.
+/// The bounding box of an element, widened by 1e-8 m and rounded outwards.
 struct ElementBox {
     std::array<float, 3> min, max;
 };
 
-/// Whether the lower left corner of an element's box lies in this tile's column of tiles, and in its row.
+/// Whether the lower left corner of an element's box lies in this tile's column of tiles (col) and in its row of tiles
+/// (row).
 struct Home {
     std::uint8_t col, row;
 };
 
 struct TileTriangle {
-    Triangle corners;     ///< into the tile's vertices
-    std::uint32_t piece;  ///< into the tile's pieces
+    Triangle corners;     ///< indices in the tile's vertices
+    std::uint32_t piece;  ///< index in the tile's pieces
     Label label;
     Home home;
     std::uint8_t unused;
 };
 
 struct TilePiece {
-    double bottom;        ///< as Piece
-    std::uint32_t piece;  ///< of the scene
+    double bottom;        ///< Piece::bottom, m
+    std::uint32_t piece;  ///< index in the scene
     std::uint32_t part;
     std::uint8_t solid, open, sides_up;
     std::array<std::uint8_t, 5> unused;
@@ -44,7 +45,7 @@ struct TilePiece {
 
 struct TilePrimitive {
     std::array<double, 3> size, position;
-    std::array<double, 9> rotation;  ///< column after column
+    std::array<double, 9> rotation;  ///< column by column
     std::uint32_t part;
     ShapeKind kind;
     Label label;
@@ -54,17 +55,19 @@ struct TilePrimitive {
 };
 
 struct TileHead {
-    double x0, y0, bin;  ///< corner of the tile, side of its bins, m
+    double x0, y0, bin;  ///< lower left corner of the tile; side of its bins, m
     std::uint32_t vertices, triangles, primitives, pieces, refs, bin_cols, bin_rows, unused;
 };
 
-/// Column or row of cells at an offset from their corner; what lies beyond the rim is in the outermost.
+/// Returns the number of the column or row of cells that contains an offset from the grid's corner. An offset beyond
+/// the grid belongs to the outermost cell.
 inline std::uint32_t cell_number(double offset, double cell, std::uint32_t count)
 {
     return static_cast<std::uint32_t>(std::clamp(std::floor(offset / cell), 0.0, double(count - 1)));
 }
 
-/// A tile's bytes as what they are. Elements of the tile: its triangles, then its primitives.
+/// A view of a tile's bytes as typed arrays. The tile's elements are numbered: first its triangles, then its
+/// primitives.
 struct Tile {
     const TileHead* head;
     std::span<const Vec3> vertices;
@@ -72,11 +75,11 @@ struct Tile {
     std::span<const TilePiece> pieces;
     std::span<const TileTriangle> triangles;
     std::span<const ElementBox> boxes;
-    std::span<const std::uint32_t> ids;     ///< of the scene's elements, ascending
-    std::span<const std::uint32_t> starts;  ///< of each bin in refs, and the end
+    std::span<const std::uint32_t> ids;     ///< the elements' numbers in the scene, ascending
+    std::span<const std::uint32_t> starts;  ///< where each bin begins in refs, then the size of refs
     std::span<const std::uint32_t> refs;    ///< elements of the tile, ascending within a bin
 
-    /// The arrays behind a head, whose counts must fit the bytes (tile_size).
+    /// Reads the head and finds the arrays behind it. The head's counts must fit the bytes (see tile_size).
     explicit Tile(std::string_view bytes);
 
     std::uint32_t elements() const { return head->triangles + head->primitives; }
@@ -103,15 +106,15 @@ struct Tile {
     std::uint32_t bin_row(double y) const { return cell_number(y - head->y0, head->bin, head->bin_rows); }
     std::span<const std::uint32_t> bin(std::uint32_t col, std::uint32_t row) const
     {
-        const std::size_t at = std::size_t{row} * head->bin_cols + col;
-        return refs.subspan(starts[at], starts[at + 1] - starts[at]);
+        const std::size_t number = std::size_t{row} * head->bin_cols + col;
+        return refs.subspan(starts[number], starts[number + 1] - starts[number]);
     }
 };
 
-/// Bytes that a tile with this head takes.
+/// Returns the size of a tile with this head, bytes, without the padding at its end.
 std::uint64_t tile_size(const TileHead& head);
 
-/// Where a tile lies among the bytes of all tiles; a size of 0: there is nothing in it.
+/// The place of a tile in the bytes of all tiles. A tile of size 0 is empty.
 struct TileEntry {
     std::uint64_t offset = 0, size = 0, checksum = 0;
 };
@@ -122,7 +125,8 @@ struct TileLevel {
     std::vector<TileEntry> tiles;  ///< row after row; row 0 is the smallest y
 };
 
-/// Heights of some elements of a tile that follow each other; in the scene's order they are mostly near each other.
+/// The height range of a run of consecutive elements of a tile. Consecutive elements of a scene are mostly near each
+/// other, so that a query can skip whole runs.
 struct HeightRun {
     static constexpr std::uint32_t length = 32;  ///< elements
     float low = std::numeric_limits<float>::infinity(), high = -std::numeric_limits<float>::infinity();
@@ -131,7 +135,7 @@ struct HeightRun {
 };
 
 struct Geometry::Impl {
-    double x0 = 0, y0 = 0;  ///< corner that all levels share
+    double x0 = 0, y0 = 0;  ///< lower left corner of every level, m
     std::uint64_t elements = 0;
     Bounds bounds;            ///< of all elements
     std::vector<Part> parts;  ///< of the scene, in its order
@@ -139,16 +143,17 @@ struct Geometry::Impl {
     bool has_filled_meshes = false;
     std::vector<TileLevel> levels;
     Bytes bytes;       ///< of all tiles
-    std::string file;  ///< that they lie in, for messages; empty: in memory, and trusted
+    std::string file;  ///< the file of these bytes, for messages; empty: made in memory, not to be checked
 
     Impl() = default;
     Impl(Impl&&) = default;
     Impl& operator=(Impl&&) = delete;
     ~Impl();
-    /// To be called when the levels are filled, before the first tile is opened.
+    /// Prepares the state of each tile. Must be called after the levels are filled and before the first tile is opened.
     void make_states();
 
-    /// Checks the tile's checksum and indices if nobody did before. Throws FileError.
+    /// Returns a tile. Checks its checksum and its indices when it is opened for the first time. Throws FileError if
+    /// they are wrong.
     Tile open(std::size_t level, std::size_t tile) const
     {
         const TileEntry& entry = levels[level].tiles[tile];
@@ -161,7 +166,7 @@ struct Geometry::Impl {
         return Tile(view);
     }
 
-    /// visit(tile, bin) for the bin of each level that holds (x, y).
+    /// Calls visit(tile, bin) for the bin of each level that contains (x, y).
     template <class Visit>
     void visit_at(double x, double y, const Visit& visit) const
     {
@@ -178,7 +183,7 @@ struct Geometry::Impl {
         }
     }
 
-    /// visit(tile, element) for each element whose box meets the closed rectangle, once each.
+    /// Calls visit(tile, element) once for each element whose box meets the closed rectangle.
     template <class Visit>
     void visit_in(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
     {
@@ -188,33 +193,35 @@ struct Geometry::Impl {
         visit_if(low_x, low_y, high_x, high_y, AnyHeight(), meets, visit);
     }
 
-    /// The same for a closed box.
+    /// Calls visit(tile, element) once for each element whose box meets the closed box `space`.
     template <class Visit>
     void visit_in(const Bounds& space, const Visit& visit) const
     {
         const Vec3 &low = space.min, &high = space.max;
-        const auto meets = [&](const ElementBox& box) {  // by height first: tiles may be tall
+        const auto meets = [&](const ElementBox& box) {  // compares heights first: tiles may be tall
             return box.min[2] <= high.z() && box.max[2] >= low.z() && box.min[0] <= high.x() && box.max[0] >= low.x() &&
                    box.min[1] <= high.y() && box.max[1] >= low.y();
         };
         visit_if(low.x(), low.y(), high.x(), high.y(), Interval{low.z(), high.z()}, meets, visit);
     }
 
-    /// About how many elements there are in the tiles that a rectangle meets, by its share of their area.
+    /// Estimates how many elements lie in a rectangle, from the sizes of the tiles that it meets. Each tile counts by
+    /// the share of its area in the rectangle.
     double elements_near(double low_x, double low_y, double high_x, double high_y) const;
 
 private:
     struct AnyHeight {};
 
-    /// Elements near the rectangle for which meets(box) holds, which is nowhere else, nor off these heights: an
-    /// Interval or AnyHeight.
+    /// Calls visit(tile, element) once for each element near the rectangle whose box fulfils meets(box). meets(box)
+    /// must be false for boxes outside the rectangle and outside `heights`, which is an Interval, or AnyHeight for no
+    /// limit.
     template <class Heights, class Meets, class Visit>
     void visit_if(double low_x, double low_y, double high_x, double high_y, const Heights& heights, const Meets& meets,
                   const Visit& visit) const
     {
         for (std::size_t l = 0; l < levels.size(); ++l) {
             const TileLevel& level = levels[l];
-            // Not past the rim: the outermost tiles would answer.
+            // Skips rectangles beyond the grid, because cell_number would return the outermost tiles for them.
             if (high_x < x0 || high_y < y0 || low_x > x0 + level.cell * level.cols ||
                 low_y > y0 + level.cell * level.rows)
                 continue;
@@ -236,8 +243,8 @@ private:
                             return true;
                     };
                     visit_tile(tile, low_x, low_y, high_x, high_y, may_meet, meets, [&](std::uint32_t element) {
-                        // In several tiles: the one that holds the lower left corner of what box and rectangle share
-                        // tells.
+                        // An element may be in several tiles. It is visited in the tile that contains the lower left
+                        // corner of the intersection of its box and the rectangle.
                         const ElementBox& box = tile.boxes[element];
                         const Home home = tile.home(element);
                         if ((box.min[0] > low_x ? home.col != 0 : col == col0) &&
@@ -248,14 +255,15 @@ private:
         }
     }
 
-    /// may_meet(element) speaks for the whole run that the element is in.
+    /// Calls visit(element) once for each element of the tile whose box fulfils meets(box). may_meet(element) must be
+    /// the same for all elements of a HeightRun; if it is false, the run is skipped.
     template <class MayMeet, class Meets, class Visit>
     static void visit_tile(const Tile& tile, double low_x, double low_y, double high_x, double high_y,
                            const MayMeet& may_meet, const Meets& meets, const Visit& visit)
     {
         const std::uint32_t col0 = tile.bin_col(low_x), col1 = tile.bin_col(high_x), row0 = tile.bin_row(low_y),
                             row1 = tile.bin_row(high_y);
-        // Most bins: all elements in their order, rather than bin by bin.
+        // If the rectangle covers most bins, all elements are visited in their order instead of bin by bin.
         if (2.0 * (col1 - col0 + 1) * (row1 - row0 + 1) > double(tile.head->bin_cols) * tile.head->bin_rows) {
             for (std::uint32_t first = 0; first < tile.elements(); first += HeightRun::length) {
                 if (!may_meet(first)) continue;
@@ -273,7 +281,7 @@ private:
                     if (may_meet(element) && meets(tile.boxes[element]) && visits.is_first(element)) visit(element);
     }
 
-    /// Which elements of a tile were visited: several bins hold the same one.
+    /// Remembers which elements of a tile were visited, because an element may be in several bins.
     class Visits {
     public:
         void start(std::size_t element_count)
@@ -294,12 +302,14 @@ private:
         std::vector<std::uint32_t> stamps_;
         std::uint32_t round_ = 0;
     };
-    /// Of one visit at a time: what is visited must not visit the same thread's tiles again.
+    /// Returns the Visits of the calling thread. They serve one visit at a time: `visit` must not start another visit
+    /// in the same thread.
     static Visits& visits_of_thread();
 
     void verify(std::string_view view, const TileEntry& entry) const;
 
-    /// Of a tile with many elements, made when first asked for: a quarter of a byte for each; nullptr for others.
+    /// Returns the height runs of a tile with many elements; nullptr for other tiles. The first call for a tile makes
+    /// its runs, which take a quarter of a byte for each element.
     const HeightRun* height_runs(std::size_t level, std::size_t number, const Tile& tile) const
     {
         constexpr std::uint32_t many = 16 * HeightRun::length;
@@ -309,8 +319,8 @@ private:
     }
     const HeightRun* make_height_runs(std::size_t level, std::size_t number, const Tile& tile) const;
 
-    mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> states_;    ///< 1: checked
-    mutable std::vector<std::unique_ptr<std::atomic<const HeightRun*>[]>> runs_;  ///< owned
+    mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> states_;    ///< 1: the tile was checked
+    mutable std::vector<std::unique_ptr<std::atomic<const HeightRun*>[]>> runs_;  ///< owned; nullptr: not made yet
 };
 
 }  // namespace spawnfield

@@ -29,6 +29,7 @@ std::string written_head(const SolidBounds::Impl& bounds)
     return out.take();
 }
 
+/// Returns whether the levels are valid and every tile lies within the bytes.
 bool is_consistent(const SolidBounds::Impl& bounds)
 {
     constexpr std::uint32_t most = 1u << 30;  // cells along one side

@@ -12,20 +12,20 @@
 namespace spawnfield {
 namespace {
 
-constexpr double step = 0.01;             // m, of the counted heights
-constexpr double head_room = 1.5;         // m up to the next layer, at least: slabs are hollow in many meshes
-constexpr int smoothing = 25;             // steps to either side that a height counts for, with falling weight
-constexpr double deepest_valley = 0.5;    // of the lower of two peaks, for both to be floors
-constexpr double flat_within = 0.25;      // m
-constexpr double least_flat_share = 0.5;  // of a floor's ground
-constexpr double least_share = 0.02;      // of the map's ground
-constexpr double least_area = 1;          // m2
+constexpr double step = 0.01;             // m between counted heights
+constexpr double head_room = 1.5;         // m; least free height above ground, because slabs are hollow in many meshes
+constexpr int smoothing = 25;             // a height also counts for so many steps to either side, with falling weight
+constexpr double deepest_valley = 0.5;    // share of the lower of two peaks; a valley between two floors is lower
+constexpr double flat_within = 0.25;      // m above and below a floor's height
+constexpr double least_flat_share = 0.5;  // share of a floor's ground that must be flat
+constexpr double least_share = 0.02;      // share of the map's ground that a floor must have
+constexpr double least_area = 1;          // m2 that a floor must have
 constexpr std::size_t tile_cells = std::size_t(TerrainMap::tile) * TerrainMap::tile;
 
-/// Cells of ground by height in steps; only the heights that occur.
+/// The number of ground cells at each height, in steps. Contains only the heights that occur.
 using Histogram = std::map<std::int64_t, std::uint64_t>;
 
-/// A tile of a page, NaN where there is nothing.
+/// Returns the heights in a tile of a page; NaN where there is nothing.
 std::vector<float> tile_of(const TerrainMap::Page& page, std::size_t tile)
 {
     std::vector<float> heights(tile_cells);
@@ -33,8 +33,8 @@ std::vector<float> tile_of(const TerrainMap::Page& page, std::size_t tile)
     return heights;
 }
 
-/// How often each bin occurs. Bins of one tile mostly lie close together: then a table counts them, without a look-up
-/// for each cell.
+/// Returns how often each bin occurs. If the bins lie close together, as they mostly do in one tile, a table counts
+/// them; that is faster than a look-up in the histogram for each cell.
 Histogram counted(const std::vector<std::int64_t>& bins)
 {
     Histogram out;
@@ -52,7 +52,7 @@ Histogram counted(const std::vector<std::int64_t>& bins)
     return out;
 }
 
-/// Cells of a tile with at least this much free height, m.
+/// Counts the ground cells of a tile with a free height of at least `room`, m.
 Histogram ground_in_tile(const std::vector<const TerrainMap::Page*>& layers, std::size_t tile, double room)
 {
     std::vector<std::int64_t> bins;
@@ -69,6 +69,7 @@ Histogram ground_in_tile(const std::vector<const TerrainMap::Page*>& layers, std
     return counted(bins);
 }
 
+/// Counts the ground cells of a map with a free height of at least `room`, m.
 Histogram ground_of(const TerrainMap& terrain, double room, int threads)
 {
     std::vector<const TerrainMap::Page*> layers;
@@ -82,7 +83,7 @@ Histogram ground_of(const TerrainMap& terrain, double room, int threads)
     return sum;
 }
 
-/// The ground of a map by height, with the sums and the density that peaks are found in.
+/// The ground of a map by height, with cumulative sums, and with the smoothed density in which peaks are found.
 class GroundHeights {
 public:
     explicit GroundHeights(const Histogram& counts)
@@ -103,7 +104,7 @@ public:
         return bins_[std::size_t(std::lower_bound(sums_.begin(), sums_.end(), (total() + 1) / 2) - sums_.begin())];
     }
 
-    /// Cells whose bins are first .. last.
+    /// Returns the number of cells whose bins are first .. last.
     std::uint64_t cells_in(std::int64_t first, std::int64_t last) const
     {
         return cells_below(last + 1) - cells_below(first);
@@ -115,7 +116,8 @@ public:
         return cells_in(peak - reach, peak + reach);
     }
 
-    /// Bins of the peaks that are separate and have `least` flat cells, in rising order.
+    /// Returns the bins of the peaks that are separated by valleys and have at least `least` flat cells, in rising
+    /// order.
     std::vector<std::int64_t> separate_peaks(double least) const
     {
         std::vector<std::size_t> candidates, chosen;
@@ -143,11 +145,11 @@ private:
         return before == 0 ? 0 : sums_[before - 1];
     }
 
-    /// Density one bin above (1) or below (-1) an entry; 0 where there is no ground.
+    /// Returns the density one bin above (by = 1) or below (by = -1) entry i; 0 if there is no ground.
     std::uint64_t density_at(std::size_t i, int by) const
     {
-        const std::size_t there = i + std::size_t(std::int64_t(by));
-        return there < density_.size() && density_[there].first == density_[i].first + by ? density_[there].second : 0;
+        const std::size_t next = i + std::size_t(std::int64_t(by));
+        return next < density_.size() && density_[next].first == density_[i].first + by ? density_[next].second : 0;
     }
 
     bool has_valley(std::size_t from, std::size_t to, std::size_t peak) const
@@ -158,14 +160,14 @@ private:
         return false;
     }
 
-    std::vector<std::int64_t> bins_;                               ///< with ground, rising
-    std::vector<std::uint64_t> sums_;                              ///< cells up to and with each of bins_
-    std::vector<std::pair<std::int64_t, std::uint64_t>> density_;  ///< bins with some, rising
+    std::vector<std::int64_t> bins_;   ///< bins with ground, in rising order
+    std::vector<std::uint64_t> sums_;  ///< number of cells in each of bins_ and all before it
+    std::vector<std::pair<std::int64_t, std::uint64_t>> density_;  ///< bins with a density above 0, in rising order
 };
 
 double height_of(std::int64_t bin) { return double(bin) * step; }
 
-/// Floors at the given peaks, which share the ground at half the heights between them.
+/// Returns floors at the given peaks. Ground between two peaks belongs to the nearer one.
 std::vector<Floor> floors_at(const std::vector<std::int64_t>& peaks, const GroundHeights& ground, double cell_area)
 {
     std::vector<Floor> out;
@@ -187,7 +189,7 @@ std::vector<Floor> floors_at(const std::vector<std::int64_t>& peaks, const Groun
     return out;
 }
 
-/// The peak whose ground is least flat, if that is not flat enough.
+/// Returns the peak whose ground is least flat, if less than least_flat_share of it is flat.
 std::optional<std::size_t> least_flat(const std::vector<std::int64_t>& peaks, const std::vector<Floor>& floors,
                                       const GroundHeights& ground)
 {

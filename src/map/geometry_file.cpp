@@ -61,7 +61,8 @@ void read_parts(BinaryReader& in, Geometry::Impl& geometry)
     }
 }
 
-/// Every tile within the bytes: a file that passes its checksums may still have been made by someone else's hands.
+/// Returns whether the levels are valid and every tile lies within the bytes. A file with correct checksums may still
+/// come from another program.
 bool is_consistent(const Geometry::Impl& geometry)
 {
     for (const TileLevel& level : geometry.levels) {

@@ -6,11 +6,12 @@
 
 namespace spawnfield {
 
-/// geometry.bin: what exact checks need, in tiles that are read one by one (docs/map-format.md). Throws OutputError.
+/// Writes geometry.bin: the geometry for exact checks, in tiles that are read one by one (docs/map-format.md). Throws
+/// OutputError.
 void write_geometry(const std::filesystem::path& file, const Geometry& geometry);
 
-/// Reads the head alone; tiles are read and checked when they are touched. Throws FileError for a file that is cut
-/// short, altered or newer.
+/// Opens geometry.bin and reads its head only. A tile is read and checked when it is first used. Throws FileError for a
+/// file that is cut short, altered or of another version.
 Geometry open_geometry(const std::filesystem::path& file, const std::string& head_checksum);
 
 }  // namespace spawnfield

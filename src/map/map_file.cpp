@@ -22,7 +22,7 @@ void check_size(const fs::path& folder, const ListedFile& file)
     const auto bytes = fs::file_size(folder / file.name, error);
     if (error) throw FileError((folder / file.name).string(), "is missing; bake the map again");
     if (bytes != file.bytes)
-        throw FileError((folder / file.name).string(), "has " + std::to_string(bytes) + " bytes, map.yaml says " +
+        throw FileError((folder / file.name).string(), "has " + std::to_string(bytes) + " bytes, map.yaml lists " +
                                                            std::to_string(file.bytes) +
                                                            ": it was cut short or altered; bake the map again");
 }
@@ -38,7 +38,9 @@ const ListedFile& listed(const MapYaml& yaml, const std::string& name)
 {
     const auto file = std::find_if(yaml.files.begin(), yaml.files.end(),
                                    [&](const ListedFile& f) { return f.name == name; });
-    if (file == yaml.files.end()) throw FileError((yaml.map.folder / "map.yaml").string(), "files lists no " + name);
+    if (file == yaml.files.end())
+        throw FileError((yaml.map.folder / "map.yaml").string(),
+                        "does not list " + name + " under files; bake the map again");
     return *file;
 }
 
@@ -65,7 +67,7 @@ TerrainMap read_terrain(const Map& map)
     const bool same = std::equal(
         terrain.pages.begin(), terrain.pages.end(), yaml.pages.begin(), yaml.pages.end(),
         [](const TerrainMap::Page& page, const std::string& name) { return page.name == name; });
-    if (!same) throw FileError(file.string(), "has other pages than map.yaml names; bake the map again");
+    if (!same) throw FileError(file.string(), "has other pages than map.yaml lists; bake the map again");
     return terrain;
 }
 

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 const std::string format_prefix = "spawnfield-map/";
 const std::string hash_key = "hash: ";
-constexpr int oldest_format = 2;  // without z_limits and floors
+constexpr int oldest_format = 2;  // has no z_limits and no floors
 
 std::string quoted(const std::string& text)
 {
@@ -52,7 +52,7 @@ std::string libraries()
     return "{assimp: \"" + assimp + "\", fcl: \"" FCL_VERSION "\", opencv: \"" CV_VERSION "\"}";
 }
 
-/// Triangles and primitives of each label.
+/// Returns a line with the numbers of triangles and primitives for each label.
 std::string label_counts(const LabelCounts& counts)
 {
     std::string out;
@@ -82,7 +82,7 @@ Bounds read_bounds(const YamlMap& root)
     Bounds bounds;
     bounds.min = map.vector("min");
     bounds.max = map.vector("max");
-    if (bounds.is_empty()) root.fail("bounds", "has min above max");
+    if (bounds.is_empty()) root.fail("bounds", "has min above max, needs min at most max");
     return bounds;
 }
 
@@ -109,7 +109,7 @@ GeoOrigin read_origin(const YamlMap& map)
     return {map.finite("x"), map.finite("y"), map.positive("unit"), map.text("crs", "")};
 }
 
-/// Limits that are infinite as YAML 1.2 has them.
+/// Returns the limits as a YAML list. Infinite limits are written as YAML 1.2 requires.
 std::string z_text(const ZRange& z)
 {
     const auto limit = [](double value) {
@@ -125,9 +125,9 @@ ZRange read_z(const YamlMap& map, const std::string& key)
     try {
         z = {node[0].as<double>(), node[1].as<double>()};
     } catch (const YAML::Exception&) {
-        map.fail(key, "needs two heights, m");
+        map.fail(key, "needs two heights, m: [LOW, HIGH]");
     }
-    if (!(z.low <= z.high)) map.fail(key, "has its higher limit first");
+    if (!(z.low <= z.high)) map.fail(key, "has its higher limit first, needs [LOW, HIGH]");
     return z;
 }
 
@@ -151,9 +151,10 @@ std::vector<Floor> read_floors(const YamlMap& root)
     return out;
 }
 
-/// The last line, which holds the checksum of all before it.
+/// Returns the last line of map.yaml, which contains the checksum of all lines before it.
 std::string hash_line(const std::string& hash) { return hash_key + "\"" + hash + "\"\n"; }
 
+/// Returns the hash in the last line of map.yaml. Throws FileError if it differs from the checksum of the other lines.
 std::string verified_hash(const fs::path& file, const std::string& text)
 {
     const std::size_t size = hash_line(checksum("")).size();
@@ -166,14 +167,16 @@ std::string verified_hash(const fs::path& file, const std::string& text)
     return hash;
 }
 
-/// The version of a file that this program can read. Newer maps are refused before anything else of them is read.
+/// Returns the format version of a map.yaml. Throws FileError if this program cannot read that version, before anything
+/// else is read.
 int version_of(const fs::path& file, const std::string& text)
 {
-    const std::size_t at = text.find(format_prefix);
-    if (!text.starts_with("format: ") || at == std::string::npos || at > 16)
-        throw FileError(file.string(), "is no map.yaml of spawnfield (its first line is not `format: " + format_prefix +
-                                           std::to_string(map_format_version) + "`)");
-    const std::string found = text.substr(at + format_prefix.size(), text.find('\n') - at - format_prefix.size());
+    const std::size_t prefix = text.find(format_prefix);
+    if (!text.starts_with("format: ") || prefix == std::string::npos || prefix > 16)
+        throw FileError(file.string(), "is not a map.yaml of spawnfield (its first line is not `format: " +
+                                           format_prefix + std::to_string(map_format_version) + "`)");
+    const std::string found = text.substr(prefix + format_prefix.size(),
+                                          text.find('\n') - prefix - format_prefix.size());
     if (found == std::to_string(map_format_version)) return map_format_version;
     if (found == std::to_string(oldest_format)) return oldest_format;
     throw FileError(file.string(), "has format version " + found + ", this program reads " +
@@ -181,7 +184,7 @@ int version_of(const fs::path& file, const std::string& text)
                                        "; bake the map again or use a newer spawnfield");
 }
 
-/// For what is given as a map and is not a folder.
+/// Throws FileError for a map argument that is not a folder. The message advises what to give instead.
 [[noreturn]] void refuse_as_map(const fs::path& file)
 {
     require_file(file);
@@ -241,7 +244,8 @@ MapYaml read_map_yaml(const fs::path& folder)
     if (!fs::is_directory(folder, unreachable)) refuse_as_map(folder);
     const fs::path file = folder / "map.yaml";
     if (!fs::is_regular_file(file))
-        throw FileError(folder.string(), "is no map: it has no map.yaml; `spawnfield bake SCENE -o MAP` makes one");
+        throw FileError(folder.string(),
+                        "is not a map: it has no map.yaml; make a map with `spawnfield bake SCENE -o MAP`");
     const std::string text = read_file(file);
     const int format = version_of(file, text);
     MapYaml out;

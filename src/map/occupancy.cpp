@@ -18,7 +18,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr int key_offset = 32768;  // OctoMap's key of the voxel from 0 to one resolution
+constexpr int key_offset = 32768;  // OctoMap's key of the voxel that begins at 0
 constexpr int depth = 16;          // levels of an OcTree
 
 struct VoxelBox {
@@ -43,10 +43,10 @@ VoxelBox voxels_in(const Bounds& bounds, double resolution)
     return box;
 }
 
-/// As two bits of a .bt file tell it of a child.
+/// Two-bit state of a child in a .bt file.
 enum class Content : std::uint8_t { Unknown = 0, Free = 1, Occupied = 2, Mixed = 3 };
 
-/// Of a column of cubes, the part up to cube `end` from where the stretch before it ends.
+/// A part of a column of cubes: it begins where the stretch before it ends, and ends before cube `end`.
 struct Stretch {
     int end;
     Content content;
@@ -54,6 +54,7 @@ struct Stretch {
 
 using Profile = std::vector<Stretch>;
 
+/// Extends a profile by cubes of this content up to cube `end`. Does nothing if the profile already reaches that far.
 void append(Profile& profile, int end, Content content)
 {
     const int from = profile.empty() ? 0 : profile.back().end;
@@ -64,8 +65,8 @@ void append(Profile& profile, int end, Content content)
         profile.push_back({end, content});
 }
 
-/// Columns of cubes with a side of 2^level voxels, over a rectangle; beyond it is the unknown. Counted in cubes from
-/// OctoMap's lowest key.
+/// Columns of cubes with a side of 2^level voxels, over a rectangle. All cubes beyond the rectangle are unknown.
+/// Coordinates are in cubes from OctoMap's lowest key.
 class Profiles {
 public:
     Profiles(int level, int x0, int y0, int cols, int rows) : level_(level), x0_(x0), y0_(y0), cols_(cols), rows_(rows)
@@ -75,26 +76,27 @@ public:
     }
 
     int level() const { return level_; }
-    std::span<const Stretch> at(int x, int y) const
+    std::span<const Stretch> stretches_at(int x, int y) const
     {
         if (x < x0_ || y < y0_ || x >= x0_ + cols_ || y >= y0_ + rows_) return {&beyond_, 1};
         const std::size_t column = std::size_t(y - y0_) * std::size_t(cols_) + std::size_t(x - x0_);
         return std::span(stretches_).subspan(starts_[column], starts_[column + 1] - starts_[column]);
     }
-    Content at(int x, int y, int z) const
+    Content content_at(int x, int y, int z) const
     {
-        const auto column = at(x, y);
-        return std::upper_bound(column.begin(), column.end(), z, [](int at, const Stretch& s) { return at < s.end; })
+        const auto column = stretches_at(x, y);
+        return std::upper_bound(column.begin(), column.end(), z,
+                                [](int cube, const Stretch& s) { return cube < s.end; })
             ->content;
     }
 
-    void add(std::span<const Stretch> column)  ///< row after row
+    void add(std::span<const Stretch> column)  ///< adds the next column, row after row
     {
         stretches_.insert(stretches_.end(), column.begin(), column.end());
         starts_.push_back(std::uint32_t(stretches_.size()));
     }
 
-    /// The same in cubes twice as large. O(stretches).
+    /// Returns the same space in cubes twice as large. O(stretches).
     Profiles halved() const
     {
         const int x0 = x0_ >> 1, y0 = y0_ >> 1, x1 = (x0_ + cols_ - 1) >> 1, y1 = (y0_ + rows_ - 1) >> 1;
@@ -102,7 +104,9 @@ public:
         Profile common, coarse;
         for (int y = y0; y <= y1; ++y)
             for (int x = x0; x <= x1; ++x) {
-                merge({at(2 * x, 2 * y), at(2 * x + 1, 2 * y), at(2 * x, 2 * y + 1), at(2 * x + 1, 2 * y + 1)}, common);
+                merge({stretches_at(2 * x, 2 * y), stretches_at(2 * x + 1, 2 * y), stretches_at(2 * x, 2 * y + 1),
+                       stretches_at(2 * x + 1, 2 * y + 1)},
+                      common);
                 halve(common, coarse);
                 out.add(coarse);
             }
@@ -110,7 +114,7 @@ public:
     }
 
 private:
-    /// What four columns have in common.
+    /// Writes to `out` what four columns have in common; Mixed where they differ.
     static void merge(std::array<std::span<const Stretch>, 4> columns, Profile& out)
     {
         out.clear();
@@ -127,12 +131,13 @@ private:
         }
     }
 
+    /// Writes to `out` the same column in cubes twice as high.
     static void halve(const Profile& fine, Profile& out)
     {
         out.clear();
         for (const Stretch& stretch : fine) {
             append(out, stretch.end / 2, stretch.content);
-            append(out, (stretch.end + 1) / 2, Content::Mixed);  // nothing to append where the end is even
+            append(out, (stretch.end + 1) / 2, Content::Mixed);  // appends nothing if the end is even
         }
     }
 
@@ -142,7 +147,7 @@ private:
     std::vector<Stretch> stretches_;
 };
 
-/// Profiles of the voxel columns of a part of the box, from its i0-th and j0-th on.
+/// Returns the profiles of cols x rows voxel columns of the box, from its column i0 and row j0 on.
 Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double resolution, int i0, int j0, int cols,
                         int rows)
 {
@@ -168,11 +173,11 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
         for (int i = 0; i < cols; ++i) {
             runs.clear();
             surfaces.get(block.id(i, j), touching);
-            for (const Interval& span : touching)  // voxels, as closed boxes, that it touches
+            for (const Interval& span : touching)  // all voxels that it touches; they are closed boxes
                 add(voxel(std::ceil((span.bottom - touch_tolerance) / resolution) - 1),
                     voxel(std::floor((span.top + touch_tolerance) / resolution)));
             if (may_be_filled)
-                for (const Span& span : centres.at(i, j).spans)  // voxels whose centres are in it
+                for (const Span& span : centres.at(i, j).spans)  // all voxels whose centres are in it
                     add(voxel(std::ceil(span.bottom / resolution - 0.5)),
                         voxel(std::floor(span.top / resolution - 0.5)));
             if (runs.size() > 1)
@@ -190,15 +195,15 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
     return out;
 }
 
-/// A tree as a .bt file has it: of each inner node two bits for each of its children, then those children that are
-/// inner nodes themselves.
+/// A tree in the form of a .bt file: for each inner node two bits for each of its children, then those children that
+/// are inner nodes themselves.
 struct TreeBytes {
     std::string nodes;
-    std::size_t inner = 1, leaves = 0;  ///< the root is inner
+    std::size_t inner = 1, leaves = 0;  ///< numbers of nodes; the root is inner
 };
 
-/// Writes what is under a cube that is Mixed. `levels` ends with the profiles of its level; what is under Mixed cubes
-/// of levels[0] comes from `under`.
+/// Writes the nodes of a Mixed cube. `levels` ends with the profiles of the cube's level. A Mixed cube of levels[0] is
+/// written by under(x, y, z, out) instead.
 template <class Under>
 void write_cube(std::span<const Profiles> levels, int x, int y, int z, const Under& under, TreeBytes& out)
 {
@@ -207,7 +212,7 @@ void write_cube(std::span<const Profiles> levels, int x, int y, int z, const Und
     std::array<Content, 8> contents;
     unsigned bits = 0;
     for (int child = 0; child < 8; ++child) {
-        const Content content = below.at(2 * x + (child & 1), 2 * y + (child >> 1 & 1), 2 * z + (child >> 2));
+        const Content content = below.content_at(2 * x + (child & 1), 2 * y + (child >> 1 & 1), 2 * z + (child >> 2));
         contents[std::size_t(child)] = content;
         bits |= unsigned(content) << (2 * child);
         if (content == Content::Mixed)
@@ -223,17 +228,19 @@ void write_cube(std::span<const Profiles> levels, int x, int y, int z, const Und
                        2 * z + (child >> 2), under, out);
 }
 
-/// Cubes with a side of 2^block_level voxels, one over the other.
-constexpr int block_level = 7;
+constexpr int block_level = 7;  // towers consist of cubes with a side of 2^block_level voxels
+
+/// Cubes of block_level, one above the other.
 struct Tower {
     Profile profile;
-    std::map<int, TreeBytes> cubes;  ///< what is under those that are Mixed
+    std::map<int, TreeBytes> cubes;  ///< the nodes of Mixed cubes, by their z
 };
 
 Tower build_tower(const Geometry& geometry, const VoxelBox& box, double resolution, int x, int y)
 {
     constexpr int side = 1 << block_level;
-    const auto part = [&](int axis, int cube) {  // of the box's voxels: the first, and how many
+    // The voxels of the box that lie in a cube: the first one, counted from the box's lowest, and their number.
+    const auto part = [&](int axis, int cube) {
         const int low = std::max(0, cube * side - key_offset - box.low[std::size_t(axis)]);
         const int end = std::min(box.high[std::size_t(axis)] + 1, (cube + 1) * side - key_offset) -
                         box.low[std::size_t(axis)];
@@ -245,7 +252,7 @@ Tower build_tower(const Geometry& geometry, const VoxelBox& box, double resoluti
     while (levels.back().level() < block_level) levels.push_back(levels.back().halved());
     Tower tower;
     int z = 0;
-    for (const Stretch& stretch : levels.back().at(x, y)) {
+    for (const Stretch& stretch : levels.back().stretches_at(x, y)) {
         tower.profile.push_back(stretch);
         for (; z < stretch.end; ++z)
             if (stretch.content == Content::Mixed) {
@@ -287,7 +294,7 @@ TreeBytes build_tree(const Geometry& geometry, const Bounds& bounds, double reso
     return out;
 }
 
-/// A whole .bt file. octomap's own writeBinary tells standard error about it, so its header is written here.
+/// Returns the bytes of a .bt file. Its header is written here because octomap's writeBinary prints to standard error.
 std::string bt_file(double resolution, std::size_t size, const std::string& nodes)
 {
     return "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as it "

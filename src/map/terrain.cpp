@@ -23,11 +23,11 @@ const std::string& empty_tile()
     return stream;
 }
 
-/// Pages of one tile; made as they are needed.
+/// The pages of one tile. A page is made when the first height is set.
 template <class Page>
 struct TilePages {
     std::vector<Page> height;
-    Page water, obstacle;  ///< empty: nothing in it
+    Page water, obstacle;  ///< empty: has no heights
 };
 
 class TileRaster {
@@ -41,9 +41,9 @@ public:
 
     TilePages<std::string> run()
     {
-        constexpr int part = 64;  // whose columns stay in a core's cache
+        constexpr int part = 64;  // cells; the columns of part x part cells stay in a core's cache
         const int first_row = frame_.rows - row0_ - rows_;
-        for (int j0 = 0; j0 < rows_; j0 += part)  // upwards in y, as the block counts
+        for (int j0 = 0; j0 < rows_; j0 += part)  // upwards in y, like the rows of Columns
             for (int i0 = 0; i0 < cols_; i0 += part) {
                 const int rows = std::min(part, rows_ - j0), cols = std::min(part, cols_ - i0);
                 const Columns centres(geometry_,
@@ -83,7 +83,8 @@ private:
     TilePages<std::vector<float>> pages_;
 };
 
-/// Moves one page's tiles out of theirs, unless nothing is in any of them.
+/// Moves the tiles of one page from `tiles` to a new page of `out`. If no tile has heights, the page is only added with
+/// even_if_empty.
 void add_page(const std::string& name, std::vector<TilePages<std::string>>& tiles, bool even_if_empty, TerrainMap& out,
               const auto& stream_of)
 {
@@ -150,11 +151,11 @@ HeightImage highest_within(const TerrainMap& terrain, const ZRange& z)
 {
     HeightImage out = page_image(terrain, "height.0");
     if (z.is_unlimited()) return out;
-    constexpr double float_step = 1e-6;  // of a height: what its rounding to float32 may move it
+    constexpr double float_step = 1e-6;  // share of a height by which rounding to float32 may change it
     const auto is_within = [&](float height) { return z.contains(height, std::abs(double(height)) * float_step); };
     for (float& height : out.values)
         if (!is_within(height)) height = nothing;
-    for (int k = 1; k < terrain.layers(); ++k) {  // from the top down: the first that fits stays
+    for (int k = 1; k < terrain.layers(); ++k) {  // from the top down: the first layer within z is kept
         const HeightImage page = page_image(terrain, "height." + std::to_string(k));
         for (std::size_t i = 0; i < out.values.size(); ++i)
             if (std::isnan(out.values[i]) && is_within(page.values[i])) out.values[i] = page.values[i];
@@ -171,7 +172,7 @@ TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, i
     parallel_for(tiles.size(), threads, progress, [&](std::size_t t) {
         tiles[t] = TileRaster(geometry, frame, z_limits, int(t) / out.tile_cols(), int(t) % out.tile_cols()).run();
     });
-    std::size_t layers = 1;  // a page of heights even if there is no terrain
+    std::size_t layers = 1;  // one page of heights is written even without terrain
     for (const auto& tile : tiles) layers = std::max(layers, tile.height.size());
     for (std::size_t k = 0; k < layers; ++k)
         add_page("height." + std::to_string(k), tiles, true, out,

@@ -46,7 +46,7 @@ TerrainMap::Page read_page(TIFF* tiff, const std::filesystem::path& file, const 
     for (std::uint32_t t = 0; t < tiles; ++t) {
         std::string bytes(std::size_t(TIFFGetStrileByteCount(tiff, t)), '\0');
         if (TIFFReadRawTile(tiff, t, bytes.data(), tmsize_t(bytes.size())) != tmsize_t(bytes.size()))
-            throw FileError(file.string(), "is cut short in page " + page.name);
+            throw FileError(file.string(), "is cut short in page " + page.name + "; bake the map again");
         page.tiles.push_back(std::move(bytes));
     }
     return page;
@@ -56,7 +56,7 @@ TerrainMap::Page read_page(TIFF* tiff, const std::filesystem::path& file, const 
 
 void write_terrain(const std::filesystem::path& file, const TerrainMap& terrain)
 {
-    const Tiff tiff = open_tiff(file, "w8");  // BigTIFF: a map may pass 4 GB
+    const Tiff tiff = open_tiff(file, "w8");  // BigTIFF: a map may exceed 4 GB
     bool good = tiff != nullptr;
     for (std::size_t p = 0; good && p < terrain.pages.size(); ++p) {
         const TerrainMap::Page& page = terrain.pages[p];
@@ -74,7 +74,7 @@ void write_terrain(const std::filesystem::path& file, const TerrainMap& terrain)
 TerrainMap read_terrain_file(const std::filesystem::path& file, const GridFrame& frame)
 {
     const Tiff tiff = open_tiff(file, "r");
-    if (!tiff) throw FileError(file.string(), "is missing or no TIFF file");
+    if (!tiff) throw FileError(file.string(), "is missing or is not a TIFF file; bake the map again");
     TerrainMap terrain;
     terrain.frame = frame;
     do terrain.pages.push_back(read_page(tiff.get(), file, terrain));

@@ -30,12 +30,12 @@ TiledFile open_tiled(const std::filesystem::path& file, std::string_view magic, 
 {
     const Bytes bytes = map_file(file);
     if (!bytes.view.starts_with(magic) || bytes.view.size() < fixed_size)
-        throw FileError(file.string(), "is not what map.yaml says (it does not start with " + std::string(magic) +
-                                           "); bake the map again");
+        throw FileError(file.string(), "is not the file that map.yaml lists (it does not start with " +
+                                           std::string(magic) + "); bake the map again");
     BinaryReader fixed(bytes.view.substr(magic.size()));
     if (const auto found = fixed.get<std::uint32_t>(); found != version)
         throw FileError(file.string(), "has format version " + std::to_string(found) + ", this program reads " +
-                                           std::to_string(version));
+                                           std::to_string(version) + "; bake the map again");
     fixed.get<std::uint32_t>();
     const auto size = fixed.get<std::uint64_t>();
     if (size < fixed_size || size > bytes.view.size())

@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint64_t most_nodes = 1000000;
 constexpr int most_depth = 500;
 
-/// What the nodes of the scene come to when each <instance_node> is replaced by what it names.
+/// Counts the nodes of the scene as if each <instance_node> were replaced by the node that it names.
 class NodeCheck {
 public:
     NodeCheck(const Xml& collada, const std::string& file) : file_(file)
@@ -42,18 +42,18 @@ public:
         const Xml* const scene = collada.FirstChildElement("scene");
         const Xml* const instance = scene == nullptr ? nullptr : scene->FirstChildElement("instance_visual_scene");
         const auto root = instance == nullptr ? scenes_.end() : scenes_.find(attribute_of(*instance, "url"));
-        if (root == scenes_.end()) return;  // assimp says so
+        if (root == scenes_.end()) return;  // assimp reports this
         add_names(*root->second);
         size_of(*root->second, 1);
     }
 
 private:
     struct Size {
-        std::uint64_t nodes = 0;  ///< with what hangs on them; 0: not known yet, we stand within it
-        int depth = 0;
+        std::uint64_t nodes = 0;  ///< the node itself and all below it; 0: the count is still in progress
+        int depth = 0;            ///< levels of nodes, with the node itself
     };
 
-    FileError fault(const Xml& node, const std::string& what) const
+    FileError error_at(const Xml& node, const std::string& what) const
     {
         const std::string name = node.Attribute("name") != nullptr ? attribute_of(node, "name")
                                                                    : attribute_of(node, "id");
@@ -70,7 +70,8 @@ private:
             add_names(*child);
     }
 
-    /// As assimp looks for it: a library's node of that id, else the scene's first node of that id or name.
+    /// Returns the node that assimp finds for the instance: a library's node with this id, else the scene's first node
+    /// with this id or name. Null if there is none.
     const Xml* target_of(const Xml& instance) const
     {
         const std::string url = attribute_of(instance, "url"), name = url.empty() ? url : url.substr(1);
@@ -82,24 +83,27 @@ private:
     Size size_of(const Xml& node, int depth)
     {
         if (depth > most_depth)
-            throw fault(node, "is nested more than " + std::to_string(most_depth) +
-                                  " deep, by <instance_node> too; merge nodes");
+            throw error_at(node, "is nested more than " + std::to_string(most_depth) +
+                                     " deep, counting <instance_node>; merge nodes");
         const auto [entry, is_new] = sizes_.try_emplace(&node);
-        if (!is_new && entry->second.nodes == 0) throw fault(node, "holds itself: a circle of <instance_node>");
+        if (!is_new && entry->second.nodes == 0)
+            throw error_at(node, "contains itself through <instance_node>; remove the circle");
         if (!is_new && depth + entry->second.depth <= most_depth) return entry->second;
         Size size{1, 1};
         for (const Xml* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
             if (is_named(*child, "instance_geometry") || is_named(*child, "instance_controller")) ++size.nodes;
-            const Xml* const held = is_named(*child, "node")            ? child
-                                    : is_named(*child, "instance_node") ? target_of(*child)
-                                                                        : nullptr;
-            if (held == nullptr) continue;
-            const Size of_held = size_of(*held, depth + 1);
-            size.nodes += of_held.nodes;
-            size.depth = std::max(size.depth, of_held.depth + 1);
+            const Xml* const inner = is_named(*child, "node")            ? child
+                                     : is_named(*child, "instance_node") ? target_of(*child)
+                                                                         : nullptr;
+            if (inner == nullptr) continue;
+            const Size inner_size = size_of(*inner, depth + 1);
+            size.nodes += inner_size.nodes;
+            size.depth = std::max(size.depth, inner_size.depth + 1);
             if (size.nodes > most_nodes)
-                throw fault(node, "comes to more than " + std::to_string(most_nodes) +
-                                      " nodes by its <instance_node>s; merge nodes, or instance fewer");
+                throw error_at(
+                    node,
+                    "has more than " + std::to_string(most_nodes) +
+                        " nodes, counting all that its <instance_node>s repeat; merge nodes, or use fewer instances");
         }
         return sizes_[&node] = size;
     }
@@ -109,7 +113,8 @@ private:
     std::unordered_map<const Xml*, Size> sizes_;
 };
 
-/// Whether assimp reads the colour: four numbers, three for a light, with no space before the first.
+/// Returns whether assimp can read the colour: at least four numbers, or three for a light, without a space before the
+/// first.
 bool is_plain_color(const Xml& color)
 {
     const std::string text = color.GetText() != nullptr ? color.GetText() : "";
@@ -125,8 +130,8 @@ bool is_plain_color(const Xml& color)
     return count >= least && std::isspace(static_cast<unsigned char>(text.front())) == 0;
 }
 
-/// Replaces the colours that assimp would not read; whether there was one.
-bool replace_colors(Xml& element)  // recursive: tinyxml2 has limited the depth
+/// Replaces the colours that assimp cannot read. Returns whether there were any.
+bool replace_colors(Xml& element)  // recursive: tinyxml2 limits the depth
 {
     bool found = false;
     if (is_named(element, "color") && !is_plain_color(element)) {
@@ -155,9 +160,10 @@ std::string check_collada(std::string_view bytes, const std::string& file)
         throw FileError(file, line + "elements are nested more than " + std::to_string(TINYXML2_MAX_ELEMENT_DEPTH) +
                                   " deep; merge nodes");
     if (error != tinyxml2::XML_SUCCESS || bytes.find('\0') != std::string_view::npos) {
-        std::string name = error == tinyxml2::XML_SUCCESS ? "it holds a byte 0" : lower_case(document.ErrorName());
+        std::string name = error == tinyxml2::XML_SUCCESS ? "it contains a zero byte"
+                                                          : lower_case(document.ErrorName());
         std::replace(name.begin(), name.end(), '_', ' ');
-        throw FileError(file, "cannot be read as a mesh: " + line + "no valid XML (" + name + "); is it cut short?");
+        throw FileError(file, "cannot be read as a mesh: " + line + "not valid XML (" + name + "); is it cut short?");
     }
     for (const Xml* root = document.FirstChildElement(); root != nullptr; root = root->NextSiblingElement()) {
         check_collada_numbers(*root, file);

@@ -18,30 +18,30 @@ namespace {
 
 constexpr std::uint64_t most_index = 2147483647;
 
-/// Words between white space.
+/// Calls visit(word) for each word of the element's text. White space separates words.
 template <class Visit>
 void for_each_word(const Xml& element, const Visit& visit)
 {
     const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
-    const char* at = element.GetText();
-    if (at == nullptr) return;
+    const char* next = element.GetText();
+    if (next == nullptr) return;
     for (;;) {
-        while (is_space(*at)) ++at;
-        if (*at == '\0') return;
-        const char* const start = at;
-        while (*at != '\0' && !is_space(*at)) ++at;
-        visit(std::string_view(start, std::size_t(at - start)));
+        while (is_space(*next)) ++next;
+        if (*next == '\0') return;
+        const char* const start = next;
+        while (*next != '\0' && !is_space(*next)) ++next;
+        visit(std::string_view(start, std::size_t(next - start)));
     }
 }
 
-/// The whole of text as a whole number of 0 .. 2147483647.
+/// Reads the whole text as a whole number of 0 .. 2147483647. Returns false if it is not one.
 bool parse_index(std::string_view text, std::uint64_t& value)
 {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc{} && end == text.data() + text.size() && value <= most_index;
 }
 
-/// Numbers of the file, element by element.
+/// Checks the numbers of a file, element by element.
 class NumberCheck {
 public:
     explicit NumberCheck(const std::string& file) : file_(file) {}
@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    void visit(const Xml& element)  // recursive: tinyxml2 has limited the depth
+    void visit(const Xml& element)  // recursive: tinyxml2 limits the depth
     {
         if (is_named(element, "unit"))
             check_unit(element);
@@ -75,8 +75,8 @@ private:
 
     struct Shape {
         const char* name;
-        std::uint64_t corners;  ///< of each face; 0: as many as there are
-        std::uint64_t least;    ///< in each <p>
+        std::uint64_t corners;  ///< of each face; 0: any number
+        std::uint64_t least;    ///< smallest number of corners in each <p>
     };
     static const Shape* shape_of(const Xml& element)
     {
@@ -92,7 +92,7 @@ private:
         return found == shapes.end() ? nullptr : &*found;
     }
 
-    FileError fault(const Xml& element, const std::string& what) const
+    FileError error_at(const Xml& element, const std::string& what) const
     {
         return FileError(file_, "line " + std::to_string(element.GetLineNum()) + ": <" + element.Name() + "> " + what);
     }
@@ -101,43 +101,45 @@ private:
         return "\"" + std::string(word.substr(0, 40)) + (word.size() > 40 ? "…\"" : "\"");
     }
 
-    /// The attribute as a whole number; `usual` where there is none.
+    /// Returns the attribute as a whole number, or `usual` if the element does not have it.
     std::uint64_t whole(const Xml& element, const char* attribute, std::uint64_t usual,
                         std::uint64_t most = most_index) const
     {
         const std::string text = attribute_of(element, attribute);
         std::uint64_t value = usual;
         if (element.Attribute(attribute) != nullptr && (!parse_index(trimmed(text), value) || value > most))
-            throw fault(element, std::string("has ") + attribute + " " + quoted(text) +
-                                     ", needs a whole number of 0 .. " + std::to_string(most));
+            throw error_at(element, std::string("has ") + attribute + " " + quoted(text) +
+                                        ", needs a whole number of 0 .. " + std::to_string(most));
         return value;
     }
 
-    /// How many whole numbers it holds, and their sum.
+    /// The count and the sum of an element's whole numbers.
     struct Indices {
         std::uint64_t count = 0, sum = 0;
     };
+    /// Reads an element that contains only whole numbers >= `least`.
     Indices indices(const Xml& element, std::uint64_t least = 0) const
     {
         Indices found;
         for_each_word(element, [&](std::string_view word) {
             std::uint64_t value = 0;
             if (!parse_index(word, value) || value < least)
-                throw fault(element, "has " + quoted(word) + ", needs whole numbers of " + std::to_string(least) +
-                                         " .. " + std::to_string(most_index) + " with spaces between");
+                throw error_at(element, "has " + quoted(word) + ", needs whole numbers of " + std::to_string(least) +
+                                            " .. " + std::to_string(most_index) + " with spaces between");
             ++found.count;
             found.sum += value;
         });
         return found;
     }
 
+    /// Checks an element that contains only numbers, and returns their count.
     std::uint64_t numbers(const Xml& element) const
     {
         std::uint64_t count = 0;
         for_each_word(element, [&](std::string_view word) {
             double value = 0;
             if (!parse_number(word, value))
-                throw fault(element, "has " + quoted(word) + ", needs numbers with spaces between");
+                throw error_at(element, "has " + quoted(word) + ", needs numbers with spaces between");
             ++count;
         });
         return count;
@@ -148,7 +150,7 @@ private:
         const char* const text = unit.Attribute("meter");
         double metres = 0;
         if (text != nullptr && (!parse_number(trimmed(text), metres) || !(metres > 0) || !std::isfinite(metres)))
-            throw fault(unit, "has meter " + quoted(text) + ", needs a number > 0: the metres in a unit");
+            throw error_at(unit, "has meter " + quoted(text) + ", needs a number > 0 (metres per unit)");
     }
 
     void check_array(const Xml& array, bool of_numbers)
@@ -159,8 +161,8 @@ private:
         else
             for_each_word(array, [&](std::string_view) { ++found; });
         if (const std::uint64_t count = whole(array, "count", 0); count != found)
-            throw fault(array, "has count " + std::to_string(count) + ", but holds " + std::to_string(found) +
-                                   "; is the file damaged?");
+            throw error_at(array, "has count " + std::to_string(count) + ", but contains " + std::to_string(found) +
+                                      "; is the file damaged?");
         sizes_[attribute_of(array, "id")] = found;
     }
 
@@ -174,12 +176,12 @@ private:
             ++params;
         const std::string source = attribute_of(accessor, "source");
         const auto array = sizes_.find(source.empty() ? source : source.substr(1));
-        if (array == sizes_.end() || count == 0) return;  // assimp looks for it, and says so if there is none
+        if (array == sizes_.end() || count == 0) return;  // assimp reports an array that is missing
         const std::uint64_t needs = offset + (count - 1) * stride + std::max<std::uint64_t>(params, 1);
         if (needs > array->second)
-            throw fault(accessor, "takes " + std::to_string(needs) +
-                                      " values (offset + (count - 1) stride + params) of " + quoted(source) +
-                                      ", which has " + std::to_string(array->second));
+            throw error_at(accessor, "needs " + std::to_string(needs) +
+                                         " values (offset + (count - 1) stride + params) of " + quoted(source) +
+                                         ", which has " + std::to_string(array->second));
     }
 
     void check_weights(const Xml& weights) const
@@ -202,18 +204,18 @@ private:
             Indices sizes;
             if (const Xml* const vcount = element.FirstChildElement("vcount")) sizes = indices(*vcount, 1);
             if (sizes.count != faces)
-                throw fault(element, "has count " + std::to_string(faces) + ", but " + std::to_string(sizes.count) +
-                                         " numbers in <vcount>; is the file damaged?");
+                throw error_at(element, "has count " + std::to_string(faces) + ", but " + std::to_string(sizes.count) +
+                                            " numbers in <vcount>; is the file damaged?");
             wanted = sizes.sum * stride;
         }
         check_corners(element, shape, stride, found);
         const bool counted = shape.corners > 0 || is_named(element, "polylist");
         if (counted && found != wanted)
-            throw fault(element, "has " + std::to_string(found) + " numbers in <p>, needs " + std::to_string(wanted) +
-                                     " for its " + std::to_string(faces) + " faces");
+            throw error_at(element, "has " + std::to_string(found) + " numbers in <p>, needs " +
+                                        std::to_string(wanted) + " for its " + std::to_string(faces) + " faces");
     }
 
-    /// All <p> and <h> in it, also those of <ph>.
+    /// Checks all <p> and <h> within the element, also those within <ph>. Adds the numbers in <p> to `found`.
     void check_corners(const Xml& element, const Shape& shape, std::uint64_t stride, std::uint64_t& found) const
     {
         for (const Xml* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
@@ -221,8 +223,9 @@ private:
             if (is_named(*child, "p")) {
                 const std::uint64_t count = indices(*child).count;
                 if (count % stride != 0 || count / stride < shape.least)
-                    throw fault(*child, "has " + std::to_string(count) + " numbers, needs " + std::to_string(stride) +
-                                            " for each corner and " + std::to_string(shape.least) + " corners or more");
+                    throw error_at(*child, "has " + std::to_string(count) + " numbers, needs " +
+                                               std::to_string(stride) + " for each corner and " +
+                                               std::to_string(shape.least) + " corners or more");
                 found += count;
             } else {
                 check_corners(*child, shape, stride, found);
@@ -238,12 +241,13 @@ private:
             for (const auto& [name, size] : transforms)
                 if (is_named(*child, name))
                     if (const std::uint64_t found = numbers(*child); found != size)
-                        throw fault(*child, "has " + std::to_string(found) + " numbers, needs " + std::to_string(size));
+                        throw error_at(*child,
+                                       "has " + std::to_string(found) + " numbers, needs " + std::to_string(size));
     }
 
     const std::string& file_;
-    std::unordered_map<std::string, std::uint64_t> sizes_;  ///< of all arrays, by id
-    std::vector<const Xml*> accessors_;                     ///< an array may come after its accessor
+    std::unordered_map<std::string, std::uint64_t> sizes_;  ///< sizes of all arrays, by id
+    std::vector<const Xml*> accessors_;                     ///< checked last: an array may come after its accessor
 };
 
 }  // namespace

@@ -6,9 +6,9 @@
 
 namespace spawnfield {
 
-/// The numbers of all elements in the root: <unit>; float_array and its like against their counts and accessors; the
-/// <p>, <vcount> and <h> of faces; the transforms of nodes. Colours do not matter. Throws FileError with line,
-/// element, value and what it needs for numbers that are none, or too few or too many.
+/// Checks the numbers of all elements within the root: <unit>; <float_array>, <Name_array> and <IDREF_array> against
+/// their counts and accessors; <p>, <vcount> and <h> of faces; the transforms of nodes. Colours are not checked. Throws
+/// FileError with line, element, value and limit for a word that is not a number, and for too few or too many numbers.
 void check_collada_numbers(const Xml& root, const std::string& file);
 
 }  // namespace spawnfield

@@ -50,7 +50,8 @@ FacePieces find_pieces(const std::vector<Triangle>& faces)
             pieces.of_face[face] = static_cast<std::uint32_t>(pieces.open_edges.size());
             pieces.open_edges.push_back(0);
         } else {
-            pieces.of_face[face] = pieces.of_face[root];  // roots come first: the smallest face of each piece
+            pieces.of_face[face] =
+                pieces.of_face[root];  // a root is the smallest face of its piece, so it was visited before
         }
     }
     for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {

@@ -20,20 +20,21 @@ using Json = nlohmann::json;
 constexpr std::size_t most_nested = 200, most_scene_depth = 500;
 constexpr std::uint64_t most_used = 300000000;  // 100 million triangles
 
-/// What the text tells of them; nodes go by the names that others call them: their place in the list, or the key in
-/// glTF 1.0.
+/// Nodes, scenes and accessors of a file. A node's name here is its index in the list of nodes, or its key in glTF 1.0:
+/// other nodes refer to it by this name.
 struct Nodes {
     struct Node {
         std::string name;
         std::vector<std::string> children;
     };
     std::vector<Node> nodes;
-    std::vector<std::vector<std::string>> scenes;  ///< the nodes that each of them begins with
-    std::vector<std::uint64_t> counts;             ///< of accessors (glTF 2.0)
-    std::vector<std::uint64_t> used;  ///< accessors of vertices and corners, once for each primitive that names them
+    std::vector<std::vector<std::string>> scenes;  ///< root nodes of each scene
+    std::vector<std::uint64_t> counts;             ///< of each accessor (glTF 2.0)
+    std::vector<std::uint64_t> used;  ///< accessors of vertices and corners, once for each primitive that uses them
 };
 
-/// Takes nodes and scenes out of the text as it goes by; the rest, mostly data, is not kept.
+/// Collects nodes, scenes and accessors while the JSON is parsed. The rest, which is mostly data, is not kept in
+/// memory.
 class NodeReader : public nlohmann::json_sax<Json> {
 public:
     explicit NodeReader(const std::string& file) : file_(file) {}
@@ -64,22 +65,22 @@ public:
             return open_.size() == 1 && name == list && std::exchange(has, true);
         };
         if (again("nodes", has_nodes_) || again("scenes", has_scenes_))
-            throw FileError(file_, "has \"" + name + "\" twice, needs it once");
+            throw FileError(file_, "has the key \"" + name + "\" twice, needs it once");
         open_.back().key = name;
         return true;
     }
     bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override
     {
         const std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: …"
-        throw FileError(file_, "cannot be read as a mesh: no valid JSON: " +
+        throw FileError(file_, "cannot be read as a mesh: not valid JSON: " +
                                    what.substr(std::min(what.find("] ") + 2, what.size())));
     }
 
 private:
     struct Open {
         bool array = false;
-        std::string key;        ///< of an object, the one that we are at
-        std::size_t index = 0;  ///< of an array, likewise
+        std::string key;        ///< of an object: the current key
+        std::size_t index = 0;  ///< of an array: the current index
     };
 
     std::string name_in(const Open& list) const { return list.array ? std::to_string(list.index) : list.key; }
@@ -104,7 +105,7 @@ private:
         return true;
     }
 
-    /// A number or text. Those in nodes[…].children[…] and scenes[…].nodes[…] are names of nodes.
+    /// Takes a number or a text. Values in nodes[…].children[…] and scenes[…].nodes[…] are names of nodes.
     bool value(const std::string& text)
     {
         if (open_.size() == 4 && open_[3].array && !open_[2].array) {
@@ -126,7 +127,7 @@ private:
     Nodes found_;
 };
 
-/// Each node has one parent at most, and is below one that has none.
+/// Checks that the nodes form trees: each node has at most one parent, and is not below itself.
 class TreeCheck {
 public:
     TreeCheck(const Nodes& nodes, const std::string& file)
@@ -134,7 +135,7 @@ public:
     {
         for (std::size_t n = 0; n < nodes_.size(); ++n)
             if (!places_.try_emplace(nodes_[n].name, n).second)
-                throw FileError(file, "nodes has \"" + nodes_[n].name + "\" twice");
+                throw FileError(file, "nodes has \"" + nodes_[n].name + "\" twice, needs it once");
         for (std::size_t n = 0; n < nodes_.size(); ++n) add_children(n);
         for (std::size_t s = 0; s < nodes.scenes.size(); ++s) check_scene(s, nodes.scenes[s]);
         check_depth();
@@ -143,24 +144,24 @@ public:
 private:
     static constexpr std::size_t none = ~std::size_t(0);
 
-    static std::string called(const std::string& name) { return "nodes[" + name.substr(0, 40) + "]"; }
+    static std::string place_of(const std::string& name) { return "nodes[" + name.substr(0, 40) + "]"; }
 
     std::size_t place(const std::string& name, const std::string& who) const
     {
         const auto found = places_.find(name);
         if (found == places_.end())
-            throw FileError(file_, who + " has \"" + name.substr(0, 40) + "\", which is none of the " +
+            throw FileError(file_, who + " has \"" + name.substr(0, 40) + "\", which is not one of the " +
                                        std::to_string(nodes_.size()) + " nodes");
         return found->second;
     }
 
     void add_children(std::size_t parent)
     {
-        const std::string who = called(nodes_[parent].name);
+        const std::string who = place_of(nodes_[parent].name);
         for (const std::string& name : nodes_[parent].children) {
             const std::size_t child = place(name, who + ".children");
             if (parents_[child] != none)
-                throw FileError(file_, called(name) + " is a child of " + called(nodes_[parents_[child]].name) +
+                throw FileError(file_, place_of(name) + " is a child of " + place_of(nodes_[parents_[child]].name) +
                                            " and again of " + who +
                                            ", needs one parent; give each parent a node of its own");
             parents_[child] = parent;
@@ -174,10 +175,10 @@ private:
         for (const std::string& name : names) {
             const std::size_t node = place(name, who);
             if (!seen.insert(node).second)
-                throw FileError(file_, who + " has " + called(name) + " twice, needs it once");
+                throw FileError(file_, who + " has " + place_of(name) + " twice, needs it once");
             if (parents_[node] != none)
-                throw FileError(file_, who + " has " + called(name) + ", which is a child of " +
-                                           called(nodes_[parents_[node]].name) + ", needs nodes without a parent");
+                throw FileError(file_, who + " has " + place_of(name) + ", which is a child of " +
+                                           place_of(nodes_[parents_[node]].name) + ", needs nodes without a parent");
         }
     }
 
@@ -190,15 +191,15 @@ private:
         for (std::size_t depth = 1; !level.empty(); ++depth, level = std::exchange(next, {}))
             for (const std::size_t node : level) {
                 if (depth > most_scene_depth)
-                    throw FileError(file_, called(nodes_[node].name) + " is nested more than " +
+                    throw FileError(file_, place_of(nodes_[node].name) + " is nested more than " +
                                                std::to_string(most_scene_depth) + " deep; merge nodes");
                 reached[node] = 1;
                 for (const std::string& child : nodes_[node].children) next.push_back(places_.at(child));
             }
-        const auto lost = std::find(reached.begin(), reached.end(), 0);
-        if (lost != reached.end())
-            throw FileError(file_, called(nodes_[std::size_t(lost - reached.begin())].name) +
-                                       " is below itself: a circle of children");
+        const auto unreached = std::find(reached.begin(), reached.end(), 0);
+        if (unreached != reached.end())
+            throw FileError(file_, place_of(nodes_[std::size_t(unreached - reached.begin())].name) +
+                                       " is below itself through children; remove the circle");
     }
 
     const std::vector<Nodes::Node>& nodes_;
@@ -207,18 +208,18 @@ private:
     std::vector<std::size_t> parents_;
 };
 
-/// assimp reads an accessor anew for each primitive that names it: few bytes of a file can come to any number of
-/// vertices.
+/// Limits vertices and corners. assimp reads an accessor again for each primitive that uses it, so a small file can
+/// need any amount of memory.
 void check_used(const Nodes& found, const std::string& file)
 {
-    std::uint64_t left = most_used;
+    std::uint64_t remaining = most_used;
     for (const std::uint64_t accessor : found.used) {
         const std::uint64_t count = accessor < found.counts.size() ? found.counts[accessor] : 0;
-        if (count > left)
-            throw FileError(file, "its primitives come to more than " + std::to_string(most_used) +
-                                      " vertices and corners by their accessors, needs fewer; "
-                                      "instance meshes by nodes, or bake parts of it");
-        left -= count;
+        if (count > remaining)
+            throw FileError(file, "its primitives have more than " + std::to_string(most_used) +
+                                      " vertices and corners, counted once for each use of an accessor; needs fewer: "
+                                      "repeat meshes by nodes, or bake parts of the file");
+        remaining -= count;
     }
 }
 
@@ -231,11 +232,11 @@ std::string_view gltf_json(std::string_view bytes, const std::string& file)
     std::uint32_t size = 0;
     if (bytes.size() >= head) std::memcpy(&size, bytes.data() + 12, sizeof size);
     if (bytes.size() < head || size > bytes.size() - head)
-        throw FileError(file, "ends within its JSON (" + std::to_string(size) +
-                                  " bytes of it are told, of the file there are " + std::to_string(bytes.size()) +
-                                  "); is it cut short?");
+        throw FileError(file, "ends within its JSON (its header declares " + std::to_string(size) +
+                                  " bytes of JSON, the file has " + std::to_string(bytes.size()) +
+                                  " bytes); is it cut short?");
     const std::string_view json = bytes.substr(head, size);
-    return json.substr(0, json.find_last_not_of('\0') + 1);  // some fill up with zeros in place of spaces
+    return json.substr(0, json.find_last_not_of('\0') + 1);  // some programs pad with zeros instead of spaces
 }
 
 void check_gltf(std::string_view bytes, const std::string& file)

@@ -5,15 +5,16 @@
 
 namespace spawnfield {
 
-/// The JSON of a .glb, which both versions have at the same place, or the file itself. Throws FileError if it is cut
-/// short.
+/// Returns the JSON of a .glb, which is at the same place in both versions, or all bytes of any other file. Throws
+/// FileError if the JSON is cut short.
 std::string_view gltf_json(std::string_view bytes, const std::string& file);
 
-/// Refuses glTF (text or binary, 1.0 or 2.0) that assimp reads without looking and would crash or grow without end.
-/// Throws FileError with the place for text that is no JSON, or nested more than 200 deep; nodes that have two parents,
-/// are below themselves, stand more than 500 deep, or are named and not there; scenes that begin with a node twice, or
-/// with one that has a parent; primitives whose accessors come to more than 300 million vertices and corners. Source:
-/// Khronos, glTF 2.0 specification, nodes and hierarchy: the nodes of a file are strict trees.
+/// Checks a glTF file (text or binary, 1.0 or 2.0) before assimp reads it, because assimp does not check files and
+/// would crash or use ever more memory. Throws FileError with the place for: text that is not JSON, or is nested more
+/// than 200 deep; nodes that have two parents, are below themselves, are nested more than 500 deep, or are named but do
+/// not exist; scenes that list a node twice, or a node that has a parent; primitives whose accessors have more than 300
+/// million vertices and corners in total. Source: Khronos, glTF 2.0 specification, nodes and hierarchy: the nodes of a
+/// file are strict trees.
 void check_gltf(std::string_view bytes, const std::string& file);
 
 }  // namespace spawnfield

@@ -18,16 +18,17 @@
 namespace spawnfield {
 namespace {
 
-constexpr unsigned most_corners =
-    32767;  // assimp's own limit (AI_MAX_FACE_INDICES); its polygon cutter takes the square of it
+// Per face. assimp's own limit (AI_MAX_FACE_INDICES); the time to triangulate a face grows with the square of it.
+constexpr unsigned most_corners = 32767;
 
-constexpr unsigned most_node_depth = 1000;  // of nodes, which readers visit recursively
+constexpr unsigned most_node_depth = 1000;  // of nodes; they are visited recursively
 constexpr std::uint64_t most_triangles = 100000000;
 
 constexpr aiImporterDesc ply_description{
     "spawnfield's reader of PLY", "", "", "", aiImporterFlags_SupportBinaryFlavour, 0, 0, 0, 0, "ply"};
 
-/// Gives assimp a mesh that is already read, so that polygons are cut into triangles like those of all other formats.
+/// An assimp importer for a mesh that is already read. So assimp triangulates its polygons like those of all other
+/// formats.
 class PlyImporter : public Assimp::BaseImporter {
 public:
     explicit PlyImporter(PlyMesh mesh) : mesh_(std::move(mesh)) {}
@@ -38,7 +39,7 @@ public:
 protected:
     void InternReadFile(const std::string&, aiScene* scene, Assimp::IOSystem*) override
     {
-        auto* const mesh = new aiMesh;  // the scene owns it, as all below
+        auto* const mesh = new aiMesh;  // the scene owns this and all arrays below
         scene->mMeshes = new aiMesh* [1] { mesh };
         scene->mNumMeshes = 1;
         scene->mMaterials = new aiMaterial* [1] { new aiMaterial };
@@ -64,7 +65,8 @@ private:
     const PlyMesh mesh_;
 };
 
-void take_ply(std::string_view bytes, const std::string& file, Assimp::Importer& importer)
+/// Reads a PLY file and makes a PlyImporter the only loader of `importer`.
+void use_ply_importer(std::string_view bytes, const std::string& file, Assimp::Importer& importer)
 {
     PlyMesh mesh = parse_ply(bytes, file);
     if (mesh.face_ends.empty()) throw FileError(file, "has no triangles, needs at least one");
@@ -76,7 +78,8 @@ void take_ply(std::string_view bytes, const std::string& file, Assimp::Importer&
     importer.RegisterLoader(new PlyImporter(std::move(mesh)));  // the importer deletes it
 }
 
-/// How many triangles its faces come to. Throws unless faces have corners, and these are vertices.
+/// Returns the number of triangles after triangulation. Throws FileError unless each face has 1 to most_corners
+/// corners, and all corners are vertices of the mesh.
 std::uint64_t checked_triangles(const aiMesh& mesh, unsigned index, const std::string& file)
 {
     const auto fault = [&](unsigned face, const std::string& what) {
@@ -100,7 +103,8 @@ std::uint64_t checked_triangles(const aiMesh& mesh, unsigned index, const std::s
     return triangles;
 }
 
-/// A node for each instance of a mesh: few bytes of a file can come to any number of triangles.
+/// Checks the depth of the nodes and the number of triangles in all instances of meshes. Each node with a mesh is an
+/// instance, so a small file can have any number of triangles.
 void check_instances(const aiScene& scene, const std::vector<std::uint64_t>& triangles, const std::string& file)
 {
     const std::uint64_t in_file = std::accumulate(triangles.begin(), triangles.end(), std::uint64_t(0));
@@ -120,36 +124,36 @@ void check_instances(const aiScene& scene, const std::vector<std::uint64_t>& tri
         if (all > std::max(most_triangles, in_file))
             throw FileError(file, "its nodes repeat " + std::to_string(in_file) + " triangles to more than " +
                                       std::to_string(most_triangles) +
-                                      ", needs fewer; leave instances out, or bake parts of it");
+                                      ", needs fewer; remove instances, or bake parts of the file");
         for (unsigned c = 0; c < node->mNumChildren; ++c) open.push_back({node->mChildren[c], depth + 1});
     }
 }
 
 }  // namespace
 
-std::string check_mesh_file(const std::filesystem::path& file, Assimp::Importer& importer)
+std::string prepare_import(const std::filesystem::path& file, Assimp::Importer& importer)
 {
     const Bytes bytes = map_file(file);
     const std::string extension = lower_case(file.extension().string());
     const std::size_t first = bytes.view.find_first_not_of(" \t\r\n");
     const bool is_json = first != std::string_view::npos && (bytes.view[first] == '{' || bytes.view[first] == '[');
     if (is_json &&
-        !importer.IsExtensionSupported(extension))  // assimp would try its reader of glTF, as deep as the text goes
-        throw FileError(file.string(), "cannot be read as a mesh: is JSON, and \"" + extension +
-                                           "\" is no ending of glTF (.gltf, .glb)");
+        !importer.IsExtensionSupported(extension))  // assimp would try its glTF reader, whose recursion is not limited
+        throw FileError(file.string(), "cannot be read as a mesh: it contains JSON, but \"" + extension +
+                                           "\" is not an extension of glTF (.gltf, .glb)");
     if (extension == ".zae")
         throw FileError(
             file.string(),
-            "is a packed COLLADA file, which is not looked into; unpack it (unzip) and give the .dae in it");
+            "is a packed COLLADA file, which cannot be read here; unpack it (unzip) and give the .dae in it");
     if (extension == ".gltf" || extension == ".glb")
-        check_gltf(bytes.view, file.string());  // assimp goes by the ending, too
-    if (extension == ".ply" || is_ply(bytes.view)) take_ply(bytes.view, file.string(), importer);
+        check_gltf(bytes.view, file.string());  // assimp decides by the extension, too
+    if (extension == ".ply" || is_ply(bytes.view)) use_ply_importer(bytes.view, file.string(), importer);
     return is_collada(bytes.view, extension) ? check_collada(bytes.view, file.string()) : "";
 }
 
-void check_mesh_scene(const aiScene& scene, const std::string& file)
+void check_imported_scene(const aiScene& scene, const std::string& file)
 {
-    std::vector<std::uint64_t> triangles;  // of each mesh
+    std::vector<std::uint64_t> triangles;  // number of triangles of each mesh
     for (unsigned m = 0; m < scene.mNumMeshes; ++m) triangles.push_back(checked_triangles(*scene.mMeshes[m], m, file));
     check_instances(scene, triangles, file);
 }

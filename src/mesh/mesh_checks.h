@@ -8,16 +8,15 @@
 
 namespace spawnfield {
 
-/// What stands between a mesh file that is damaged or made to harm and assimp, which reads such files without looking.
+/// Prepares the import of a file before assimp reads it. assimp trusts its input, so files that are damaged or made to
+/// do harm are refused here, with the place in the file. A PLY file is read here, too: all loaders of `importer` are
+/// replaced by one that hands over its vertices and faces. Returns the text that assimp should read instead of the
+/// file, or "" if it can read the file itself. Throws FileError.
+std::string prepare_import(const std::filesystem::path& file, Assimp::Importer& importer);
 
-/// Before assimp reads: what it would not survive is refused, with the place in the file. A PLY file is read here and
-/// handed to the importer, which then has its vertices and faces whatever it would have made of the file. Returns the
-/// text that assimp is to read in place of the file's, empty if that is the file's own. Throws FileError.
-std::string check_mesh_file(const std::filesystem::path& file, Assimp::Importer& importer);
-
-/// What assimp read, before its other steps, which trust it: faces have corners, and these are vertices; nodes are at
-/// most 1000 deep and repeat meshes to at most 100 million triangles (or what the file itself has, if that is more).
-/// Throws FileError.
-void check_mesh_scene(const aiScene& scene, const std::string& file);
+/// Checks what assimp has read, before its further steps, which trust it: each face has corners, and these are vertices
+/// of its mesh; nodes are at most 1000 deep; all instances of meshes together have at most 100 million triangles, or
+/// the number in the file if that is larger. Throws FileError.
+void check_imported_scene(const aiScene& scene, const std::string& file);
 
 }  // namespace spawnfield

@@ -37,8 +37,8 @@ Mat4 matrix_of(const aiMatrix4x4& m)
     return out;
 }
 
-/// The disk's regular files: what a mesh names beside itself (materials, buffers) may be a pipe, on which assimp would
-/// wait.
+/// Lets assimp open regular files only. A mesh names other files (materials, buffers), which could be pipes, on which
+/// assimp would wait.
 class RegularFiles : public Assimp::DefaultIOSystem {
 public:
     bool Exists(const char* file) const override
@@ -53,10 +53,10 @@ public:
     }
 };
 
-/// The same, but for one file, which has this text. The text must outlive it.
-class RespeltFile : public RegularFiles {
+/// Like RegularFiles, but one file has the given text instead of its own. The text must outlive the object.
+class ReplacedFile : public RegularFiles {
 public:
-    RespeltFile(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
+    ReplacedFile(std::string file, const std::string& text) : file_(std::move(file)), text_(text) {}
 
     Assimp::IOStream* Open(const char* file, const char* mode) override
     {
@@ -69,7 +69,7 @@ private:
     const std::string& text_;
 };
 
-/// The text of COLLADA's <up_axis>; "Y_UP" where the file has none (COLLADA 1.4.1 specification, asset).
+/// Returns the text of COLLADA's <up_axis>, or "Y_UP" if the file has none (COLLADA 1.4.1 specification, asset).
 std::string collada_up_axis(const std::filesystem::path& file)
 {
     const std::string head = read_start(file, 1 << 16);
@@ -88,11 +88,12 @@ Mat4 scaled(double factor)
     return out;
 }
 
-/// FBX tells its unit (cm for each, 1 where it tells none) and its up axis as metadata, which assimp 5.2 hands over as
-/// they are. Source: Autodesk, FBX SDK, FbxSystemUnit and FbxAxisSystem.
-Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
+/// Sets the up axis of an FBX file and returns the scale from its unit to metres. FBX gives its unit (in cm, 1 by
+/// default) and its up axis as metadata, which assimp 5.2 does not apply. Source: Autodesk, FBX SDK, FbxSystemUnit and
+/// FbxAxisSystem.
+Mat4 read_fbx_frame(const aiScene& scene, FileMesh& mesh)
 {
-    float centimetres = 1;  // as assimp has it
+    float centimetres = 1;  // per unit; float is the type of assimp's entry
     std::int32_t up = 1;
     if (scene.mMetaData != nullptr) {
         scene.mMetaData->Get("UnitScaleFactor", centimetres);
@@ -102,22 +103,23 @@ Mat4 take_fbx_frame(const aiScene& scene, FileMesh& mesh)
     return scaled(double(centimetres) / 100);
 }
 
-/// 3DS, ASE and DXF are z up, and assimp 5.2 turns them to y up: (x, y, z) to (x, z, -y).
-bool is_turned_by_assimp(const std::string& extension)
+/// Returns whether assimp 5.2 rotates a format. 3DS, ASE and DXF are z up, and assimp makes them y up: (x, y, z)
+/// becomes (x, z, -y).
+bool is_rotated_by_assimp(const std::string& extension)
 {
     return extension == ".3ds" || extension == ".prj" || extension == ".ase" || extension == ".ask" ||
            extension == ".dxf";
 }
 
-/// Turns it back, to the file's own axes.
-Mat4 turned_back()
+/// Returns the inverse of that rotation, back to the axes of the file.
+Mat4 rotated_back()
 {
     Mat4 out;
     out << 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1;
     return out;
 }
 
-/// Faces of one node with its vertices welded: equal coordinates, as the file gives them, are one vertex.
+/// Collects the faces of one node and welds its vertices: equal coordinates in the file become one vertex.
 class NodeWelder {
 public:
     NodeWelder(FileMesh::Node& node, const Mat4& transform, const std::string& file)
@@ -125,7 +127,8 @@ public:
     {
     }
 
-    /// The mesh's faces with these vertices of it.
+    /// Adds the faces of the mesh, with `vertices` instead of the mesh's own. Skips faces that are not triangles, and
+    /// triangles that have a corner twice.
     void add(const aiMesh& mesh, const aiVector3D* vertices)
     {
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
@@ -161,8 +164,8 @@ private:
     PointNumbers<float> numbers_;
 };
 
-/// The vertices where the default weights of the morph targets put them; none if there are no such weights.
-/// Source: glTF 2.0, 3.7.2.2: position = base + sum of weight (target - base).
+/// Returns the vertices, moved by the morph targets with their default weights; empty if all weights are 0. Source:
+/// glTF 2.0, 3.7.2.2: position = base + sum of weight (target - base).
 std::vector<aiVector3D> morphed(const aiMesh& mesh)
 {
     std::vector<aiVector3D> out;
@@ -176,12 +179,12 @@ std::vector<aiVector3D> morphed(const aiMesh& mesh)
     return out;
 }
 
-/// Collects the nodes that have faces, with the transforms of those above them.
+/// Collects the nodes that have faces, transformed by the node and all its parents.
 struct Collector {
     const aiScene& scene;
     std::string file;
-    bool morphs = false;  ///< by their meshes' default weights
-    const ObjText& obj;   ///< has the names of nodes, where the file is an OBJ
+    bool morphs = false;  ///< apply the default weights of morph targets
+    const ObjText& obj;   ///< names of nodes, if the file is an OBJ
 
     void visit(const aiNode& node, const Mat4& parent, FileMesh& out) const
     {
@@ -201,16 +204,17 @@ struct Collector {
     }
 };
 
-/// assimp leaves out faces of vertices that are not there, without a word.
+/// Throws FileError if assimp read fewer triangles than the file has: it skips faces whose vertices do not exist,
+/// without any message.
 void check_triangles(const aiScene& scene, std::size_t expected, const std::string& file)
 {
     std::size_t found = 0;
     for (unsigned m = 0; m < scene.mNumMeshes; ++m)
         if (scene.mMeshes[m]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) found += scene.mMeshes[m]->mNumFaces;
     if (found < expected)
-        throw FileError(
-            file, std::to_string(expected - found) + " of its " + std::to_string(expected) +
-                      " triangles have a vertex index beyond their vertices; the file is damaged: export it anew");
+        throw FileError(file,
+                        std::to_string(expected - found) + " of its " + std::to_string(expected) +
+                            " triangles refer to a vertex that does not exist; the file is damaged: export it again");
 }
 
 }  // namespace
@@ -220,23 +224,25 @@ FileMesh read_mesh(const std::filesystem::path& file)
     require_file(file);
     const std::string extension = lower_case(file.extension().string());
     ObjText obj = extension == ".obj" ? readable_obj(read_file(file)) : ObjText{};
-    std::string text;  // in place of the file's, if not empty; outlives the importer
+    std::string text;  // replaces that of the file if not empty; must outlive the importer
     Assimp::Importer importer;
-    text = check_mesh_file(file, importer);
+    text = prepare_import(file, importer);
     if (extension == ".obj") text = std::move(obj.text);
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     GltfFacts gltf = is_gltf ? examine_gltf(file) : GltfFacts{};
     if (extension == ".obj" || !text.empty())
-        importer.SetIOHandler(new RespeltFile(file.string(), text));
+        importer.SetIOHandler(new ReplacedFile(file.string(), text));
     else
-        importer.SetIOHandler(new RegularFiles);  // the importer owns either
-    // assimp turns every COLLADA file into y up; read it in its own axes instead and turn it like all others.
+        importer.SetIOHandler(new RegularFiles);  // the importer owns the handler
+    // assimp would rotate every COLLADA file to y up. Instead it keeps the file's own axes here, and turned_up()
+    // rotates them as in all other formats.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else node rules would see ids
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES,
+                             true);  // else label rules would see ids instead of names
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const aiScene* scene = importer.ReadFile(file.string(), 0);
     if (scene != nullptr) {
-        check_mesh_scene(*scene, file.string());
+        check_imported_scene(*scene, file.string());
         scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
     }
     if (scene == nullptr || scene->mRootNode == nullptr)
@@ -254,11 +260,11 @@ FileMesh read_mesh(const std::filesystem::path& file)
         const std::string up = collada_up_axis(file);
         mesh.up = up == "Z_UP" ? 'z' : up == "X_UP" ? 'x' : 'y';
     }
-    const Mat4 metres = extension == ".fbx"              ? take_fbx_frame(*scene, mesh)
-                        : is_turned_by_assimp(extension) ? turned_back()
-                        : extension == ".3mf"            ? scaled(metres_per_unit_of_3mf(file))
-                        : extension == ".amf"            ? scaled(metres_per_unit_of_amf(file))
-                                                         : Mat4(Mat4::Identity());
+    const Mat4 metres = extension == ".fbx"               ? read_fbx_frame(*scene, mesh)
+                        : is_rotated_by_assimp(extension) ? rotated_back()
+                        : extension == ".3mf"             ? scaled(metres_per_unit_of_3mf(file))
+                        : extension == ".amf"             ? scaled(metres_per_unit_of_amf(file))
+                                                          : Mat4(Mat4::Identity());
     Collector{*scene, file.string(), is_gltf, obj}.visit(*scene->mRootNode, metres, mesh);
     if (mesh.nodes.empty()) throw FileError(file.string(), "has no triangles, needs at least one");
     return mesh;
@@ -269,10 +275,10 @@ std::shared_ptr<const FileMesh> MeshFiles::read(const std::filesystem::path& fil
     Entry& entry = files_[file];
     if (!entry.mesh) entry.mesh = std::make_shared<const FileMesh>(read_mesh(file));
     std::shared_ptr<const FileMesh> mesh = entry.mesh;
-    if (entry.uses_left <= 1)
+    if (entry.remaining_uses <= 1)
         entry.mesh.reset();
     else
-        --entry.uses_left;
+        --entry.remaining_uses;
     return mesh;
 }
 

@@ -9,41 +9,44 @@
 
 namespace spawnfield {
 
-/// A mesh file as its nodes give it: one welded mesh per node, file axes and units of metres, before scale, up and
-/// pose.
+/// The content of a mesh file: one welded mesh for each node, on the axes of the file, in metres; scale, up axis and
+/// pose of a part are not applied yet.
 struct FileMesh {
     struct Node {
         std::string name;
         std::vector<Vec3> vertices;            ///< transformed by the node and all its parents
-        std::vector<Triangle> triangles;       ///< counterclockwise from outside also where the node mirrors
-        std::vector<std::uint32_t> materials;  ///< one for each triangle
+        std::vector<Triangle> triangles;       ///< counterclockwise from outside, also if the node's transform mirrors
+        std::vector<std::uint32_t> materials;  ///< one for each triangle: index into `materials` of the mesh
     };
     std::vector<Node> nodes;
     std::vector<std::string> materials;
-    char up = 'z';                     ///< what the format says
-    std::vector<std::string> notices;  ///< of what the file holds and is not read; begin with the file
+    char up = 'z';                     ///< up axis by the format: 'x', 'y' or 'z'
+    std::vector<std::string> notices;  ///< about content that is not read; each begins with the file name
 };
 
-/// Any format assimp reads. Throws FileError for a file that is missing, malformed, without triangles, that has
-/// coordinates which are no finite numbers, or a glTF of which assimp would read less or other geometry than it has
+/// Reads a mesh in any format that assimp reads. Throws FileError for a file that is missing, malformed or without
+/// triangles, that has coordinates which are not finite, or for a glTF that assimp would read wrongly
 /// (mesh/gltf_file.h).
 FileMesh read_mesh(const std::filesystem::path& file);
 
-/// Reads each file once for all parts that name it, and keeps it only until the last of them has it.
+/// Reads each file once for all parts that use it, and keeps it in memory until the last of them has read it.
 class MeshFiles {
 public:
-    void expect(const std::filesystem::path& file) { ++files_[file].uses_left; }
+    /// Announces one call of read() for this file.
+    void expect(const std::filesystem::path& file) { ++files_[file].remaining_uses; }
+    /// Returns the mesh; throws FileError as read_mesh().
     std::shared_ptr<const FileMesh> read(const std::filesystem::path& file);
 
 private:
     struct Entry {
-        std::size_t uses_left = 0;
+        std::size_t remaining_uses = 0;
         std::shared_ptr<const FileMesh> mesh;
     };
     std::map<std::filesystem::path, Entry> files_;
 };
 
-/// y up to z up: (x, y, z) becomes (x, -z, y); x up (with -y to the right), by way of y up: (-y, -z, x).
+/// Rotates a point from the given up axis to z up. From y up, (x, y, z) becomes (x, -z, y). From x up (with -y to the
+/// right) it becomes (-y, -z, x).
 inline Vec3 turned_up(const Vec3& point, char up)
 {
     if (up == 'x') return {-point.y(), -point.z(), point.x()};

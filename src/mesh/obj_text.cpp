@@ -13,12 +13,12 @@ constexpr std::string_view own_name = "node:";
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
-/// Goes through the lines and collects what has to be spelt otherwise.
-class ObjSpelling {
+/// Goes through the lines and rewrites those that assimp would misread.
+class ObjRewriter {
 public:
-    explicit ObjSpelling(std::string_view text) : text_(text) {}
+    explicit ObjRewriter(std::string_view text) : text_(text) {}
 
-    ObjText take(std::string&& whole)
+    ObjText rewrite(std::string&& whole)
     {
         for (std::size_t start = 0; start < text_.size();) {
             const std::size_t end = std::min(text_.find('\n', start), text_.size());
@@ -39,7 +39,7 @@ private:
                           : whole.size() > 1 && (is_blank(whole[1]) || whole[0] == 'v') ? whole[0]
                                                                                         : ' ';
         if (kind == 'v')
-            point_numbers(start, end);
+            add_leading_zeros(start, end);
         else if (!is_continued_ && (kind == 'o' || kind == 'g'))
             name(start, end);
         const std::size_t last = whole.find_last_not_of('\r');
@@ -47,7 +47,7 @@ private:
         kind_ = kind;
     }
 
-    /// assimp drops lines that begin with a blank.
+    /// Removes the indentation of a line, because assimp ignores indented lines. Returns where the rest starts.
     std::size_t without_indent(std::size_t start, std::size_t end)
     {
         const std::size_t first = std::min(text_.find_first_not_of(" \t", start), end);
@@ -58,14 +58,14 @@ private:
     void name(std::size_t start, std::size_t end)
     {
         const std::string found = trimmed(text_.substr(start + 1, end - start - 1));
-        if (found.empty() || found.back() == '\\') return;  // without a name assimp goes on as before
+        if (found.empty() || found.back() == '\\') return;  // assimp ignores a line without a name
         if (names_.empty() || found != current_) names_.push_back(found);
         current_ = found;
         replace(start + 2, end,
                 std::string(own_name) + std::to_string(names_.size() - 1) + (text_[end - 1] == '\r' ? "\r" : ""));
     }
 
-    void point_numbers(std::size_t start, std::size_t end)
+    void add_leading_zeros(std::size_t start, std::size_t end)
     {
         for (std::size_t point = text_.find('.', start); point < end; point = text_.find('.', point + 1)) {
             const char before = point > start ? text_[point - 1] : ' ';
@@ -84,9 +84,9 @@ private:
     const std::string_view text_;
     std::string out_;
     std::vector<std::string> names_;
-    std::string current_;        ///< of the last o or g; empty: none
-    std::size_t copied_ = 0;     ///< bytes of the text that are in out_, in their new spelling
-    bool is_continued_ = false;  ///< by a \ at the end of the line before
+    std::string current_;        ///< name in the last `o` or `g` line; empty: none yet
+    std::size_t copied_ = 0;     ///< bytes of the text that are already in out_, rewritten
+    bool is_continued_ = false;  ///< the line before ended with a backslash
     char kind_ = ' ';            ///< first letter of the line, 'v' also for vt and vn
 };
 
@@ -94,8 +94,8 @@ private:
 
 ObjText readable_obj(std::string text)
 {
-    ObjSpelling spelling(text);
-    return spelling.take(std::move(text));
+    ObjRewriter rewriter(text);
+    return rewriter.rewrite(std::move(text));
 }
 
 std::string obj_name(const ObjText& obj, const std::string& node)

@@ -26,20 +26,21 @@ struct Type {
 struct Property {
     std::string name;
     Type type;
-    std::optional<Type> count;  ///< of a list
+    std::optional<Type> count;  ///< type of the number of values; lists only
 };
 
 struct Element {
     std::string name;
     std::uint64_t rows = 0;
-    std::size_t line = 0;
+    std::size_t line = 0;  ///< of the header
+
     std::vector<Property> properties;
 };
 
 struct Header {
     Format format = Format::Text;
     std::vector<Element> elements;
-    std::size_t size = 0, lines = 0;
+    std::size_t size = 0, lines = 0;  ///< of the header, in bytes and lines
 };
 
 FileError line_fault(const std::string& file, std::size_t line, const std::string& what)
@@ -47,7 +48,8 @@ FileError line_fault(const std::string& file, std::size_t line, const std::strin
     return FileError(file, "line " + std::to_string(line) + ": " + what);
 }
 
-/// As a message shows it: short, and without bytes that are no text.
+/// Returns a word as it appears in messages: in quotes, at most 40 characters, with ? for bytes that are not
+/// printable ASCII.
 std::string shown(std::string_view word)
 {
     constexpr std::size_t most = 40;
@@ -61,11 +63,11 @@ std::vector<std::string_view> words_of(std::string_view line)
 {
     constexpr std::string_view space = " \t\r\n";
     std::vector<std::string_view> words;
-    for (std::size_t at = line.find_first_not_of(space); at != std::string_view::npos;
-         at = line.find_first_not_of(space, at)) {
-        const std::size_t end = std::min(line.find_first_of(space, at), line.size());
-        words.push_back(line.substr(at, end - at));
-        at = end;
+    for (std::size_t start = line.find_first_not_of(space); start != std::string_view::npos;
+         start = line.find_first_not_of(space, start)) {
+        const std::size_t end = std::min(line.find_first_of(space, start), line.size());
+        words.push_back(line.substr(start, end - start));
+        start = end;
     }
     return words;
 }
@@ -88,7 +90,7 @@ class HeaderReader {
 public:
     HeaderReader(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file)
     {
-        // Binary data may begin with any byte: only the first line tells how long the end of a line is.
+        // Only the first line shows how lines end: after the header, binary data may begin with any byte.
         const std::size_t end = bytes.find_first_of(line_ends);
         if (end != std::string_view::npos && bytes[end] == '\r' && (end + 1 == bytes.size() || bytes[end + 1] != '\n'))
             line_end_ = '\r';
@@ -111,13 +113,13 @@ public:
             } else if (words[0] == "property") {
                 read_property(words);
             } else {
-                throw fault(
-                    shown(words[0]) +
-                    " is no word of a PLY header; known: comment, obj_info, format, element, property, end_header");
+                throw fault(shown(words[0]) +
+                            " is not a keyword of a PLY header; known keywords: comment, obj_info, format, element, "
+                            "property, end_header");
             }
         }
         if (!has_format) throw FileError(file_, "has no format in its header; is it a PLY file?");
-        header_.size = at_;
+        header_.size = position_;
         header_.lines = line_;
         return std::move(header_);
     }
@@ -125,11 +127,11 @@ public:
 private:
     std::string_view next_line()
     {
-        const std::size_t end = bytes_.find(line_end_, at_);
+        const std::size_t end = bytes_.find(line_end_, position_);
         if (end == std::string_view::npos)
             throw FileError(file_, "ends within its header, before end_header; is it cut short?");
-        const std::string_view line = bytes_.substr(at_, end - at_);
-        at_ = end + 1;
+        const std::string_view line = bytes_.substr(position_, end - position_);
+        position_ = end + 1;
         ++line_;
         return line;
     }
@@ -147,7 +149,7 @@ private:
             header_.format = Format::BigEndian;
         else
             throw fault(
-                "the format is none that is known; known: ascii 1.0, binary_little_endian 1.0, binary_big_endian 1.0");
+                "the format is unknown; known formats: ascii 1.0, binary_little_endian 1.0, binary_big_endian 1.0");
     }
 
     void read_element(const std::vector<std::string_view>& words)
@@ -172,10 +174,10 @@ private:
         const auto known = [&](std::string_view word) {
             const std::optional<Type> type = type_of(word);
             if (!type)
-                throw fault(
-                    "the type " + shown(word) +
-                    " is unknown; known: char, uchar, short, ushort, int, uint, float, double, int8, uint8, int16, "
-                    "uint16, int32, uint32, float32, float64");
+                throw fault("the type " + shown(word) +
+                            " is unknown; known types: char, uchar, short, ushort, int, uint, float, double, int8, "
+                            "uint8, int16, "
+                            "uint16, int32, uint32, float32, float64");
             return *type;
         };
         Property property{std::string(words.back()), known(words[words.size() - 2]), {}};
@@ -190,7 +192,7 @@ private:
     const std::string_view bytes_;
     const std::string& file_;
     char line_end_ = '\n';
-    std::size_t at_ = 0, line_ = 0;
+    std::size_t position_ = 0, line_ = 0;
     Header header_;
 };
 
@@ -199,55 +201,55 @@ std::string row_name(const Element& element, std::uint64_t row)
     return "element " + element.name + ", row " + std::to_string(row + 1) + " of " + std::to_string(element.rows);
 }
 
-/// Rows of numbers in lines of their own; blank lines between them are passed over.
+/// Reads rows of numbers as text, one row per line. Skips blank lines between rows.
 class TextRows {
 public:
     TextRows(std::string_view bytes, const Header& header, const std::string& file)
-        : bytes_(bytes), at_(header.size), line_(header.lines), file_(file)
+        : bytes_(bytes), position_(header.size), line_(header.lines), file_(file)
     {
     }
 
-    /// The fewest bytes that so many rows take: a digit for each number, a byte between two.
+    /// Returns the smallest number of bytes for these rows: a digit for each number and a byte between two numbers.
     static std::uint64_t least_bytes(const Element& element)
     {
         return 2 * element.rows * element.properties.size() - 1;
     }
-    std::uint64_t bytes_left() const { return bytes_.size() - at_; }
+    std::uint64_t remaining_bytes() const { return bytes_.size() - position_; }
 
     void begin(const Element& element, std::uint64_t row)
     {
-        name_ = &element;
-        index_ = row;
+        element_ = &element;
+        row_number_ = row;
         do {
-            if (at_ == bytes_.size())
+            if (position_ == bytes_.size())
                 throw FileError(file_, "ends before " + row_name(element, row) + "; is it cut short?");
             take_line();
         } while (skip_space() == row_.size());
     }
     double next(const Type&)
     {
-        in_row_ = skip_space();
-        if (in_row_ == row_.size()) throw fault("ends before its last number; " + row_name(*name_, index_));
-        const std::size_t end = std::min(row_.find_first_of(" \t", in_row_), row_.size());
-        const std::string_view word = row_.substr(in_row_, end - in_row_);
-        in_row_ = end;
+        column_ = skip_space();
+        if (column_ == row_.size()) throw fault("ends before its last number; " + row_name(*element_, row_number_));
+        const std::size_t end = std::min(row_.find_first_of(" \t", column_), row_.size());
+        const std::string_view word = row_.substr(column_, end - column_);
+        column_ = end;
         double value = 0;
-        if (!parse_number(word, value)) throw fault(shown(word) + " is no number; " + row_name(*name_, index_));
+        if (!parse_number(word, value))
+            throw fault(shown(word) + " is not a number; " + row_name(*element_, row_number_));
         return value;
     }
     void end()
     {
         if (skip_space() != row_.size())
-            throw fault(shown(row_.substr(skip_space())) + " stands after the row's last number; " +
-                        row_name(*name_, index_));
+            throw fault(shown(row_.substr(skip_space())) + " comes after the last number of the row; " +
+                        row_name(*element_, row_number_));
     }
     void finish()
     {
-        while (at_ < bytes_.size()) {
+        while (position_ < bytes_.size()) {
             take_line();
             if (skip_space() != row_.size())
-                throw fault(
-                    "stands after the last row that the header tells of; are the counts of its elements right?");
+                throw fault("comes after the last row that the header declares; are the counts of its elements right?");
         }
     }
     FileError fault(const std::string& what) const { return line_fault(file_, line_, what); }
@@ -255,28 +257,28 @@ public:
 private:
     void take_line()
     {
-        const std::size_t end = std::min(bytes_.find_first_of(line_ends, at_), bytes_.size());
-        row_ = bytes_.substr(at_, end - at_);
-        in_row_ = 0;
-        at_ = std::min(end + 1, bytes_.size());
-        if (end + 1 < bytes_.size() && bytes_[end] == '\r' && bytes_[end + 1] == '\n') ++at_;
+        const std::size_t end = std::min(bytes_.find_first_of(line_ends, position_), bytes_.size());
+        row_ = bytes_.substr(position_, end - position_);
+        column_ = 0;
+        position_ = std::min(end + 1, bytes_.size());
+        if (end + 1 < bytes_.size() && bytes_[end] == '\r' && bytes_[end + 1] == '\n') ++position_;
         ++line_;
     }
-    std::size_t skip_space() const { return std::min(row_.find_first_not_of(" \t", in_row_), row_.size()); }
+    std::size_t skip_space() const { return std::min(row_.find_first_not_of(" \t", column_), row_.size()); }
 
     const std::string_view bytes_;
-    std::size_t at_, line_, in_row_ = 0;
+    std::size_t position_, line_, column_ = 0;
     const std::string& file_;
     std::string_view row_;
-    const Element* name_ = nullptr;
-    std::uint64_t index_ = 0;
+    const Element* element_ = nullptr;
+    std::uint64_t row_number_ = 0;
 };
 
-/// Rows of numbers as bytes, in either order.
+/// Reads rows of numbers as bytes, little-endian or big-endian.
 class BinaryRows {
 public:
     BinaryRows(std::string_view bytes, const Header& header, const std::string& file)
-        : bytes_(bytes), at_(header.size), swapped_(header.format == Format::BigEndian), file_(file)
+        : bytes_(bytes), position_(header.size), swapped_(header.format == Format::BigEndian), file_(file)
     {
     }
 
@@ -287,19 +289,19 @@ public:
             row += property.count ? property.count->bytes : property.type.bytes;
         return row * element.rows;
     }
-    std::uint64_t bytes_left() const { return bytes_.size() - at_; }
+    std::uint64_t remaining_bytes() const { return bytes_.size() - position_; }
 
     void begin(const Element& element, std::uint64_t row)
     {
-        name_ = &element;
-        index_ = row;
+        element_ = &element;
+        row_number_ = row;
     }
     double next(const Type& type)
     {
-        if (bytes_left() < type.bytes) throw fault("the file ends within it; is it cut short?");
+        if (remaining_bytes() < type.bytes) throw fault("the file ends within it; is it cut short?");
         char value[8] = {};
-        for (std::size_t i = 0; i < type.bytes; ++i) value[swapped_ ? type.bytes - 1 - i : i] = bytes_[at_ + i];
-        at_ += type.bytes;
+        for (std::size_t i = 0; i < type.bytes; ++i) value[swapped_ ? type.bytes - 1 - i : i] = bytes_[position_ + i];
+        position_ += type.bytes;
         const auto as = [&](auto number) {
             std::memcpy(&number, value, sizeof number);
             return double(number);
@@ -313,24 +315,27 @@ public:
     void end() {}
     void finish()
     {
-        const std::string_view rest = bytes_.substr(at_);
+        const std::string_view rest = bytes_.substr(position_);
         if (rest.find_first_not_of(" \t\r\n") != std::string_view::npos)
             throw FileError(
                 file_, "has " + std::to_string(rest.size()) +
-                           " bytes after the last row that the header tells of; are the counts of its elements right?");
+                           " bytes after the last row that the header declares; are the counts of its elements right?");
     }
-    FileError fault(const std::string& what) const { return FileError(file_, row_name(*name_, index_) + ": " + what); }
+    FileError fault(const std::string& what) const
+    {
+        return FileError(file_, row_name(*element_, row_number_) + ": " + what);
+    }
 
 private:
     const std::string_view bytes_;
-    std::size_t at_;
+    std::size_t position_;
     const bool swapped_;
     const std::string& file_;
-    const Element* name_ = nullptr;
-    std::uint64_t index_ = 0;
+    const Element* element_ = nullptr;
+    std::uint64_t row_number_ = 0;
 };
 
-/// What a property is to the mesh.
+/// How the mesh uses a property.
 enum class Use { None, X, Y, Z, Face, Strip };
 
 Use use_of(const Element& element, const Property& property)
@@ -361,7 +366,8 @@ void check_uses(const Header& header, const std::string& file)
         if (!has(*vertex, use))
             throw line_fault(file, vertex->line, std::string("element vertex has no property ") + name);
     if (face == nullptr && strips == nullptr)
-        throw FileError(file, "has no element face in its header: points alone are no surface, it needs triangles");
+        throw FileError(
+            file, "has no element face in its header: points without faces are not a surface; export it with faces");
     for (const auto& [element, use] : {std::pair{face, Use::Face}, std::pair{strips, Use::Strip}})
         if (element != nullptr && element->rows > 0 && !has(*element, use))
             throw line_fault(file, element->line,
@@ -390,12 +396,12 @@ private:
     {
         if (element.properties.empty())
             throw line_fault(file_, element.line, "element " + shown(element.name) + " has no property");
-        if (rows_.least_bytes(element) > rows_.bytes_left())
+        if (rows_.least_bytes(element) > rows_.remaining_bytes())
             throw line_fault(file_, element.line,
                              "element " + element.name + " has " + std::to_string(element.rows) +
-                                 " rows, for which the file is too short (" + std::to_string(rows_.bytes_left()) +
-                                 " bytes left, needs " + std::to_string(rows_.least_bytes(element)) +
-                                 " or more); is it cut short?");
+                                 " rows, for which the file is too short (" + std::to_string(rows_.remaining_bytes()) +
+                                 " bytes remaining, needs at least " + std::to_string(rows_.least_bytes(element)) +
+                                 "); is it cut short?");
         std::vector<Use> uses;
         for (const Property& property : element.properties) uses.push_back(use_of(element, property));
         if (element.name == "vertex") mesh_.vertices.reserve(element.rows);
@@ -447,7 +453,8 @@ private:
         return std::uint32_t(value);
     }
 
-    /// Each corner makes a triangle with the two before it; every second one runs the other way round.
+    /// A triangle strip. Each corner forms a triangle with the two before it; every second triangle has the opposite
+    /// winding.
     struct Strip {
         std::size_t length = 0;
         std::uint32_t before = 0, last = 0;
@@ -480,7 +487,7 @@ bool is_ply(std::string_view bytes)
 
 PlyMesh parse_ply(std::string_view bytes, const std::string& file)
 {
-    if (!is_ply(bytes)) throw FileError(file, "is no PLY file: its first line is not \"ply\"");
+    if (!is_ply(bytes)) throw FileError(file, "is not a PLY file: its first line is not \"ply\"");
     const Header header = HeaderReader(bytes, file).read();
     check_uses(header, file);
     if (header.format == Format::Text) return BodyReader(header, TextRows(bytes, header, file), file).read();

@@ -17,15 +17,16 @@
 namespace spawnfield {
 namespace {
 
-std::size_t number_at(std::string_view bytes, std::size_t at, int size)
+/// Returns the little-endian number of `size` bytes at `offset`; 0 if the bytes end before it.
+std::size_t number_at(std::string_view bytes, std::size_t offset, int size)
 {
-    if (at > bytes.size() || bytes.size() - at < std::size_t(size)) return 0;
+    if (offset > bytes.size() || bytes.size() - offset < std::size_t(size)) return 0;
     std::size_t value = 0;
-    for (int k = size - 1; k >= 0; --k) value = value << 8 | static_cast<unsigned char>(bytes[at + std::size_t(k)]);
+    for (int k = size - 1; k >= 0; --k) value = value << 8 | static_cast<unsigned char>(bytes[offset + std::size_t(k)]);
     return value;
 }
 
-/// The first `most` bytes at most of what `deflate` packed.
+/// Inflates data in `deflate` format and returns at most its first `most` bytes.
 std::string inflated(std::string_view packed, std::size_t most)
 {
     constexpr int raw = -MAX_WBITS;  // without zlib's own header
@@ -33,7 +34,7 @@ std::string inflated(std::string_view packed, std::size_t most)
     z_stream stream{};
     if (inflateInit2(&stream, raw) != Z_OK) return {};
     stream.next_in = reinterpret_cast<Bytef*>(
-        const_cast<char*>(packed.data()));  // zlib's old signature; it does not write there
+        const_cast<char*>(packed.data()));  // zlib's old signature; zlib does not write there
     stream.avail_in = uInt(packed.size());
     stream.next_out = reinterpret_cast<Bytef*>(out.data());
     stream.avail_out = uInt(out.size());
@@ -43,16 +44,16 @@ std::string inflated(std::string_view packed, std::size_t most)
     return out;
 }
 
-/// The first `most` bytes at most of a file in a ZIP archive; "" if there is none by this name (ASCII case does not
-/// count) or it is damaged. Source: PKWARE, APPNOTE.TXT 4.3 (local header, central directory, end of central
-/// directory).
+/// Returns at most the first `most` bytes of a file in a ZIP archive; "" if the archive has no file of this name
+/// (ignoring ASCII case) or is damaged. Source: PKWARE, APPNOTE.TXT 4.3 (local header, central directory, end of
+/// central directory).
 std::string file_in(std::string_view archive, const std::string& name, std::size_t most)
 {
     constexpr std::size_t end_size = 22, entry_size = 46, header_size = 30, stored = 0, deflated = 8;
     const std::size_t end = archive.rfind("PK\5\6");
     if (end == std::string_view::npos || archive.size() - end < end_size) return {};
     std::size_t entry = number_at(archive, end + 16, 4);
-    for (std::size_t left = number_at(archive, end + 10, 2); left > 0; --left) {
+    for (std::size_t remaining = number_at(archive, end + 10, 2); remaining > 0; --remaining) {
         if (entry > archive.size() || !archive.substr(entry).starts_with("PK\1\2") ||
             archive.size() - entry < entry_size)
             return {};
@@ -72,7 +73,7 @@ std::string file_in(std::string_view archive, const std::string& name, std::size
     return {};
 }
 
-/// Where the package says that its model is, without the leading slash.
+/// Returns the path of the 3D model in the package, without the leading slash; "" if there is none.
 std::string model_name(const std::string& relationships)
 {
     tinyxml2::XMLDocument document;
@@ -88,13 +89,15 @@ std::string model_name(const std::string& relationships)
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-/// The value of the attribute in an element's text from behind its name; "" if it has none.
+/// Returns the value of an attribute. `element` is the text of an element after its name. Returns "" if the attribute
+/// is missing.
 std::string attribute(std::string_view element, std::string_view name)
 {
-    for (std::size_t at = element.find(name); at != std::string_view::npos; at = element.find(name, at + 1)) {
-        std::size_t next = at + name.size();
+    for (std::size_t start = element.find(name); start != std::string_view::npos;
+         start = element.find(name, start + 1)) {
+        std::size_t next = start + name.size();
         while (next < element.size() && is_space(element[next])) ++next;
-        if (at == 0 || !is_space(element[at - 1]) || next == element.size() || element[next] != '=') continue;
+        if (start == 0 || !is_space(element[start - 1]) || next == element.size() || element[next] != '=') continue;
         const std::size_t open = element.find_first_of("\"'", next);
         if (open == std::string_view::npos) return {};
         const std::size_t close = std::min(element.find(element[open], open + 1), element.size());
@@ -103,12 +106,14 @@ std::string attribute(std::string_view element, std::string_view name)
     return {};
 }
 
-/// `unit` of the first element by this name, with or without a prefix; "" if there is none.
+/// Returns the attribute `unit` of the first element with this name, with or without a namespace prefix; "" if there is
+/// none.
 std::string unit_of(std::string_view name, std::string_view text)
 {
-    for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
-        const std::size_t end = at + name.size();
-        if (at == 0 || (text[at - 1] != '<' && text[at - 1] != ':') || end == text.size() || !is_space(text[end]))
+    for (std::size_t start = text.find(name); start != std::string_view::npos; start = text.find(name, start + 1)) {
+        const std::size_t end = start + name.size();
+        if (start == 0 || (text[start - 1] != '<' && text[start - 1] != ':') || end == text.size() ||
+            !is_space(text[end]))
             continue;
         return attribute(text.substr(end, std::min(text.find('>', end), text.size()) - end), "unit");
     }
@@ -125,10 +130,10 @@ double metres_of(const std::string& unit, const Units& units, const std::string&
         if (unit == known) return metres;
         names += (names.empty() ? "" : ", ") + known;
     }
-    throw FileError(file, "its unit is \"" + unit + "\", needs one of " + names);
+    throw FileError(file, "has the unit \"" + unit + "\", needs one of " + names);
 }
 
-constexpr std::size_t head = 1 << 16;  // bytes in which a root element begins
+constexpr std::size_t head = 1 << 16;  // bytes at the start that must contain the root element
 
 }  // namespace
 
@@ -139,8 +144,9 @@ double metres_per_unit_of_3mf(const std::filesystem::path& file)
     const std::string name = model_name(file_in(archive, "_rels/.rels", all));
     const std::string text = name.empty() ? "" : file_in(archive, name, head);
     if (text.empty())
-        throw FileError(file.string(),
-                        "has no 3D model where its _rels/.rels says, so its unit is not known; export it anew");
+        throw FileError(
+            file.string(),
+            "has no 3D model at the path that its _rels/.rels names, so its unit is unknown; export it again");
     return metres_of(unit_of("model", text),
                      {{"micron", 1e-6},
                       {"millimeter", 1e-3},

@@ -10,7 +10,8 @@
 namespace spawnfield {
 namespace {
 
-/// Corners (0, ±1, ±phi) and their cyclic permutations; its faces are the triples of corners that are all 2 apart.
+/// Returns an icosahedron of radius 1. Its corners are (0, ±1, ±phi) and their cyclic permutations, before they are
+/// normalized; its faces are the triples of corners that are all 2 apart.
 SphereMesh icosahedron()
 {
     SphereMesh mesh;
@@ -62,7 +63,7 @@ SphereMesh mesh_around_unit_sphere(int rounds)
 {
     SphereMesh mesh = icosahedron();
     for (int round = 0; round < rounds; ++round) mesh = cut_in_four(std::move(mesh));
-    double nearest = 1;  // of the faces to the centre
+    double nearest = 1;  // smallest distance from the centre to a face
     for (const auto& [i, j, k] : mesh.triangles) {
         const Vec3 normal =
             (mesh.vertices[j] - mesh.vertices[i]).cross(mesh.vertices[k] - mesh.vertices[i]).normalized();

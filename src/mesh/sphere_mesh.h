@@ -12,8 +12,9 @@ struct SphereMesh {
     std::vector<Triangle> triangles;  ///< counterclockwise from outside
 };
 
-/// A polyhedron around the unit sphere: the icosahedron, each of its faces cut in four `rounds` times, moved out until
-/// no face cuts the sphere. 20 * 4^rounds triangles; all vertices lie equally far from the centre.
+/// Returns a polyhedron around the unit sphere: an icosahedron whose faces are divided into four `rounds` times, then
+/// scaled up until no face cuts the sphere. It has 20 * 4^rounds triangles, and all vertices have the same distance
+/// from the centre.
 SphereMesh mesh_around_unit_sphere(int rounds);
 
 }  // namespace spawnfield

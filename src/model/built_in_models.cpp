@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> words_between_slashes(const std::string& text)
+std::vector<std::string> split_at_slashes(const std::string& text)
 {
     std::vector<std::string> out;
     for (std::size_t start = 0; start < text.size();) {
@@ -22,15 +22,16 @@ std::vector<std::string> words_between_slashes(const std::string& text)
     return out;
 }
 
-/// "groundplane" for "Ground%20Plane", "ground_plane" and "GroundPlane".
+/// Returns, for example, "groundplane" for "Ground%20Plane", "ground_plane" and "GroundPlane".
 std::string plain_name(std::string name)
 {
-    for (std::size_t at = name.find("%20"); at != std::string::npos; at = name.find("%20")) name.erase(at, 3);
+    for (std::size_t space = name.find("%20"); space != std::string::npos; space = name.find("%20"))
+        name.erase(space, 3);
     std::erase_if(name, [](char c) { return c == ' ' || c == '_' || c == '-'; });
     return lower_case(name);
 }
 
-/// NAME of `https://HOST/1.0/OpenRobotics/models/NAME[/VERSION]`, else "".
+/// Returns NAME of `https://HOST/1.0/OpenRobotics/models/NAME[/VERSION]`, or "" for another address.
 std::string name_on_fuel(const std::vector<std::string>& words)
 {
     const bool is_model = words.size() >= 6 && words.size() <= 7 && lower_case(words[3]) == "openrobotics" &&
@@ -38,7 +39,7 @@ std::string name_on_fuel(const std::vector<std::string>& words)
     return is_model ? words[5] : "";
 }
 
-/// NAME of `model://NAME`, `model://NAME/model.sdf` or NAME, else "".
+/// Returns NAME of `model://NAME`, `model://NAME/model.sdf` or NAME, or "" for another path.
 std::string name_of_model(std::vector<std::string> words, bool has_scheme)
 {
     if (has_scheme) words.erase(words.begin());
@@ -53,7 +54,7 @@ std::string built_in_model(const std::string& uri)
     const bool is_web = uri.starts_with("https://") || uri.starts_with("http://"),
                has_scheme = uri.starts_with("model://");
     if (!is_web && !has_scheme && uri.find(':') != std::string::npos) return "";
-    const std::vector<std::string> words = words_between_slashes(uri);
+    const std::vector<std::string> words = split_at_slashes(uri);
     const std::string name = plain_name(is_web ? name_on_fuel(words) : name_of_model(words, has_scheme));
     return name == "groundplane" ? "ground_plane" : name == "sun" ? "sun" : "";
 }

@@ -12,7 +12,7 @@ std::string scoped_name(const CollisionBody& body)
 {
     std::string out;
     for (const std::string& name : body.names)
-        if (!name.empty()) out += (out.empty() ? "" : "::") + name;  // a URDF's collisions may have none
+        if (!name.empty()) out += (out.empty() ? "" : "::") + name;  // the name of a URDF's collision may be empty
     return out;
 }
 
@@ -50,7 +50,7 @@ FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, con
         if (node.name == geometry.submesh) out.nodes.push_back(node);
         names += (names.empty() ? "" : ", ") + node.name;
     }
-    if (out.nodes.empty()) throw FileError(file, "has no submesh \"" + geometry.submesh + "\"; it has " + names);
+    if (out.nodes.empty()) throw FileError(file, "has no submesh \"" + geometry.submesh + "\"; its nodes are " + names);
     if (!geometry.is_centred) return out;
     Bounds box;
     for (const FileMesh::Node& node : out.nodes)

@@ -8,45 +8,48 @@
 
 namespace spawnfield {
 
-/// The <geometry> of a <collision> of an SDF or URDF file, in its own frame, in metres.
+/// The <geometry> of a <collision> in an SDF or URDF file, in the collision's own frame, in metres.
 struct CollisionGeometry {
     enum class Kind { Box, Sphere, Cylinder, Capsule, Ellipsoid, Plane, Mesh, Heightmap, Polyline, Unknown };
     Kind kind = Kind::Unknown;
-    /// Box: side lengths; sphere: radius, -, -; cylinder, capsule: radius, straight length, -; ellipsoid: radii;
-    /// plane: side lengths as drawn by a <visual> of its link, -, all 0 if none draws it (a plane has no end, so the
-    /// collision's own <size> means nothing); mesh: scale; heightmap: sides and the height of its brightest pixel;
-    /// polyline: height, -, -.
+    /// Box: side lengths. Sphere: radius, -, -. Cylinder and capsule: radius, straight length, -. Ellipsoid: radii.
+    /// Plane: side lengths of the largest <visual> of its link, -; all 0 if there is none. (A plane is infinite, so the
+    /// <size> of the collision itself has no meaning.) Mesh: scale. Heightmap: side lengths, and the height of its
+    /// brightest pixel. Polyline: height, -, -.
     Vec3 size = Vec3::Ones();
-    Vec3 normal = Vec3::UnitZ();   ///< plane; not of unit length necessarily
-    std::string uri;               ///< mesh, heightmap: as the file has it
-    std::filesystem::path folder;  ///< of the file in which it stands
-    std::string submesh;           ///< mesh: the only node that counts; empty: all
-    bool is_centred = false;       ///< mesh: the submesh's middle becomes its origin
-    Vec3 position = Vec3::Zero();  ///< heightmap: of its middle
-    unsigned sampling = 1;         ///< heightmap: samples for each pixel, between them interpolated
-    std::vector<std::vector<std::array<double, 2>>> outlines;  ///< polyline: even-odd
-    std::string element;                                       ///< Unknown: what stands there
-    std::optional<int> line;                                   ///< of its file, where that is known
+    Vec3 normal = Vec3::UnitZ();   ///< plane; its length may differ from 1
+    std::string uri;               ///< mesh, heightmap: as in the file
+    std::filesystem::path folder;  ///< folder of the file that contains it
+    std::string submesh;           ///< mesh: the only node that is used; empty: all nodes
+    bool is_centred = false;       ///< mesh: the middle of the submesh becomes the origin
+    Vec3 position = Vec3::Zero();  ///< heightmap: position of its middle
+    unsigned sampling = 1;         ///< heightmap: samples per pixel, interpolated between pixels
+    /// Polyline: a point is inside if an odd number of the outlines enclose it.
+    std::vector<std::vector<std::array<double, 2>>> outlines;
+    std::string element;      ///< Unknown: name of the element in the file
+    std::optional<int> line;  ///< line in its file; empty: unknown
 };
 
-/// A <collision> with its place.
+/// A <collision> with its pose.
 struct CollisionBody {
-    std::vector<std::string> names;  ///< models from the outermost in, link, collision
-    Pose pose;                       ///< in the world, or in the model that was asked for
+    std::vector<std::string> names;  ///< models from the outermost to the innermost, link, collision
+    Pose pose;                       ///< in the frame of the world or model that was read
     CollisionGeometry geometry;
 };
 
-/// "house::link::collision" (SDFormat's scoped names).
+/// Returns the names joined as in "house::link::collision" (SDFormat's scoped names).
 std::string scoped_name(const CollisionBody& body);
 
-/// Of a box, sphere, cylinder or capsule, and of an ellipsoid that is a sphere.
+/// Returns the shape of a box, sphere, cylinder or capsule, and of an ellipsoid that is a sphere; empty for other
+/// geometry.
 std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pose);
 
-/// Whether the mesh has the node that the geometry names, or the geometry names none.
+/// Returns whether the mesh has the node that the geometry names, or the geometry does not name a node.
 bool has_submesh(const FileMesh& mesh, const CollisionGeometry& geometry);
 
-/// What of its file a mesh geometry means: all, or the nodes of its submesh, with the middle of their box moved to the
-/// origin if it is to be centred. Throws FileError.
+/// Returns the part of a mesh file that the geometry uses: all nodes, or the nodes with the name of its submesh. If the
+/// geometry is centred, the middle of their bounding box is moved to the origin. Throws FileError if there is no such
+/// node.
 FileMesh submesh_of(const FileMesh& mesh, const CollisionGeometry& geometry, const std::string& file);
 
 }  // namespace spawnfield

@@ -7,20 +7,20 @@
 
 namespace spawnfield {
 
-/// All <collision> of a URDF or SDF model with its joints at given positions: a robot, or a world that is spawned as
-/// one.
+/// All <collision> elements of a URDF or SDF model, with its joints at given positions. The model is a robot, or a
+/// world that is spawned as a URDF.
 struct JointedModel {
     std::string name;
-    std::vector<CollisionBody> bodies;  ///< named model, link, collision (which may be empty)
+    std::vector<CollisionBody> bodies;  ///< names: model, link, collision; the last may be empty
     std::vector<std::string> notices;
 };
 
-/// Reads a URDF, in the frame of its root link. Joints stand as given, all others at 0. Throws FileError, and
-/// ArgumentError for joints.
+/// Reads a URDF. Poses are in the frame of its root link. The given joints have their given positions, all others 0.
+/// Throws FileError, and ArgumentError for wrong joints.
 JointedModel read_urdf_model(const std::filesystem::path& file, const std::vector<JointPosition>& joints);
 
-/// Reads the <model> of an SDF file, in the model's frame: its own <pose> does not count. Joints stand as given, all
-/// others at 0. Throws FileError, and ArgumentError for joints.
+/// Reads the <model> of an SDF file. Poses are in the model's own frame: its <pose> is ignored. The given joints have
+/// their given positions, all others 0. Throws FileError, and ArgumentError for wrong joints.
 JointedModel read_sdf_model(const std::filesystem::path& file, ModelPaths& paths,
                             const std::vector<JointPosition>& joints);
 

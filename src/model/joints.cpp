@@ -40,9 +40,9 @@ public:
             if (joint.motion != Joint::Motion::Turning && joint.motion != Joint::Motion::Sliding) continue;
             const double value = out[joint.name] = value_of(joint, 0);
             if (is_within(joint, value)) continue;
-            notices.push_back(file_ + ": joint \"" + joint.name + "\" stands at " + number(value) + " " +
-                              unit_of(joint) + (joint.mimic ? ", as \"" + joint.mimic->joint + "\" has it" : "") +
-                              ", though its limits are " + limits_of(joint));
+            notices.push_back(file_ + ": joint \"" + joint.name + "\" is at " + number(value) + " " + unit_of(joint) +
+                              (joint.mimic ? ", because it mimics \"" + joint.mimic->joint + "\"" : "") +
+                              ", outside its limits " + limits_of(joint));
         }
         return out;
     }
@@ -56,10 +56,11 @@ private:
         if (joint->motion == Joint::Motion::None) refuse(place + "is fixed in " + file_ + "; " + movable());
         if (joint->motion == Joint::Motion::Other)
             refuse(place + "is of type " + joint->type + ", which cannot be moved by one number; " + movable());
-        if (joint->mimic) refuse(place + "follows joint \"" + joint->mimic->joint + "\"; give that one");
+        if (joint->mimic) refuse(place + "mimics joint \"" + joint->mimic->joint + "\"; give that one instead");
         if (!std::isfinite(position.value)) refuse(place + "is " + number(position.value) + ", needs a finite number");
         if (!is_within(*joint, position.value))
-            refuse(place + "is " + number(position.value) + ", its limits in " + file_ + " are " + limits_of(*joint));
+            refuse(place + "is " + number(position.value) + ", outside its limits in " + file_ + ", " +
+                   limits_of(*joint));
         if (!given_.emplace(position.joint, position.value).second) refuse(place + "is given twice");
     }
 
@@ -72,7 +73,7 @@ private:
         const Joint* const leader = find(joint.mimic->joint);
         if (leader == nullptr)
             throw FileError(file_,
-                            "joint \"" + joint.name + "\" mimics \"" + joint.mimic->joint + "\", which is no joint");
+                            "joint \"" + joint.name + "\" mimics \"" + joint.mimic->joint + "\", which is not a joint");
         if (depth > joints_.size()) throw FileError(file_, "joint \"" + joint.name + "\" mimics itself");
         return joint.mimic->multiplier * value_of(*leader, depth + 1) + joint.mimic->offset;
     }
@@ -84,14 +85,14 @@ private:
         return found == joints_.end() ? nullptr : &*found;
     }
 
-    /// What can be given, for messages.
+    /// Returns the joints that can be given, for messages.
     std::string movable() const
     {
         std::string names;
         for (const Joint& joint : joints_)
             if ((joint.motion == Joint::Motion::Turning || joint.motion == Joint::Motion::Sliding) && !joint.mimic)
                 names += (names.empty() ? "" : ", ") + joint.name;
-        return names.empty() ? "it has none that moves" : "those that move: " + names;
+        return names.empty() ? "no joint there can be moved" : "joints that can be moved: " + names;
     }
 
     [[noreturn]] static void refuse(const std::string& what) { throw ArgumentError("load_robot", what); }
@@ -112,7 +113,7 @@ std::map<std::string, double> joint_positions(const std::string& file, const std
 
 Pose joint_motion(Joint::Motion motion, const Vec3& axis, double value)
 {
-    if (value == 0) return {};  // to the bit as without a joint
+    if (value == 0) return {};  // exactly the same numbers as without a joint
     if (motion == Joint::Motion::Sliding) return {value * axis, Mat3::Identity()};
     return {Vec3::Zero(), Eigen::AngleAxisd(value, axis).toRotationMatrix()};
 }

@@ -27,7 +27,8 @@ void add_variable(const char* variable, std::vector<fs::path>& folders)
     }
 }
 
-/// `models/x/meshes/y.dae` in a folder of models, or in the model's own.
+/// Returns the path of `inside` in `folder`; empty if it does not exist. `folder` contains models, or is itself the
+/// model's folder: then its own name is the first part of `inside`.
 fs::path found_in(const fs::path& folder, const fs::path& inside)
 {
     if (fs::exists(folder / inside)) return folder / inside;
@@ -35,8 +36,10 @@ fs::path found_in(const fs::path& folder, const fs::path& inside)
     return is_own && fs::exists(folder.parent_path() / inside) ? folder.parent_path() / inside : fs::path();
 }
 
-/// Gazebo keeps what it took from Fuel in ~/.gz/fuel/HOST/OWNER/models/NAME/VERSION; the URI is
-/// https://HOST/1.0/OWNER/models/NAME[/VERSION|/tip][/files/…], with spaces as %20 and the cache in small letters.
+/// Returns the folder of a Fuel model that Gazebo has downloaded; empty if there is none. Gazebo stores it in
+/// ~/.gz/fuel/HOST/OWNER/models/NAME/VERSION, in lower case. The URI is
+/// https://HOST/1.0/OWNER/models/NAME[/VERSION|/tip][/files/…], with %20 for spaces. The highest version on disk is
+/// used.
 fs::path found_in_fuel_cache(const std::string& uri)
 {
     const char* const home = std::getenv("HOME");
@@ -44,7 +47,8 @@ fs::path found_in_fuel_cache(const std::string& uri)
     for (const fs::path& word : fs::path(without("https://", uri))) words.push_back(word.string());
     if (home == nullptr || words.size() < 5) return {};
     std::string name = lower_case(words[4]);
-    for (std::size_t at = name.find("%20"); at != std::string::npos; at = name.find("%20")) name.replace(at, 3, " ");
+    for (std::size_t space = name.find("%20"); space != std::string::npos; space = name.find("%20"))
+        name.replace(space, 3, " ");
     const std::string owner = lower_case(words[2]);
     for (const char* const cache : {".gz/fuel", ".ignition/fuel"}) {
         const fs::path versions = fs::path(home) / cache / words[0] / owner / words[3] / name;
@@ -68,7 +72,7 @@ fs::path sdf_file_of(const fs::path& folder)
         double highest = -1;
         for_each_child(*document->RootElement(), "sdf", [&](const Xml& sdf) {
             const double version = sdf.DoubleAttribute("version", 0);
-            // Files of versions for old simulators are often listed without being there.
+            // model.config often names files for old simulators that do not exist.
             if (sdf.GetText() == nullptr || version <= highest || !fs::is_regular_file(folder / sdf.GetText())) return;
             highest = version;
             name = sdf.GetText();
@@ -80,9 +84,12 @@ fs::path sdf_file_of(const fs::path& folder)
         if (entry.path().extension() == ".sdf") files.push_back(entry.path());
     if (files.size() == 1) return files[0];
     if (fs::is_regular_file(folder / "model.sdf")) return folder / "model.sdf";
-    throw FileError(folder.string(),
-                    files.empty() ? "is a folder without model.config and .sdf file, needs to be a model's"
-                                  : "has no model.config that names one of its .sdf files; name the file itself");
+    throw FileError(
+        folder.string(),
+        files.empty()
+            ? "is a folder without model.config and without a .sdf file, so it is not a model; give the folder of a "
+              "model, or an SDF file"
+            : "has several .sdf files, but no model.config that names one of them; give the .sdf file itself");
 }
 
 }  // namespace
@@ -111,7 +118,7 @@ ModelPaths::Path ModelPaths::find_on_disk(const std::string& uri, const Path& fo
 {
     if (uri.starts_with("https://") || uri.starts_with("http://")) return found_in_fuel_cache(uri);
     Path inside = uri;
-    bool is_named = false;  // of a model or package, and not seen from the folder
+    bool is_named = false;  // a model or package by name: not relative to the folder
     for (const char* const scheme : {"model://", "package://", "file://"})
         if (uri.starts_with(scheme)) {
             inside = without(scheme, uri);
@@ -124,7 +131,7 @@ ModelPaths::Path ModelPaths::find_on_disk(const std::string& uri, const Path& fo
         if (const Path found = found_in(named, inside); !found.empty()) return found;
     for (const Path& above : above_)
         if (const Path found = found_in(above, inside); !found.empty()) {
-            if (above != above_.front()) guessed_.insert(above);  // beside the file is no guess
+            if (above != above_.front()) guessed_.insert(above);  // a folder beside the file is not a guess
             return found;
         }
     return {};
@@ -132,7 +139,7 @@ ModelPaths::Path ModelPaths::find_on_disk(const std::string& uri, const Path& fo
 
 fs::path model_file_of(const fs::path& file_or_folder)
 {
-    std::error_code unreachable;  // a circle of links, say
+    std::error_code unreachable;  // for example in a circle of links
     return fs::is_directory(file_or_folder, unreachable) ? sdf_file_of(file_or_folder) : file_or_folder;
 }
 

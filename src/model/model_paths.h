@@ -7,23 +7,26 @@
 
 namespace spawnfield {
 
-/// Where the URIs of SDF and URDF files lead: model://, package://, file://, Fuel's https://, and relative paths.
+/// Finds the files that URIs in SDF and URDF files name: model://, package://, file://, Fuel's https://, and relative
+/// paths.
 class ModelPaths {
 public:
     using Path = std::filesystem::path;
 
-    /// Looks into the given folders first, then into those of GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and
-    /// GAZEBO_MODEL_PATH, then into the folders above `file` and the `models` folders in them, at last at the
-    /// built-in models (built_in_models.h).
+    /// Sets the order of the search: first the given folders, then those of GZ_SIM_RESOURCE_PATH,
+    /// IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH, then the folders above `file` and the `models` folders in them,
+    /// and last the built-in models (built_in_models.h).
     ModelPaths(const std::vector<Path>& given, const Path& file);
 
-    /// What the URI names, seen from a file in `folder`: a file or a folder that exists, or nothing.
+    /// Returns the existing file or folder that the URI names, or an empty path. `folder` is that of the file that
+    /// contains the URI.
     Path find(const std::string& uri, const Path& folder);
 
-    /// URIs for which a built-in model was taken, as nothing on disk has the name.
+    /// Returns the URIs for which find() returned a built-in model, because nothing on disk has that name.
     const std::set<std::string>& built_in() const { return built_in_; }
 
-    /// Folders above the file's own in which something was found: nobody named them.
+    /// Returns the folders above the file's own folder in which find() found something, although the user did not name
+    /// them.
     const std::set<Path>& guessed() const { return guessed_; }
 
 private:
@@ -34,8 +37,8 @@ private:
     std::set<std::string> built_in_;
 };
 
-/// Returns the SDF file of a model's folder: the file that model.config names with the highest version, or else the
-/// only .sdf file. Returns any other path unchanged. Throws FileError for a folder that is no model's.
+/// Returns the SDF file of a model's folder: the file for the highest version in model.config, or else the only .sdf
+/// file. Returns any other path unchanged. Throws FileError for a folder that is not a model's.
 std::filesystem::path model_file_of(const std::filesystem::path& file_or_folder);
 
 }  // namespace spawnfield

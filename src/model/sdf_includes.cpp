@@ -16,10 +16,10 @@ class IncludeWalk {
 public:
     explicit IncludeWalk(ModelPaths& paths) : paths_(paths) {}
 
-    /// How many includes the file comes to, all that they include counted.
+    /// Returns the number of includes in the file, counting those in the included files.
     std::size_t visit(const fs::path& file, const tinyxml2::XMLDocument& document)
     {
-        constexpr std::size_t most = 100000;  // for which libsdformat takes hours
+        constexpr std::size_t most = 100000;  // with more, libsdformat takes hours
         std::size_t count = 0;
         check_numbers(file, *document.RootElement());
         stack_.push_back(fs::weakly_canonical(file));
@@ -38,8 +38,7 @@ public:
             if (again != stack_.end()) {
                 std::string chain;
                 for (auto link = again; link != stack_.end(); ++link) chain += link->string() + " includes ";
-                throw FileError(place + "<include> <uri> " + uri,
-                                "leads back to itself: " + chain + canonical.string());
+                throw FileError(place + "<include> <uri> " + uri, "includes itself: " + chain + canonical.string());
             }
             const auto known = counts_.find(canonical);
             const std::size_t within = known != counts_.end()         ? known->second
@@ -49,7 +48,7 @@ public:
             count += 1 + within;
             if (count > most)
                 throw FileError(place + "<include> <uri> " + uri,
-                                "is the one with which all includes come to more than " + std::to_string(most));
+                                "makes more than " + std::to_string(most) + " includes in total, needs fewer");
         });
         stack_.pop_back();
         return count;
@@ -72,13 +71,13 @@ std::unique_ptr<tinyxml2::XMLDocument> read_sdf_xml(const fs::path& file)
     const Xml& root = *document->RootElement();
     const std::string name = root.Name();
     const auto refuse = [&](const std::string& what) { throw FileError(file.string(), line_of(root) + what); };
-    if (name == "robot") refuse("<robot> is URDF; give the file the ending .urdf");
-    if (name != "sdf" && name != "gazebo") refuse("<" + name + "> stands where <sdf version=\"…\"> needs to");
+    if (name == "robot") refuse("<robot> is URDF; rename the file so that it ends in .urdf");
+    if (name != "sdf" && name != "gazebo") refuse("the root element is <" + name + ">, needs <sdf version=\"…\">");
     const char* const version = root.Attribute("version");
-    if (version == nullptr) refuse("<" + name + "> has no version, needs such as version=\"1.6\"");
+    if (version == nullptr) refuse("<" + name + "> has no version, needs one, for example version=\"1.6\"");
     double value = 0;
     if (!parse_number(version, value) || !(value >= 1 && value < 3))
-        refuse("<" + name + "> has version \"" + version + "\", needs such as version=\"1.6\"");
+        refuse("<" + name + "> has version \"" + version + "\", needs 1.0 to 2.x, for example version=\"1.6\"");
     return document;
 }
 
@@ -87,7 +86,7 @@ fs::path included_file(const std::string& uri, const fs::path& folder, ModelPath
     return model_file_of(paths.find(uri, folder));
 }
 
-std::string words_of(const MissingIncludes::value_type& missing)
+std::string text_of_missing(const MissingIncludes::value_type& missing)
 {
     const auto& [uri, place] = missing;
     return place.first + ": <include> <uri> " + uri + " is not found" +
@@ -100,17 +99,17 @@ void refuse_missing(const fs::path& file, const MissingIncludes& missing)
     bool has_fuel = false;
     const std::string prefix = file.string() + ": ";
     for (const MissingIncludes::value_type& entry : missing) {
-        const std::string words = words_of(entry);
+        const std::string words = text_of_missing(entry);
         list += "\n  " + (words.starts_with(prefix) ? words.substr(prefix.size()) : words);
         has_fuel = has_fuel || entry.first.starts_with("http");
     }
     const bool is_one = missing.size() == 1;
-    throw FileError(file.string(),
-                    std::to_string(missing.size()) +
-                        (is_one ? " model that it includes is" : " models that it includes are") +
-                        " not found; name the folder that holds " + (is_one ? "it" : "them") + " with --model-path" +
-                        (has_fuel ? ", download models of Fuel with `gz fuel download -u URI`" : "") +
-                        ", or pass --allow-missing to leave " + (is_one ? "it" : "them") + " out:" + list);
+    throw FileError(file.string(), std::to_string(missing.size()) +
+                                       (is_one ? " model that it includes is" : " models that it includes are") +
+                                       " not found; give the folder that contains " + (is_one ? "it" : "them") +
+                                       " with --model-path" +
+                                       (has_fuel ? ", download models of Fuel with `gz fuel download -u URI`" : "") +
+                                       ", or ignore " + (is_one ? "it" : "them") + " with --allow-missing:" + list);
 }
 
 MissingIncludes check_includes(const fs::path& file, const tinyxml2::XMLDocument& document, ModelPaths& paths)

@@ -7,25 +7,30 @@
 
 namespace spawnfield {
 
-/// What an SDF file, or a part of one, puts into the world.
+/// The collisions of an SDF file, and what was not read.
 struct SdfContent {
-    std::string name;  ///< of the world, or of the model if there is no world
+    std::string name;  ///< name of the world, or of the model if there is no world
     std::vector<CollisionBody> bodies;
     std::vector<std::string> bare_models;  ///< models that have no collision
-    std::size_t model_count = 0;           ///< of the outermost models
-    std::size_t hollow = 0;                ///< collisions without a shape; they are left out
-    std::size_t untouchable = 0;           ///< collisions that touch nothing: a <collide_bitmask> of 0, or
-                                           ///< <collide_without_contact>; they are left out
-    std::vector<std::string> lost;         ///< what libsdformat leaves out
-    std::vector<std::string> complaints;   ///< of libsdformat about what does not matter here, or not enough to end
-    /// Of a file that holds a model: the model's own pose; its bodies' poses are seen from the model then.
+    std::size_t model_count = 0;           ///< number of outermost models
+    std::size_t hollow = 0;                ///< number of collisions without a shape; they are ignored
+    /// Number of collisions that touch nothing: a <collide_bitmask> of 0, or <collide_without_contact>. They are
+    /// ignored.
+    std::size_t untouchable = 0;
+    std::vector<std::string> lost;  ///< messages about content that libsdformat ignores
+    /// Messages of libsdformat that are not errors here.
+    std::vector<std::string> complaints;
+    /// If the file contains a model and no world: the model's own pose. The poses of `bodies` are then in the model's
+    /// frame.
     Pose pose;
-    bool is_plain_model = false;  ///< a model whose pose hangs on no frame: what includes it may say where it is
+    /// A model whose pose does not depend on a frame, so that an <include> may replace its pose.
+    bool is_plain_model = false;
 };
 
-/// By libsdformat, in the file's or the model's frame. `text` stands for the file's text, without what was taken out of
-/// it. Frames, relative_to, placement frames and nested includes are its business. Throws FileError for a file that it
-/// cannot read, for frames that lead nowhere, for sizes that are no numbers > 0.
+/// Reads an SDF file by libsdformat, which resolves frames, relative_to, placement frames and nested includes. Poses
+/// are in the frame of the world or of the model. If `text` is given, it is read instead of the file's text, of which
+/// the caller has removed something. Throws FileError for a file that libsdformat cannot read, for frames that cannot
+/// be resolved, and for sizes that are not numbers > 0.
 SdfContent read_sdf_file(const std::filesystem::path& file, ModelPaths& paths,
                          const std::optional<std::string>& text = {});
 

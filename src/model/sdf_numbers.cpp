@@ -14,12 +14,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Numbers of a shape (SDFormat specification, <geometry>).
+/// Numbers that a shape needs (SDFormat specification, <geometry>).
 struct ShapeNumbers {
     const char* shape;
     const char* element;
     std::size_t count;
-    bool is_needed = true;  ///< libsdformat would take 1 m
+    bool is_needed = true;  ///< libsdformat would use 1 m if it is missing
 };
 
 constexpr std::array<ShapeNumbers, 14> shape_numbers{{{"box", "size", 3},
@@ -47,7 +47,7 @@ void check_element(const fs::path& file, const Xml& element, std::size_t count)
     for (std::string word; words >> word; ++found) {
         double value = 0;
         if (!parse_number(word, value) || !std::isfinite(value))
-            throw FileError(place, "\"" + word + "\" is no finite number");
+            throw FileError(place, "\"" + word + "\" is not a finite number");
     }
     if (found != count)
         throw FileError(place, "has " + std::to_string(found) + " numbers, needs " + std::to_string(count));
@@ -57,7 +57,7 @@ bool is_empty(const Xml& element) { return element.NoChildren(); }
 
 void check_pose(const fs::path& file, const Xml& pose)
 {
-    if (is_empty(pose)) return;  // the same as none
+    if (is_empty(pose)) return;  // the same as a missing pose
     const char* const format = pose.Attribute("rotation_format");
     check_element(file, pose, format != nullptr && std::string(format) == "quat_xyzw" ? 7 : 6);
 }

@@ -4,8 +4,8 @@
 
 namespace spawnfield {
 
-/// Throws FileError, with the line, where a number that says what is solid and where is none, or stands there too often
-/// or too rarely: libsdformat reads "1,5" as 1 and takes its defaults for the rest.
+/// Throws FileError, with the line, if a number in a pose or a shape of a collision is malformed or missing, or if
+/// there are too many. libsdformat would read "1,5" as 1, and use its defaults for missing numbers.
 void check_numbers(const std::filesystem::path& file, const Xml& root);
 
 }  // namespace spawnfield

@@ -3,22 +3,27 @@
 namespace spawnfield {
 namespace {
 
+/// Prints XML without some elements. All others stay on their lines.
 class LinePrinter : public tinyxml2::XMLPrinter {
 public:
-    explicit LinePrinter(const std::set<const Xml*>& gone) : XMLPrinter(nullptr, true), gone_(gone) {}
+    explicit LinePrinter(const std::set<const Xml*>& removed) : XMLPrinter(nullptr, true), removed_(removed) {}
 
     bool VisitEnter(const Xml& element, const tinyxml2::XMLAttribute* attributes) override
     {
-        if (gone_.contains(&element)) return false;
+        if (removed_.contains(&element)) return false;
         go_to(element.GetLineNum());
         return XMLPrinter::VisitEnter(element, attributes);
     }
 
-    bool VisitExit(const Xml& element) override { return gone_.contains(&element) || XMLPrinter::VisitExit(element); }
+    bool VisitExit(const Xml& element) override
+    {
+        return removed_.contains(&element) || XMLPrinter::VisitExit(element);
+    }
     using XMLPrinter::VisitEnter, XMLPrinter::VisitExit;
 
 private:
-    /// The tag before may still be open here: a line may end within it.
+    /// Prints line ends up to the line of the element. The tag before may still be open here; a line may end within a
+    /// tag.
     void go_to(int line)
     {
         for (const int end = CStrSize() - 1; counted_ < end; ++counted_) line_ += CStr()[counted_] == '\n';
@@ -26,16 +31,16 @@ private:
         counted_ = CStrSize() - 1;
     }
 
-    const std::set<const Xml*>& gone_;
-    int line_ = 1;     ///< at the end of what is printed
-    int counted_ = 0;  ///< characters in which line ends were looked for
+    const std::set<const Xml*>& removed_;
+    int line_ = 1;     ///< current line of the printed text
+    int counted_ = 0;  ///< number of characters whose line ends are counted
 };
 
 }  // namespace
 
-std::string text_without(const tinyxml2::XMLDocument& document, const std::set<const Xml*>& gone)
+std::string text_without(const tinyxml2::XMLDocument& document, const std::set<const Xml*>& removed)
 {
-    LinePrinter printer(gone);
+    LinePrinter printer(removed);
     document.Accept(&printer);
     return printer.CStr();
 }

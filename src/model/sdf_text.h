@@ -7,8 +7,8 @@
 
 namespace spawnfield {
 
-/// The document's text without these elements. What is left stays on its lines, so that complaints about the text name
-/// those of the file.
-std::string text_without(const tinyxml2::XMLDocument& document, const std::set<const Xml*>& gone);
+/// Returns the text of the document without these elements. All other elements stay on their lines, so that line
+/// numbers in messages about the text are those of the file.
+std::string text_without(const tinyxml2::XMLDocument& document, const std::set<const Xml*>& removed);
 
 }  // namespace spawnfield

@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// x y z roll pitch yaw. Nothing where the pose is none of six plain numbers, or hangs on something.
+/// Reads "x y z roll pitch yaw". Returns nothing if the pose is not six finite numbers, or has attributes, so that it
+/// may depend on a frame.
 std::optional<Pose> plain_pose(const Xml& pose)
 {
     for (const tinyxml2::XMLAttribute* attribute = pose.FirstAttribute(); attribute != nullptr;
@@ -32,7 +33,7 @@ std::optional<Pose> plain_pose(const Xml& pose)
     return Pose{{values[0], values[1], values[2]}, rotation_from_rpy(values[3], values[4], values[5])};
 }
 
-/// A <include> of which the place is plain.
+/// Returns whether the pose of an <include> depends on nothing else.
 bool is_plain(const Xml& include)
 {
     if (include.FirstAttribute() != nullptr) return false;
@@ -45,8 +46,8 @@ bool is_plain(const Xml& include)
     return plain;
 }
 
-/// Whether something in the world may hang on the frame of a model that another line includes.
-bool hangs_on_frames(const Xml& world)
+/// Returns whether something in the world may depend on the frame of an included model.
+bool depends_on_frames(const Xml& world)
 {
     bool found = world.FirstChildElement("frame") != nullptr || world.FirstChildElement("joint") != nullptr;
     for_each_element(world, [&](const Xml& element) {
@@ -71,16 +72,16 @@ public:
         missing_ = check_includes(file_, *document, paths_);
         if (!allow_missing_ && !missing_.empty()) refuse_missing(file_, missing_);
         for (const MissingIncludes::value_type& entry : missing_)
-            out_.missing.push_back(words_of(entry) + ": it is left out");
+            out_.missing.push_back(text_of_missing(entry) + ": it is ignored");
         const Xml* const world = document->RootElement()->FirstChildElement("world");
         if (world == nullptr) {
             read_lone_model();
         } else {
             refuse_population(*world);
-            tell_state(*world);
+            note_state(*world);
             if (const Xml* const model = document->RootElement()->FirstChildElement("model"))
                 out_.missing.push_back(file_.string() + ": " + line_of(*model) +
-                                       "<model> stands beside <world>: it is left out; it belongs into it");
+                                       "<model> is beside <world>: it is ignored; move it into <world>");
             for_each_child(*world, "actor", [&](const Xml&) { ++out_.actor_count; });
             for_each_child(*world, "road", [&](const Xml&) { ++out_.road_count; });
             const std::vector<const Xml*> includes = plain_includes(*world);
@@ -95,17 +96,18 @@ private:
     {
         const SdfContent content = read_sdf_file(file_, paths_);
         if (content.is_plain_model) return append_placed(content, content.pose, content.name);
-        // What a placement frame or relative_to says is told by a world that includes it.
+        // The pose depends on a placement frame or on relative_to. A world that includes the model makes libsdformat
+        // resolve it.
         append(read_sdf_file(file_, paths_,
                              "<sdf version='1.9'><world name='" + content.name + "'><include><uri>" +
                                  fs::absolute(file_).string() + "</uri></include></world></sdf>"));
     }
 
-    /// Includes at places of their own, of models that are plain too.
+    /// Returns the includes whose pose does not depend on frames, of models for which the same is true.
     std::vector<const Xml*> plain_includes(const Xml& world)
     {
         std::vector<const Xml*> out;
-        if (hangs_on_frames(world)) return out;
+        if (depends_on_frames(world)) return out;
         for_each_child(world, "include", [&](const Xml& include) {
             if (!is_plain(include)) return;
             const fs::path file = included_file(text_of(include, "uri"), file_.parent_path(), paths_);
@@ -119,23 +121,24 @@ private:
         const auto known = models_.find(file);
         if (known != models_.end()) return known->second;
         SdfContent& model = models_[file] = read_sdf_file(file, paths_);
-        tell(model);
+        take_messages(model);
         return model;
     }
 
-    /// The document's text without the includes, and without what has no say in where things stand.
+    /// Returns the text of the document without the given includes, without missing includes, and without elements that
+    /// do not affect any pose.
     std::string text_for_libsdformat(const tinyxml2::XMLDocument& document, const Xml& world,
                                      const std::vector<const Xml*>& includes) const
     {
-        std::set<const Xml*> gone(includes.begin(), includes.end());
+        std::set<const Xml*> removed(includes.begin(), includes.end());
         for_each_child(world, nullptr, [&](const Xml& child) {
             const std::string name = child.Name();
-            const bool idle = name == "actor" || name == "road" || name == "state" || name == "gui" ||
-                              name == "plugin" || name == "light";
-            const bool lost = name == "include" && missing_.contains(text_of(child, "uri"));
-            if (idle || lost) gone.insert(&child);
+            const bool is_irrelevant = name == "actor" || name == "road" || name == "state" || name == "gui" ||
+                                       name == "plugin" || name == "light";
+            const bool is_missing = name == "include" && missing_.contains(text_of(child, "uri"));
+            if (is_irrelevant || is_missing) removed.insert(&child);
         });
-        return text_without(document, gone);
+        return text_without(document, removed);
     }
 
     void append_include(const Xml& include)
@@ -153,8 +156,8 @@ private:
         ++out_.model_count;
         if (!names_.insert(name).second) {
             out_.missing.push_back(file_.string() + ": line " + std::to_string(line) +
-                                   ": <include> is a second model of the name \"" + name +
-                                   "\": it is left out, as libsdformat does; give it a <name> of its own");
+                                   ": <include> is a second model with the name \"" + name +
+                                   "\": it is ignored, as by libsdformat; give it a <name> of its own");
             return;
         }
         if (model.bodies.empty()) out_.bare_models.push_back(name);
@@ -163,8 +166,8 @@ private:
             body.pose = world_from_model * body.pose;
             out_.bodies.push_back(std::move(body));
         }
-        count_left_out(model);
-        if (line == 0) tell(model);
+        count_ignored(model);
+        if (line == 0) take_messages(model);
     }
 
     void append(SdfContent content)
@@ -176,17 +179,18 @@ private:
             out_.bodies.push_back(std::move(body));
         }
         for (std::string& name : content.bare_models) out_.bare_models.push_back(std::move(name));
-        count_left_out(content);
-        tell(content);
+        count_ignored(content);
+        take_messages(content);
     }
 
-    void count_left_out(const SdfContent& content)
+    void count_ignored(const SdfContent& content)
     {
         out_.hollow += content.hollow;
         out_.untouchable += content.untouchable;
     }
 
-    void tell(const SdfContent& content)
+    /// Takes over the messages of the content.
+    void take_messages(const SdfContent& content)
     {
         out_.notices.insert(out_.notices.end(), content.complaints.begin(), content.complaints.end());
         out_.missing.insert(out_.missing.end(), content.lost.begin(), content.lost.end());
@@ -198,12 +202,12 @@ private:
         if (population == nullptr) return;
         const char* const name = population->Attribute("name");
         throw FileError(file_.string(), line_of(*population) + "<population> \"" + (name != nullptr ? name : "") +
-                                            "\" is not expanded here: Gazebo places its models anew at each start; "
-                                            "write them out as <include>s, or take it away");
+                                            "\" cannot be read here, because Gazebo places its models anew at each "
+                                            "start; write them as <include>s, or remove it");
     }
 
-    /// Gazebo classic starts from <state>; libsdformat and new Gazebo do not.
-    void tell_state(const Xml& world)
+    /// Adds a notice if <state> would move models: Gazebo classic starts from it, libsdformat and new Gazebo do not.
+    void note_state(const Xml& world)
     {
         const Xml* const state = world.FirstChildElement("state");
         if (state == nullptr) return;
@@ -225,10 +229,10 @@ private:
             });
         });
         if (count > 0)
-            out_.notices.push_back(file_.string() + ": " + line_of(*state) +
-                                   "<state> is left aside, as new Gazebo does: in it " + first +
-                                   (count > 1 ? ", and " + std::to_string(count - 1) + " more models elsewhere" : "") +
-                                   " (Gazebo classic starts from it)");
+            out_.notices.push_back(
+                file_.string() + ": " + line_of(*state) + "<state> is ignored, as by new Gazebo; in it " + first +
+                (count > 1 ? ", and " + std::to_string(count - 1) + " more models would be elsewhere" : "") +
+                "; Gazebo classic starts from it");
     }
 
     const fs::path file_;

@@ -23,7 +23,8 @@ Pose pose_of(const urdf::Pose& pose)
             Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix()};
 }
 
-/// Keeps what urdfdom says from standard error, and the first error of it; warnings are about looks.
+/// Keeps the messages of urdfdom away from standard error, and remembers its first error. Its warnings are only about
+/// appearance.
 class UrdfdomErrors : public console_bridge::OutputHandler {
 public:
     UrdfdomErrors() { console_bridge::useOutputHandler(this); }
@@ -97,26 +98,26 @@ public:
     {
         const std::string text = read_file(file_);
         if (text.find("<xacro:") != std::string::npos)
-            throw FileError(file_.string(), "holds xacro macros; expand them first: xacro " +
+            throw FileError(file_.string(), "contains xacro macros; expand them first: xacro " +
                                                 file_.filename().string() + " > robot.urdf");
         check_xml();
         UrdfdomErrors errors;
         const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-        // urdfdom goes on with a link that it could not read to its end, and that would make the robot smaller.
-        if (!errors.first().empty()) throw FileError(file_.string(), "is no valid URDF: " + errors.first());
-        if (!model || !model->getRoot()) throw FileError(file_.string(), "is no valid URDF");
+        // urdfdom continues after an error in a link. The link would lack parts, and the robot would be too small.
+        if (!errors.first().empty()) throw FileError(file_.string(), "is not valid URDF: " + errors.first());
+        if (!model || !model->getRoot()) throw FileError(file_.string(), "is not valid URDF");
         out_.name = model->getName();
         std::vector<Joint> joints;
         for (const auto& entry : model->joints_) joints.push_back(joint_of(*entry.second));
         positions_ = joint_positions(file_.string(), joints, joints_, out_.notices);
         add_links(*model->getRoot());
         if (out_.bodies.empty())
-            throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> does not count)");
+            throw FileError(file_.string(), "has no <collision>, needs at least one (<visual> elements are not used)");
         return std::move(out_);
     }
 
 private:
-    /// Faults of which urdfdom tells no line, or nothing at all.
+    /// Checks for errors that urdfdom reports without a line, or not at all.
     void check_xml() const
     {
         const auto document = read_xml(file_, "a <robot> element");
@@ -126,30 +127,31 @@ private:
                 throw FileError(file_.string(), line_of(element) + what);
             };
             if (name == "origin" && element.Attribute("quat_xyzw") != nullptr && element.Attribute("rpy") == nullptr)
-                refuse("<origin quat_xyzw> is not read, and a part would stand unturned; write it as rpy");
+                refuse("<origin quat_xyzw> cannot be read here; write the rotation as rpy");
             if (name != "geometry" || element.Parent() == nullptr ||
                 std::string(element.Parent()->Value()) != "collision")
                 return;
             std::size_t shapes = 0;
             for_each_child(element, nullptr, [&](const Xml&) { ++shapes; });
             if (shapes > 1)
-                refuse("<geometry> holds " + std::to_string(shapes) +
+                refuse("<geometry> contains " + std::to_string(shapes) +
                        " shapes, needs one; give each a <collision> of its own");
         });
     }
 
-    /// From the root on, each before those that hang on it. A chain may be longer than the call stack.
+    /// Adds the collisions of all links. A link comes before its children. There is no recursion, because a chain of
+    /// links may be longer than the call stack.
     void add_links(const urdf::Link& root)
     {
-        std::vector<std::pair<const urdf::Link*, Pose>> left{{&root, {}}};
-        while (!left.empty()) {
-            const auto [link, robot_from_link] = left.back();
-            left.pop_back();
+        std::vector<std::pair<const urdf::Link*, Pose>> open{{&root, {}}};
+        while (!open.empty()) {
+            const auto [link, robot_from_link] = open.back();
+            open.pop_back();
             add_collisions(*link, robot_from_link);
             for (auto joint = link->child_joints.rbegin(); joint != link->child_joints.rend(); ++joint)
                 for (const auto& child : link->child_links)
                     if (child->name == (*joint)->child_link_name)
-                        left.emplace_back(child.get(), robot_from_link *
+                        open.emplace_back(child.get(), robot_from_link *
                                                            pose_of((*joint)->parent_to_joint_origin_transform) *
                                                            motion_of(*link, **joint));
         }
@@ -171,7 +173,8 @@ private:
         const auto value = positions_.find(joint.name);
         if (value == positions_.end() || value->second == 0) return {};
         const Vec3 axis(joint.axis.x, joint.axis.y, joint.axis.z);
-        if (!(axis.norm() > 1e-6)) fail(link, "joint \"" + joint.name + "\" has an <axis> of no length");
+        if (!(axis.norm() > 1e-6))
+            fail(link, "joint \"" + joint.name + "\" has an <axis> of length 0, needs a direction");
         return joint_motion(joint_of(joint).motion, axis.normalized(), value->second);
     }
 
@@ -195,7 +198,7 @@ private:
     const std::filesystem::path file_;
     const std::vector<JointPosition>& joints_;
     JointedModel out_;
-    std::map<std::string, double> positions_;  ///< of joints
+    std::map<std::string, double> positions_;  ///< by name of the joint
 };
 
 }  // namespace

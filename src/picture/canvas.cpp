@@ -12,9 +12,9 @@ namespace spawnfield {
 namespace {
 
 constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
-constexpr double font_cap = 21;  // its capitals at scale 1, pixels
+constexpr double font_cap = 21;  // height of its capitals at scale 1, pixels
 
-/// Mixes `colour` into the image where `cover` is not 0; parts beyond the image are left out.
+/// Mixes `colour` into the image where `cover` is not 0. Parts beyond the image are left out.
 void blend(Image& image, const cv::Mat_<std::uint8_t>& cover, cv::Point corner, Colour colour)
 {
     const cv::Rect inside = cv::Rect(corner, cover.size()) & cv::Rect({}, image.size());
@@ -27,9 +27,9 @@ void blend(Image& image, const cv::Mat_<std::uint8_t>& cover, cv::Point corner, 
         }
 }
 
-constexpr int shift = 6;  // fraction bits of the coordinates that OpenCV draws shapes with
+constexpr int shift = 6;  // fraction bits in OpenCV's coordinates of shapes
 
-/// OpenCV's coordinates have their origin in the middle of the first pixel.
+/// Returns a place in OpenCV's coordinates, whose origin is the middle of the first pixel.
 cv::Point in_fractions(cv::Point2d p)
 {
     return {cvRound((p.x - 0.5) * (1 << shift)), cvRound((p.y - 0.5) * (1 << shift))};
@@ -77,9 +77,9 @@ Ramp ramp_through(const std::vector<Colour>& colours)
 {
     Ramp ramp;
     for (std::size_t i = 0; i < ramp.size(); ++i) {
-        const double at = static_cast<double>(i) / 255 * static_cast<double>(colours.size() - 1);
-        const std::size_t from = std::min(static_cast<std::size_t>(at), colours.size() - 2);
-        const double share = at - static_cast<double>(from);
+        const double place = static_cast<double>(i) / 255 * static_cast<double>(colours.size() - 1);
+        const std::size_t from = std::min(static_cast<std::size_t>(place), colours.size() - 2);
+        const double share = place - static_cast<double>(from);
         for (int c = 0; c < 3; ++c)
             ramp[i][c] = static_cast<std::uint8_t>(
                 cvRound(colours[from][c] * (1 - share) + colours[from + 1][c] * share));
@@ -87,7 +87,8 @@ Ramp ramp_through(const std::vector<Colour>& colours)
     return ramp;
 }
 
-/// Drawn several times as large and shrunk: OpenCV knows whole pixels of thickness and place only.
+/// Draws the text several times as large and then shrinks it, because OpenCV places text and its lines at whole pixels
+/// only.
 void draw_text(Image& image, const std::string& text, cv::Point2d baseline, const TextStyle& style)
 {
     if (text.empty()) return;
@@ -117,7 +118,7 @@ void draw_text(Image& image, const std::string& text, cv::Point2d baseline, cons
 
 double text_width(const std::string& text, double cap)
 {
-    constexpr int scale = 16;  // measured large, as OpenCV rounds to whole pixels
+    constexpr int scale = 16;  // measured large, because OpenCV rounds to whole pixels
     int baseline = 0;
     return cv::getTextSize(printable(text), font, scale, 1, &baseline).width * cap / (scale * font_cap);
 }

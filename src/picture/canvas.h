@@ -11,7 +11,7 @@
 
 namespace spawnfield {
 
-/// Blue, green, red: OpenCV's order.
+/// A colour in OpenCV's order: blue, green, red.
 using Colour = cv::Vec3b;
 using Image = cv::Mat_<Colour>;
 
@@ -26,7 +26,9 @@ inline const Colour white = rgb(0xffffff), ink = rgb(0x262626), muted = rgb(0x66
 using Ramp = std::array<Colour, 256>;
 
 Ramp viridis();
-Ramp ramp_through(const std::vector<Colour>& colours);  ///< at equal distances, linear in between; at least 2
+
+/// Returns a ramp through at least 2 colours at equal distances, linear in between.
+Ramp ramp_through(const std::vector<Colour>& colours);
 
 enum class Align { Left, Centre, Right };
 
@@ -34,25 +36,25 @@ struct TextStyle {
     double cap;  ///< height of capital letters, pixels
     Colour colour = ink;
     Align align = Align::Left;
-    std::optional<Colour> halo = {};  ///< around the letters, so that they can be read on any ground
+    std::optional<Colour> halo = {};  ///< drawn around the letters, so that they can be read on any background
 };
 
-/// Width of the pen that draws the halo of text, pixels.
+/// Returns the width of the pen that draws the halo of text, pixels.
 inline double halo_width(double cap) { return 0.5 * cap; }
 
-/// Places and lengths are in pixels from the upper left corner of the image, y down, a pixel's centre at .5; what lies
-/// beyond the image is left out.
-///
-/// The font has ASCII only: of UTF-8 text, western letters lose their accents and other characters become question
-/// marks.
-std::string printable(const std::string& text);  ///< UTF-8 text in the characters that the font has
+// In all functions below, places and lengths are in pixels from the upper left corner of the image, y points down, and
+// a pixel's centre is at .5. Parts beyond the image are left out.
+
+/// Returns UTF-8 text in the characters of the font, which is ASCII only: western letters lose their accents, and other
+/// characters become question marks.
+std::string printable(const std::string& text);
 void draw_text(Image& image, const std::string& text, cv::Point2d baseline, const TextStyle& style);
 double text_width(const std::string& text, double cap);
-std::string cut_to(std::string text, double cap, double width);  ///< ends in "..." if it was wider
+std::string cut_to(std::string text, double cap, double width);  ///< wider text is cut and ends in "..."
 
 int whole(double pixels);  ///< rounded, at least 1
 void fill(Image& image, const cv::Rect& area, Colour colour);
-/// The four sides of a frame around the area, outside it.
+/// Returns the four sides of a frame around the area, outside of it.
 std::array<cv::Rect, 4> sides_around(const cv::Rect& area, int thickness);
 void fill_polygon(Image& image, const std::vector<cv::Point2d>& corners, Colour colour);
 void draw_outline(Image& image, const std::vector<cv::Point2d>& corners, Colour edge,

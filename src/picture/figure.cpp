@@ -37,7 +37,7 @@ public:
 private:
     cv::Point2d shifted(cv::Point2d place) const { return place - cv::Point2d(origin_); }
 
-    Image image_, target_;  ///< target: the part of the image that is drawn into; shares its pixels
+    Image image_, target_;  ///< target: the part of the image in which marks are drawn; it shares the image's pixels
     cv::Point origin_;      ///< upper left corner of that part
 };
 

@@ -9,7 +9,7 @@
 
 namespace spawnfield {
 
-// What a figure is made of: places and lengths as in canvas.h.
+// The marks of a figure. Places and lengths are as in canvas.h.
 struct TextMark {
     std::string text;
     cv::Point2d baseline;
@@ -35,7 +35,7 @@ struct ImageMark {
     cv::Point corner;
     Image pixels;
 };
-/// Cuts what follows to this area, until the next one; an empty area ends the cutting.
+/// Clips the following marks to this area, until the next ClipMark. An empty area ends the clipping.
 struct ClipMark {
     cv::Rect area;
 };
@@ -57,11 +57,11 @@ void draw_outline(Figure& figure, std::vector<cv::Point2d> corners, Colour edge,
 void draw_dot(Figure& figure, cv::Point2d centre, double radius, Colour inside, Colour edge, double edge_width);
 void clip(Figure& figure, const cv::Rect& area);
 
-Image paint(const Figure& figure);         ///< on white
-std::string svg_of(const Figure& figure);  ///< a pixel is a unit of SVG. Scalable Vector Graphics 1.1, W3C, 2011
-std::string pdf_of(const Figure& figure);  ///< a pixel is 0.72 points, a hundredth of an inch
+Image paint(const Figure& figure);         ///< draws it on white
+std::string svg_of(const Figure& figure);  ///< one pixel is one unit. Source: Scalable Vector Graphics 1.1, W3C, 2011
+std::string pdf_of(const Figure& figure);  ///< one pixel is 0.72 points, a hundredth of an inch
 
-/// Same figure, same bytes. Throws OutputError.
+/// Writes a figure to a file. The same figure gives the same bytes. Throws OutputError.
 void write_figure(const Figure& figure, PictureFormat format, const std::filesystem::path& file);
 
 }  // namespace spawnfield

@@ -34,7 +34,7 @@ std::string counted(std::uint64_t count, const std::string& noun)
     return with_commas(count) + ' ' + noun + (count == 1 ? "" : "s");
 }
 
-/// "1,234  5.6 %"
+/// Returns a count with its share of the total: "1,234   5.6 %".
 std::string count_and_share(std::uint64_t count, std::uint64_t total)
 {
     std::string text = with_commas(count);
@@ -68,7 +68,7 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
 
 // ---------------------------------------------------------------- obstacles
 
-/// Cells over the view, of a pixel's size, or larger where there would be too many.
+/// Returns a frame of cells over the view. A cell is as large as a pixel, or larger if there would be too many.
 GridFrame fine_frame(const View& view, cv::Size pixels)
 {
     constexpr double most = 2000;
@@ -81,7 +81,8 @@ ObstacleSearch obstacle_search(const ShownPoses& shown, const RasterResult& rast
 {
     const RasterGrid& grid = raster.grid;
     const View view = view_of(grid);
-    const double above_layer = raster.dims == 2 ? raster.offset : 0;  // poses of 3D rasters are at heights of their own
+    const double above_layer = raster.dims == 2 ? raster.offset
+                                                : 0;  // a pose of a 3D raster is taken at its own height
     ObstacleSearch search;
     if (options.robot) search.robot = {options.robot->bounds().min.z(), options.robot->bounds().max.z()};
     search.robot.low += above_layer;
@@ -98,7 +99,8 @@ ObstacleSearch obstacle_search(const ShownPoses& shown, const RasterResult& rast
     return search;
 }
 
-/// Clearances and slopes begin at 0, heights at the lowest; all end at the largest that occurs.
+/// Returns the scale of a quantity. Clearances and slopes begin at 0, heights at the lowest value; all end at the
+/// largest value.
 ColourScale scale_for(const cv::Mat_<float>& values, HeatmapQuantity quantity)
 {
     const bool from_zero = quantity != HeatmapQuantity::Height;
@@ -128,7 +130,7 @@ KindCounts counts_of(const Kinds& kinds)
     return counts;
 }
 
-/// Columns that have an answer: shares are of these.
+/// Returns the number of columns that have a verdict. Shares are relative to this number.
 std::uint64_t answered(const KindCounts& counts)
 {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}) - counts[no_pose];
@@ -141,7 +143,7 @@ std::string columns_heading(const RasterResult& raster, std::uint64_t columns)
     return counted(columns, "column") + (columns > 1 ? std::string(", ") + step + " m apart" : "");
 }
 
-/// The one for columns without a pose, if there are any.
+/// Adds the legend entry for columns without a pose, if there are any.
 void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend& legend)
 {
     if (counts[no_pose] == 0) return;
@@ -156,7 +158,7 @@ void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend
     legend.entries.push_back({colour_of(no_pose), name, counted(counts[no_pose], "column")});
 }
 
-/// Kinds that can occur, or did, with the numbers of columns that show them.
+/// Returns a legend of the kinds that occur or are usual, with the number of columns of each kind.
 Legend verdict_legend(const RasterResult& raster, const Kinds& kinds, const HeatmapOptions& options)
 {
     constexpr std::array order{kind_of(Verdict::Valid),     some_headings,
@@ -215,14 +217,14 @@ Image quantity_colours(const Kinds& kinds, const cv::Mat_<float>& values, const 
         for (int col = 0; col < kinds.cols; ++col) {
             const float value = values(row, col);
             const Kind kind = kinds(row, col);
-            colours(row, col) = std::isfinite(value)                  ? scale.at(value)
+            colours(row, col) = std::isfinite(value)                  ? scale.colour(value)
                                 : kind == obstacle || kind == no_pose ? colour_of(kind)
                                                                       : not_valid;
         }
     return colours;
 }
 
-/// Each pixel as its nearest column says.
+/// Draws each pixel in the colour of its nearest column.
 Image draw_columns(const Image& colours, const View& columns, const View& view, cv::Size pixels)
 {
     Image plot(pixels, beyond);
@@ -249,7 +251,8 @@ void shade(Image& plot, const cv::Mat_<float>& light, float depth)
             if (plot(row, col) != beyond) plot(row, col) = shaded(plot(row, col), light(row, col), depth);
 }
 
-/// Over the shading: on the ground below obstacles relief says nothing. White room around thin views has none.
+/// Draws obstacles over the shaded plot, because the relief shows the ground below them. The white room around thin
+/// views remains white.
 void draw_obstacles(Image& plot, const cv::Mat_<std::uint8_t>& obstacles, const GridFrame& frame, const View& columns,
                     const View& view)
 {
@@ -269,9 +272,9 @@ void draw_obstacles(Image& plot, const cv::Mat_<std::uint8_t>& obstacles, const 
 
 // ---------------------------------------------------------------- spawns
 
-/// Spawns whose origin is in the view, with their places in the picture.
+/// The spawns whose origin is in the view, with their places in the picture.
 struct VisibleSpawns {
-    std::vector<std::size_t> numbers;
+    std::vector<std::size_t> indices;
     std::vector<cv::Point2d> places;
 };
 
@@ -282,7 +285,7 @@ VisibleSpawns visible_spawns(const std::vector<Spawn>& spawns, const View& view,
         const double across = (spawns[i].position.x() - view.x0) / view.width,
                      down = (view.y0 + view.height - spawns[i].position.y()) / view.height;
         if (!(across >= 0 && across <= 1 && down >= 0 && down <= 1)) continue;
-        visible.numbers.push_back(i);
+        visible.indices.push_back(i);
         visible.places.emplace_back(plot.x + across * plot.width, plot.y + down * plot.height);
     }
     return visible;
@@ -293,11 +296,11 @@ Colour spawn_colour(const HeatmapOptions& options, std::size_t spawn)
     return options.spawn_verdicts.empty() ? white : colour_of(kind_of(options.spawn_verdicts[spawn]));
 }
 
-/// "12 of 30 spawns in view", with the symbols of their verdicts. Symbols draw nothing before draw_spawns() gives them
-/// a look.
+/// Adds the text "12 of 30 spawns in view", with the symbols of their verdicts. The symbols draw nothing until
+/// draw_spawns() sets their look.
 void append_spawns(const HeatmapOptions& options, const VisibleSpawns& visible, Legend& legend)
 {
-    const std::size_t all = options.spawns.size(), seen = visible.numbers.size();
+    const std::size_t all = options.spawns.size(), seen = visible.indices.size();
     if (all == 0) return;
     const std::string text = seen == all ? counted(all, "spawn")
                                          : with_commas(seen) + " of " + counted(all, "spawn") + " in view";
@@ -308,7 +311,7 @@ void append_spawns(const HeatmapOptions& options, const VisibleSpawns& visible, 
     }
     legend.symbols.push_back({text});
     for (std::size_t v = verdict_count; v-- > 0;) {
-        const auto count = std::count_if(visible.numbers.begin(), visible.numbers.end(), [&](std::size_t i) {
+        const auto count = std::count_if(visible.indices.begin(), visible.indices.end(), [&](std::size_t i) {
             return options.spawn_verdicts[i] == static_cast<Verdict>(v);
         });
         if (count > 0)
@@ -327,13 +330,13 @@ void draw_spawns(Figure& figure, const HeatmapOptions& options, const VisibleSpa
                 draw_spawn_symbol(into, look, centre, colour);
             };
     clip(figure, layout.plot);
-    for (std::size_t k = 0; k < visible.numbers.size(); ++k)
-        draw_spawn(figure, look, visible.places[k], options.spawns[visible.numbers[k]].yaw,
-                   spawn_colour(options, visible.numbers[k]));
+    for (std::size_t k = 0; k < visible.indices.size(); ++k)
+        draw_spawn(figure, look, visible.places[k], options.spawns[visible.indices[k]].yaw,
+                   spawn_colour(options, visible.indices[k]));
     clip(figure, {});
     if (options.spawn_names.empty()) return;
     std::vector<std::string> names;
-    for (const std::size_t i : visible.numbers) names.push_back(options.spawn_names[i]);
+    for (const std::size_t i : visible.indices) names.push_back(options.spawn_names[i]);
     const std::size_t written = write_names(figure, look, visible.places, names, layout.plot);
     if (written < names.size())
         legend.symbols.back().name = with_commas(written) + " of " + counted(names.size(), "name") + " shown: no room";
@@ -368,16 +371,18 @@ void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult
     }
     append_spawns(options, visible_spawns(options.spawns, frame.view, {0, 0, 1, 1}), frame.legend);
     if (!options.spawn_names.empty())
-        frame.legend.symbols.push_back({"names: no room for all of them"});  // its place in the layout
+        frame.legend.symbols.push_back({"names: no room for all of them"});  // reserves a line in the layout
 
     const Layout layout = lay_out(frame);
     Image plot = draw_columns(colours, columns, frame.view, layout.plot.size());
-    const float depth = options.quantity == HeatmapQuantity::Verdict ? 1 : 0.5f;  // values are read from the lightness
+    const float depth = options.quantity == HeatmapQuantity::Verdict
+                            ? 1
+                            : 0.5f;  // half: users read values from the lightness
     shade(plot, relief(terrain.frame, highest_within(terrain, raster.z), frame.view, plot.size()), depth);
     const GridFrame fine = fine_frame(frame.view, plot.size());
     draw_obstacles(plot, obstacle_mask(map.geometry, fine, search), fine, columns, frame.view);
     const VisibleSpawns visible = visible_spawns(options.spawns, frame.view, layout.plot);
-    const SpawnLook look = spawn_look(options.robot, layout, plot.cols / frame.view.width, visible.numbers.size());
+    const SpawnLook look = spawn_look(options.robot, layout, plot.cols / frame.view.width, visible.indices.size());
 
     Figure figure{layout.size, {}};
     draw_image(figure, layout.plot.tl(), plot);

@@ -9,7 +9,7 @@
 namespace spawnfield {
 namespace {
 
-/// The column's layer that is nearest to the height; the height itself if none is within reach.
+/// Returns the column's layer that is nearest to the height; the height itself if no layer is within reach.
 double own_layer(const ColumnView& column, double height, double reach)
 {
     double nearest = height, distance = reach;
@@ -27,6 +27,7 @@ bool has_obstacle(const ColumnView& column, double low, double high)
                        [&](const Span& span) { return !span.terrain && span.top >= low && span.bottom <= high; });
 }
 
+/// Returns whether an obstacle stands in the column at (x, y) at the height of a robot on the shown layer.
 bool is_obstacle(const ColumnView& column, double x, double y, const ObstacleSearch& search)
 {
     constexpr double anywhere = std::numeric_limits<double>::infinity();

@@ -13,18 +13,18 @@ struct RobotHeights {
     double low = 0, high = 0;  ///< of its lowest and highest point
 };
 
-/// Where obstacles are looked for.
+/// Defines where obstacle_mask looks for obstacles.
 struct ObstacleSearch {
-    /// Height of the shown layer near (x, y), m; none where no pose is shown.
+    /// Returns the height of the shown layer near (x, y), m; nothing where no pose is shown.
     std::function<std::optional<double>(double x, double y)> layer_near;
     RobotHeights robot;
-    double reach = 0;           ///< m that a layer may be off that height and still be the same one
-    bool without_layer = true;  ///< obstacles where there is neither a shown pose nor any terrain
+    double reach = 0;           ///< a layer that differs from that height by at most this counts as the same layer, m
+    bool without_layer = true;  ///< also shows obstacles where there is neither a shown pose nor any terrain
     int threads = 0;
 };
 
-/// 1 where an obstacle stands at the height of a robot on the shown layer, at the centres of the frame's cells, from
-/// the exact geometry. Row 0 is the largest y. O(elements + cells).
+/// Returns 1 for each cell of the frame in which an obstacle stands at the height of a robot on the shown layer,
+/// otherwise 0. Looks at the exact geometry at the cells' centres. Row 0 is the largest y. O(elements + cells).
 cv::Mat_<std::uint8_t> obstacle_mask(const Geometry& geometry, const GridFrame& frame, const ObstacleSearch& search);
 
 }  // namespace spawnfield

@@ -4,21 +4,21 @@
 
 namespace spawnfield {
 
-// Colours as 0xRRGGBB, in pictures and in files of other programs. They were searched for, from Okabe and Ito's hues,
-// such that people with any kind of colour vision can tell them apart. tests/palette_test.cpp holds what they reach:
-// Valid and Collision differ in lightness (CIE L*) by 25 or more, and no two verdicts are closer than 20 (both
-// CIEDE2000: Sharma, Wu, Dalal 2005, and CIE76), in normal vision, protanopia, deuteranopia and tritanopia
-// (Machado, Oliveira, Fernandes, A physiologically-based model for simulation of color vision deficiency, 2009, full
-// severity).
+// Colours as 0xRRGGBB, in pictures and in files of other programs. They are the result of a search that began with the
+// hues of Okabe and Ito; people with any kind of colour vision can distinguish them. tests/palette_test.cpp checks
+// this: Valid and Collision differ in lightness (CIE L*) by 25 or more, and no two verdicts are closer than 20 (in
+// CIEDE2000: Sharma, Wu, Dalal 2005, and in CIE76), in normal vision, protanopia, deuteranopia and tritanopia (Machado,
+// Oliveira, Fernandes, A physiologically-based model for simulation of color vision deficiency, 2009, full severity).
 
-/// By Verdict.
+/// The colour of each Verdict, in the order of the enumeration.
 inline constexpr std::array<std::uint32_t, verdict_count> verdict_palette{0x726e77, 0xfff516, 0x9182ff, 0x033cd9,
                                                                           0xa54c31, 0xc99102, 0x4eedff, 0xbdd5a7};
 
-/// The two verdicts of DESIGN.md that no query gives yet.
+/// The colours of the two verdicts of DESIGN.md that no query returns yet.
 inline constexpr std::uint32_t obstructed_colour = 0x570901, unreachable_colour = 0x371d4a;
 
-/// What heat maps show beside verdicts: at least 11 (CIEDE2000) from these and from each other.
+/// The colours of heat maps for columns without a verdict's colour. They differ by at least 11 (CIEDE2000) from those
+/// of the verdicts and from each other.
 inline constexpr std::uint32_t some_headings_colour = 0x5a9c78, obstacle_colour = 0x141414, no_pose_colour = 0xe9e9e9;
 
 }  // namespace spawnfield

@@ -9,15 +9,17 @@ namespace spawnfield {
 namespace {
 
 constexpr float points_per_pixel = 0.72f;
-constexpr double cap_height = 0.718;  ///< of Helvetica's capitals, as a share of its size (Adobe, Core14 AFM)
+constexpr double cap_height =
+    0.718;  ///< height of Helvetica's capitals, as a share of the font size (Adobe, Core14 AFM)
 
+/// libharu's error handler: keeps the first error.
 void keep_first(HPDF_STATUS error, HPDF_STATUS, void* first)
 {
     auto& kept = *static_cast<HPDF_STATUS*>(first);
     if (kept == HPDF_OK) kept = error;
 }
 
-/// Calls after an error do nothing; the error is thrown at the end.
+/// Draws marks on a PDF page. After an error, all calls do nothing; take() throws the error.
 class PdfWriter {
 public:
     explicit PdfWriter(cv::Size size)
@@ -97,7 +99,7 @@ public:
         (*this)(ClipMark{});
         HPDF_SaveToStream(document_.get());
         if (error_ != HPDF_OK)
-            throw std::runtime_error("the PDF cannot be made: libharu reports error " + std::to_string(error_));
+            throw std::runtime_error("the PDF cannot be created: libharu reports error " + std::to_string(error_));
         std::string bytes(HPDF_GetStreamSize(document_.get()), '\0');
         auto size = static_cast<HPDF_UINT32>(bytes.size());
         HPDF_ResetStream(document_.get());
@@ -129,7 +131,7 @@ private:
         HPDF_Page_Rectangle(page_, x_of(lower), y_of(lower), static_cast<float>(area.width),
                             static_cast<float>(area.height));
     }
-    /// PDF takes them before a path begins.
+    /// Sets the colours of a path. PDF requires this before the path begins.
     void set_colours(const std::optional<Colour>& inside, Colour edge, double edge_width)
     {
         if (inside) set_inside(*inside);
@@ -152,11 +154,11 @@ private:
         HPDF_Page_EndText(page_);
     }
 
-    HPDF_STATUS error_ = HPDF_OK;  ///< the first
+    HPDF_STATUS error_ = HPDF_OK;  ///< the first error
     std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, Free> document_;
     HPDF_Page page_ = nullptr;
     HPDF_Font font_ = nullptr;
-    float height_;  ///< of the picture, pixels
+    float height_;  ///< height of the picture, pixels
     bool is_clipped_ = false;
 };
 

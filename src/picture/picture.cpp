@@ -8,7 +8,7 @@
 namespace spawnfield {
 namespace {
 
-// Lengths in units: thousandths of the picture's longer side.
+// These lengths are in units. A unit is a thousandth of the picture's longer side.
 constexpr double text_cap = 10.5, small_cap = 9.5, title_cap = 15;  // heights of capital letters
 constexpr double margin = 18, tick_length = 6, gap = 7, column_gap = 30;
 constexpr double bearing_width = 160, bearing_height = 54, longest_scale_bar = 110, caption_line = 25;
@@ -20,7 +20,7 @@ const Colour line = rgb(0x404040);
 
 struct Item {
     double width, height;                            ///< pixels
-    std::function<void(Figure&, cv::Point2d)> draw;  ///< at its upper left corner
+    std::function<void(Figure&, cv::Point2d)> draw;  ///< draws it at its upper left corner
 };
 
 Item entry_item(const LegendEntry& entry, double unit)
@@ -28,27 +28,27 @@ Item entry_item(const LegendEntry& entry, double unit)
     const double cap = text_cap * unit, small = small_cap * unit, indent = 28 * unit;
     const bool two_lines = !entry.detail.empty();
     const double width = indent + std::max(text_width(entry.name, cap), text_width(entry.detail, small));
-    return {width, (two_lines ? 42 : 27) * unit, [=](Figure& figure, cv::Point2d at) {
-                const cv::Rect swatch(cvRound(at.x), cvRound(at.y), whole(18 * unit),
+    return {width, (two_lines ? 42 : 27) * unit, [=](Figure& figure, cv::Point2d corner) {
+                const cv::Rect swatch(cvRound(corner.x), cvRound(corner.y), whole(18 * unit),
                                       whole((two_lines ? 28 : 14) * unit));
                 fill(figure, swatch, entry.colour);
                 outline(figure, swatch, whole(0.8 * unit), muted);
-                const double first = two_lines ? at.y + cap : at.y + 7 * unit + cap / 2;
-                draw_text(figure, entry.name, {at.x + indent, first}, {cap});
-                draw_text(figure, entry.detail, {at.x + indent, first + 17 * unit}, {small, muted});
+                const double first = two_lines ? corner.y + cap : corner.y + 7 * unit + cap / 2;
+                draw_text(figure, entry.name, {corner.x + indent, first}, {cap});
+                draw_text(figure, entry.detail, {corner.x + indent, first + 17 * unit}, {small, muted});
             }};
 }
 
 Item symbol_item(const LegendSymbol& symbol, double unit)
 {
     const double cap = text_cap * unit, indent = symbol.draw ? (symbol_size + 10) * unit : 0;
-    return {indent + text_width(symbol.name, cap), 27 * unit, [=](Figure& figure, cv::Point2d at) {
-                if (symbol.draw) symbol.draw(figure, {at.x + symbol_size / 2 * unit, at.y + 7 * unit});
-                draw_text(figure, symbol.name, {at.x + indent, at.y + 7 * unit + cap / 2}, {cap});
+    return {indent + text_width(symbol.name, cap), 27 * unit, [=](Figure& figure, cv::Point2d corner) {
+                if (symbol.draw) symbol.draw(figure, {corner.x + symbol_size / 2 * unit, corner.y + 7 * unit});
+                draw_text(figure, symbol.name, {corner.x + indent, corner.y + 7 * unit + cap / 2}, {cap});
             }};
 }
 
-/// The ends of the scale, and the ticks that are not too near to them, with their labels.
+/// Returns the ends of the scale, and the ticks that are not too near to them, with their labels.
 std::vector<std::pair<double, std::string>> bar_labels(const ColourScale& scale, double height, double unit)
 {
     const double apart = 1.6 * small_cap * unit / height * (scale.high - scale.low),
@@ -58,11 +58,11 @@ std::vector<std::pair<double, std::string>> bar_labels(const ColourScale& scale,
     for (const double end : {scale.low, scale.high}) {
         std::string text = fixed(end, scale.ticks.decimals + 1);
         for (int i = 0; i < scale.ticks.count; ++i)
-            if (near(scale.ticks.at(i), end, same)) text = scale.ticks.label(i);
+            if (near(scale.ticks.value(i), end, same)) text = scale.ticks.label(i);
         labels.emplace_back(end, text);
     }
     for (int i = 0; i < scale.ticks.count; ++i) {
-        const double tick = scale.ticks.at(i);
+        const double tick = scale.ticks.value(i);
         if (!near(tick, scale.low, apart) && !near(tick, scale.high, apart))
             labels.emplace_back(tick, scale.ticks.label(i));
     }
@@ -74,7 +74,7 @@ void draw_bar(Figure& figure, const cv::Rect& bar, const ColourScale& scale, dou
     const double low = scale.low, high = scale.high;
     Image colours(bar.size());
     for (int row = 0; row < bar.height; ++row)
-        colours.row(row) = scale.at(high + (low - high) * (row + 0.5) / bar.height);
+        colours.row(row) = scale.colour(high + (low - high) * (row + 0.5) / bar.height);
     draw_image(figure, bar.tl(), colours);
     const int thickness = whole(unit), tick = whole(tick_length * unit);
     outline(figure, bar, thickness, line);
@@ -93,12 +93,12 @@ Item scale_item(const ColourScale& scale, double unit, double bar_height)
     double width = std::max(text_width(scale.heading, cap), text_width(scale.detail, small));
     for (const auto& [value, label] : bar_labels(scale, bar_height, unit))
         width = std::max(width, bar_width + (tick_length + gap) * unit + text_width(label, small));
-    return {
-        width, head + bar_height + 18 * unit, [=](Figure& figure, cv::Point2d at) {
-            draw_text(figure, scale.heading, {at.x, at.y + cap}, {cap});
-            draw_text(figure, scale.detail, {at.x, at.y + cap + 17 * unit}, {small, muted});
-            draw_bar(figure, {cvRound(at.x), cvRound(at.y + head), whole(bar_width), whole(bar_height)}, scale, unit);
-        }};
+    return {width, head + bar_height + 18 * unit, [=](Figure& figure, cv::Point2d corner) {
+                draw_text(figure, scale.heading, {corner.x, corner.y + cap}, {cap});
+                draw_text(figure, scale.detail, {corner.x, corner.y + cap + 17 * unit}, {small, muted});
+                draw_bar(figure, {cvRound(corner.x), cvRound(corner.y + head), whole(bar_width), whole(bar_height)},
+                         scale, unit);
+            }};
 }
 
 std::vector<Item> legend_items(const Legend& legend, double unit, double bar_height)
@@ -110,7 +110,7 @@ std::vector<Item> legend_items(const Legend& legend, double unit, double bar_hei
     return items;
 }
 
-/// A legend with its items in their places: one below the other, in a next column where column_height is passed.
+/// A legend with its items in their places: one below the other, in a new column whenever column_height is exceeded.
 struct Panel {
     std::vector<Item> items;
     std::vector<cv::Point2d> places;
@@ -137,7 +137,8 @@ Panel panel_of(const Legend& legend, double unit, double column_height)
     return panel;
 }
 
-/// Three entries, or more where the columns would take more than the width.
+/// Returns the smallest height of the legend's columns, pixels, at which they fit into the width: room for three
+/// entries, or for more.
 double lowest_columns(const Legend& legend, double unit, double width)
 {
     double height = 130;
@@ -154,8 +155,8 @@ double widest_label(const Ticks& ticks, double cap)
     return widest;
 }
 
-/// Ticks at least `apart` pixels from each other, and what `needs` gives; one at least, whatever its label takes.
-/// `scale` is in pixels per metre.
+/// Returns ticks at distances of at least `apart` pixels and at least needs(ticks) pixels. Returns at least one tick,
+/// even if its label is wider than the axis. `scale` is in pixels per metre.
 Ticks axis_ticks(double low, double high, double scale, double apart, const std::function<double(const Ticks&)>& needs)
 {
     RoundStep step = round_up(apart / scale);
@@ -216,29 +217,29 @@ Layout legend_beside(const PictureFrame& frame, const Margins& margins, double u
 Layout legend_below(const PictureFrame& frame, const Margins& margins, double unit)
 {
     const int border = cvRound(margin * unit), right = std::max(margins.right, border);
-    const double width = frame.pixels - margins.left - right, bearing_at = width - bearing_width * unit;
+    const double width = frame.pixels - margins.left - right, bearing_x = width - bearing_width * unit;
     Layout layout;
-    layout.column_height = lowest_columns(frame.legend, unit, bearing_at - column_gap * unit);
+    layout.column_height = lowest_columns(frame.legend, unit, bearing_x - column_gap * unit);
     const double needed = panel_of(frame.legend, unit, layout.column_height).height;
     const int panel_height = cvCeil(std::max(needed, bearing_height * unit)) + border / 2;
     layout.plot = plot_in(frame.view, margins, width, frame.pixels - margins.top - margins.bottom - panel_height);
     layout.panel = {static_cast<double>(margins.left), static_cast<double>(layout.plot.br().y + margins.bottom)};
-    layout.bearing = layout.panel + cv::Point2d(bearing_at, 0);
+    layout.bearing = layout.panel + cv::Point2d(bearing_x, 0);
     layout.size = {margins.left + layout.plot.width + right, layout.plot.br().y + margins.bottom + panel_height};
     return layout;
 }
 
 Layout arrange(const PictureFrame& frame, const Margins& margins, double unit)
 {
-    constexpr double wide = 1.75;  // from here on a legend below leaves more room for the plot
+    constexpr double wide = 1.75;  // wider views have more room for the plot if the legend is below
     const bool is_wide = frame.view.width > wide * frame.view.height;
     Layout layout = is_wide ? legend_below(frame, margins, unit) : legend_beside(frame, margins, unit);
     layout.unit = unit;
     return layout;
 }
 
-/// Height of the title's or caption's capitals. Long lines shrink, then make narrow pictures wider; only what is wider
-/// than any picture is cut.
+/// Returns the height of the capitals of a title or caption, pixels. A long line is made smaller, then a narrow picture
+/// is made wider. Only a line that is still too wide is cut.
 double line_height(const std::string& text, double cap, int width, double unit)
 {
     const double room = width - 2 * margin * unit;
@@ -265,13 +266,13 @@ void draw_axes(Figure& figure, const View& view, const Layout& layout)
     const int thickness = whole(1.2 * unit), tick = whole(tick_length * unit);
     outline(figure, plot, thickness, line);
     for (int i = 0; i < layout.x_ticks.count; ++i) {
-        const double x = plot.x + (layout.x_ticks.at(i) - view.x0) / view.width * plot.width;
+        const double x = plot.x + (layout.x_ticks.value(i) - view.x0) / view.width * plot.width;
         fill(figure, {cvRound(x - thickness / 2.0), plot.br().y, thickness, thickness + tick}, line);
         draw_text(figure, layout.x_ticks.label(i), {x, plot.br().y + tick + gap * unit + cap},
                   {cap, ink, Align::Centre});
     }
     for (int i = 0; i < layout.y_ticks.count; ++i) {
-        const double y = plot.y + (view.y0 + view.height - layout.y_ticks.at(i)) / view.height * plot.height;
+        const double y = plot.y + (view.y0 + view.height - layout.y_ticks.value(i)) / view.height * plot.height;
         fill(figure, {plot.x - thickness - tick, cvRound(y - thickness / 2.0), thickness + tick, thickness}, line);
         draw_text(figure, layout.y_ticks.label(i), {plot.x - tick - gap * unit, y + cap / 2}, {cap, ink, Align::Right});
     }
@@ -294,13 +295,13 @@ std::string length_label(RoundStep length)
     return fixed(length.value / 1000, length.value < 2600 && length.value > 2400 ? 1 : 0) + " km";
 }
 
-/// Scale bar, and north arrow to its right. `scale` is in pixels per metre.
-void draw_bearing(Figure& figure, cv::Point2d at, double scale, double unit)
+/// Draws the scale bar, and the north arrow to its right. `scale` is in pixels per metre.
+void draw_bearing(Figure& figure, cv::Point2d corner, double scale, double unit)
 {
-    const double bottom = at.y + (bearing_height - 1) * unit;
+    const double bottom = corner.y + (bearing_height - 1) * unit;
     const RoundStep length = round_down(longest_scale_bar * unit / scale);
     const int pixels = whole(length.value * scale), height = whole(6 * unit), thickness = whole(unit);
-    const cv::Rect bar(cvRound(at.x) + thickness, cvRound(bottom) - height, pixels, height);
+    const cv::Rect bar(cvRound(corner.x) + thickness, cvRound(bottom) - height, pixels, height);
     fill(figure, bar, white);
     fill(figure, {bar.x, bar.y, pixels / 2, bar.height}, ink);
     outline(figure, bar, thickness, ink);
@@ -308,7 +309,7 @@ void draw_bearing(Figure& figure, cv::Point2d at, double scale, double unit)
     draw_text(figure, length_label(length), label, {small_cap * unit, ink, Align::Centre});
 
     const double half = 8 * unit, needle = 26 * unit;
-    const cv::Point2d tip(at.x + bearing_width * unit - half - unit, bottom - needle),
+    const cv::Point2d tip(corner.x + bearing_width * unit - half - unit, bottom - needle),
         notch(tip.x, tip.y + 0.75 * needle);
     draw_polygon(figure, {tip, {tip.x - half, bottom}, notch}, ink, ink, unit);
     draw_polygon(figure, {tip, {tip.x + half, bottom}, notch}, white, ink, unit);
@@ -325,7 +326,7 @@ View with_room(View view)
     return {view.x0 - (width - view.width) / 2, view.y0 - (height - view.height) / 2, width, height};
 }
 
-Colour ColourScale::at(double value) const
+Colour ColourScale::colour(double value) const
 {
     const double share = (value - low) / (high - low);
     return ramp[static_cast<std::size_t>(cvRound(std::clamp(share, 0.0, 1.0) * 255))];
@@ -346,7 +347,8 @@ Layout lay_out(const PictureFrame& frame)
     const double head = frame.title.empty() ? 20 : title_cap + 42;
     const int top = cvRound((margin + head + (frame.caption.empty() ? 0 : caption_line)) * unit);
     Margins margins{cvRound(70 * unit), 0, top, cvRound(62 * unit)};
-    // Labels need ticks, ticks the scale, the scale the labels' width: a first guess of that width is close enough.
+    // Labels depend on the ticks, ticks on the scale, and the scale on the labels' width. A first guess of that width
+    // is close enough.
     Layout layout = arrange(frame, margins, unit);
     const double scale = layout.plot.width / frame.view.width, cap = small_cap * unit;
     const Ticks x = x_ticks(frame.view, scale, unit), y = y_ticks(frame.view, scale, unit);

@@ -8,12 +8,12 @@
 
 namespace spawnfield {
 
-/// Part of the ground that a plot shows, m; (x0, y0) is its lower left corner.
+/// The part of the ground that a plot shows, m. (x0, y0) is its lower left corner.
 struct View {
     double x0 = 0, y0 = 0, width = 1, height = 1;
 };
 
-/// The view with its shorter side widened on both ends until it is at least 1/12 of the longer one.
+/// Returns the view with its shorter side widened at both ends, so that it is at least 1/12 of the longer side.
 View with_room(View view);
 
 /// Colours for the values from `low` to `high`.
@@ -24,10 +24,10 @@ struct ColourScale {
     Ramp ramp;
     double low = ticks.lowest(), high = ticks.highest();
 
-    Colour at(double value) const;  ///< beyond the scale the nearest end's
+    Colour colour(double value) const;  ///< values beyond the scale get the colour of the nearest end
 };
 
-/// A scale that ends at the data: from low to high, with round ticks in between. A range of no length is widened by 1.
+/// Returns a scale from low to high with round ticks in between. A range without length is widened by 1.
 ColourScale scale_between(const std::string& heading, double low, double high, const Ramp& ramp);
 
 struct LegendEntry {
@@ -36,10 +36,10 @@ struct LegendEntry {
     std::string detail;  ///< second line, may be empty
 };
 
-/// What stands in the plot, as spawns do.
+/// A symbol that marks something in the plot, for example a spawn.
 struct LegendSymbol {
     std::string name;
-    /// Draws into a square of symbol_size units. Empty: the symbol is words alone.
+    /// Draws the symbol into a square of symbol_size units. Empty: the entry is text only.
     std::function<void(Figure&, cv::Point2d centre)> draw = {};
     Colour colour = white;
 };
@@ -52,7 +52,7 @@ struct Legend {
     std::vector<LegendSymbol> symbols = {};
 };
 
-/// All of a picture but its plot.
+/// Everything in a picture except its plot.
 struct PictureFrame {
     View view;
     int pixels = 1000;  ///< longer side
@@ -61,24 +61,24 @@ struct PictureFrame {
     std::string caption = {};  ///< second line, below the title; may be empty
 };
 
-/// Where everything stands, in pixels.
+/// The places of everything in a picture, pixels.
 struct Layout {
-    double unit = 1;  ///< a thousandth of the longer side: what texts and lines are measured in
-    cv::Size size;    ///< of the picture
+    double unit = 1;  ///< a thousandth of the longer side; the unit of texts and lines
+    cv::Size size;    ///< size of the picture
     cv::Rect plot;
     cv::Point2d panel;         ///< upper left corner of the legend
-    double column_height = 0;  ///< of the legend's columns
+    double column_height = 0;  ///< largest height of the legend's columns
     cv::Point2d bearing;       ///< upper left corner of scale bar and north arrow
     Ticks x_ticks, y_ticks;
 };
 
-/// The legend stands to the right of the plot, or below it where the view is wide.
+/// Returns the layout of a picture. The legend is to the right of the plot, or below it if the view is wide.
 Layout lay_out(const PictureFrame& frame);
 
-/// Title, axes, legend, scale bar and north arrow: all but the plot.
+/// Draws everything but the plot: title, axes, legend, scale bar and north arrow.
 void draw_surroundings(Figure& figure, const PictureFrame& frame, const Layout& layout);
 
-/// The whole picture; plot has the size layout.plot.
+/// Returns the whole picture. `plot` must have the size of layout.plot.
 Image draw_picture(const PictureFrame& frame, const Layout& layout, const Image& plot);
 
 }  // namespace spawnfield

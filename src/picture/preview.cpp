@@ -16,20 +16,21 @@ namespace {
 
 const Colour nothing = rgb(0xffffff), water_colour = rgb(0x5fa8d3);
 
-/// From lowlands to heights, each lighter than the one before: readable without seeing colours apart.
+/// Returns the colours of terrain from low to high. Each is lighter than the one before, so that they can be read
+/// without colour vision.
 Ramp hypsometric()
 {
     return ramp_through({rgb(0x2f6b52), rgb(0x5f8f4e), rgb(0x9aae5a), rgb(0xd0bf78), rgb(0xe8d6a8), rgb(0xf7ecd5)});
 }
 
-/// Without a hue, which tells obstacles from terrain; higher is lighter.
+/// Returns the colours of obstacles from low to high, lighter with height. They have no hue, unlike those of terrain.
 Ramp greys() { return ramp_through({rgb(0x4a4a4a), rgb(0x8a8a8a), rgb(0xb8b8b8)}); }
 
-/// What a look from above meets at each pixel, m; NaN where there is nothing of its kind.
+/// The heights that are seen from above at each pixel, m; NaN where there is nothing of that kind.
 struct TopView {
     cv::Mat_<float> terrain, solid, water;
 
-    bool has_water(int row, int col) const  // a comparison with NaN is false
+    bool has_water(int row, int col) const  // comparisons with NaN are false
     {
         const float level = water(row, col);
         return std::isfinite(level) && !(level < terrain(row, col)) && !(level < solid(row, col));
@@ -47,7 +48,7 @@ HeightImage page_or_nothing(const TerrainMap& terrain, const std::string& name)
     return terrain.find(name) ? page_image(terrain, name) : HeightImage();
 }
 
-/// The obstacles, and the ground beside them.
+/// Replaces the ground by obstacles where there are any.
 void add_obstacles(const TerrainMap& terrain, HeightImage& ground)
 {
     if (!terrain.find("obstacle")) return;
@@ -56,7 +57,7 @@ void add_obstacles(const TerrainMap& terrain, HeightImage& ground)
         if (!std::isnan(obstacle.values[i])) ground.values[i] = obstacle.values[i];
 }
 
-/// The cells at the pixels' centres.
+/// Returns the heights of the cells at the pixels' centres; NaN beyond the frame.
 cv::Mat_<float> samples(const GridFrame& frame, const HeightImage& page, const View& view, cv::Size pixels)
 {
     cv::Mat_<float> result(pixels, std::numeric_limits<float>::quiet_NaN());
@@ -95,7 +96,7 @@ cv::Mat_<float> obstacle_heights(const TopView& view)
 
 struct Drawing {
     Image image;
-    bool terrain = false, obstacles = false, water = false;  ///< whether there are any
+    bool terrain = false, obstacles = false, water = false;  ///< whether the image shows any
 };
 
 Drawing draw_top(const TopView& view, const cv::Mat_<float>& light, const ColourScale& heights)
@@ -110,10 +111,10 @@ Drawing draw_top(const TopView& view, const cv::Mat_<float>& light, const Colour
                 pixel = water_colour;
             } else if (view.has_obstacle(row, col)) {
                 drawing.obstacles = true;
-                pixel = shaded(grey.at(view.solid(row, col)), light(row, col));
+                pixel = shaded(grey.colour(view.solid(row, col)), light(row, col));
             } else if (std::isfinite(view.terrain(row, col))) {
                 drawing.terrain = true;
-                pixel = shaded(heights.at(view.terrain(row, col)), light(row, col));
+                pixel = shaded(heights.colour(view.terrain(row, col)), light(row, col));
             }
         }
     return drawing;
@@ -128,15 +129,15 @@ Legend legend_of(const Drawing& drawing, const ColourScale& heights)
     return legend;
 }
 
-/// What a picture shows, at its pixels.
+/// The things that a picture shows, at its pixels.
 struct Scenery {
     View view;
     TopView top;
     cv::Mat_<float> light;
 };
 
-/// Pixels that a picture is drawn at, two or three times as fine as its plot will be, then shrunk: smooth edges, and
-/// thin walls do not vanish.
+/// Returns the number of pixels at which a plot is drawn before it is shrunk: two or three times as many along a side
+/// as the plot has. That gives smooth edges and keeps thin walls visible.
 cv::Size fine_pixels(const View& view, int pixels)
 {
     const double scale = 2.0 * pixels / std::max(view.width, view.height);
@@ -148,7 +149,8 @@ View view_of(const GridFrame& frame)
     return with_room({frame.x0, frame.y0, frame.cols * frame.cell, frame.rows * frame.cell});
 }
 
-/// One page of the terrain is in memory at a time, or two where obstacles are added to it.
+/// Returns the whole map as seen from above. Keeps one page of the terrain in memory at a time, or two while obstacles
+/// are added.
 Scenery from_above(const TerrainMap& terrain, int pixels)
 {
     const GridFrame& grid = terrain.frame;
@@ -176,11 +178,12 @@ Image picture_of(const Scenery& scenery, const std::string& title, int pixels)
 
 // ---------------------------------------------------------------- floors
 
-constexpr double cut_height = 2;         // m above a floor: what begins higher is not drawn, as in a floor plan
-constexpr double most_hidden = 0.25;     // of the ground under something, in a picture from above
-constexpr std::size_t most_floors = 16;  // drawn
+constexpr double cut_height = 2;         // m above a floor; things that begin higher are not drawn, as in a floor plan
+constexpr double most_hidden = 0.25;     // largest share of hidden ground for one picture from above
+constexpr std::size_t most_floors = 16;  // with a picture
 
-/// Cells for a picture or an estimate, at most `most` along the longer side.
+
+/// Returns a frame of cells for a picture or an estimate, with at most `most` cells along the longer side.
 GridFrame coarse_frame(const Map& map, int most)
 {
     const Vec3 size = map.bounds.max - map.bounds.min;
@@ -191,7 +194,7 @@ GridFrame coarse_frame(const Map& map, int most)
 template <class Visit>
 void visit_columns(const Geometry& geometry, const GridFrame& frame, const Visit& visit)
 {
-    constexpr int block = 64;  // whose columns stay in a core's cache
+    constexpr int block = 64;  // cells; the columns of block x block cells stay in a core's cache
     for (int j0 = 0; j0 < frame.rows; j0 += block)
         for (int i0 = 0; i0 < frame.cols; i0 += block) {
             const int rows = std::min(block, frame.rows - j0), cols = std::min(block, frame.cols - i0);
@@ -201,15 +204,15 @@ void visit_columns(const Geometry& geometry, const GridFrame& frame, const Visit
         }
 }
 
-/// The highest layer of a floor in a column; NaN if there is none.
+/// Returns the highest layer of a floor in a column; NaN if there is none.
 double ground_of(const ColumnView& column, const Floor& floor, const Map& map)
 {
     const std::span<const double> layers = heights_within(column.layers, overlap(floor.z, map.z_limits));
     return layers.empty() ? std::numeric_limits<double>::quiet_NaN() : layers.front();
 }
 
-/// The share of all floors' ground that is under something, as seen from above. Something that begins less than the cut
-/// height above the ground hides nothing: it stands on the ground.
+/// Returns the share of all floors' ground that something above it hides, as seen from above. Things that begin less
+/// than cut_height above the ground hide nothing: they stand on the ground.
 double hidden_share(const Map& map, const std::vector<Floor>& floors)
 {
     std::size_t all = 0, hidden = 0;
@@ -226,7 +229,7 @@ double hidden_share(const Map& map, const std::vector<Floor>& floors)
     return all == 0 ? 0 : double(hidden) / double(all);
 }
 
-/// The terrain of a floor with what stands on it, cut above it.
+/// Returns the terrain of a floor and everything on it up to cut_height.
 Scenery floor_plan(const Map& map, const Floor& floor, int pixels)
 {
     const GridFrame grid = coarse_frame(map, 2 * pixels);
@@ -234,7 +237,7 @@ Scenery floor_plan(const Map& map, const Floor& floor, int pixels)
     visit_columns(map.geometry, grid, [&](int row, int col, const ColumnView& column) {
         const double ground = ground_of(column, floor, map), level = std::isnan(ground) ? floor.height : ground;
         terrain(row, col) = solid(row, col) = float(ground);
-        // Where there is no ground, what rises through the floor's height is an obstacle: a wall, say.
+        // Where there is no ground, anything that rises through the floor's height is an obstacle, for example a wall.
         if (const auto top = obstacle_above(column, {&level, 1}, {level, level + cut_height}))
             solid(row, col) = float(std::min(*top, level + cut_height));
         const std::span<const double> surfaces = heights_within(column.water, {level, level + cut_height});
@@ -247,7 +250,7 @@ Scenery floor_plan(const Map& map, const Floor& floor, int pixels)
             relief(grid, solid, view, fine)};
 }
 
-/// A small picture for each floor, the lowest first, in rows.
+/// Returns an image with a small picture of each floor, in rows, the lowest floor first.
 Image floor_pictures(const Map& map, const std::vector<Floor>& floors)
 {
     constexpr int longest = 2000, smallest = 400, border = 24;  // pixels
@@ -265,8 +268,8 @@ Image floor_pictures(const Map& map, const std::vector<Floor>& floors)
     }
     Image sheet(rows * (largest.height + border) - border, cols * (largest.width + border) - border, white);
     for (std::size_t k = 0; k < count; ++k) {
-        const cv::Point at(int(k) % cols * (largest.width + border), int(k) / cols * (largest.height + border));
-        pictures[k].copyTo(sheet(cv::Rect(at, pictures[k].size())));
+        const cv::Point corner(int(k) % cols * (largest.width + border), int(k) / cols * (largest.height + border));
+        pictures[k].copyTo(sheet(cv::Rect(corner, pictures[k].size())));
     }
     return sheet;
 }

@@ -24,7 +24,7 @@ cv::Mat_<float> pose_heights(const ShownPoses& shown, int headings)
 
 cv::Mat_<float> clearances(const ShownPoses& shown, double step, int headings)
 {
-    cv::Mat_<std::uint8_t> valid(shown.rows + 2, shown.cols + 2, std::uint8_t{0});  // a ring that is not, around all
+    cv::Mat_<std::uint8_t> valid(shown.rows + 2, shown.cols + 2, std::uint8_t{0});  // with a border that is not valid
     for (int row = 0; row < shown.rows; ++row)
         for (int col = 0; col < shown.cols; ++col)
             if (shown.is_valid(row, col, headings)) valid(row + 1, col + 1) = 1;
@@ -40,10 +40,11 @@ cv::Mat_<float> clearances(const ShownPoses& shown, double step, int headings)
 
 /// A valid column with the 3 x 3 terrain cells around it.
 struct Place {
-    int row, col;  ///< of the column
+    int row, col;  ///< of the column in the raster
     int cell_row, cell_col;
     double layer;  ///< height of the layer that its pose stands on, m
-    /// The layer of each cell that is nearest to that height: beside a column the same surface may have another number.
+    /// For each cell, the layer that is nearest to that height: in a neighbouring cell the same surface may be another
+    /// layer.
     HeightImage around;
 };
 
@@ -64,6 +65,7 @@ std::vector<Place> valid_places(const ShownPoses& shown, const RasterResult& ras
     return out;
 }
 
+/// Takes the heights around a place that are nearer to its layer than those found before.
 void take_nearer(Place& place, const HeightImage& heights)
 {
     for (int dr = -1; dr <= 1; ++dr)
@@ -77,7 +79,8 @@ void take_nearer(Place& place, const HeightImage& heights)
         }
 }
 
-/// Layer by layer, so that one page of the terrain is in memory at a time.
+/// Returns the slope of each valid column, degrees. Goes layer by layer, so that only one page of the terrain is in
+/// memory.
 cv::Mat_<float> slopes(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain, int headings)
 {
     std::vector<Place> places = valid_places(shown, raster, terrain.frame, headings);

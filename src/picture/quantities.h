@@ -4,8 +4,8 @@
 
 namespace spawnfield {
 
-/// Height, clearance or slope of each column, NaN where the shown pose is not valid at all headings. Row 0 is the
-/// largest y.
+/// Returns the height, clearance or slope of each column; NaN where the shown pose is not valid at all headings. Row 0
+/// is the largest y.
 cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain,
                                 const HeatmapOptions& options);
 

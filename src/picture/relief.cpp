@@ -9,11 +9,11 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Heights on a coarser raster, whose corner lies beside the frame's.
+/// Heights on a coarser raster than the frame's, with its own corner.
 struct Blocks {
     HeightImage heights;
-    double left = 0, top = 0;  ///< cells of the frame, from its upper left corner
-    int cells = 1;             ///< of the frame, along a side of a block
+    double left = 0, top = 0;  ///< upper left corner, in cells of the frame from the frame's upper left corner
+    int cells = 1;             ///< cells of the frame along a side of a block
 };
 
 float mean_height(const HeightImage& heights, int row, int col, int cells)
@@ -31,12 +31,13 @@ float mean_height(const HeightImage& heights, int row, int col, int cells)
     return count > 0 ? static_cast<float>(sum / count) : nan;
 }
 
-/// The part of the frame that the view needs, in blocks no larger than a pixel where cells are smaller than that.
+/// Returns the part of the frame that the view needs, in blocks of cells. A block is no larger than a pixel, or it is
+/// one cell.
 Blocks blocks_in(const GridFrame& frame, const HeightImage& heights, const View& view, double pixel)
 {
     Blocks blocks;
     blocks.cells = std::max(1, static_cast<int>(std::min(pixel / frame.cell, 1e6)));
-    const int border = 2 * blocks.cells;  // gradients at the view's edge look beyond it
+    const int border = 2 * blocks.cells;  // gradients at the view's edge use heights beyond it
     const auto clipped = [](double cell, int n) {
         return static_cast<int>(std::clamp<double>(std::floor(cell), 0, n));
     };
@@ -56,7 +57,7 @@ Blocks blocks_in(const GridFrame& frame, const HeightImage& heights, const View&
     return blocks;
 }
 
-/// What makes the mean slope of ground that is not level look like 19 degrees.
+/// Returns the factor for slopes at which ground that is not level looks 19 degrees steep on average.
 double exaggeration(const HeightImage& heights, double cell)
 {
     constexpr double level = 0.01, cliff = 1, wanted = 0.35, largest = 6;
@@ -71,7 +72,8 @@ double exaggeration(const HeightImage& heights, double cell)
     return count > 0 ? std::clamp(wanted * count / sum, 1.0, largest) : 1;
 }
 
-/// Lambert's law with light from the north-west, 45 degrees high, compared with level ground.
+/// Returns the brightness of a slope compared with level ground, by Lambert's law, with light from the north-west, 45
+/// degrees high: -1 to 1.
 float light_on(const Eigen::Vector2d& slope)
 {
     if (!slope.allFinite()) return 0;
@@ -82,24 +84,24 @@ float light_on(const Eigen::Vector2d& slope)
     return static_cast<float>(std::max(relative, -1.0));
 }
 
-/// A place between the centres of two neighbours in a row of n.
+/// A place between the centres of two neighbouring cells in a row of n.
 struct Between {
     int first, second;
-    float share;  ///< of the second
+    float share;  ///< weight of the second cell
 };
 
 Between between(double place, int n)
 {
-    const double at = std::clamp(place - 0.5, 0.0, n - 1.0);
-    const int first = static_cast<int>(at);
-    return {first, std::min(first + 1, n - 1), static_cast<float>(at - first)};
+    const double from_centre = std::clamp(place - 0.5, 0.0, n - 1.0);  // of the first cell
+    const int first = static_cast<int>(from_centre);
+    return {first, std::min(first + 1, n - 1), static_cast<float>(from_centre - first)};
 }
 
 }  // namespace
 
 int cell_index(double distance, int n)
 {
-    constexpr double tolerance = 1e-6;  // of a cell: rounding of coordinates
+    constexpr double tolerance = 1e-6;  // of a cell; for the rounding of coordinates
     if (!(distance >= -tolerance && distance <= n + tolerance)) return -1;
     return std::clamp(static_cast<int>(std::floor(distance)), 0, n - 1);
 }

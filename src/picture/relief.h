@@ -6,19 +6,20 @@
 
 namespace spawnfield {
 
-/// Index of the cell of side 1 in a row of n that holds `distance` from its beginning, both ends included; -1 if none
-/// does.
+/// Returns the index of the cell that contains `distance` from the beginning of a row of n cells with side 1, both ends
+/// included; -1 if it is beyond the row.
 int cell_index(double distance, int n);
 
-/// Change of height with x and with y at a cell; one-sided where a neighbour has no height, 0 where both have none. NaN
-/// at a cell that has no height itself.
+/// Returns the change of height with x and with y at a cell. It is one-sided if one neighbour has no height, 0 if both
+/// have none, and NaN if the cell itself has no height.
 Eigen::Vector2d gradient(const HeightImage& heights, int row, int col, double cell);
 
-/// How much brighter or darker than level ground the light from the north-west makes each pixel of a view: -1 to 1, 0
-/// where there is no height. Gentle relief is exaggerated. O(cells in the view + pixels).
+/// Returns how much brighter or darker than level ground each pixel of a view is in light from the north-west: -1 to 1,
+/// and 0 where there is no height. Gentle relief is exaggerated. O(cells in the view + pixels).
 cv::Mat_<float> relief(const GridFrame& frame, const HeightImage& heights, const View& view, cv::Size pixels);
 
-/// Level ground keeps its colour; at full depth the brightest is mixed with 15 % white, the darkest has 65 % of it.
+/// Returns a colour in this light. Level ground (light 0) keeps its colour. At depth 1, light 1 mixes it with 15 %
+/// white, and light -1 reduces it to 65 %.
 inline Colour shaded(Colour colour, float light, float depth = 1)
 {
     const float darker = light < 0 ? -0.35f * light * depth : 0, whiter = light > 0 ? 0.15f * light * depth : 0;

@@ -19,7 +19,7 @@ constexpr double label_cap = 10, number_cap = 8, heading_cap = 14, line_step = 1
 constexpr double left = 66, right = 24, top = 66, bottom = 46, pane_gap = 74;
 constexpr double least_legend = 250;
 
-/// A view with its names. `nearness` points to the viewer.
+/// A view with its names. `nearness` is the direction towards the viewer.
 struct Axes : ViewAxes {
     Vec3 nearness;
     const char* heading;
@@ -30,7 +30,7 @@ const Axes seen_from_above{{Vec3::UnitX(), Vec3::UnitY()}, Vec3::UnitZ(), "from 
 const Axes seen_from_right{{Vec3::UnitX(), Vec3::UnitZ()}, -Vec3::UnitY(), "from its right side", "x", "z"};
 const Axes seen_from_front{{Vec3::UnitY(), Vec3::UnitZ()}, Vec3::UnitX(), "from the front", "y", "z"};
 
-/// Colours of links, in the order of the file; the ninth has that of the first.
+/// The colours of links, in the order of the file. After eight links the colours repeat.
 class LinkColours {
 public:
     explicit LinkColours(const Robot& robot)
@@ -53,25 +53,25 @@ private:
     std::vector<std::string> names_;
 };
 
-/// A view on the paper.
+/// A view with its place in the picture.
 struct Pane {
     Axes axes;
     cv::Rect area;          ///< pixels
-    double u0 = 0, v0 = 0;  ///< of its lower left corner, m
+    double u0 = 0, v0 = 0;  ///< coordinates of its lower left corner, m
     double scale = 1;       ///< pixels per metre
 
-    cv::Point2d at(double u, double v) const { return {area.x + (u - u0) * scale, area.br().y - (v - v0) * scale}; }
-    cv::Point2d at(const Vec3& point) const { return at(axes.u.dot(point), axes.v.dot(point)); }
+    cv::Point2d pixel(double u, double v) const { return {area.x + (u - u0) * scale, area.br().y - (v - v0) * scale}; }
+    cv::Point2d pixel(const Vec3& point) const { return pixel(axes.u.dot(point), axes.v.dot(point)); }
 };
 
 std::vector<cv::Point2d> on_paper(const Pane& pane, const Polygon2& polygon)
 {
     std::vector<cv::Point2d> out;
-    for (const Vec2& corner : polygon) out.push_back(pane.at(corner.x(), corner.y()));
+    for (const Vec2& corner : polygon) out.push_back(pane.pixel(corner.x(), corner.y()));
     return out;
 }
 
-/// All that the views have to show.
+/// Returns the box that the views must show: the robot, its origin and its contacts, with some room around them.
 Bounds shown_bounds(const Robot& robot, const RobotContacts& contacts)
 {
     Bounds bounds = robot.bounds();
@@ -89,7 +89,8 @@ struct Sheet {
     cv::Size size;
 };
 
-/// From above in the upper left; below it from the right, beside that from the front; the legend in the upper right.
+/// Returns the places of the views and the legend: from above in the upper left, from the right below it, from the
+/// front in the lower right, the legend in the upper right.
 Sheet lay_out(const Bounds& bounds)
 {
     constexpr double width = 1000, most_height = 1100;
@@ -106,7 +107,7 @@ Sheet lay_out(const Bounds& bounds)
                     v,
                     scale};
     };
-    // The legend needs some height too, however flat the view from above is.
+    // The legend needs some height too, even if the view from above is flat.
     const double first_row = std::max(size.y() * scale, 300.0);
     const double second = left + size.x() * scale + pane_gap, below = top + first_row + pane_gap;
     Sheet sheet;
@@ -125,12 +126,12 @@ void draw_grid(Figure& figure, const Pane& pane)
     const Ticks us = ticks_within(pane.u0, pane.u0 + pane.area.width / pane.scale, step);
     const Ticks vs = ticks_within(pane.v0, pane.v0 + pane.area.height / pane.scale, step);
     for (int k = 0; k < us.count; ++k) {
-        const double x = pane.at(us.at(k), 0).x;
+        const double x = pane.pixel(us.value(k), 0).x;
         fill(figure, {cvRound(x - 0.5), pane.area.y, 1, pane.area.height}, grid);
         draw_text(figure, us.label(k), {x, pane.area.br().y + 8 + number_cap}, {number_cap, muted, Align::Centre});
     }
     for (int k = 0; k < vs.count; ++k) {
-        const double y = pane.at(0, vs.at(k)).y;
+        const double y = pane.pixel(0, vs.value(k)).y;
         fill(figure, {pane.area.x, cvRound(y - 0.5), pane.area.width, 1}, grid);
         draw_text(figure, vs.label(k), {pane.area.x - 8.0, y + number_cap / 2}, {number_cap, muted, Align::Right});
     }
@@ -141,7 +142,8 @@ void draw_grid(Figure& figure, const Pane& pane)
         draw_text(figure, names, {double(pane.area.br().x), pane.area.y - 9.0}, {number_cap, muted, Align::Right});
 }
 
-/// The farthest first. Around them all a thick line, the outline of their union; the hidden ones show as thin lines.
+/// Draws the parts, the farthest first. A thick line around all of them shows the outline of their union; thin lines
+/// show hidden parts.
 void draw_parts(Figure& figure, const Pane& pane, const Robot& robot, const LinkColours& colours)
 {
     std::vector<std::vector<cv::Point2d>> outlines;
@@ -161,7 +163,8 @@ void draw_parts(Figure& figure, const Pane& pane, const Robot& robot, const Link
     for (const auto& corners : outlines) draw_outline(figure, corners, rgb(0x8c8c8c), 1);
 }
 
-/// Large and dark where the robot's file gives them; those that are taken instead may be many, close together.
+/// Draws a contact: large and dark if the robot's file gives it, otherwise small, because derived contacts may be many
+/// and close together.
 void draw_contact(Figure& figure, cv::Point2d place, bool given)
 {
     draw_dot(figure, place, given ? 5 : 2.5, given ? ink : white, given ? white : ink, given ? 1.6 : 1);
@@ -169,13 +172,13 @@ void draw_contact(Figure& figure, cv::Point2d place, bool given)
 
 void draw_contacts(Figure& figure, const Pane& pane, const RobotContacts& contacts)
 {
-    for (const Vec3& contact : contacts.points) draw_contact(figure, pane.at(contact), contacts.given);
+    for (const Vec3& contact : contacts.points) draw_contact(figure, pane.pixel(contact), contacts.given);
 }
 
-/// Arrows along the two axes of the view from the origin.
+/// Draws arrows from the origin along the two axes of the view.
 void draw_axes(Figure& figure, const Pane& pane)
 {
-    const cv::Point2d origin = pane.at(0, 0);
+    const cv::Point2d origin = pane.pixel(0, 0);
     constexpr double length = 46, head = 9;
     const auto arrow = [&](cv::Point2d along, const char* name) {
         const cv::Point2d tip = origin + length * along, side(-along.y, along.x);
@@ -189,13 +192,14 @@ void draw_axes(Figure& figure, const Pane& pane)
     draw_dot(figure, origin, 3.5, white, ink, 1.5);
 }
 
+/// Returns a length in m, rounded to millimetres.
 std::string millimetres(double value)
 {
     const std::string text = fixed(value, 3);
     return text == "-0.000" ? "0.000" : text;
 }
 
-/// Writes line by line downwards.
+/// Writes the legend line by line, from the top down.
 class LegendWriter {
 public:
     LegendWriter(Figure& figure, const cv::Rect& area) : figure_(figure), area_(area), y_(area.y + label_cap) {}
@@ -237,7 +241,7 @@ public:
         y_ += line_step + 4;
     }
     void gap() { y_ += line_step / 2; }
-    int lines_left() const { return int((area_.br().y - y_) / line_step) + 1; }
+    int remaining_lines() const { return int((area_.br().y - y_) / line_step) + 1; }
 
 private:
     Figure& figure_;
@@ -264,7 +268,7 @@ void write_legend(Figure& figure, const Sheet& sheet, const Robot& robot, const 
     legend.gap();
     const auto& names = colours.names();
     if (names.size() == 1 && names[0].empty()) return;
-    const std::size_t room = std::size_t(std::max(legend.lines_left(), 3));
+    const std::size_t room = std::size_t(std::max(legend.remaining_lines(), 3));
     const std::size_t listed = names.size() <= room ? names.size() : room - 1;
     for (std::size_t k = 0; k < listed; ++k)
         legend.swatch(colours.of(names[k]), names[k].empty() ? "(no name)" : names[k]);

@@ -7,7 +7,7 @@
 namespace spawnfield {
 namespace {
 
-/// At how many headings pose p of the raster is valid.
+/// Returns at how many headings pose p of the raster is valid.
 int headings_of(const RasterResult& raster, const HeatmapOptions& options, std::size_t p)
 {
     if (!options.valid_headings.empty()) return options.valid_headings[p];

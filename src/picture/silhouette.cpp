@@ -10,7 +10,7 @@ namespace {
 
 constexpr int circle_corners = 64;
 
-/// Corners of a polygon around a circle, seen along the view.
+/// Adds the corners of a polygon around a circle, as the view shows it.
 void add_circle(const ViewAxes& axes, const Vec3& centre, const Vec3& a, const Vec3& b, Polygon2& out)
 {
     const double outer = 1 / std::cos(std::numbers::pi / circle_corners);

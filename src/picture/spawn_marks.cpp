@@ -31,7 +31,7 @@ bool holds(const Polygon2& outer, const Polygon2& inner)
     return std::all_of(inner.begin(), inner.end(), [&](const Vec2& corner) { return contains(outer, corner); });
 }
 
-/// Outlines of all parts but those that are seen within an earlier one.
+/// Returns the outlines of all parts from above, except those that lie within an earlier outline.
 std::vector<Polygon2> footprint_of(const Robot& robot)
 {
     std::vector<Polygon2> outlines;
@@ -44,15 +44,15 @@ std::vector<Polygon2> footprint_of(const Robot& robot)
     return outlines;
 }
 
-/// From metres in the robot's frame to pixels.
+/// Converts metres in the robot's frame to pixels.
 struct Placement {
-    cv::Point2d at;
-    double yaw, scale;
+    cv::Point2d origin;  ///< place of the robot's origin, pixels
+    double yaw, scale;   ///< rad; pixels per metre
 
     cv::Point2d of(const Vec2& point) const
     {
         const double c = std::cos(yaw), s = std::sin(yaw);
-        return {at.x + scale * (c * point.x() - s * point.y()), at.y - scale * (s * point.x() + c * point.y())};
+        return {origin.x + scale * (c * point.x() - s * point.y()), origin.y - scale * (s * point.x() + c * point.y())};
     }
     std::vector<cv::Point2d> of(const Polygon2& polygon) const
     {
@@ -62,20 +62,20 @@ struct Placement {
     }
 };
 
-/// Black or white, whichever is read better on the colour (ITU-R BT.601 luma).
+/// Returns black or white: the one that is easier to see on the colour (ITU-R BT.601 luma).
 Colour contrast_to(Colour colour)
 {
     return 0.114 * colour[0] + 0.587 * colour[1] + 0.299 * colour[2] < 110 ? white : ink;
 }
 
-/// Where a footprint is too small for a triangle at its front, a line ahead of it shows the heading.
+/// Returns whether a footprint is too small for a triangle at its front. Then a line ahead of it shows the heading.
 bool is_small(const SpawnLook& look)
 {
     constexpr double least_width = 10;  // pixels
     return extent_of(look.footprint).size().minCoeff() * look.scale < least_width;
 }
 
-/// Pixels that this line sticks out.
+/// Returns by how many pixels this line extends beyond the footprint.
 double length_ahead(double unit) { return std::clamp(10 * unit, 3.0, 6.0); }
 
 void draw_heading(Figure& figure, const Placement& placement, const Extent& extent, bool small, double unit,
@@ -94,7 +94,8 @@ void draw_heading(Figure& figure, const Placement& placement, const Extent& exte
                      contrast_to(colour), ink, 0);
 }
 
-// A dark rim in a white one: seen on ground of any colour, also of the mark's own. Half of each line is covered.
+// A dark rim within a white rim can be seen on ground of any colour, even of the mark's own colour. The mark covers
+// half of each line.
 constexpr double rim = 2.4, white_rim = 5;  // units
 
 void draw_footprint(Figure& figure, const SpawnLook& look, const Placement& placement, Colour colour)
@@ -105,7 +106,7 @@ void draw_footprint(Figure& figure, const SpawnLook& look, const Placement& plac
     draw_heading(figure, placement, extent_of(look.footprint), is_small(look), look.unit, colour);
 }
 
-/// Pointing along yaw; more of it is ahead of its centre.
+/// Draws an arrow that points along yaw. The larger part of it is ahead of `centre`.
 void draw_arrow(Figure& figure, cv::Point2d centre, double yaw, const SpawnLook& look, Colour colour)
 {
     if (look.arrow < smallest_arrow) {
@@ -121,7 +122,7 @@ void draw_arrow(Figure& figure, cv::Point2d centre, double yaw, const SpawnLook&
     draw_polygon(figure, corners, colour, ink, 1.4 * look.unit);
 }
 
-/// Farthest point of a mark from its place, pixels.
+/// Returns the distance of a mark's farthest point from its place, pixels.
 double radius_of(const SpawnLook& look)
 {
     double radius = look.footprint.empty() ? std::max(3.0, 0.6 * look.arrow) * look.unit : 0;
@@ -144,18 +145,20 @@ SpawnLook spawn_look(const Robot* robot, const Layout& layout, double scale, std
     return look;
 }
 
-void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d at, double yaw, Colour colour)
+void draw_spawn(Figure& figure, const SpawnLook& look, cv::Point2d place, double yaw, Colour colour)
 {
     if (look.footprint.empty())
-        draw_arrow(figure, at, yaw, look, colour);
+        draw_arrow(figure, place, yaw, look, colour);
     else
-        draw_footprint(figure, look, {at, yaw, look.scale}, colour);
+        draw_footprint(figure, look, {place, yaw, look.scale}, colour);
 }
 
 void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre, Colour colour)
 {
     if (look.footprint.empty()) {
-        const double middle = 0.1 * (look.arrow < smallest_arrow ? 0 : look.arrow);  // of the arrow, ahead of its place
+        const double middle = 0.1 * (look.arrow < smallest_arrow
+                                         ? 0
+                                         : look.arrow);  // distance of the arrow's middle ahead of its place, units
         draw_arrow(figure, {centre.x - middle * look.unit, centre.y}, 0, look, colour);
         return;
     }
@@ -173,19 +176,20 @@ std::size_t write_names(Figure& figure, const SpawnLook& look, const std::vector
     const double cap = std::max(9 * look.unit, 5.0), radius = radius_of(look), away = radius + 0.5 * cap,
                  room = 0.3 * cap;
     std::vector<cv::Rect2d> taken, marks;
-    for (const cv::Point2d& at : places)
-        marks.emplace_back(at.x - 0.7 * radius, at.y - 0.7 * radius, 1.4 * radius, 1.4 * radius);
+    for (const cv::Point2d& place : places)
+        marks.emplace_back(place.x - 0.7 * radius, place.y - 0.7 * radius, 1.4 * radius, 1.4 * radius);
     const auto covers = [](const std::vector<cv::Rect2d>& boxes, const cv::Rect2d& box) {
         return std::any_of(boxes.begin(), boxes.end(),
                            [&](const cv::Rect2d& other) { return (box & other).area() > 0; });
     };
     for (std::size_t i = 0; i < places.size(); ++i) {
         const double width = text_width(names[i], cap);
-        const cv::Point2d& at = places[i];
+        const cv::Point2d& place = places[i];
         // Lower left corners of the text: to the right, to the left, above, below.
         for (const cv::Point2d& corner :
-             {cv::Point2d(at.x + away, at.y + cap / 2), cv::Point2d(at.x - away - width, at.y + cap / 2),
-              cv::Point2d(at.x - width / 2, at.y - away), cv::Point2d(at.x - width / 2, at.y + away + cap)}) {
+             {cv::Point2d(place.x + away, place.y + cap / 2), cv::Point2d(place.x - away - width, place.y + cap / 2),
+              cv::Point2d(place.x - width / 2, place.y - away),
+              cv::Point2d(place.x - width / 2, place.y + away + cap)}) {
             const cv::Rect2d box(corner.x - room, corner.y - cap - room, width + 2 * room, cap + 2 * room);
             if ((box & cv::Rect2d(area)).area() < box.area() || covers(marks, box) || covers(taken, box)) continue;
             draw_text(figure, names[i], corner, {cap, ink, Align::Left, white});

@@ -9,7 +9,7 @@
 namespace spawnfield {
 namespace {
 
-/// In hundredths of a pixel, without trailing zeros.
+/// Returns a number rounded to hundredths, without trailing zeros.
 std::string number(double value)
 {
     char text[400];
@@ -47,7 +47,7 @@ std::string escaped(const std::string& text)
     return out;
 }
 
-/// RFC 4648.
+/// Returns bytes in base64 (RFC 4648).
 std::string base64(std::string_view bytes)
 {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -117,7 +117,7 @@ public:
     }
 
 private:
-    static constexpr double cap_height = 0.72;  ///< of a sans-serif font's capitals, as a share of its size
+    static constexpr double cap_height = 0.72;  ///< height of a sans-serif font's capitals, as a share of the font size
 
     static std::string box(const cv::Rect& area)
     {

@@ -9,7 +9,7 @@ namespace spawnfield {
 namespace {
 
 constexpr std::array mantissas{1.0, 2.0, 2.5, 5.0, 10.0};
-constexpr double tolerance = 1e-9;  // relative: a step is not missed for its rounding
+constexpr double tolerance = 1e-9;  // relative; so that rounding does not exclude a step
 
 RoundStep times_power(double mantissa, int exponent)
 {
@@ -39,7 +39,7 @@ RoundStep round_down(double value)
     return times_power(5, exponent - 1);
 }
 
-std::string Ticks::label(int i) const { return fixed(at(i), decimals); }
+std::string Ticks::label(int i) const { return fixed(value(i), decimals); }
 
 Ticks ticks_within(double low, double high, RoundStep step)
 {

@@ -6,7 +6,7 @@
 
 namespace spawnfield {
 
-/// Whether a column of this name is part of a pose.
+/// Returns whether a column with this name is part of a pose.
 inline bool is_pose_column(const std::string& name)
 {
     constexpr std::array names{"x",         "y",       "z",  "roll", "pitch", "yaw", "roll_deg",
@@ -14,7 +14,7 @@ inline bool is_pose_column(const std::string& name)
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Whether `check` writes a column of this name.
+/// Returns whether `check` writes a column with this name.
 inline bool is_verdict_column(const std::string& name)
 {
     constexpr std::array names{"verdict", "ground", "height_above", "hit"};

@@ -18,16 +18,16 @@ namespace {
 
 constexpr double radians_per_degree = std::numbers::pi / 180;
 
-/// The column of an angle; field -1: the file has none.
+/// The column of an angle.
 struct AngleColumn {
     std::string name;
-    int field = -1;
+    int field = -1;  ///< its index; -1: not in the file
     bool is_degrees = false;
     std::size_t beyond_turn = 0;  ///< rows with more than a whole turn, which are likely degrees
-    std::string first = {};       ///< the first of them, in words
+    std::string first = {};       ///< place and value of the first of these, for the notice
 };
 
-/// Which field holds what; -1: not in the file.
+/// The index of each column; -1: not in the file.
 struct PoseColumns {
     int x, y, z, qx, qy, qz, qw;
     std::array<AngleColumn, 3> angles;  ///< roll, pitch, yaw
@@ -54,7 +54,7 @@ public:
             if (line.find_first_not_of(" \t") == std::string::npos) continue;
             if (!has_header) {
                 columns = read_header(line);
-                tell_other_case(line, table);
+                add_case_notices(line, table);
                 table.header = line;
                 has_header = true;
                 continue;
@@ -64,7 +64,7 @@ public:
             table.rows.push_back(std::move(line));
         }
         if (!has_header) throw FileError(file_, "is empty, needs a header x,y,z,roll,pitch,yaw");
-        tell_beyond_turn(columns, table);
+        add_turn_notices(columns, table);
         if (!table.poses.empty()) return table;
         if (!allow_empty) throw FileError(file_, "has a header but no pose; --allow-empty accepts that");
         table.notices.push_back(file_ + ": has a header but no pose");
@@ -79,10 +79,10 @@ private:
         if (are_numbers(names))
             fail("has numbers, needs a header before them: add the line " + likely_header(names.size()));
         const auto find = [&](const std::string& name) {
-            const auto at = std::find(names.begin(), names.end(), name);
-            if (at != names.end() && std::find(at + 1, names.end(), name) != names.end())
+            const auto column = std::find(names.begin(), names.end(), name);
+            if (column != names.end() && std::find(column + 1, names.end(), name) != names.end())
                 fail("column " + name + " is given twice");
-            return at == names.end() ? -1 : int(at - names.begin());
+            return column == names.end() ? -1 : int(column - names.begin());
         };
         const auto angle = [&](const std::string& name) {
             const int radians = find(name), degrees = find(name + "_deg");
@@ -108,7 +108,7 @@ private:
         return c;
     }
 
-    /// What a row of so many numbers is likely to be.
+    /// Returns the header that a row with this number of fields most likely needs.
     static std::string likely_header(std::size_t fields)
     {
         if (fields == 3) return "x,y,z";
@@ -116,18 +116,19 @@ private:
         return fields == 7 ? "x,y,z,qx,qy,qz,qw" : "x,y,z,roll,pitch,yaw (or roll_deg,pitch_deg,yaw_deg)";
     }
 
-    /// A name that is known but for its case is read as any other: not at all.
-    void tell_other_case(const std::string& header, PoseTable& table) const
+    /// Adds a notice for each column whose name is known except for its case, because such a column is not read.
+    void add_case_notices(const std::string& header, PoseTable& table) const
     {
         for (const std::string& name : csv_fields(header)) {
             const std::string lower = lower_case(name);
             if (name == lower || !is_pose_column(lower)) continue;
-            table.notices.push_back(file_ + ": column " + name + " is carried along, not read: names are lower case (" +
-                                    lower + ")");
+            table.notices.push_back(file_ + ": column " + name +
+                                    " is copied but not read, because names of columns are lower case (" + lower + ")");
         }
     }
 
-    void tell_beyond_turn(const PoseColumns& columns, PoseTable& table) const
+    /// Adds a notice for each angle in radians with values beyond a whole turn.
+    void add_turn_notices(const PoseColumns& columns, PoseTable& table) const
     {
         for (const AngleColumn& angle : columns.angles) {
             if (angle.beyond_turn == 0) continue;
@@ -160,7 +161,7 @@ private:
         return pose;
     }
 
-    /// rad
+    /// Returns an angle, rad. Counts values beyond a whole turn, and remembers the first one.
     double angle_in(const std::vector<std::string>& fields, AngleColumn& angle) const
     {
         const double value = number_in(fields, angle.field, angle.name.c_str());

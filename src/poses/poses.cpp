@@ -15,7 +15,8 @@
 namespace spawnfield {
 namespace {
 
-/// The line's fields as they are written, quotes and all, each with a comma behind it, but those that are flagged.
+/// Appends the fields of a line as they are written, with their quotes, each followed by a comma. Fields with a 1 in
+/// `left_out` are left out.
 void append_fields(std::string& text, const std::string& line, const std::vector<std::uint8_t>& left_out)
 {
     if (std::find(left_out.begin(), left_out.end(), 1) == left_out.end()) {
@@ -71,14 +72,14 @@ Json layers_json(const LayerChoice& layers)
     return "all";
 }
 
-/// An infinite limit is null.
+/// Returns the two limits. An infinite limit becomes null.
 Json z_json(const ZRange& z)
 {
     const auto limit = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
     return {limit(z.low), limit(z.high)};
 }
 
-/// Returns what both commands have, without infinite limits.
+/// Returns the settings that `sample` and `search` share. Limits that are infinite are left out.
 template <class Options>
 Json settings_json(const Options& options, const Judge& judge, int axes)
 {
@@ -124,10 +125,10 @@ std::vector<Spawn> spawns_of(const PoseTable& table)
 std::vector<std::string> column_of(const PoseTable& table, const std::string& name)
 {
     const std::vector<std::string> names = csv_fields(table.header);
-    const auto at = std::find(names.begin(), names.end(), name);
-    if (at == names.end()) return {};
+    const auto column = std::find(names.begin(), names.end(), name);
+    if (column == names.end()) return {};
     std::vector<std::string> out;
-    for (const std::string& row : table.rows) out.push_back(csv_fields(row)[std::size_t(at - names.begin())]);
+    for (const std::string& row : table.rows) out.push_back(csv_fields(row)[std::size_t(column - names.begin())]);
     return out;
 }
 
@@ -139,7 +140,7 @@ std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::
         while (verdict < verdict_count && text != to_string(Verdict(verdict))) ++verdict;
         if (verdict == verdict_count)
             throw FileError(file.string(), "pose " + std::to_string(out.size() + 1) + ": column verdict is \"" + text +
-                                               "\", needs a verdict's name, as valid or collision");
+                                               "\", needs the name of a verdict, for example valid or collision");
         out.push_back(Verdict(verdict));
     }
     return out;

@@ -22,7 +22,7 @@ namespace {
 using GeoJson = nlohmann::json;
 using Ring = Region::Ring;
 
-/// Drops the repeated first corner and others that stand twice in a row.
+/// Returns the ring without its repeated first corner and without corners that repeat the one before.
 Ring without_repeats(Ring ring)
 {
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
@@ -30,7 +30,8 @@ Ring without_repeats(Ring ring)
     return ring;
 }
 
-/// `place` names the ring in the file.
+/// Returns the ring without repeated corners. Throws FileError if it has fewer than 3 corners or no area. `place` is
+/// the ring's place in the file, for messages.
 Ring checked(Ring ring, const std::string& file, const std::string& place)
 {
     ring = without_repeats(std::move(ring));
@@ -53,19 +54,20 @@ public:
 
     void read(const GeoJson& node, const std::string& place)
     {
-        constexpr std::size_t longest = 1000;  // characters, as deep as anybody nests collections
+        constexpr std::size_t longest = 1000;  // characters; no real file nests its collections deeper
         if (place.size() > longest) fail(place.substr(0, 40) + "…", "is nested too deep");
-        if (!node.is_object()) fail(place, "is no object");
+        if (!node.is_object()) fail(place, "is not an object");
         refuse_degrees(node);
         const std::string type = text(node, "type");
         if (type == "Polygon")
             polygon(member(node, "coordinates", place), place + ".coordinates");
         else if (type == "MultiPolygon")
-            each(node, "coordinates", place, [&](const GeoJson& one, const std::string& at) { polygon(one, at); });
+            each(node, "coordinates", place,
+                 [&](const GeoJson& one, const std::string& inside) { polygon(one, inside); });
         else if (type == "GeometryCollection")
-            each(node, "geometries", place, [&](const GeoJson& one, const std::string& at) { read(one, at); });
+            each(node, "geometries", place, [&](const GeoJson& one, const std::string& inside) { read(one, inside); });
         else if (type == "FeatureCollection")
-            each(node, "features", place, [&](const GeoJson& one, const std::string& at) { read(one, at); });
+            each(node, "features", place, [&](const GeoJson& one, const std::string& inside) { read(one, inside); });
         else if (type == "Feature")
             feature(node, place);
         else if (type == "Point" || type == "MultiPoint" || type == "LineString" || type == "MultiLineString")
@@ -78,9 +80,9 @@ public:
     void finish()
     {
         if (out_.polygons.empty())
-            throw FileError(file_, "has no polygon" + (without_area_ > 0 ? ", only " + left_out() : std::string()));
+            throw FileError(file_, "has no polygon" + (without_area_ > 0 ? ", only " + ignored() : std::string()));
         if (without_area_ > 0)
-            out_.notices.push_back(file_ + ": " + left_out() + " left out: points and lines have no area");
+            out_.notices.push_back(file_ + ": " + ignored() + " ignored: points and lines have no area");
     }
 
 private:
@@ -88,7 +90,7 @@ private:
     {
         throw FileError(file_, place + " " + what);
     }
-    std::string left_out() const
+    std::string ignored() const
     {
         return std::to_string(without_area_) + (without_area_ == 1 ? " point or line" : " points or lines");
     }
@@ -100,7 +102,7 @@ private:
 
     const GeoJson& member(const GeoJson& node, const char* key, const std::string& place) const
     {
-        if (!node.contains(key) || !node[key].is_array()) fail(place + "." + key, "is missing or no list");
+        if (!node.contains(key) || !node[key].is_array()) fail(place + "." + key, "is missing or is not a list");
         return node[key];
     }
 
@@ -118,23 +120,24 @@ private:
         if (!node["geometry"].is_null()) read(node["geometry"], place + ".geometry");
     }
 
-    /// A crs member is of GeoJSON before RFC 7946.
+    /// Throws FileError if a crs member names coordinates in degrees, and adds a notice for other names. Only GeoJSON
+    /// before RFC 7946 has this member.
     void refuse_degrees(const GeoJson& node)
     {
         if (!node.contains("crs") || !node["crs"].is_object() || !node["crs"].contains("properties")) return;
         const std::string name = text(node["crs"]["properties"], "name");
         if (name.ends_with("CRS84") || name.ends_with(":4326") || name.ends_with("CRS83") || name.ends_with(":4269"))
-            throw FileError(
-                file_,
-                "has crs " + name + ", which is degrees; needs metres in the map's frame (ogr2ogr -t_srs projects it)");
+            throw FileError(file_,
+                            "has crs " + name +
+                                ", which is in degrees; needs metres in the map's frame (ogr2ogr -t_srs converts it)");
         if (!name.empty())
             out_.notices.push_back(file_ + ": crs " + name +
-                                   " is not looked at: coordinates are metres in the map's frame");
+                                   " is ignored: coordinates are taken as metres in the map's frame");
     }
 
     void polygon(const GeoJson& rings, const std::string& place)
     {
-        if (!rings.is_array() || rings.empty()) fail(place, "is no list of rings");
+        if (!rings.is_array() || rings.empty()) fail(place, "is not a list of rings");
         Region::Polygon out;
         for (std::size_t i = 0; i < rings.size(); ++i)
             out.push_back(ring(rings[i], place + "[" + std::to_string(i) + "]"));
@@ -143,12 +146,12 @@ private:
 
     Ring ring(const GeoJson& corners, const std::string& place) const
     {
-        if (!corners.is_array()) fail(place, "is no ring (a list of positions)");
+        if (!corners.is_array()) fail(place, "is not a ring (a list of positions)");
         Ring out;
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const GeoJson& p = corners[i];
             if (!p.is_array() || p.size() < 2 || !p[0].is_number() || !p[1].is_number())
-                fail(place + "[" + std::to_string(i) + "]", "is no position [x, y]");
+                fail(place + "[" + std::to_string(i) + "]", "is not a position [x, y]");
             out.emplace_back(p[0].get<double>(), p[1].get<double>());
             if (!std::isfinite(out.back().x()) || !std::isfinite(out.back().y()))
                 fail(place + "[" + std::to_string(i) + "]", "is not finite");
@@ -169,7 +172,7 @@ void read_geojson(const std::string& text, const std::string& file, Region& out)
     try {
         root = GeoJson::parse(text);
     } catch (const GeoJson::exception& error) {
-        throw FileError(file, std::string("is no JSON: ") + error.what());
+        throw FileError(file, std::string("is not valid JSON: ") + error.what());
     }
     GeoJsonReader reader(file, out);
     reader.read(root, "$");
@@ -190,8 +193,8 @@ public:
         if (trim[0] == '#') return;
         if (const std::string complaint = first_ ? separator_complaint(trim) : ""; !complaint.empty()) fail(complaint);
         const std::vector<std::string> fields = csv_fields(trim);
-        double number_there = 0;
-        if (first_ && !parse_number(fields[0], number_there)) return header(fields);
+        double ignored_number = 0;
+        if (first_ && !parse_number(fields[0], ignored_number)) return header(fields);
         first_ = false;
         if (fields.size() <= std::max(columns_[0], columns_[1]) || (polygon_column_ == none && fields.size() != 2))
             fail("has " + std::to_string(fields.size()) + " fields, needs x,y (a header line names further ones)");
@@ -203,7 +206,7 @@ public:
         for (std::size_t axis = 0; axis < 2; ++axis) {
             const std::string& field = fields[columns_[axis]];
             if (!parse_number(field, p[Eigen::Index(axis)]) || !std::isfinite(p[Eigen::Index(axis)]))
-                fail("\"" + field + "\" is no finite number");
+                fail("\"" + field + "\" is not a finite number");
         }
         ring_.push_back(p);
     }
@@ -233,10 +236,10 @@ private:
             fail("has neither numbers x,y nor the names of such columns");
         polygon_column_ = find("polygon");
         if (polygon_column_ >= names.size()) refuse_poses(names);
-        if (polygon_column_ >= names.size()) polygon_column_ = none - 1;  // other columns are not looked at
+        if (polygon_column_ >= names.size()) polygon_column_ = none - 1;  // other columns are ignored
     }
 
-    /// Positions of robots in a row would make a polygon that nobody meant.
+    /// Throws FileError if there are columns of poses: robots' positions are hardly meant as corners of a polygon.
     void refuse_poses(const std::vector<std::string>& names) const
     {
         const auto is_of_pose = [](const std::string& name) {
@@ -246,8 +249,7 @@ private:
         if (found != names.end())
             fail("has a column " + *found +
                  ": these are poses, not the corners of a polygon; `sample` and `search` keep a distance from poses "
-                 "with "
-                 "--avoid FILE --avoid-distance M; a polygon has columns x,y, and polygon if there are several");
+                 "with --avoid FILE --avoid-distance M; a polygon has columns x,y, and polygon if there are several");
     }
 
     void close()
@@ -280,7 +282,7 @@ void read_csv(const std::string& text, const std::string& file, Region& out)
 
 // ---- nav2 ----
 
-/// Rings round the cells that are in, each with them on its left.
+/// The rings around the wanted cells. Each ring has these cells on its left.
 class CellRings {
 public:
     CellRings(const Nav2Map& map, Nav2Map::Cell wanted)
@@ -289,10 +291,10 @@ public:
         for (int row = 0; row < map.rows; ++row)
             for (int col = 0; col < map.cols; ++col) {
                 if (!is_in(row, col)) continue;
-                if (!is_in(row + 1, col)) at(row + 1, col) |= 1 << east;
-                if (!is_in(row, col + 1)) at(row + 1, col + 1) |= 1 << north;
-                if (!is_in(row - 1, col)) at(row, col + 1) |= 1 << west;
-                if (!is_in(row, col - 1)) at(row, col) |= 1 << south;
+                if (!is_in(row + 1, col)) ways_at(row + 1, col) |= 1 << east;
+                if (!is_in(row, col + 1)) ways_at(row + 1, col + 1) |= 1 << north;
+                if (!is_in(row - 1, col)) ways_at(row, col + 1) |= 1 << west;
+                if (!is_in(row, col - 1)) ways_at(row, col) |= 1 << south;
             }
     }
 
@@ -301,7 +303,7 @@ public:
         Region::Polygon out;
         for (int row = 0; row <= map_.rows; ++row)
             for (int col = 0; col <= map_.cols; ++col)
-                while (at(row, col) != 0) out.push_back(ring_from(row, col));
+                while (ways_at(row, col) != 0) out.push_back(ring_from(row, col));
         return out;
     }
 
@@ -310,9 +312,9 @@ private:
 
     bool is_in(int row, int col) const
     {
-        return row >= 0 && col >= 0 && row < map_.rows && col < map_.cols && map_.at(row, col) == wanted_;
+        return row >= 0 && col >= 0 && row < map_.rows && col < map_.cols && map_.cell(row, col) == wanted_;
     }
-    std::uint8_t& at(int row, int col)
+    std::uint8_t& ways_at(int row, int col)
     {
         return ways_[std::size_t(row) * std::size_t(map_.cols + 1) + std::size_t(col)];
     }
@@ -322,15 +324,15 @@ private:
         const int first_row = row, first_col = col;
         Ring out;
         int way = east;
-        while ((at(row, col) & 1 << way) == 0) ++way;
+        while ((ways_at(row, col) & 1 << way) == 0) ++way;
         do {
-            at(row, col) = std::uint8_t(at(row, col) & ~(1 << way));
+            ways_at(row, col) = std::uint8_t(ways_at(row, col) & ~(1 << way));
             if (out.empty() || way != last_) out.push_back(map_.corner(row, col).head<2>());
             last_ = way;
             row += way == south ? 1 : way == north ? -1 : 0;
             col += way == east ? 1 : way == west ? -1 : 0;
-            for (const int turn : {1, 0, 3})  // left first
-                if (const int next = (last_ + turn) % 4; (at(row, col) & 1 << next) != 0) {
+            for (const int turn : {1, 0, 3})  // left first, then straight on
+                if (const int next = (last_ + turn) % 4; (ways_at(row, col) & 1 << next) != 0) {
                     way = next;
                     break;
                 }
@@ -340,14 +342,15 @@ private:
 
     const Nav2Map& map_;
     const Nav2Map::Cell wanted_;
-    std::vector<std::uint8_t> ways_;  ///< of rings' edges that leave each crossing of the grid's lines, a bit each
+    std::vector<std::uint8_t>
+        ways_;  ///< for each crossing of the grid's lines: a bit for each edge of a ring that leaves it
     int last_ = east;
 };
 
 void read_cells(const std::filesystem::path& file, MapCells cells, Region& out)
 {
     if (!is_nav2_map(file))
-        throw FileError(file.string(), "is no 2D map of nav2 or ROS (keys image, resolution, origin, …)");
+        throw FileError(file.string(), "is not a 2D map of nav2 or ROS (keys image, resolution, origin, …)");
     const Nav2Map map = read_nav2_map(file);
     out.notices = map.notices;
     Region::Polygon rings =

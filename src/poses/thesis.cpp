@@ -9,7 +9,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::array class_names{"Valid", "Invalid", "Aerial"};  // as ThesisClass
+constexpr std::array class_names{"Valid", "Invalid", "Aerial"};  // in the order of ThesisClass
 
 /// One file of locations, written in pieces.
 class LocationFile {

@@ -18,7 +18,7 @@ namespace {
 using Sink = std::function<void(std::string_view)>;
 constexpr std::size_t piece = 1 << 20;  // bytes
 
-/// Six digits are enough for people.
+/// Returns a number with six digits, which are enough for readers.
 std::string rounded(double value)
 {
     char text[32];
@@ -53,7 +53,7 @@ Json settings_json(const VerdictReport& report)
     return out;
 }
 
-/// The fields of a row by their columns' names, without those that the new verdict replaces.
+/// Returns the fields of a row by the names of their columns, without those that the new verdict replaces.
 Json fields_json(const VerdictReport& report, std::size_t index, const std::vector<std::string>& columns)
 {
     const std::vector<std::string> fields = csv_fields(report.table.rows[index]);
@@ -79,17 +79,17 @@ Json verdict_json(const VerdictReport& report, std::size_t index, const std::str
     return out;
 }
 
-/// A text that XML can hold on one line: valid UTF-8 without control characters.
+/// Returns a text that XML can contain on one line: valid UTF-8 without control characters.
 std::string xml_text(const std::string& text)
 {
     std::string out = one_line(Json::parse(json_text(text, -1)).get<std::string>());
     for (const char* const forbidden : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE, U+FFFF
-        for (std::size_t at = out.find(forbidden); at != std::string::npos; at = out.find(forbidden, at))
-            out.replace(at, 3, "\xEF\xBF\xBD");
+        for (std::size_t place = out.find(forbidden); place != std::string::npos; place = out.find(forbidden, place))
+            out.replace(place, 3, "\xEF\xBF\xBD");
     return out;
 }
 
-/// Writes XML as it comes; closed elements are handed on in pieces.
+/// Writes a JUnit report. Passes the XML to the sink in pieces, so that only one piece is in memory.
 class JunitWriter {
 public:
     JunitWriter(const VerdictReport& report, const Sink& sink) : report_(report), sink_(sink) {}
@@ -116,7 +116,8 @@ public:
 private:
     void push(const char* name, const std::string& value) { printer_.PushAttribute(name, xml_text(value).c_str()); }
 
-    /// Some readers need a time; a measured one would differ from run to run.
+    /// Adds the name and the counts. Some readers need a time; it is 0, because a measured time would differ from run
+    /// to run.
     void push_counts(const std::string& name)
     {
         const std::uint64_t valid = counts_of(report_)[Verdict::Valid], all = report_.judgements.size();
@@ -183,7 +184,7 @@ private:
         return text;
     }
 
-    /// A box has no name of its own.
+    /// Returns the robot's name, or "robot" if it has none.
     std::string robot_name() const
     {
         const std::string& name = report_.judge.robot().name;

@@ -13,7 +13,7 @@ namespace {
 
 using Kind = CollisionGeometry::Kind;
 
-/// "link "arm::hand": collision "palm"".
+/// Returns where a body is in its file, for messages: link "arm::hand": collision "palm".
 std::string place_of(const CollisionBody& body)
 {
     return "link \"" + body.names[1] + "\"" +
@@ -31,7 +31,7 @@ void append_ellipsoid(Robot& robot, const CollisionBody& body, const std::string
     RobotPart part = ellipsoid_hull(body.geometry.size, body.pose);
     part.name = body.names[1];
     char text[120];
-    std::snprintf(text, sizeof text, "its ellipsoid counts as a polyhedron around it, %.1f %% more in volume",
+    std::snprintf(text, sizeof text, "its ellipsoid is replaced by a polyhedron around it, with %.1f %% more volume",
                   100 * ellipsoid_growth(part, body.geometry.size));
     robot.notices.push_back(file + ": " + place_of(body) + ": " + text);
     robot.parts.push_back(std::move(part));
@@ -45,10 +45,10 @@ void append_mesh_body(Robot& robot, const CollisionBody& body, ModelPaths& paths
     if (!std::filesystem::is_regular_file(found))
         fail(body, file,
              "<mesh> " + geometry.uri +
-                 " is found neither beside the file, nor in --model-path, GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH, nor "
-                 "in the folders above the file");
+                 " was not found beside the file, in --model-path, in GZ_SIM_RESOURCE_PATH, in GAZEBO_MODEL_PATH or "
+                 "in the folders above the file; add its folder to --model-path or fix the URI");
     try {
-        // As Gazebo takes COLLADA: its <unit> counts, its <up_axis> does not.
+        // Like Gazebo, this applies the <unit> of a COLLADA file and ignores its <up_axis>.
         const FileMesh mesh = submesh_of(read_mesh(found), geometry, found.string());
         robot.notices.insert(robot.notices.end(), mesh.notices.begin(), mesh.notices.end());
         append_mesh(robot, {body.names[1], found, placed(mesh.nodes, geometry.size, body.pose)}, most_parts);
@@ -76,12 +76,13 @@ void append_body(Robot& robot, const CollisionBody& body, ModelPaths& paths, con
     }
     if (geometry.kind == Kind::Ellipsoid) return append_ellipsoid(robot, body, file);
     const std::string why =
-        geometry.kind == Kind::Plane       ? "is a <plane>, which no robot can be made of: it has no end"
-        : geometry.kind == Kind::Heightmap ? "is a <heightmap>, which no robot can be made of: it has no thickness"
+        geometry.kind == Kind::Plane ? "is a <plane>, which a robot cannot have because it is infinite; use a <box>"
+        : geometry.kind == Kind::Heightmap
+            ? "is a <heightmap>, which a robot cannot have because it has no thickness; use a <mesh>"
         : geometry.kind == Kind::Polyline
-            ? "is a <polyline>, which robots cannot have here: a box or a mesh does"
+            ? "is a <polyline>, which is not supported in robots; use a <box> or a <mesh>"
             : "is a <" + geometry.element +
-                  ">, which is not known here; known: box, sphere, cylinder, capsule, ellipsoid, mesh";
+                  ">, which is unknown; use box, sphere, cylinder, capsule, ellipsoid or mesh";
     fail(body, file, why);
 }
 

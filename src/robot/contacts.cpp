@@ -9,7 +9,7 @@ namespace spawnfield {
 namespace {
 
 constexpr int disc_corners = 32;
-constexpr int capsule_balls = 17;      ///< along its straight part
+constexpr int capsule_balls = 17;      ///< spheres along the straight part of a capsule
 constexpr double least_spread = 1e-6;  // m
 
 void add_circle(const Vec3& centre, const Vec3& u, const Vec3& v, std::vector<Vec3>& out)
@@ -20,7 +20,7 @@ void add_circle(const Vec3& centre, const Vec3& u, const Vec3& v, std::vector<Ve
     }
 }
 
-/// The widest circle of a ball at or below z; nothing if all of it is above.
+/// Adds the widest circle of a ball at or below height z. Adds nothing if the whole ball is above z.
 void add_cap(const Vec3& centre, double radius, double z, std::vector<Vec3>& out)
 {
     const double level = std::min(z, centre.z()), depth = centre.z() - level;
@@ -29,7 +29,8 @@ void add_cap(const Vec3& centre, double radius, double z, std::vector<Vec3>& out
     add_circle({centre.x(), centre.y(), level}, reach * Vec3::UnitX(), reach * Vec3::UnitY(), out);
 }
 
-/// Points of the part whose convex hull is about as wide as the part at and below z. Hulls and boxes: their corners.
+/// Returns points of the part whose convex hull is about as wide as the part at and below height z: the corners of
+/// hulls and boxes, and points on circles of round shapes.
 std::vector<Vec3> corners_of(const RobotPart& part, double z)
 {
     const Pose& pose = part.shape.pose;
@@ -58,7 +59,8 @@ std::vector<Vec3> corners_of(const RobotPart& part, double z)
     return out;
 }
 
-/// What of the corners' convex hull is at or below z, as seen from above.
+/// Cuts the convex hull of the corners at height z. Adds points, seen from above, whose convex hull is the part at or
+/// below z.
 void add_below(const std::vector<Vec3>& corners, double z, Polygon2& out)
 {
     for (const Vec3& low : corners) {
@@ -75,8 +77,9 @@ double distance_to_line(const Vec2& p, const Vec2& from, const Vec2& to)
     return length > 0 ? std::abs(cross(to - from, p - from)) / length : (p - from).norm();
 }
 
-/// Without the corners that lie on the line between others but for rounding: they would weigh on one side of a
-/// symmetric robot and not on the other. Goes round from the corner farthest out, which is none of those.
+/// Returns the hull without the corners that lie, apart from rounding, on the line between others: rounding could leave
+/// such a corner on one side of a symmetric robot and not on the other. Goes round from the corner farthest from the
+/// mean, which is certainly not such a corner.
 Polygon2 without_flat_corners(const Polygon2& hull)
 {
     if (hull.size() < 4) return hull;
@@ -85,17 +88,17 @@ Polygon2 without_flat_corners(const Polygon2& hull)
     const auto is_nearer = [&](const Vec2& a, const Vec2& b) { return (a - mean).norm() < (b - mean).norm(); };
     const std::size_t first = std::size_t(std::max_element(hull.begin(), hull.end(), is_nearer) - hull.begin());
     const auto corner = [&](std::size_t k) -> const Vec2& { return hull[(first + k) % n]; };
-    const auto are_flat = [&](std::size_t from, std::size_t to) {  // all between them
+    const auto are_flat = [&](std::size_t from, std::size_t to) {  // all corners between the two
         for (std::size_t k = from + 1; k < to; ++k)
             if (distance_to_line(corner(k), corner(from), corner(to)) > least_spread) return false;
         return true;
     };
     Polygon2 out;
-    for (std::size_t at = 0; at < n;) {
-        out.push_back(corner(at));
-        std::size_t next = at + 1;
-        while (next < n && are_flat(at, next + 1)) ++next;
-        at = next;
+    for (std::size_t kept = 0; kept < n;) {
+        out.push_back(corner(kept));
+        std::size_t next = kept + 1;
+        while (next < n && are_flat(kept, next + 1)) ++next;
+        kept = next;
     }
     return out;
 }
@@ -113,7 +116,8 @@ bool span_area(std::span<const Vec3> points)
         xy += from_mean.x() * from_mean.y();
         yy += from_mean.y() * from_mean.y();
     }
-    // The smaller eigenvalue of their scatter, without its cancellation: the determinant by the larger one.
+    // The smaller eigenvalue of the scatter matrix is its determinant divided by the larger eigenvalue. This form
+    // avoids cancellation.
     const double larger = (xx + yy) / 2 + std::hypot((xx - yy) / 2, xy);
     return xx * yy - xy * xy > least_spread * least_spread * double(points.size()) * larger;
 }

@@ -14,10 +14,10 @@
 namespace spawnfield {
 namespace {
 
-constexpr int even_cuts = 15;           // per axis, at equal distances
-constexpr std::size_t vertex_cuts = 8;  // per axis, beside vertices on either side
-constexpr double least_gain =
-    1e-3;  // of the first hull's volume: what a cut and those that it makes possible must save
+constexpr int even_cuts = 15;           // per axis, at equal distances from each other
+constexpr std::size_t vertex_cuts = 8;  // vertices per axis that get a cut on either side
+// Share of the first hull's volume that a cut must save, together with the later cuts that it makes possible.
+constexpr double least_gain = 1e-3;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -26,7 +26,8 @@ struct Plane {
     double offset = 0;
 };
 
-/// Adds the part of a triangle on one side (-1: below) of a plane, itself included, as a fan.
+/// Adds the part of a triangle that lies on one side of a plane (side -1: below, 1: above) or on the plane, as a fan of
+/// triangles.
 void clip(const Corners& triangle, const Plane& plane, double side, std::vector<Corners>& out)
 {
     std::array<Vec3, 4> kept;
@@ -36,7 +37,8 @@ void clip(const Corners& triangle, const Plane& plane, double side, std::vector<
         const double dp = side * (p[plane.axis] - plane.offset), dq = side * (q[plane.axis] - plane.offset);
         if (dp >= 0) kept[count++] = p;
         if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) {
-            // From the lower end, so that both sides and both triangles at an edge get the same point.
+            // Interpolates from the lower end, so that both sides of the plane and both triangles of an edge get the
+            // same point.
             const Vec3 &low = dp * side < dq * side ? p : q, &high = dp * side < dq * side ? q : p;
             kept[count] = low + (plane.offset - low[plane.axis]) / (high[plane.axis] - low[plane.axis]) * (high - low);
             kept[count++][plane.axis] = plane.offset;
@@ -45,8 +47,8 @@ void clip(const Corners& triangle, const Plane& plane, double side, std::vector<
     for (std::size_t k = 1; k + 1 < count; ++k) out.push_back({kept[0], kept[k], kept[k + 1]});
 }
 
-/// Whether a ray from the point meets the triangle. Source: Moeller, Trumbore, Fast, Minimum Storage Ray/Triangle
-/// Intersection, 1997.
+/// Returns whether a ray from the point meets the triangle. Source: Moeller, Trumbore, Fast, Minimum Storage
+/// Ray/Triangle Intersection, 1997.
 bool is_met(const Corners& triangle, const Vec3& point, const Vec3& direction)
 {
     const Vec3 e = triangle[1] - triangle[0], f = triangle[2] - triangle[0], normal = direction.cross(f);
@@ -57,8 +59,9 @@ bool is_met(const Corners& triangle, const Vec3& point, const Vec3& direction)
     return u >= 0 && v >= 0 && u + v <= 1 && f.dot(across) / det > 0;
 }
 
-/// Whether a ray meets a piece an odd number of times, whichever way its triangles are wound. A ray through an edge may
-/// miscount, so that one of three is enough: one point too many does no harm.
+/// Returns whether the point is inside a piece: a ray from it meets the piece an odd number of times. The winding of
+/// the triangles does not matter. A ray through an edge may be counted wrongly, so three rays are tried and one odd
+/// count is enough: a point that is wrongly added only makes a hull larger.
 bool is_inside(const std::vector<SurfacePiece>& pieces, const Vec3& point)
 {
     const std::array<Vec3, 3> directions{Vec3(0.8, 0.53, 0.27), Vec3(-0.36, 0.41, 0.87), Vec3(0.29, -0.93, 0.19)};
@@ -72,11 +75,11 @@ bool is_inside(const std::vector<SurfacePiece>& pieces, const Vec3& point)
     return false;
 }
 
-/// What of the pieces lies in a box.
+/// The part of the pieces that lies in a box.
 struct Block {
     Bounds box{Vec3::Constant(-infinite), Vec3::Constant(infinite)};
     std::vector<Corners> triangles;
-    std::vector<Vec3> corners;  ///< of the box, inside a piece
+    std::vector<Vec3> corners;  ///< corners of the box that lie inside a piece
     RobotPart hull;
     double volume = 0;
     int children[2] = {-1, -1};
@@ -84,7 +87,7 @@ struct Block {
     bool is_leaf() const { return children[0] < 0; }
 };
 
-/// Throws std::domain_error if it has no volume.
+/// Computes the block's hull and its volume. Throws std::domain_error if the hull has no volume.
 void add_hull(Block& block)
 {
     std::vector<Vec3> points = block.corners;
@@ -93,7 +96,7 @@ void add_hull(Block& block)
     block.volume = hull_volume(block.hull);
 }
 
-/// Those of the box's corners on a plane through it that lie inside a piece.
+/// Cuts the box by a plane. Returns those corners of the cut rectangle that lie inside a piece.
 std::vector<Vec3> inner_corners(const std::vector<SurfacePiece>& pieces, const Bounds& box, const Plane& plane)
 {
     std::vector<Vec3> out;
@@ -109,7 +112,7 @@ std::vector<Vec3> inner_corners(const std::vector<SurfacePiece>& pieces, const B
     return out;
 }
 
-/// Both sides of a block; nothing if one of them has no volume.
+/// Returns the two sides of a block that is cut by a plane; nothing if one of them has no volume.
 std::optional<std::array<Block, 2>> sides_of(const Block& block, const Plane& plane,
                                              const std::vector<SurfacePiece>& pieces)
 {
@@ -133,13 +136,14 @@ std::optional<std::array<Block, 2>> sides_of(const Block& block, const Plane& pl
     return sides;
 }
 
-/// Planes at equal distances, and just beside vertices, where walls often are. None goes through a vertex, nor do three
-/// meet in a face but by a rare chance: there rounding would tell what is inside.
+/// Returns planes at equal distances, and planes just beside vertices, where walls often are. Small, varying offsets
+/// make it very unlikely that a plane goes through a vertex, or that three planes meet on a face: rounding would decide
+/// there what is inside.
 std::vector<Plane> planes_through(const Block& block)
 {
     std::vector<Plane> out;
     const Bounds bounds = block.hull.bounds();
-    const auto aside = [&](double length) {  // 0.5 .. 1.5 millionths of it
+    const auto aside = [&](double length) {  // 0.5 .. 1.5 millionths of the length
         const double turn = std::numbers::phi * double(out.size() + 1);
         return 1e-6 * length * (0.5 + turn - std::floor(turn));
     };
@@ -161,7 +165,8 @@ std::vector<Plane> planes_through(const Block& block)
     return out;
 }
 
-/// The cut that leaves the least volume; of equal ones one across the longest side, through the middle.
+/// Returns the cut after which the least volume remains. Among equal cuts it prefers one across the longest side,
+/// through the middle.
 std::optional<std::array<Block, 2>> best_cut(const Block& block, const std::vector<SurfacePiece>& pieces)
 {
     const std::vector<Plane> planes = planes_through(block);
@@ -179,6 +184,7 @@ std::optional<std::array<Block, 2>> best_cut(const Block& block, const std::vect
     return sides_of(block, planes[std::size_t(best - scores.begin())], pieces);
 }
 
+/// Cuts pieces into blocks, greedily, and joins the blocks whose cuts were useless.
 class Splitter {
 public:
     Splitter(const std::vector<SurfacePiece>& pieces, int most) : pieces_(pieces), most_(most)
@@ -194,7 +200,8 @@ public:
     {
         const double whole = blocks_[0].volume;
         std::vector<std::optional<std::array<Block, 2>>> cuts;
-        // Twice as many as wanted: a ring saves nothing until it is cut in four. What saved nothing is undone.
+        // Makes almost twice as many blocks as wanted, because cutting a ring saves nothing before there are four
+        // blocks. Then undoes the cuts that saved least.
         for (int leaves = 1; most_ > 1 && leaves < 2 * most_; ++leaves) {
             for (std::size_t k = cuts.size(); k < blocks_.size(); ++k) cuts.push_back(best_cut(blocks_[k], pieces_));
             const int next = next_block(cuts);
@@ -216,7 +223,7 @@ private:
         return block.volume - sides[0].volume - sides[1].volume;
     }
 
-    /// The leaf whose cut saves most; where none saves anything, the largest one. -1: no leaf can be cut.
+    /// Returns the leaf whose cut saves most volume, or the largest leaf if no cut saves any; -1 if no leaf can be cut.
     int next_block(const std::vector<std::optional<std::array<Block, 2>>>& cuts) const
     {
         int best = -1;
@@ -233,7 +240,8 @@ private:
         return best;
     }
 
-    /// Joins the two leaves whose cut saves least: while there are too many, or it saves next to nothing.
+    /// Joins the two leaves whose cut saves least, if there are too many leaves or if the cut saves at most `enough`,
+    /// m3. Returns whether it joined any.
     bool undo_worst(double enough)
     {
         int worst = -1, leaves = 0;

@@ -6,20 +6,21 @@ namespace spawnfield {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Connected triangles.
+/// The triangles of one connected piece.
 using SurfacePiece = std::vector<Corners>;
 
-/// Convex hulls, at most `most`, whose union holds all triangles, and all that closed pieces of them enclose.
+/// Returns at most `most` convex hulls whose union contains all triangles and everything that closed pieces enclose.
 ///
-/// Planes across the axes cut the pieces; what lies in each box between the planes gets its own hull: that of the
-/// triangles' parts in it and of those of its corners that lie inside a piece. All else of a solid in a box is between
-/// these: the ends of its cuts with the box's faces and edges lie on its surface or are corners. Cuts go where the
-/// volume falls most, and end where nothing is gained. Throws std::domain_error if the first hull has no volume. Source
-/// of the idea: Wei, Liu, Ling, Su, Approximate Convex Decomposition for 3D Meshes with Collision-Aware Concavity and
-/// Tree Search, 2022 (planes that cut the mesh itself); the search here is greedy. O(parts * triangles * cuts tried).
+/// Planes perpendicular to the axes cut the pieces into boxes. Each box gets its own hull: that of the parts of
+/// triangles in the box, and of the corners of the box that lie inside a piece. These points are enough: a line in the
+/// box leaves a solid on the solid's surface or on a face of the box, a line in a face leaves it on the surface or on
+/// an edge, and an edge leaves it on the surface or at a corner. The search is greedy: it cuts where the volume falls
+/// most, and stops when nothing is gained. Throws std::domain_error if the hull of all pieces has no volume. O(parts *
+/// triangles * cuts tried). Source of the idea: Wei, Liu, Ling, Su, Approximate Convex Decomposition for 3D Meshes with
+/// Collision-Aware Concavity and Tree Search, 2022 (planes that cut the mesh itself).
 std::vector<RobotPart> convex_split(const std::vector<SurfacePiece>& pieces, int most);
 
-/// m3, of a Hull.
+/// Returns the volume of a part of kind Hull, m3.
 double hull_volume(const RobotPart& hull);
 
 }  // namespace spawnfield

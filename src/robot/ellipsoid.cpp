@@ -11,7 +11,7 @@ namespace spawnfield {
 RobotPart ellipsoid_hull(const Vec3& radii, const Pose& robot_from_ellipsoid)
 {
     RobotPart hull = convex_hull(mesh_around_unit_sphere(2).vertices);
-    // An affine image of a polyhedron around the unit sphere is one around the sphere's image.
+    // An affine map turns a polyhedron around the unit sphere into a polyhedron around the ellipsoid.
     for (Vec3& vertex : hull.hull_vertices)
         vertex = robot_from_ellipsoid.rotation * vertex.cwiseProduct(radii) + robot_from_ellipsoid.position;
     return hull;

@@ -16,7 +16,7 @@ namespace {
 
 using Faces = std::vector<std::array<int, 3>>;
 
-/// One run of qhull; frees what it holds.
+/// One run of qhull. The destructor frees qhull's memory.
 class Quickhull {
 public:
     explicit Quickhull(const std::vector<Vec3>& points) : sink_(std::fopen("/dev/null", "w"), &std::fclose)

@@ -13,7 +13,8 @@
 namespace spawnfield {
 namespace {
 
-/// Each directed edge is there once, and so is its opposite: the faces of each piece look the same way.
+/// Returns whether each directed edge occurs exactly once and its opposite occurs too. Then the pieces are closed, and
+/// all faces of a piece have the same orientation.
 bool is_oriented(const std::vector<Triangle>& triangles)
 {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -26,23 +27,25 @@ bool is_oriented(const std::vector<Triangle>& triangles)
     });
 }
 
+/// A closed piece of a mesh.
 struct Piece3 {
-    double volume = 0;
+    double volume = 0;  ///< m3; negative if the faces look inwards
     Bounds bounds;
 };
 
+/// Returns the pieces of a node; nothing if one of them is not closed.
 std::optional<std::vector<Piece3>> closed_pieces(const FileMesh::Node& node)
 {
     if (!is_oriented(node.triangles)) return std::nullopt;
     const FacePieces found = find_pieces(node.triangles);
     std::vector<Piece3> out(found.open_edges.size());
-    const Vec3 middle = node.vertices.empty() ? Vec3(Vec3::Zero()) : node.vertices[0];
+    const Vec3 reference = node.vertices.empty() ? Vec3(Vec3::Zero()) : node.vertices[0];
     for (std::size_t face = 0; face < node.triangles.size(); ++face) {
         Piece3& piece = out[found.of_face[face]];
         Corners corners;
         for (std::size_t k = 0; k < 3; ++k) {
-            corners[k] = node.vertices[node.triangles[face][k]] - middle;
-            piece.bounds.extend(corners[k] + middle);
+            corners[k] = node.vertices[node.triangles[face][k]] - reference;
+            piece.bounds.extend(corners[k] + reference);
         }
         piece.volume += corners[0].dot(corners[1].cross(corners[2])) / 6;
     }
@@ -63,12 +66,12 @@ std::optional<double> enclosed_volume(const std::vector<FileMesh::Node>& nodes)
 {
     std::vector<Piece3> pieces;
     for (const FileMesh::Node& node : nodes) {
-        const auto of_node = closed_pieces(node);
-        if (!of_node) return std::nullopt;
-        pieces.insert(pieces.end(), of_node->begin(), of_node->end());
+        const auto node_pieces = closed_pieces(node);
+        if (!node_pieces) return std::nullopt;
+        pieces.insert(pieces.end(), node_pieces->begin(), node_pieces->end());
     }
     double sum = 0;
-    constexpr std::size_t too_many = 2000;  // compared pair by pair
+    constexpr std::size_t too_many = 2000;  // they are compared pair by pair
     if (pieces.size() > too_many) return std::nullopt;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         sum += std::abs(pieces[i].volume);
@@ -119,9 +122,9 @@ std::vector<std::string> growth_notices(const Robot& robot)
         else
             std::snprintf(
                 text, sizeof text,
-                "%s, %.3g m3; how much more than the mesh is not known, as that is not watertight or overlaps itself",
+                "%s, %.3g m3; the mesh's own volume is unknown, because the mesh is not watertight or overlaps itself",
                 what.c_str(), fit.volume);
-        out.push_back((fit.name.empty() ? "" : "\"" + fit.name + "\": ") + fit.file + " counts as " + text);
+        out.push_back((fit.name.empty() ? "" : "\"" + fit.name + "\": ") + fit.file + " is replaced by " + text);
     }
     return out;
 }

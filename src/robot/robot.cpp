@@ -53,19 +53,19 @@ std::vector<double> split_numbers(const std::string& text, const std::string& ar
         double value = 0;
         if (!parse_number(std::string_view(text).substr(start, comma - start), value) || !std::isfinite(value))
             throw ArgumentError("robot \"" + argument + "\": \"" + text.substr(start, comma - start) +
-                                "\" is no finite number");
+                                "\" is not a finite number");
         out.push_back(value);
         start = comma + 1;
     }
     return out;
 }
 
-/// `box:LX,LY,LZ[@x,y,z]`; without @ the box stands on the origin.
+/// Returns the robot of `box:LX,LY,LZ[@x,y,z]`, lengths in m. Without @ the box stands on the origin.
 Robot box_robot(const std::string& argument)
 {
     const std::string spec = argument.substr(4);
-    const std::size_t at = spec.find('@');
-    const auto size = split_numbers(spec.substr(0, at), argument);
+    const std::size_t at_sign = spec.find('@');
+    const auto size = split_numbers(spec.substr(0, at_sign), argument);
     if (size.size() != 3)
         throw ArgumentError("robot \"" + argument + "\": has " + std::to_string(size.size()) +
                             " side lengths, needs 3 (box:LX,LY,LZ[@x,y,z])");
@@ -75,8 +75,8 @@ Robot box_robot(const std::string& argument)
     RobotPart part;
     part.shape.size = {size[0], size[1], size[2]};
     part.shape.pose.position = {0, 0, size[2] / 2};
-    if (at != std::string::npos) {
-        const auto centre = split_numbers(spec.substr(at + 1), argument);
+    if (at_sign != std::string::npos) {
+        const auto centre = split_numbers(spec.substr(at_sign + 1), argument);
         if (centre.size() != 3)
             throw ArgumentError("robot \"" + argument + "\": has " + std::to_string(centre.size()) +
                                 " coordinates after @, needs 3");
@@ -89,10 +89,10 @@ void append_mesh_part(Robot& robot, const YamlMap& map, const std::filesystem::p
 {
     const std::filesystem::path file = folder / map.text("mesh");
     const Vec3 scale = map.scale();
-    const char given_up = map.has("up") ? map.one_of("up", {"y", "z"}, "z")[0] : char{0};
+    const char chosen_up = map.has("up") ? map.one_of("up", {"y", "z"}, "z")[0] : char{0};
     try {
         FileMesh mesh = read_mesh(file);
-        const char up = given_up != 0 ? given_up : mesh.up;
+        const char up = chosen_up != 0 ? chosen_up : mesh.up;
         for (FileMesh::Node& node : mesh.nodes)
             for (Vec3& vertex : node.vertices) vertex = turned_up(vertex.cwiseProduct(scale), up);
         robot.notices.insert(robot.notices.end(), mesh.notices.begin(), mesh.notices.end());
@@ -135,7 +135,7 @@ Robot read_robot_yaml(const std::filesystem::path& file, int mesh_parts)
     return robot;
 }
 
-/// A URDF, or an SDF model, whose file or folder may be given.
+/// Reads a URDF or an SDF model, from its file or from the model's folder.
 Robot read_model_robot(const std::filesystem::path& file_or_folder, const RobotOptions& options)
 {
     const std::filesystem::path file = model_file_of(file_or_folder);
@@ -147,7 +147,7 @@ Robot read_model_robot(const std::filesystem::path& file_or_folder, const RobotO
     robot.notices = std::move(model.notices);
     for (const CollisionBody& body : model.bodies) append_body(robot, body, paths, file.string(), options.mesh_parts);
     if (robot.parts.empty())
-        throw FileError(file.string(), "has no <collision>, needs at least one (<visual> does not count)");
+        throw FileError(file.string(), "has no <collision>, needs at least one (<visual> elements are not used)");
     return robot;
 }
 
@@ -165,14 +165,14 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
     refuse_foreign_robot(file);
     if (extension == ".urdf" || extension == ".sdf" || extension == ".world") return read_model_robot(file, options);
     if (extension != ".yaml" && extension != ".yml")
-        throw FileError(robot, std::string("is no known robot format, needs ") + known_kinds);
+        throw FileError(robot, std::string("is not in a known robot format; a robot is ") + known_kinds);
     if (!options.joints.empty())
         throw ArgumentError("load_robot",
                             "joint \"" + options.joints[0].joint + "\" is given, but " + robot + " has no joints");
     return read_robot_yaml(file, options.mesh_parts);
 }
 
-/// How to make metres of a robot's millimetres; `text` is the robot as it was given.
+/// Returns how to convert a robot from millimetres to metres. `text` is the robot as the user gave it.
 std::string millimetre_advice(const std::string& text)
 {
     if (text.starts_with("box:")) return "divide its lengths by 1000";
@@ -180,7 +180,7 @@ std::string millimetre_advice(const std::string& text)
            "scale=\"0.001 0.001 0.001\" (URDF)";
 }
 
-/// A notice on a robot that is as large as those that drive, written in millimetres, come out.
+/// Returns a notice if the robot is larger than 50 m, because its lengths are then likely in millimetres.
 std::vector<std::string> size_notices(const Robot& robot, const std::string& text)
 {
     constexpr double usual = 50;  // m
@@ -193,6 +193,7 @@ std::vector<std::string> size_notices(const Robot& robot, const std::string& tex
     return {text + words + millimetre_advice(text)};
 }
 
+/// Throws FileError if the robot reaches more than farthest_robot_point from its origin.
 void check_reach(const Robot& robot, const std::string& text)
 {
     const Bounds box = robot.bounds();

@@ -25,29 +25,30 @@ bool is_header_word(const std::string& word)
     return std::find(header_words.begin(), header_words.end(), word) != header_words.end();
 }
 
-/// Words between white space, with the lines that they stand in.
+/// Splits a text into words between white space, and counts the lines.
 class Words {
 public:
     explicit Words(std::string_view text) : text_(text) {}
 
-    std::string_view peek()  ///< empty at the end
+    /// Returns the next word without taking it; empty at the end.
+    std::string_view peek()
     {
-        for (; at_ < text_.size() && is_space(text_[at_]); ++at_) line_ += text_[at_] == '\n';
-        std::size_t end = at_;
+        for (; position_ < text_.size() && is_space(text_[position_]); ++position_) line_ += text_[position_] == '\n';
+        std::size_t end = position_;
         while (end < text_.size() && !is_space(text_[end])) ++end;
-        return text_.substr(at_, end - at_);
+        return text_.substr(position_, end - position_);
     }
     std::string_view next()
     {
         const std::string_view word = peek();
-        at_ += word.size();
+        position_ += word.size();
         return word;
     }
-    std::size_t line() const { return line_; }  ///< of the last word, from 1
+    std::size_t line() const { return line_; }  ///< line of the last word, from 1
 
 private:
     std::string_view text_;
-    std::size_t at_ = 0, line_ = 1;
+    std::size_t position_ = 0, line_ = 1;
 };
 
 FileError fault(const std::string& file, const Words& words, const std::string& what)
@@ -81,11 +82,11 @@ Header read_header(Words& words, const std::string& file)
         const std::string key = lower_case(word);
         if (!is_header_word(key)) {
             if (word.empty() || parse_number(word, value)) return header;
-            throw fault(
-                file, words,
-                quoted(word) +
-                    " is neither a number nor a word of an ESRI ASCII grid's header; known: ncols, nrows, xllcorner or "
-                    "xllcenter, yllcorner or yllcenter, cellsize or dx and dy, NODATA_value");
+            throw fault(file, words,
+                        quoted(word) +
+                            " is neither a number nor a key of an ESRI ASCII grid's header; known keys: ncols, nrows, "
+                            "xllcorner or "
+                            "xllcenter, yllcorner or yllcenter, cellsize or dx and dy, NODATA_value");
         }
         words.next();
         if (header.contains(key)) throw fault(file, words, key + " is given twice");
@@ -98,7 +99,7 @@ Header read_header(Words& words, const std::string& file)
     }
 }
 
-/// The one of the words that the header has.
+/// Returns the one of two keys that the header has, with its value. Throws FileError if it has none or both.
 std::pair<std::string, double> one_of(const Header& header, const std::string& file, const std::string& first,
                                       const std::string& second)
 {
@@ -134,37 +135,37 @@ std::pair<double, double> cell_of(const Header& header, const std::string& file)
         return {side, side};
     }
     if (header.contains("cellsize"))
-        throw FileError(file, "has cellsize and dx or dy, needs cellsize or both of dx, dy");
+        throw FileError(file, "has cellsize together with dx or dy, needs cellsize alone, or dx and dy");
     if (!header.contains("dx") || !header.contains("dy"))
-        throw FileError(file, "has one of dx, dy in its header, needs both or cellsize");
+        throw FileError(file, "has only one of dx and dy in its header, needs both, or cellsize");
     return {positive(header.at("dx"), file, "dx"), positive(header.at("dy"), file, "dy")};
 }
 
-/// Coordinates of the centre of the lowest row or first column.
+/// Returns the coordinate of the centre of the first column (axis x) or of the lowest row (axis y).
 double first_centre(const Header& header, const std::string& file, const std::string& axis, double cell)
 {
     const auto [key, value] = one_of(header, file, axis + "llcorner", axis + "llcenter");
     return key.ends_with("corner") ? value + cell / 2 : value;
 }
 
-/// The first line of which the number of values is not that of a row; empty if all are or rows do not stand in lines of
-/// their own.
-std::string odd_line(Words words, const GreyImage& image)
+/// Returns a message about the first line that does not have the number of values of a row. Returns "" if there is
+/// none, or if no line has that number, because then lines are not rows.
+std::string uneven_line(Words words, const GreyImage& image)
 {
-    std::size_t line = 0, in_line = 0, full = 0;
-    std::string odd;
-    const auto close = [&] {
+    std::size_t line = 0, in_line = 0, full_lines = 0;
+    std::string message;
+    const auto end_line = [&] {
         if (in_line == std::size_t(image.cols))
-            ++full;
-        else if (in_line > 0 && odd.empty())
-            odd = "line " + std::to_string(line) + " has " + std::to_string(in_line) + " values, needs " +
-                  std::to_string(image.cols) + " (ncols)";
+            ++full_lines;
+        else if (in_line > 0 && message.empty())
+            message = "line " + std::to_string(line) + " has " + std::to_string(in_line) + " values, needs " +
+                      std::to_string(image.cols) + " (ncols)";
         in_line = 0;
     };
     for (;;) {
         const std::string_view word = words.next();
-        if (word.empty() || words.line() != line) close();
-        if (word.empty()) return full > 0 ? odd : "";
+        if (word.empty() || words.line() != line) end_line();
+        if (word.empty()) return full_lines > 0 ? message : "";
         line = words.line();
         ++in_line;
     }
@@ -175,14 +176,14 @@ void read_values(Words words, const std::string& file, GreyImage& image)
     const Words start = words;
     const std::uint64_t wanted = std::uint64_t(image.rows) * std::uint64_t(image.cols);
     const auto wrong_count = [&](const std::string& found) {
-        const std::string line = odd_line(start, image);
+        const std::string line = uneven_line(start, image);
         return FileError(file, (line.empty() ? "" : line + ": ") + "it has " + found + " values, needs " +
                                    std::to_string(wanted) + " (" + std::to_string(image.cols) + " x " +
                                    std::to_string(image.rows) + ")");
     };
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
         double value = 0;
-        if (!parse_number(word, value)) throw fault(file, words, quoted(word) + " is no number");
+        if (!parse_number(word, value)) throw fault(file, words, quoted(word) + " is not a number");
         if (image.pixels.size() == wanted) throw wrong_count("more than " + std::to_string(wanted));
         image.pixels.push_back(value);
     }
@@ -203,9 +204,10 @@ AsciiGrid parse_ascii_grid(std::string_view text, const std::string& file, std::
     const Header header = read_header(words, file);
     const std::uint64_t cols = count(header, file, "ncols"), rows = count(header, file, "nrows");
     if (rows > most / cols)
-        throw FileError(file, "has " + std::to_string(cols) + " x " + std::to_string(rows) + " cells, needs at most " +
-                                  std::to_string(most) +
-                                  "; gdalwarp -tr makes it coarser, gdal_translate -projwin cuts a part out");
+        throw FileError(file,
+                        "has " + std::to_string(cols) + " x " + std::to_string(rows) + " cells, needs at most " +
+                            std::to_string(most) +
+                            "; make it coarser with gdalwarp -tr, or extract a part with gdal_translate -projwin");
     const auto [dx, dy] = cell_of(header, file);
     AsciiGrid grid;
     grid.frame.dx = dx;

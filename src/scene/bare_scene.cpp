@@ -24,10 +24,11 @@ bool is_elevation_model(const fs::path& file, const std::string& extension, cons
     if (!options.heightmap.empty() || extension == ".asc" || extension == ".tif" || extension == ".tiff" ||
         extension == ".png")
         return true;
-    if (extension == ".raw" && read_file(file).find('\0') != std::string::npos)  // else text: a mesh that assimp reads
+    if (extension == ".raw" &&
+        read_file(file).find('\0') != std::string::npos)  // a text file is a mesh that assimp reads
         throw FileError(
             file.string(),
-            "does not tell what is in it: --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M' does");
+            "has no header; give its layout with --heightmap 'raw: {type: float32, rows: R, cols: C}, cell: M'");
     return false;
 }
 
@@ -45,7 +46,7 @@ Scene read_elevation_model(const fs::path& file, const SceneOptions& options)
         append_heightmap(scene, part, found, {}, false);
         place_scene(scene, found, {}, file.string());
     }
-    tell_idle_rules(file, options.labels, {scene.name}, scene);
+    note_unused_rules(file, options.labels, {scene.name}, scene);
     return scene;
 }
 
@@ -63,7 +64,7 @@ Scene read_octomap_scene(const fs::path& file, Scene scene, Label fallback, cons
     if (label != Label::Ignore)
         append_octomap(scene, part, file, {}, options.unknown.value_or(Unknown::Free),
                        has_rule ? std::nullopt : options.auto_slope);
-    tell_idle_rules(file, options.labels, {scene.name}, scene);
+    note_unused_rules(file, options.labels, {scene.name}, scene);
     return scene;
 }
 
@@ -75,7 +76,7 @@ Scene read_mesh_scene(const fs::path& file, Scene scene, Label fallback, const S
     mesh.rules = face_rules(options.labels);
     mesh.auto_slope = options.auto_slope;
     const std::uint32_t part = add_part(scene, scene.name, "mesh", fallback);
-    tell_idle_rules(file, options.labels, names_of(append_mesh(scene, part, read_mesh(file), mesh)), scene);
+    note_unused_rules(file, options.labels, names_of(append_mesh(scene, part, read_mesh(file), mesh)), scene);
     return scene;
 }
 
@@ -88,10 +89,10 @@ Scene read_nav2_scene(const fs::path& file, const SceneOptions& options)
                                               file.string() + " is a 2D map");
     if (options.auto_slope)
         throw ArgumentError("load_scene", "auto_slope is for meshes, OctoMaps and worlds; " + file.string() +
-                                              " is a 2D map, with a floor and walls");
+                                              " is a 2D map, whose floor is terrain and whose walls are obstacles");
     if (!(options.wall_height >= 0) || !std::isfinite(options.wall_height))
         throw ArgumentError("load_scene", "wall_height", options.wall_height, "> 0 m");
-    constexpr double usual_height = 2;
+    constexpr double default_height = 2;
     const Nav2Map map = read_nav2_map(file);
     if (std::find(map.cells.begin(), map.cells.end(), Nav2Map::Cell::Free) == map.cells.end())
         throw FileError(file.string(), "has no free cell (" + std::to_string(map.cols) + " x " +
@@ -100,12 +101,12 @@ Scene read_nav2_scene(const fs::path& file, const SceneOptions& options)
     scene.name = file.stem().string();
     scene.notices = map.notices;
     if (options.wall_height == 0)
-        scene.notices.push_back(file.string() + ": walls are " + number(usual_height) +
+        scene.notices.push_back(file.string() + ": walls are " + number(default_height) +
                                 " m high (--wall-height sets it)");
     append_nav2_map(scene, map, label_by_name("floor", options.labels, Label::Terrain),
                     label_by_name("walls", options.labels, Label::Obstacle),
-                    options.wall_height > 0 ? options.wall_height : usual_height);
-    tell_idle_rules(file, options.labels, {"floor", "walls"}, scene);
+                    options.wall_height > 0 ? options.wall_height : default_height);
+    note_unused_rules(file, options.labels, {"floor", "walls"}, scene);
     return scene;
 }
 
@@ -126,7 +127,8 @@ Scene read_bare_scene(const fs::path& file, const SceneOptions& options)
                                   : read_mesh_scene(file, std::move(scene), fallback, options);
     if (is_unlabelled)
         scene.notices.insert(scene.notices.begin(),
-                             file.string() + ": no label given, so everything is terrain, walls and furniture too. " +
+                             file.string() +
+                                 ": no label is given, so everything is terrain, also walls and furniture. " +
                                  labelling_advice(scene));
     return scene;
 }

@@ -6,11 +6,11 @@
 
 namespace spawnfield {
 
-/// A nav2 or ROS map: a floor and walls. Throws FileError, ArgumentError.
+/// Reads a nav2 or ROS map as a floor and walls. Throws FileError, ArgumentError.
 Scene read_nav2_scene(const std::filesystem::path& file, const SceneOptions& options);
 
-/// A file that is the whole scene, by its extension: an elevation model, an OctoMap, or a mesh that assimp reads.
-/// Throws FileError, ArgumentError.
+/// Reads a file that is the whole scene. Its extension decides: an elevation model, an OctoMap, or a mesh that assimp
+/// reads. Throws FileError, ArgumentError.
 Scene read_bare_scene(const std::filesystem::path& file, const SceneOptions& options);
 
 }  // namespace spawnfield

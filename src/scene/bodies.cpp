@@ -25,11 +25,11 @@ using Kind = CollisionGeometry::Kind;
 
 constexpr std::array kind_names{"box",   "sphere", "cylinder",  "capsule",  "ellipsoid",
                                 "plane", "mesh",   "heightmap", "polyline", "unknown"};
-constexpr double around_the_rest = 10;  // m
-constexpr double beyond_bounds =
-    50;  // m that planes go on, for what hangs over the map's rim: more than any robot's reach
+constexpr double around_the_rest = 10;  // m of ground plane around all other geometry
+// m by which planes extend beyond the map's bounds, for robots that overhang its edge; larger than any robot.
+constexpr double beyond_bounds = 50;
 
-/// A closed mesh around the ellipsoid of these half axes.
+/// Returns a closed mesh around the ellipsoid with these half axes. `sphere` is a mesh around the unit sphere.
 FileMesh ellipsoid_mesh(const SphereMesh& sphere, const Vec3& radii)
 {
     FileMesh mesh;
@@ -42,8 +42,8 @@ FileMesh ellipsoid_mesh(const SphereMesh& sphere, const Vec3& radii)
     return mesh;
 }
 
-/// The part of the infinite plane z = 0 of `pose` that lies in the box: a convex polygon's corners, none if they do not
-/// meet.
+/// Returns the corners of the convex polygon in which the infinite plane z = 0 of `pose` meets the box; empty if they
+/// do not meet.
 std::vector<Vec3> plane_in_box(const Pose& pose, const Bounds& box)
 {
     const double reach = (box.max - box.min).norm();
@@ -74,7 +74,7 @@ public:
     {
     }
 
-    /// Keeps pointers to the bodies meanwhile.
+    /// Appends all bodies. Keeps pointers to them until it returns.
     void append(std::vector<CollisionBody>& bodies)
     {
         make_names_unique(bodies);
@@ -86,21 +86,21 @@ public:
         choose_bounds(bodies);
         for (std::size_t b = 0; b < bodies.size(); ++b)
             if (bodies[b].geometry.kind == Kind::Plane) append_plane(bodies[b], labels_[b]);
-        tell_ellipsoids();
-        tell_idle_rules(bodies);
+        note_ellipsoids();
+        note_unused_rules(bodies);
         if (everything_is_terrain_)
             scene_.notices.push_back(file_.string() +
                                      ": nothing in it is a plane, a heightmap or named as ground, so everything is "
-                                     "terrain, walls and furniture too. " +
+                                     "terrain, also walls and furniture. " +
                                      labelling_advice(scene_));
     }
 
     std::vector<std::string> take_missing()
     {
-        for (const auto& [uri, lost] : lost_)
-            missing_.push_back(file_.string() + ": " + lost.first + ": " + uri + " is not found" +
-                               (lost.second > 1 ? " (" + std::to_string(lost.second) + " collisions)" : "") +
-                               ": it is left out");
+        for (const auto& [uri, entry] : not_found_)
+            missing_.push_back(file_.string() + ": " + entry.first + ": " + uri + " is not found" +
+                               (entry.second > 1 ? " (" + std::to_string(entry.second) + " collisions)" : "") +
+                               ": it is ignored");
         return std::move(missing_);
     }
 
@@ -113,13 +113,13 @@ private:
                 body.names.back() += "_" + std::to_string(before + 1);
     }
 
-    /// Files of meshes and heightmaps; what is not found becomes Unknown and is told.
+    /// Finds the files of meshes and heightmaps. A geometry whose file is not found becomes Unknown, with a notice.
     void find_files(std::vector<CollisionBody>& bodies)
     {
         for (CollisionBody& body : bodies) {
             CollisionGeometry& geometry = body.geometry;
             if (geometry.kind == Kind::Unknown && !geometry.element.empty() && geometry.element != "empty")
-                leave_out(body, "<" + geometry.element + "> is no geometry that is known here");
+                ignore(body, "<" + geometry.element + "> is not a known geometry");
             if (geometry.kind != Kind::Mesh && geometry.kind != Kind::Heightmap) continue;
             const fs::path found = paths_.find(geometry.uri, geometry.folder);
             if (fs::is_regular_file(found)) {
@@ -127,7 +127,7 @@ private:
                 if (geometry.kind == Kind::Mesh) meshes_.expect(found);
                 continue;
             }
-            ++lost_
+            ++not_found_
                   .try_emplace(geometry.uri.empty() ? "a mesh without <uri>" : geometry.uri,
                                "\"" + scoped_name(body) + "\"", std::size_t{0})
                   .first->second.second;
@@ -144,11 +144,11 @@ private:
         for (const CollisionBody& body : bodies) {
             const bool counts = body.geometry.kind != Kind::Unknown;
             unknown += !counts;
-            const auto told = std::find_if(options_.labels.begin(), options_.labels.end(),
-                                           [&](const LabelRule& rule) { return matches_body(rule.pattern, body); });
-            const std::optional<Label> label = !counts                         ? Label::Ignore
-                                               : told != options_.labels.end() ? told->label
-                                                                               : rules.label_of(body);
+            const auto match = std::find_if(options_.labels.begin(), options_.labels.end(),
+                                            [&](const LabelRule& rule) { return matches_body(rule.pattern, body); });
+            const std::optional<Label> label = !counts                          ? Label::Ignore
+                                               : match != options_.labels.end() ? match->label
+                                                                                : rules.label_of(body);
             labels_.push_back(label.value_or(Label::Obstacle));
             by_slope_.push_back(!label && options_.auto_slope);
         }
@@ -163,11 +163,11 @@ private:
         if (is_unlabelled)
             scene_.notices.push_back(file_.string() +
                                      ": nothing in it is a plane, a heightmap or named as ground. As "
-                                     "parts of it are missing, nothing is made terrain");
+                                     "parts of it are missing, none of it is made terrain");
         scene_.rules = rules.take();
     }
 
-    /// The options' rules, those that match the body for all of its faces.
+    /// Returns the rules of the options. A rule that matches the body applies to all of its faces.
     std::vector<FaceRule> rules_for(const CollisionBody& body) const
     {
         std::vector<FaceRule> out;
@@ -182,7 +182,7 @@ private:
         return spawnfield::add_part(scene_, scoped_name(body), kind_names[std::size_t(body.geometry.kind)], label);
     }
 
-    /// By slope, unless that is nothing.
+    /// Appends a body. Its label is `label`, or follows from the slope if `auto_slope` (rad) is given.
     void append_body(const CollisionBody& body, Label label, std::optional<double> auto_slope)
     {
         const CollisionGeometry& geometry = body.geometry;
@@ -212,8 +212,8 @@ private:
             } else {
                 const auto mesh = meshes_.read(files_.at(&body));
                 if (!has_submesh(*mesh, geometry))
-                    return leave_out_part(
-                        body, "<submesh> \"" + geometry.submesh + "\" is no node of " + files_.at(&body).string());
+                    return ignore_last_part(
+                        body, "<submesh> \"" + geometry.submesh + "\" is not a node of " + files_.at(&body).string());
                 if (geometry.submesh.empty())
                     append_mesh_body(body, part, *mesh, geometry.size, auto_slope);
                 else
@@ -227,17 +227,17 @@ private:
         }
     }
 
-    void leave_out(const CollisionBody& body, const std::string& why)
+    void ignore(const CollisionBody& body, const std::string& why)
     {
-        missing_.push_back(file_.string() + ": \"" + scoped_name(body) + "\": " + why + ": it is left out");
+        missing_.push_back(file_.string() + ": \"" + scoped_name(body) + "\": " + why + ": it is ignored");
         is_incomplete_ = true;
     }
 
-    /// The part that was added last.
-    void leave_out_part(const CollisionBody& body, const std::string& why)
+    /// Removes the part that was added last, with a message.
+    void ignore_last_part(const CollisionBody& body, const std::string& why)
     {
         scene_.parts.pop_back();
-        leave_out(body, why);
+        ignore(body, why);
     }
 
     void append_mesh_body(const CollisionBody& body, std::uint32_t part, const FileMesh& mesh, const Vec3& scale,
@@ -246,7 +246,7 @@ private:
         MeshOptions options;
         options.pose = body.pose;
         options.scale = scale;
-        options.up = 'z';  // as Gazebo: a file's own axes count, whatever it says is up
+        options.up = 'z';  // Gazebo keeps the axes of the file and ignores its up axis
         options.rules = rules_for(body);
         options.auto_slope = auto_slope;
         append_mesh(scene_, part, mesh, options);
@@ -254,7 +254,7 @@ private:
 
     void append_ellipsoid(const CollisionBody& body, std::uint32_t part, std::optional<double> auto_slope)
     {
-        constexpr int rounds = 4;  // 5,120 triangles, within a thousandth of the ellipsoid
+        constexpr int rounds = 4;  // 5,120 triangles; the distance is less than a thousandth of the half axes
         const SphereMesh sphere = mesh_around_unit_sphere(rounds);
         append_mesh_body(body, part, ellipsoid_mesh(sphere, body.geometry.size), Vec3::Ones(), auto_slope);
         ++ellipsoids_;
@@ -262,18 +262,18 @@ private:
                                      (sphere.vertices[0].norm() - 1) * body.geometry.size.maxCoeff());
     }
 
-    void tell_ellipsoids()
+    void note_ellipsoids()
     {
         if (ellipsoids_ > 0)
             scene_.notices.push_back(file_.string() + ": " + std::to_string(ellipsoids_) +
-                                     (ellipsoids_ == 1 ? " ellipsoid is" : " ellipsoids are") +
-                                     " a mesh around it, at most " + number(std::ceil(ellipsoid_growth_ * 1e4) / 1e4) +
-                                     " m larger");
+                                     (ellipsoids_ == 1 ? " ellipsoid is replaced by a mesh around it"
+                                                       : " ellipsoids are replaced by meshes around them") +
+                                     ", at most " + number(std::ceil(ellipsoid_growth_ * 1e4) / 1e4) + " m larger");
     }
 
-    /// Those of the options; else all but the planes, and these as far as they are drawn. Planes that are drawn no
-    /// larger than the rest, or not at all, say nothing about the world's extent: then the rest and some metres
-    /// around it.
+    /// Sets the bounds of the map: those of the options, if given; else all geometry without planes, and the planes as
+    /// far as visuals show them. Planes that are not shown, or not larger than the other geometry, give no information
+    /// about the extent of the world. Then the bounds are the other geometry and some metres around it.
     void choose_bounds(const std::vector<CollisionBody>& bodies)
     {
         scene_.map_bounds = options_.bounds;
@@ -289,7 +289,7 @@ private:
         for (const CollisionBody* const plane : planes) {
             Bounds drawn = drawn_bounds(*plane);
             if (plane->geometry.size.x() == 0)
-                drawn.min.head<2>() = drawn.max.head<2>() = rest.min.head<2>();  // its height alone counts
+                drawn.min.head<2>() = drawn.max.head<2>() = rest.min.head<2>();  // only its height is used
             all.extend(drawn.min);
             all.extend(drawn.max);
             is_larger = is_larger || ((drawn.max - drawn.min) - (rest.max - rest.min)).head<2>().maxCoeff() > 0;
@@ -298,14 +298,14 @@ private:
             all.min.head<2>() = rest.min.head<2>().array() - around_the_rest;
             all.max.head<2>() = rest.max.head<2>().array() + around_the_rest;
             scene_.notices.push_back(file_.string() +
-                                     ": the ground plane is infinite and no <visual> draws it larger than the rest of "
+                                     ": the ground plane is infinite, and no <visual> shows it larger than the rest of "
                                      "the world. The map covers " +
                                      "the rest and " + number(around_the_rest) + " m around it (--bounds sets it)");
         }
         scene_.map_bounds = all;
     }
 
-    /// Around the plane as far as it is drawn: its origin if nothing draws it.
+    /// Returns the bounds of the plane as far as visuals show it; only its origin if none does.
     static Bounds drawn_bounds(const CollisionBody& plane)
     {
         Bounds box;
@@ -332,12 +332,12 @@ private:
         const std::vector<Vec3> corners = plane_in_box(plane_pose(body), box);
         std::vector<Triangle> triangles;
         for (std::uint32_t k = 1; k + 1 < corners.size(); ++k) triangles.push_back({0, k, k + 1});
-        // Gazebo's planes bear on the side that their normal looks to.
+        // Robots stand on a plane only on the side of its normal, as in Gazebo.
         append_sheet(scene_, part, corners, triangles, true);
     }
 
-    /// Rules of the options that match nothing: most often slips of the pen.
-    void tell_idle_rules(const std::vector<CollisionBody>& bodies)
+    /// Adds a notice for each rule of the options that matches nothing, because it is most often a typing error.
+    void note_unused_rules(const std::vector<CollisionBody>& bodies)
     {
         const Names mesh_names = options_.labels.empty() ? Names() : names_of(scene_.face_groups);
         for (const LabelRule& rule : options_.labels) {
@@ -355,13 +355,14 @@ private:
     const fs::path file_;
     ModelPaths& paths_;
     const SceneOptions& options_;
-    bool is_incomplete_;  ///< something of the world is missing, which could be the ground
+    bool is_incomplete_;  ///< a part of the world is missing, which may be the ground
     MeshFiles meshes_;
     std::vector<Label> labels_;   ///< one for each body
-    std::vector<bool> by_slope_;  ///< one for each body: its label is one for want of a better
+    std::vector<bool> by_slope_;  ///< one for each body: no rule gave a label, so the slope decides
     bool everything_is_terrain_ = false;
     std::map<const CollisionBody*, fs::path> files_;
-    std::map<std::string, std::pair<std::string, std::size_t>> lost_;  ///< by URI: whose first, how often
+    /// For each URI that is not found: the first body that names it, and the number of bodies.
+    std::map<std::string, std::pair<std::string, std::size_t>> not_found_;
     std::vector<std::string> missing_;
     std::size_t ellipsoids_ = 0;
     double ellipsoid_growth_ = 0;  ///< m
@@ -376,8 +377,8 @@ void append_bodies(Scene& scene, const fs::path& file, std::vector<CollisionBody
     appender.append(bodies);
     for (std::string& line : appender.take_missing()) missing.push_back(std::move(line));
     if (options.strict && !missing.empty())
-        throw FileError(missing[0],
-                        std::to_string(missing.size()) + " in all are missing, and --strict does not allow it");
+        throw FileError(missing[0], std::to_string(missing.size()) +
+                                        " files or parts are missing, and --strict does not allow this");
     scene.notices.insert(scene.notices.end(), missing.begin(), missing.end());
 }
 

@@ -7,9 +7,9 @@
 
 namespace spawnfield {
 
-/// Appends the collisions of an SDF or URDF world, a part for each, and labels them. Planes come last: they are cut to
-/// what the rest needs. `missing` are notices, or errors where the options are strict; files that are not found join
-/// them. Throws FileError.
+/// Appends the collisions of an SDF or URDF world, one part for each, and labels them. Planes come last, because their
+/// size follows from the other geometry. `missing` are messages about missing content; files that are not found are
+/// added to them. They become notices, or with `strict` options an error. Throws FileError.
 void append_bodies(Scene& scene, const std::filesystem::path& file, std::vector<CollisionBody> bodies,
                    ModelPaths& paths, const SceneOptions& options, std::vector<std::string> missing);
 

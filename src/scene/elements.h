@@ -4,7 +4,7 @@
 
 namespace spawnfield {
 
-/// An element is triangle e, or primitive e - triangles.
+/// Element e is triangle e of the scene, or primitive e - (number of triangles).
 inline std::size_t element_count(const Scene& scene) { return scene.triangles.size() + scene.primitives.size(); }
 
 inline bool is_triangle(const Scene& scene, std::uint32_t element) { return element < scene.triangles.size(); }

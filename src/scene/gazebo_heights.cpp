@@ -40,28 +40,30 @@ void scale_elevations(GreyImage& image, const std::optional<double>& no_data, do
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const double pixel : image.pixels)
         if (!std::isnan(pixel)) low = std::min(low, pixel), high = std::max(high, pixel);
-    if (!std::isfinite(low) || !std::isfinite(high)) throw FileError(file, "has no heights, or infinite ones");
+    if (!std::isfinite(low) || !std::isfinite(high))
+        throw FileError(file, "has no heights, or heights that are infinite");
     for (auto& pixel : image.pixels) pixel = low + (pixel - low) * (high > low ? height / (high - low) : 1);
 }
 
-/// Gazebo asks for square images; elevation models it pads, and draws anew where their side is not 2^n + 1.
-std::vector<std::string> doubts_about(const GreyImage& image, bool is_image)
+/// Returns notices about the differences from Gazebo. Gazebo needs square images; it fills up and resamples elevation
+/// models to a square whose side is 2^n + 1.
+std::vector<std::string> gazebo_differences(const GreyImage& image, bool is_image)
 {
     const bool is_square = image.rows == image.cols;
     if (is_image)
         return is_square ? std::vector<std::string>{}
-                         : std::vector{"is " + size_of(image) + " pixels large; Gazebo takes square images only"};
+                         : std::vector{"is " + size_of(image) + " pixels large, but Gazebo needs a square image"};
     std::vector<std::string> out{
-        "is taken as an elevation model, as by Gazebo from Harmonic on: its lowest place keeps its height, its highest "
-        "lies <size> z above that"};
+        "is read as an elevation model, as in Gazebo since Harmonic: its lowest point keeps its height, and its "
+        "highest is <size> z above that"};
     if (!is_square || !std::has_single_bit(unsigned(image.rows - 1)))
         out.push_back("is " + size_of(image) +
-                      " pixels large; Gazebo draws it anew to a square of 2^n + 1, so that heights differ a little "
-                      "from those here");
+                      " pixels large; Gazebo resamples it to a square of 2^n + 1, so its heights differ a little from "
+                      "those here");
     return out;
 }
 
-/// `share` of the way from a to b; b does not count where it is 0.
+/// Interpolates from a to b. If share is 0, b is not used, so it may be NaN.
 double between(double a, double b, double share) { return share == 0 ? a : a * (1 - share) + b * share; }
 
 }  // namespace
@@ -83,7 +85,7 @@ Heightmap gazebo_heights(const fs::path& path, const CollisionGeometry& geometry
     map.size = {geometry.size.x(), geometry.size.y()};
     map.rows = (image.rows - 1) * s + 1;
     map.cols = (image.cols - 1) * s + 1;
-    map.notices = doubts_about(image, is_image);
+    map.notices = gazebo_differences(image, is_image);
     map.heights.reserve(std::size_t(map.rows) * std::size_t(map.cols));
     const auto pixel = [&](int row, int col) {
         return image.pixels[std::size_t(std::min(row, image.rows - 1)) * image.cols + std::min(col, image.cols - 1)];

@@ -6,10 +6,10 @@
 
 namespace spawnfield {
 
-/// A Gazebo world or model, with all that it includes. Throws FileError.
+/// Reads a Gazebo world or model, with all that it includes. Throws FileError.
 Scene read_sdf_scene(const std::filesystem::path& file, const SceneOptions& options);
 
-/// A world that is spawned as a URDF, at the origin. Throws FileError.
+/// Reads a world that is spawned as a URDF, at the origin. Throws FileError.
 Scene read_urdf_scene(const std::filesystem::path& file, const SceneOptions& options);
 
 }  // namespace spawnfield

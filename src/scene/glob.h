@@ -6,7 +6,7 @@
 
 namespace spawnfield {
 
-/// Shell glob over the whole name, case-insensitive (POSIX fnmatch).
+/// Returns whether a shell glob matches the whole name, ignoring case (POSIX fnmatch).
 inline bool matches(const std::string& pattern, const std::string& name)
 {
     return fnmatch(pattern.c_str(), name.c_str(), FNM_CASEFOLD) == 0;

@@ -10,12 +10,12 @@ namespace {
 
 using Kind = CollisionGeometry::Kind;
 
-/// The ground of most worlds. A word of a name counts if it begins with one of these.
+/// Words for the ground of most worlds. A word of a name counts if it begins with one of these.
 constexpr std::array ground_words{"ground",   "terrain",  "floor",   "road",   "street",
                                   "sidewalk", "pavement", "asphalt", "bridge", "ramp"};
 
-/// What stands on, beside or above the ground, and may have a ground's name: "street_light", "Floor_01_ceiling",
-/// "bridgeRailing". Here too a word counts if it begins with one of these ("staircase", "doorway").
+/// Words for things on, beside or above the ground, whose names may contain a ground word: "street_light",
+/// "Floor_01_ceiling", "bridgeRailing". Again a word counts if it begins with one of these ("staircase", "doorway").
 constexpr std::array other_words{"ceiling",    "wall",      "roof",   "door",      "window",   "stair",
                                  "lamp",       "light",     "sign",   "block",     "barrier",  "rail",
                                  "cone",       "post",      "pole",   "roadblock", "roadsign", "streetlight",
@@ -24,15 +24,15 @@ constexpr std::array other_words{"ceiling",    "wall",      "roof",   "door",   
 constexpr const char* other_rule =
     "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, barrier, rail, cone, post or pole";
 
-/// What one name says.
-struct NameSays {
+/// The known words that a name contains.
+struct NameWords {
     std::optional<std::size_t> ground;  ///< index into ground_words
-    bool is_other = false;              ///< a word begins with one of other_words; then it is no ground
+    bool is_other = false;              ///< a word begins with one of other_words; then it is not ground
 };
 
-NameSays look_at(const std::string& name)
+NameWords find_words(const std::string& name)
 {
-    NameSays out;
+    NameWords out;
     for (const std::string& word : words_of_name(name)) {
         const auto begins = [&](const char* stem) { return word.starts_with(stem); };
         out.is_other = out.is_other || std::any_of(other_words.begin(), other_words.end(), begins);
@@ -42,17 +42,17 @@ NameSays look_at(const std::string& name)
     return out;
 }
 
-/// What the innermost of the names says that says something. `ground` and `is_other` together: another name, or
-/// another word of this one, would make it ground.
-NameSays look_at(const CollisionBody& body)
+/// Decides by the innermost name that contains a ground word or another word. If both `ground` and `is_other` are set,
+/// a name contains a ground word, but another word overrules it.
+NameWords find_words(const CollisionBody& body)
 {
-    NameSays out;
+    NameWords out;
     bool is_decided = false;
     for (auto name = body.names.rbegin(); name != body.names.rend(); ++name) {
-        const NameSays says = look_at(*name);
-        if (!out.ground) out.ground = says.ground;
-        if (!is_decided) out.is_other = says.is_other;
-        is_decided = is_decided || says.ground || says.is_other;
+        const NameWords found = find_words(*name);
+        if (!out.ground) out.ground = found.ground;
+        if (!is_decided) out.is_other = found.is_other;
+        is_decided = is_decided || found.ground || found.is_other;
     }
     return out;
 }
@@ -68,8 +68,8 @@ bool matches_body(const std::string& glob, const CollisionBody& body)
 
 std::string ground_word(const std::string& name)
 {
-    const NameSays says = look_at(name);
-    return says.ground && !says.is_other ? ground_words[*says.ground] : "";
+    const NameWords found = find_words(name);
+    return found.ground && !found.is_other ? ground_words[*found.ground] : "";
 }
 
 GroundRules::GroundRules(bool by_slope)
@@ -85,12 +85,12 @@ GroundRules::GroundRules(bool by_slope)
 
 std::optional<Label> GroundRules::label_of(const CollisionBody& body)
 {
-    const NameSays says = look_at(body);
+    const NameWords found = find_words(body);
     const std::size_t all_else = rules_.size() - 1, other = all_else - 1;
     const std::size_t rule = body.geometry.kind == Kind::Plane       ? 0
                              : body.geometry.kind == Kind::Heightmap ? 1
-                             : says.ground && !says.is_other         ? 2 + *says.ground
-                             : says.ground                           ? other
+                             : found.ground && !found.is_other       ? 2 + *found.ground
+                             : found.ground                          ? other
                                                                      : all_else;
     ++rules_[rule].count;
     return rule == all_else ? std::nullopt : std::optional(rules_[rule].label);

@@ -19,7 +19,8 @@
 namespace spawnfield {
 namespace {
 
-/// Of a file that does not say what its coordinates are: cells of less than a hundredth on the globe's graticule.
+/// Refuses a file that is most likely in degrees. It does not state its coordinate system, its cells are smaller than a
+/// hundredth, and its coordinates are in the range of longitude and latitude.
 void refuse_likely_degrees(const HeightFile& found, const std::string& file)
 {
     const GeoFrame& frame = *found.frame;
@@ -31,13 +32,13 @@ void refuse_likely_degrees(const HeightFile& found, const std::string& file)
                                                      : "CODE";
     throw FileError(file, "has cells of " + number(frame.dx) + " at x " + number(frame.x) + ", y " + number(frame.y) +
                               ", which look like degrees, needs metres; reproject it (gdalwarp -t_srs EPSG:" + code +
-                              " IN OUT.tif), or tell its spacing in metres with the key cell");
+                              " IN OUT.tif), or give the spacing in metres with the key cell");
 }
 
-/// As a viewer shows it: what is white in it is high.
-void turn_round(HeightFile& found)
+/// Inverts the pixels, so that white is high, as a viewer shows the image.
+void invert(HeightFile& found)
 {
-    found.is_turned = true;
+    found.is_inverted = true;
     for (double& pixel : found.image.pixels) pixel = found.image.largest - pixel;
 }
 
@@ -48,17 +49,18 @@ HeightFile read_geotiff(const std::filesystem::path& file, bool wants_frame, std
     const GeoTags tags = read_geo_tags(file);
     out.no_data = no_data_value(tags, file.string());
     out.height_unit = height_unit(tags, file.string(), notices);
-    if (out.image.zero_is_white && !is_georeferenced(tags)) turn_round(out);
+    if (out.image.zero_is_white && !is_georeferenced(tags)) invert(out);
     if (tags.has_mask)
-        notices.push_back(file.string() +
-                          ": has a mask, which is not looked at; gdal_translate -a_nodata makes it a no-data value");
+        notices.push_back(
+            file.string() +
+            ": has a mask, which is ignored; convert it to a no-data value with gdal_translate -a_nodata");
     if (!wants_frame || !is_georeferenced(tags)) return out;
     out.frame = geo_frame(tags, file.string(), notices);
     if (!out.frame->is_projected) refuse_likely_degrees(out, file.string());
     return out;
 }
 
-/// What a .prj beside the file tells; nothing if there is none.
+/// Returns the coordinate system in a .prj file beside the file; empty if there is none, or PROJ does not know it.
 std::optional<CoordinateSystem> system_beside(const std::filesystem::path& file, std::vector<std::string>& notices)
 {
     constexpr std::uintmax_t most = 65536;  // bytes; a .prj has one or two thousand
@@ -68,8 +70,9 @@ std::optional<CoordinateSystem> system_beside(const std::filesystem::path& file,
         std::optional<CoordinateSystem> found;
         if (std::filesystem::file_size(prj) <= most) found = coordinate_system(read_file(prj));
         if (!found)
-            notices.push_back(prj.string() +
-                              ": is no coordinate system (WKT) that PROJ reads; x, y and heights are taken as metres");
+            notices.push_back(
+                prj.string() +
+                ": is not a coordinate system (WKT) that PROJ can read; x, y and heights are taken as metres");
         return found;
     }
     return std::nullopt;
@@ -81,15 +84,15 @@ void use_system(HeightFile& found, const CoordinateSystem& system, bool wants_fr
     using Place = CoordinateSystem::Place;
     if (system.height_unit) {
         found.height_unit = *system.height_unit;
-        tell_height_unit(file, found.height_unit, system.name, notices);
+        add_height_unit_notice(file, found.height_unit, system.name, notices);
     }
     if (!wants_frame) return;
     if (system.place == Place::Degrees || system.place == Place::Globe)
-        refuse_globe(file, system.place == Place::Globe, system.name);
+        refuse_unprojected(file, system.place == Place::Globe, system.name);
     found.frame->is_projected = system.place == Place::Plane;
     found.frame->unit = system.unit;
     found.frame->crs = system.name;
-    tell_unit(file, "x and y", system.unit, notices);
+    add_unit_notice(file, "x and y", system.unit, notices);
 }
 
 HeightFile read_ascii_grid(const std::filesystem::path& file, bool wants_frame, std::vector<std::string>& notices)
@@ -170,10 +173,10 @@ HeightFile read_height_file(const std::filesystem::path& file, const std::option
     if (is_ascii_grid(start)) return read_ascii_grid(file, wants_frame, notices);
     if (is_png(start)) return {read_grey_png(file, max_heights), {}, {}, 1};
     if (file.extension() == ".asc")
-        parse_ascii_grid(start, file.string(), max_heights);  // says what is wrong with its header
-    throw FileError(file.string(),
-                    "is neither PNG, TIFF nor an ESRI ASCII grid; a heightmap needs to be one of them, or its layout "
-                    "told with the key raw");
+        parse_ascii_grid(start, file.string(), max_heights);  // throws what is wrong with its header
+    throw FileError(
+        file.string(),
+        "is not PNG, TIFF or an ESRI ASCII grid; convert it to one of them, or give its layout with the key raw");
 }
 
 }  // namespace spawnfield

@@ -30,57 +30,58 @@ RawLayout read_raw_layout(const YamlMap& map)
     return raw;
 }
 
-/// How a key is given: "heightmap.z", or for a file by itself "--heightmap 'z: [LOW, HIGH]'".
+/// Returns a key as the user writes it: "heightmap.z" in a scene.yaml, or "--heightmap 'z: [LOW, HIGH]'" for an
+/// elevation model by itself.
 std::string key(const HeightmapOptions& options, const std::string& name, const std::string& value)
 {
     return options.place.starts_with("--") ? options.place + "'" + name + ": " + value + "'" : options.place + name;
 }
 
-bool tells_spacing(const HeightmapOptions& options) { return options.size || options.cell; }
+bool gives_spacing(const HeightmapOptions& options) { return options.size || options.cell; }
 
-/// What neither the file nor the options say.
+/// Throws FileError for a size, heights or place that neither the file nor the options give, and for options that
+/// contradict the file.
 void check_complete(const HeightFile& found, const HeightmapOptions& options, const std::string& file)
 {
     const bool is_metres = found.image.largest == 0, has_place = found.frame.has_value();
     if (is_metres && options.z)
-        throw FileError(file, "has heights in metres already; " + key(options, "z", "[LOW, HIGH]") + " must go");
-    const bool needs_size = !has_place && !tells_spacing(options), needs_z = !is_metres && !options.z && !has_place;
+        throw FileError(file, "has heights in metres already; remove " + key(options, "z", "[LOW, HIGH]"));
+    const bool needs_size = !has_place && !gives_spacing(options), needs_z = !is_metres && !options.z && !has_place;
     if (needs_size && needs_z && options.place.starts_with("--"))
         throw FileError(file,
-                        "tells neither its size nor its heights: --heightmap 'size: [X, Y], z: [LOW, HIGH]' is missing "
-                        "(m from first to last pixel "
-                        "centre, and of values 0 and " +
+                        "states neither its size nor its heights; give --heightmap 'size: [X, Y], z: [LOW, HIGH]' (m "
+                        "from first to last pixel centre, and m of the values 0 and " +
                             number(found.image.largest) + ")");
     if (needs_size)
-        throw FileError(file, "does not tell its size; " + key(options, "size", "[X, Y]") +
-                                  " is missing (m from first to last pixel centre; or cell, m between two)");
+        throw FileError(file, "does not state its size; give " + key(options, "size", "[X, Y]") +
+                                  " (m from first to last pixel centre), or cell (m between two pixels)");
     if (needs_z)
-        throw FileError(file, "is an integer image; " + key(options, "z", "[LOW, HIGH]") +
-                                  " is missing (heights of 0 and of the largest value)");
+        throw FileError(file, "is an integer image; give " + key(options, "z", "[LOW, HIGH]") +
+                                  " (heights in m of the value 0 and of the largest value)");
     if (options.origin && !has_place)
-        throw FileError(
-            file, key(options, "origin", "[X, Y]") + " is for a file that tells where it lies, without size and cell");
+        throw FileError(file, key(options, "origin", "[X, Y]") +
+                                  " is only for a file that states its place, without the keys size and cell");
 }
 
-/// Whether a pixel, as it is stored, is the no-data value.
-bool is_none(double pixel, double none, bool is_float32)
+/// Returns whether a pixel of the file is the no-data value.
+bool is_no_data(double pixel, double none, bool is_float32)
 {
     if (pixel == none) return true;
-    // Beyond a float's range the value was stored as infinite.
+    // A no-data value beyond the range of float is stored as infinity.
     if (std::isinf(pixel))
         return is_float32 && std::abs(none) > double(std::numeric_limits<float>::max()) &&
                std::signbit(pixel) == std::signbit(none);
-    return float(pixel) == float(none);  // its text may have fewer digits than the pixels
+    return float(pixel) == float(none);  // the text of the no-data value may have fewer digits than the pixels
 }
 
-/// NaN where there is no height, metres elsewhere.
+/// Returns the heights in metres; NaN if a pixel has no height.
 std::vector<double> metres(HeightFile& found, const HeightmapOptions& options)
 {
     std::vector<double> heights = std::move(found.image.pixels);
     const std::optional<double> none = options.no_data ? options.no_data : found.no_data;
     const double largest = found.image.largest;
     for (double& z : heights) {
-        if (none && is_none(found.is_turned ? largest - z : z, *none, found.image.is_float32))
+        if (none && is_no_data(found.is_inverted ? largest - z : z, *none, found.image.is_float32))
             z = std::numeric_limits<double>::quiet_NaN();
         else
             z = options.z ? (*options.z)[0] + z / largest * ((*options.z)[1] - (*options.z)[0]) : z * found.height_unit;
@@ -97,11 +98,11 @@ void check_heights(const Heightmap& map, const std::string& file)
                                       " is infinite, needs a finite height or NaN (no ground)");
 }
 
-/// A value of the file, the lowest, that is likely meant as no data; nothing if there is none. `unit` is that of the
-/// heights, < 0 of depths.
+/// Returns the lowest value of the file if it most likely means no data; empty if it does not. `unit` is that of the
+/// heights, < 0 for depths.
 std::optional<double> likely_no_data(const std::vector<double>& heights, double unit)
 {
-    std::optional<double> lowest;  // but for its unit
+    std::optional<double> lowest;  // height of the pixel with the lowest value, m
     for (const double z : heights)
         if (!std::isnan(z) && (!lowest || (unit < 0 ? z > *lowest : z < *lowest))) lowest = z;
     for (const double usual : {-9999.0, -32768.0, -32767.0})
@@ -109,8 +110,9 @@ std::optional<double> likely_no_data(const std::vector<double>& heights, double 
     return lowest && *lowest / unit < -1e30 ? std::optional(*lowest / unit) : std::nullopt;
 }
 
-/// Tells of holes, and of what may have been meant as one.
-void tell_holes(Heightmap& map, double unit, const HeightmapOptions& options, const std::string& file)
+/// Adds a notice about pixels without height, and one about a value that may mean no data. Throws FileError if there is
+/// no height at all.
+void note_holes(Heightmap& map, double unit, const HeightmapOptions& options, const std::string& file)
 {
     const std::size_t all = map.heights.size();
     const auto holes = std::size_t(
@@ -118,12 +120,13 @@ void tell_holes(Heightmap& map, double unit, const HeightmapOptions& options, co
     if (holes == all) throw FileError(file, "has no heights: every pixel is NaN or no-data");
     if (holes > 0)
         map.notices.push_back(file + ": " + std::to_string(holes) + " of " + std::to_string(all) +
-                              " heights are missing (no-data); there is no terrain");
+                              " heights are missing (no data); there is no terrain at these places");
     if (options.z) return;
     if (const auto lowest = likely_no_data(map.heights, unit))
         map.notices.push_back(file + ": the lowest " +
                               (unit == 1 ? "height is " + number(*lowest) + " m" : "value is " + number(*lowest)) +
-                              ", which often means no data; if so: " + key(options, "nodata", number(*lowest)));
+                              ", which often means no data; if it does here, give " +
+                              key(options, "nodata", number(*lowest)));
 }
 
 std::string place_words(const GeoOrigin& origin)
@@ -131,7 +134,7 @@ std::string place_words(const GeoOrigin& origin)
     return "x " + number(origin.x) + ", y " + number(origin.y) + (origin.crs.empty() ? "" : " (" + origin.crs + ")");
 }
 
-/// Size and place from the file's own coordinates.
+/// Sets size and place from the coordinates of the file.
 void use_frame(Heightmap& map, const GeoFrame& frame, const HeightmapOptions& options)
 {
     map.size = {(map.cols - 1) * frame.dx * frame.unit, (map.rows - 1) * frame.dy * frame.unit};
@@ -149,7 +152,7 @@ HeightmapOptions read_heightmap_options(const YamlMap& map)
     map.only({"file", "size", "cell", "z", "origin", "nodata", "raw"});
     HeightmapOptions options;
     if (map.has("size")) options.size = map.positive_pair("size");
-    if (map.has("cell") && options.size) map.fail("cell", "stands beside size, needs one of them");
+    if (map.has("cell") && options.size) map.fail("cell", "is given together with size, needs only one of them");
     if (map.has("cell") && map.is_list("cell"))
         options.cell = map.positive_pair("cell");
     else if (map.has("cell"))
@@ -166,7 +169,7 @@ HeightmapOptions parse_heightmap_options(const std::string& text)
     try {
         const YAML::Node node = YAML::Load("{" + text + "}");
         const YamlMap map(node, "--heightmap", "");
-        if (map.has("file")) map.fail("file", "is the scene itself here");
+        if (map.has("file")) map.fail("file", "is not allowed here, because the scene itself is the file");
         HeightmapOptions options = read_heightmap_options(map);
         options.place = "--heightmap ";
         return options;
@@ -181,7 +184,7 @@ HeightmapOptions parse_heightmap_options(const std::string& text)
 Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptions& options)
 {
     Heightmap map;
-    HeightFile found = read_height_file(file, options.raw, !tells_spacing(options), map.notices);
+    HeightFile found = read_height_file(file, options.raw, !gives_spacing(options), map.notices);
     map.rows = found.image.rows;
     map.cols = found.image.cols;
     if (map.rows < 2 || map.cols < 2)
@@ -193,7 +196,7 @@ Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptio
     if (const std::uint64_t count = found.image.pixels.size(); count > many_heights)
         map.notices.push_back(file.string() + ": has " + std::to_string(count) + " heights; a bake takes about " +
                               std::to_string(count * bake_bytes / 1000000000) +
-                              " GB of memory (gdalwarp -tr makes it coarser)");
+                              " GB of memory (make it coarser with gdalwarp -tr)");
     if (options.size)
         map.size = *options.size;
     else if (options.cell)
@@ -202,7 +205,7 @@ Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptio
         use_frame(map, *found.frame, options);
     map.heights = metres(found, options);
     check_heights(map, file.string());
-    tell_holes(map, found.height_unit, options, file.string());
+    note_holes(map, found.height_unit, options, file.string());
     return map;
 }
 
@@ -218,14 +221,15 @@ void place_scene(Scene& scene, const Heightmap& map, const Pose& pose, const std
         scene.notices.push_back(file + ": " + place_words(origin) + " is at 0, 0 of the scene; z is not shifted");
         return;
     }
-    constexpr double tolerance = 1e-3, digits = 1e-12;  // m; relative, as one unit is written with more or fewer digits
-    const double apart = std::hypot(origin.x - scene.origin->x, origin.y - scene.origin->y) * origin.unit;
-    if (apart > tolerance || std::abs(origin.unit - scene.origin->unit) > digits * origin.unit ||
+    constexpr double tolerance = 1e-3;  // m
+    constexpr double digits = 1e-12;    // relative, because units are written with different numbers of digits
+    const double distance = std::hypot(origin.x - scene.origin->x, origin.y - scene.origin->y) * origin.unit;
+    if (distance > tolerance || std::abs(origin.unit - scene.origin->unit) > digits * origin.unit ||
         origin.crs != scene.origin->crs)
-        scene.notices.push_back(
-            file + ": " + place_words(origin) + " is at 0, 0 of the scene, but an earlier part has " +
-            place_words(*scene.origin) +
-            " there: they do not lie to each other as in their files (the key origin, the same for all, does that)");
+        scene.notices.push_back(file + ": " + place_words(origin) +
+                                " is at 0, 0 of the scene, but an earlier part has " + place_words(*scene.origin) +
+                                " there, so they are not placed relative to each other as in their files (to do so, "
+                                "give all the same key origin)");
 }
 
 void append_heightmap(Scene& scene, std::uint32_t part, const Heightmap& map, const Pose& pose, bool sides_up)

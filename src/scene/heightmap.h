@@ -9,39 +9,42 @@ namespace spawnfield {
 
 struct HeightmapOptions {
     std::optional<std::array<double, 2>> size;  ///< m from first to last pixel centre
-    std::optional<std::array<double, 2>> cell;  ///< m between neighbouring pixel centres; neither: what the file says
-    std::optional<std::array<double, 2>>
-        z;  ///< heights of pixel values 0 and 255 or 65535, m; not for values that are metres
-    std::optional<std::array<double, 2>>
-        origin;  ///< coordinates of the survey that come to lie at the part's origin; none: the middle's
-    std::optional<double> no_data;  ///< in place of what the file says
+    /// m between neighbouring pixel centres. Without size and cell, the file must state it.
+    std::optional<std::array<double, 2>> cell;
+    /// Heights of the pixel values 0 and 255 or 65535, m. Not allowed if pixels are metres.
+    std::optional<std::array<double, 2>> z;
+    /// Survey coordinates that are moved to the part's origin; empty: those of the heightmap's middle.
+    std::optional<std::array<double, 2>> origin;
+    std::optional<double> no_data;  ///< replaces the file's own value
     std::optional<RawLayout> raw;
-    std::string place = "heightmap.";  ///< of its keys, for complaints
+    std::string place = "heightmap.";  ///< where the keys are given, for messages
 };
 
-/// Heights on a grid; row 0 is the largest y. NaN: no ground there.
+/// Heights on a grid. Row 0 has the largest y. NaN: there is no ground.
 struct Heightmap {
     std::array<double, 2> size{};
     int rows = 0, cols = 0;
     std::vector<double> heights;       ///< m, row after row
-    Vec3 middle = Vec3::Zero();        ///< of the grid, from the part's origin, m
-    std::optional<GeoOrigin> origin;   ///< survey coordinates of the part's origin, where the file tells them
-    std::vector<std::string> notices;  ///< what was assumed
+    Vec3 middle = Vec3::Zero();        ///< of the grid, relative to the part's origin, m
+    std::optional<GeoOrigin> origin;   ///< survey coordinates of the part's origin, if the file states its place
+    std::vector<std::string> notices;  ///< about assumptions and missing heights
 };
 
-/// Of a `heightmap:` key of a scene.yaml, or of a text such as "size: [2, 2], z: [0, 1]" for a file by itself. Throws
-/// FileError.
+/// Reads the options from a `heightmap:` key of a scene.yaml, or from a text such as "size: [2, 2], z: [0, 1]" for an
+/// elevation model by itself. Throws FileError.
 HeightmapOptions read_heightmap_options(const YamlMap& map);
 HeightmapOptions parse_heightmap_options(const std::string& text);  ///< throws ArgumentError
 
-/// A file that read_height_file reads, with at least 2 x 2 heights, of which not all are missing. Throws FileError.
+/// Reads a heightmap from a file that read_height_file() can read. It needs at least 2 x 2 pixels, and at least one
+/// height. Throws FileError.
 Heightmap read_heightmap(const std::filesystem::path& file, const HeightmapOptions& options);
 
-/// Appends it as a sheet whose `middle` is moved by the pose. Each cell is split into two triangles along the diagonal
-/// from its smaller (column, row) corner to its larger one; a triangle with a NaN corner is left out.
+/// Appends the heightmap as a sheet, moved by the pose. Each cell is split into two triangles along the diagonal from
+/// its corner with the smaller column and row to the opposite one. Triangles with a NaN corner are ignored.
 void append_heightmap(Scene& scene, std::uint32_t part, const Heightmap& map, const Pose& pose, bool sides_up);
 
-/// Tells the scene where it lies in the survey's coordinates, and the user if its parts disagree on it.
+/// Sets the scene's place in survey coordinates, and takes over the notices of the heightmap. Adds a notice if a
+/// heightmap disagrees with an earlier one about the place.
 void place_scene(Scene& scene, const Heightmap& map, const Pose& pose, const std::string& file);
 
 }  // namespace spawnfield

@@ -52,7 +52,7 @@ Names names_of(std::span<const FaceGroup> groups)
 
 namespace {
 
-/// The option that labels just this name, as a shell takes it: "--label 'floor\[1]=terrain'".
+/// Returns the option that labels only this name, quoted for a shell: "--label 'floor\[1]=terrain'".
 std::string option_for(const std::string& name)
 {
     std::string out = "--label '";
@@ -63,12 +63,12 @@ std::string option_for(const std::string& name)
     return out + "=terrain'";
 }
 
-/// Options that label the names that look like ground and no others: one for all with the same word where that is
-/// possible.
+/// Returns options that label the names that look like ground, and no others. One option labels all names with the same
+/// ground word, if no other name contains it.
 Names options_for_ground(const Names& names)
 {
     Names out;
-    std::map<std::string, bool> is_safe;  // by word: all names with it look like ground
+    std::map<std::string, bool> is_safe;  // for each ground word: all names that contain it look like ground
     for (const std::string& name : names) {
         const std::string word = ground_word(name), glob = "*" + word + "*";
         if (word.empty()) continue;
@@ -94,15 +94,15 @@ std::string labelling_advice(const Scene& scene)
     std::string options;
     for (std::size_t i = 0; i < std::min(most, all.size()); ++i) options += " " + all[i];
     const std::string by_slope =
-        "--auto-label slope=30 makes terrain of what looks up and is less steep than 30 "
-        "degrees, and obstacles of the rest";
-    if (all.empty()) return by_slope + ". --label 'GLOB=terrain' labels by name; `info` lists the names";
+        "--auto-label slope=30 labels faces that look up and are less steep than 30 degrees as terrain, and the others "
+        "as obstacle";
+    if (all.empty()) return by_slope + ". --label 'GLOB=terrain' labels by name (`info` lists the names)";
     return by_slope + ". These names look like ground:" + options +
            (all.size() > most ? " and " + std::to_string(all.size() - most) + " more" : "");
 }
 
-void tell_idle_rules(const std::filesystem::path& file, const std::vector<LabelRule>& rules, const Names& names,
-                     Scene& scene)
+void note_unused_rules(const std::filesystem::path& file, const std::vector<LabelRule>& rules, const Names& names,
+                       Scene& scene)
 {
     for (const LabelRule& rule : rules)
         if (!matches_one(rule.pattern, names))

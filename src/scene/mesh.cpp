@@ -14,7 +14,7 @@
 namespace spawnfield {
 namespace {
 
-/// By the first rule that matches.
+/// Returns the label of the first rule that matches; empty if none does.
 std::optional<Label> label_of(const std::string& node, const std::string& material, const std::vector<FaceRule>& rules)
 {
     for (const FaceRule& rule : rules)
@@ -22,7 +22,8 @@ std::optional<Label> label_of(const std::string& node, const std::string& materi
     return {};
 }
 
-/// A watertight piece is filled unless some of its faces, but not all, are water, or any are left out.
+/// Returns whether a piece is filled. With Solid::Auto only a watertight piece is. A piece is never filled if one of
+/// its faces is ignored, or if some of them, but not all, are water.
 bool is_filled(const std::vector<Label>& labels, const std::vector<std::uint32_t>& faces, bool watertight, Solid solid)
 {
     if (solid == Solid::No || (solid == Solid::Auto && !watertight)) return false;
@@ -33,12 +34,12 @@ bool is_filled(const std::vector<Label>& labels, const std::vector<std::uint32_t
     return count(Label::Ignore) == 0 && (water == 0 || water == std::ptrdiff_t(faces.size()));
 }
 
-/// Area of the shells' faces that are level enough to be ground, m2.
+/// Area of the shells' faces that are level enough for ground, m2.
 struct ShellAreas {
     double up = 0, down = 0;
 };
 
-/// Appends one node's kept faces piece by piece, with the vertices that they use.
+/// Appends the faces of one node, piece by piece, without those that are ignored, and the vertices that they use.
 class NodeAppender {
 public:
     NodeAppender(Scene& scene, std::uint32_t part, const FileMesh::Node& node, const MeshOptions& options, char up)
@@ -46,7 +47,8 @@ public:
     {
     }
 
-    /// Labels by slope those of the faces that have no rule. Adds to `areas` what the faces of shells show.
+    /// Labels by slope the faces of a piece that no rule matches. If the piece is a shell, adds the areas of its faces
+    /// that look up or down to `areas`.
     void label_by_slope(const std::vector<std::uint32_t>& faces, const std::vector<char>& has_rule,
                         std::uint32_t open_edges, std::vector<Label>& labels, ShellAreas& areas) const
     {
@@ -81,7 +83,7 @@ public:
         scene_.pieces.push_back(piece);
     }
 
-    /// A vertex in the scene's frame.
+    /// Returns a vertex in the scene's frame.
     Vec3 placed(std::uint32_t local) const
     {
         const Vec3 metres = turned_up(node_.vertices[local].cwiseProduct(options_.scale), up_);
@@ -110,13 +112,13 @@ private:
         return index_[local];
     }
 
-    /// In the scene, towards the side from which the file's corners are counterclockwise, twice as long as the face
-    /// has area.
+    /// Returns the normal of a face in the scene's frame. It points to the side from which the corners of the file's
+    /// face are counterclockwise. Its length is twice the area of the face.
     Vec3 up_normal(std::uint32_t face) const
     {
         const auto [a, b, c] = node_.triangles[face];
         const Vec3 corner = placed(a), normal = (placed(b) - corner).cross(placed(c) - corner);
-        return options_.scale.prod() < 0 ? Vec3(-normal) : normal;  // the scale mirrors
+        return options_.scale.prod() < 0 ? Vec3(-normal) : normal;  // a negative scale mirrors the face
     }
 
     static constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
@@ -128,7 +130,7 @@ private:
     std::vector<std::uint32_t> index_;
 };
 
-/// Appends the groups of a node's faces, in the order of their materials.
+/// Appends the face groups of a node, in the order of their materials.
 void append_groups(Scene& scene, std::uint32_t part, const FileMesh& mesh, const FileMesh::Node& node,
                    const std::vector<Label>& labels, const NodeAppender& appender)
 {
@@ -186,7 +188,7 @@ std::span<const FaceGroup> append_mesh(Scene& scene, std::uint32_t part, const F
     if (areas.up == 0 && areas.down > 0)
         scene.notices.push_back("\"" + scene.parts[part].name + "\": no face of its shells looks up and " +
                                 number(std::round(areas.down * 1000) / 1000) +
-                                " m2 look down, so --auto-label makes them obstacles; is the mesh inside out?");
+                                " m2 look down, so --auto-label labels them as obstacle; is the mesh inside out?");
     return std::span(scene.face_groups).subspan(first);
 }
 

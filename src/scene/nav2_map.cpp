@@ -19,18 +19,18 @@
 namespace spawnfield {
 namespace {
 
-/// How pixels become cells.
-struct Reading {
+/// How pixels are converted to cells.
+struct PixelRule {
     std::string mode = "trinary";
     bool negate = false;
     double occupied_thresh = 0.65, free_thresh = 0.196;
 };
 
-/// Brightness of pixels, and how opaque they are.
+/// Brightness and opacity of the pixels.
 struct Pixels {
     int rows = 0, cols = 0;
     double largest = 255;
-    std::vector<float> mean;   ///< of the colours, 0 .. largest
+    std::vector<float> mean;   ///< mean of the colours, 0 .. largest
     std::vector<float> alpha;  ///< 0 .. largest; empty: all are opaque
 };
 
@@ -56,30 +56,31 @@ Pixels read_pixels(const std::filesystem::path& file)
     const std::string start = read_start(file, 8);
     if (is_png(start)) return pixels_of(read_colour_png(file, max_heights));
     if (!is_pgm(start))
-        throw FileError(file.string(), "is neither PGM (P2, P5) nor PNG; a map's image needs to be one of them");
+        throw FileError(file.string(), "is not PGM (P2, P5) or PNG; convert the map's image to one of them");
     const GreyImage image = read_pgm(file, max_heights);
     return {image.rows, image.cols, image.largest, {image.pixels.begin(), image.pixels.end()}, {}};
 }
 
-Nav2Map::Cell cell_of(double occupancy, const Reading& reading)
+Nav2Map::Cell cell_of(double occupancy, const PixelRule& rule)
 {
-    if (occupancy > reading.occupied_thresh) return Nav2Map::Cell::Occupied;
-    return occupancy < reading.free_thresh ? Nav2Map::Cell::Free : Nav2Map::Cell::Unknown;
+    if (occupancy > rule.occupied_thresh) return Nav2Map::Cell::Occupied;
+    return occupancy < rule.free_thresh ? Nav2Map::Cell::Free : Nav2Map::Cell::Unknown;
 }
 
-Nav2Map::Cell cell_of(const Pixels& pixels, std::size_t i, const Reading& reading)
+Nav2Map::Cell cell_of(const Pixels& pixels, std::size_t i, const PixelRule& rule)
 {
     double value = pixels.mean[i];
-    if (reading.mode == "raw") {
+    if (rule.mode == "raw") {
         const double percent = std::round(value / pixels.largest * 255);
-        return percent <= 100 ? cell_of(percent / 100, reading) : Nav2Map::Cell::Unknown;
+        return percent <= 100 ? cell_of(percent / 100, rule) : Nav2Map::Cell::Unknown;
     }
     if (!pixels.alpha.empty()) {
         const double alpha = pixels.alpha[i];
-        if (reading.mode == "scale" && alpha < pixels.largest) return Nav2Map::Cell::Unknown;
-        if (reading.mode == "trinary") value = (3 * value + alpha) / 4;  // grey counts as red, green and blue
+        if (rule.mode == "scale" && alpha < pixels.largest) return Nav2Map::Cell::Unknown;
+        if (rule.mode == "trinary")
+            value = (3 * value + alpha) / 4;  // as nav2: alpha is a fourth colour, and grey counts as three
     }
-    return cell_of((reading.negate ? value : pixels.largest - value) / pixels.largest, reading);
+    return cell_of((rule.negate ? value : pixels.largest - value) / pixels.largest, rule);
 }
 
 bool read_negate(const YamlMap& map)
@@ -93,7 +94,7 @@ bool read_negate(const YamlMap& map)
 double read_threshold(const YamlMap& map, const std::string& key, double fallback, std::vector<std::string>& notices)
 {
     if (!map.has(key)) {
-        notices.push_back(map.file() + ": " + key + " is missing, taken as " + number(fallback));
+        notices.push_back(map.file() + ": " + key + " is missing; the default " + number(fallback) + " is used");
         return fallback;
     }
     const double value = map.finite(key);
@@ -101,9 +102,9 @@ double read_threshold(const YamlMap& map, const std::string& key, double fallbac
     return value;
 }
 
-Reading read_reading(const YamlMap& map, std::vector<std::string>& notices)
+PixelRule read_pixel_rule(const YamlMap& map, std::vector<std::string>& notices)
 {
-    Reading out;
+    PixelRule out;
     out.mode = map.one_of("mode", {"trinary", "scale", "raw"}, "trinary");
     if (map.has("negate")) out.negate = read_negate(map);
     out.occupied_thresh = read_threshold(map, "occupied_thresh", out.occupied_thresh, notices);
@@ -116,32 +117,33 @@ Reading read_reading(const YamlMap& map, std::vector<std::string>& notices)
     return out;
 }
 
-void tell_unknown_keys(const YamlMap& map, std::vector<std::string>& notices)
+void note_unknown_keys(const YamlMap& map, std::vector<std::string>& notices)
 {
     const std::vector<std::string> known = {"image",           "resolution",  "origin", "negate",
                                             "occupied_thresh", "free_thresh", "mode"};
     for (const std::string& key : map.keys())
         if (std::find(known.begin(), known.end(), key) == known.end())
-            notices.push_back(map.file() + ": the key " + key + " is not looked at");
+            notices.push_back(map.file() + ": the key " + key + " is unknown and ignored");
 }
 
-/// Map savers write 205 for what is unknown; with free_thresh 0.25, as nav2's writes it too, it reads as free. So it
-/// does where alpha counts.
-void tell_grey(const Pixels& pixels, const Reading& reading, Nav2Map& map, const std::string& file)
+/// Adds a notice if pixels of 205, which map savers write for unknown, are read as free. This happens with free_thresh
+/// 0.25, which nav2 writes too, and if alpha counts as a colour.
+void note_grey_pixels(const Pixels& pixels, const PixelRule& rule, Nav2Map& map, const std::string& file)
 {
-    if (reading.mode != "trinary" || pixels.largest != 255) return;
+    if (rule.mode != "trinary" || pixels.largest != 255) return;
     constexpr double unknown = 205;
     std::size_t grey = 0;
     for (std::size_t i = 0; i < map.cells.size(); ++i)
         grey += pixels.mean[i] == unknown && map.cells[i] == Nav2Map::Cell::Free;
     if (grey == 0) return;
-    const double occupancy = (reading.negate ? unknown : pixels.largest - unknown) / pixels.largest;
-    const bool by_threshold = cell_of(occupancy, reading) == Nav2Map::Cell::Free;
+    const double occupancy = (rule.negate ? unknown : pixels.largest - unknown) / pixels.largest;
+    const bool by_threshold = cell_of(occupancy, rule) == Nav2Map::Cell::Free;
     map.notices.push_back(
         file + ": " + std::to_string(grey) + " pixels of 205, which map savers write for unknown, are free" +
-        (by_threshold ? " by free_thresh " + number(reading.free_thresh) + " (below 0.196 they are unknown)"
-                      : ", as mode trinary counts alpha as a fourth colour (as nav2 does; without the alpha channel "
-                        "they are not)"));
+        (by_threshold
+             ? " by free_thresh " + number(rule.free_thresh) + " (with free_thresh 0.196 or less they are unknown)"
+             : ", because mode trinary counts alpha as a fourth colour, as in nav2 (without the alpha channel they are "
+               "not free)"));
 }
 
 }  // namespace
@@ -155,7 +157,7 @@ Vec3 Nav2Map::corner(int row_line, int col_line) const
 
 bool is_nav2_map(const std::filesystem::path& file)
 {
-    constexpr std::uintmax_t most = 65536;  // bytes; a large scene is not to be parsed twice
+    constexpr std::uintmax_t most = 65536;  // bytes; so a large scene is not parsed twice
     std::error_code error;
     if (const std::uintmax_t size = std::filesystem::file_size(file, error); error || size > most) return false;
     try {
@@ -170,14 +172,14 @@ Nav2Map read_nav2_map(const std::filesystem::path& file)
 {
     const YamlMap map = read_yaml(file);
     Nav2Map out;
-    tell_unknown_keys(map, out.notices);
+    note_unknown_keys(map, out.notices);
     out.resolution = map.positive("resolution");
     if (out.resolution > 1000) map.fail("resolution", "is " + number(out.resolution) + ", needs at most 1000 m");
     const Vec3 origin = map.vector("origin");
     out.x = origin.x();
     out.y = origin.y();
     out.yaw = origin.z();
-    const Reading reading = read_reading(map, out.notices);
+    const PixelRule rule = read_pixel_rule(map, out.notices);
     const std::filesystem::path image = file.parent_path() / map.text("image");
     Pixels pixels;
     try {
@@ -188,8 +190,8 @@ Nav2Map read_nav2_map(const std::filesystem::path& file)
     out.rows = pixels.rows;
     out.cols = pixels.cols;
     out.cells.resize(pixels.mean.size());
-    for (std::size_t i = 0; i < out.cells.size(); ++i) out.cells[i] = cell_of(pixels, i, reading);
-    tell_grey(pixels, reading, out, file.string());
+    for (std::size_t i = 0; i < out.cells.size(); ++i) out.cells[i] = cell_of(pixels, i, rule);
+    note_grey_pixels(pixels, rule, out, file.string());
     return out;
 }
 
@@ -205,8 +207,8 @@ void append_floor(Scene& scene, std::uint32_t part, const Nav2Map& map)
         if (is_new) vertices.push_back(map.corner(row, col));
         return found->second;
     };
-    for (const CellBlock& b :
-         blocks_of(map.rows, map.cols, [&](int row, int col) { return map.at(row, col) != Nav2Map::Cell::Unknown; })) {
+    for (const CellBlock& b : blocks_of(
+             map.rows, map.cols, [&](int row, int col) { return map.cell(row, col) != Nav2Map::Cell::Unknown; })) {
         const std::uint32_t low = vertex(b.last_row, b.first_col), right = vertex(b.last_row, b.last_col);
         const std::uint32_t high = vertex(b.first_row, b.last_col), left = vertex(b.first_row, b.first_col);
         triangles.push_back({low, right, high});
@@ -217,8 +219,8 @@ void append_floor(Scene& scene, std::uint32_t part, const Nav2Map& map)
 
 void append_walls(Scene& scene, std::uint32_t part, const Nav2Map& map, double height)
 {
-    for (const CellBlock& b :
-         blocks_of(map.rows, map.cols, [&](int row, int col) { return map.at(row, col) == Nav2Map::Cell::Occupied; })) {
+    for (const CellBlock& b : blocks_of(
+             map.rows, map.cols, [&](int row, int col) { return map.cell(row, col) == Nav2Map::Cell::Occupied; })) {
         Primitive wall;
         wall.shape.kind = ShapeKind::Box;
         wall.shape.size = Vec3((b.last_col - b.first_col) * map.resolution, (b.last_row - b.first_row) * map.resolution,

@@ -13,17 +13,19 @@ namespace {
 
 constexpr int max_depth = 16;
 
-/// OctoMapHeader of a .bt or .ot file: lines of `key value` up to `data` (octomap/AbstractOcTree.cpp).
+/// The header of a .bt or .ot file: lines of `key value` up to `data` (octomap/AbstractOcTree.cpp).
 struct OctoMapHeader {
     std::string id;
     double nodes = 0, resolution = 0;
-    std::size_t data = 0;  ///< where the nodes start
+    std::size_t data = 0;  ///< offset of the nodes in the file
 };
 
 OctoMapHeader read_header(const std::filesystem::path& file, const std::string& bytes, const std::string& kind,
                           const std::string& magic)
 {
-    const auto refuse = [&](const std::string& what) { throw FileError(file.string(), "is no " + kind + ": " + what); };
+    const auto refuse = [&](const std::string& what) {
+        throw FileError(file.string(), "is not a " + kind + ": " + what);
+    };
     if (!bytes.starts_with(magic)) refuse("its first line is not \"" + magic + "\"");
     const std::size_t data = bytes.find("\ndata\n");
     if (data == std::string::npos) refuse("its header has no line `data`");
@@ -43,7 +45,7 @@ OctoMapHeader read_header(const std::filesystem::path& file, const std::string& 
     return header;
 }
 
-/// Trees that hold log-odds of occupancy and write them alike; others count or map something else.
+/// Types of trees that store log-odds of occupancy in the same way. Other types store something else.
 constexpr const char* known_types = "OcTree, ColorOcTree or OcTreeStamped";
 
 void check_type(const std::filesystem::path& file, const OctoMapHeader& header)
@@ -53,20 +55,20 @@ void check_type(const std::filesystem::path& file, const OctoMapHeader& header)
                     "is an OctoMap of type " + (header.id.empty() ? "\"\"" : header.id) + ", needs " + known_types);
 }
 
-/// Nodes of the tree, two bits for each of eight children; 0 if it is deeper than a tree can be or the bytes end in it.
-/// octomap itself reads on past the end, so this looks first.
-std::size_t count_nodes(std::string_view data, int depth, std::size_t& at)
+/// Returns the number of nodes. A node has two bits for each of its eight children. Returns 0 if the tree is too deep
+/// or the bytes end too early: octomap itself would read on past the end, so this is checked before.
+std::size_t count_nodes(std::string_view data, int depth, std::size_t& position)
 {
-    if (depth >= max_depth || at + 2 > data.size()) return 0;
-    const unsigned bits = static_cast<unsigned char>(data[at]) | unsigned(static_cast<unsigned char>(data[at + 1]))
-                                                                     << 8;
-    at += 2;
+    if (depth >= max_depth || position + 2 > data.size()) return 0;
+    const unsigned bits = static_cast<unsigned char>(data[position]) |
+                          unsigned(static_cast<unsigned char>(data[position + 1])) << 8;
+    position += 2;
     std::size_t count = 1;
     for (unsigned child = 0; child < 8; ++child) {
         const unsigned code = bits >> (2 * child) & 3;
         if (code == 1 || code == 2) ++count;
         if (code != 3) continue;
-        const std::size_t below = count_nodes(data, depth + 1, at);
+        const std::size_t below = count_nodes(data, depth + 1, position);
         if (below == 0) return 0;
         count += below;
     }
@@ -79,10 +81,11 @@ std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
     const OctoMapHeader header = read_header(file, bytes, "binary OctoMap (.bt)", "# Octomap OcTree binary file");
     check_type(file, header);
     const std::string_view data = std::string_view(bytes).substr(header.data);
-    std::size_t at = 0;
-    const std::size_t nodes = header.nodes == 0 ? 0 : count_nodes(data, 0, at);
+    std::size_t position = 0;
+    const std::size_t nodes = header.nodes == 0 ? 0 : count_nodes(data, 0, position);
     if (double(nodes) != header.nodes)
-        throw FileError(file.string(), "is cut short or damaged: its header says " + number(header.nodes) + " nodes");
+        throw FileError(file.string(), "is cut short or damaged: it does not have the " + number(header.nodes) +
+                                           " nodes that its header declares");
     auto tree = std::make_unique<octomap::OcTree>(header.resolution);
     if (nodes == 0) return tree;
     std::istringstream stream{std::string(data), std::ios::binary};
@@ -90,18 +93,18 @@ std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
     return tree;
 }
 
-/// Copies a whole tree without what its nodes have beside their log-odds; false if the bytes end in it. Of each node a
-/// float, `extra` bytes, a mask of its children, then these (octomap/OcTreeBaseImpl.hxx).
-bool copy_plain(std::string_view data, std::size_t extra, int depth, std::size_t& at, std::string& out)
+/// Copies a tree, but of each node only its log-odds and its children. Returns false if the bytes end too early. A node
+/// is a float, `extra` bytes, a mask of its children, then the children (octomap/OcTreeBaseImpl.hxx).
+bool copy_log_odds(std::string_view data, std::size_t extra, int depth, std::size_t& position, std::string& out)
 {
     constexpr std::size_t value_size = sizeof(float);
-    if (depth > max_depth || at + value_size + extra + 1 > data.size()) return false;
-    out += data.substr(at, value_size);
-    out += data[at + value_size + extra];
+    if (depth > max_depth || position + value_size + extra + 1 > data.size()) return false;
+    out += data.substr(position, value_size);
+    out += data[position + value_size + extra];
     const unsigned children = static_cast<unsigned char>(out.back());
-    at += value_size + extra + 1;
+    position += value_size + extra + 1;
     for (unsigned child = 0; child < 8; ++child)
-        if ((children >> child & 1) != 0 && !copy_plain(data, extra, depth + 1, at, out)) return false;
+        if ((children >> child & 1) != 0 && !copy_log_odds(data, extra, depth + 1, position, out)) return false;
     return true;
 }
 
@@ -114,9 +117,9 @@ std::unique_ptr<octomap::OcTree> read_full(const std::filesystem::path& file)
     if (header.nodes == 0) return tree;
     const std::string_view data = std::string_view(bytes).substr(header.data);
     const std::size_t extra = header.id == "ColorOcTree" ? 3 : 0;  // red, green, blue
-    std::size_t at = 0;
+    std::size_t position = 0;
     std::string plain;
-    if (!copy_plain(data, extra, 0, at, plain)) throw FileError(file.string(), "is cut short or damaged");
+    if (!copy_log_odds(data, extra, 0, position, plain)) throw FileError(file.string(), "is cut short or damaged");
     std::istringstream stream{plain, std::ios::binary};
     tree->readData(stream);
     return tree;

@@ -7,8 +7,8 @@
 
 namespace spawnfield {
 
-/// An OctoMap: .bt or .ot, of type OcTree, ColorOcTree (without its colours) or OcTreeStamped. Throws FileError for a
-/// file that is missing, of another kind or cut short.
+/// Reads an OctoMap (.bt or .ot) of type OcTree, ColorOcTree (without its colours) or OcTreeStamped. Throws FileError
+/// for a file that is missing, of another kind or cut short.
 std::unique_ptr<octomap::OcTree> read_octomap(const std::filesystem::path& file);
 
 }  // namespace spawnfield

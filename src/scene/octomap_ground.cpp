@@ -12,15 +12,15 @@
 namespace spawnfield {
 namespace {
 
-constexpr int reach = 3;        // columns to each side
-constexpr int least_tops = 16;  // (reach + 1)^2: the corner of a level floor
+constexpr int reach = 3;        // number of columns to each side
+constexpr int least_tops = 16;  // (reach + 1)^2, as at the corner of a level floor
 constexpr std::size_t most_tops = 100000000;
 
 /// The open upper side of an occupied voxel.
 struct Top {
     std::uint16_t x, y;  ///< voxels from the tree's lowest corner
     std::int32_t z;
-    std::size_t leaf;  ///< number of its leaf among the occupied ones
+    std::size_t leaf;  ///< index of its leaf among the occupied leaves
 };
 
 class OpenTops {
@@ -29,15 +29,16 @@ public:
     {
         for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end && !knows_free_; ++leaf)
             knows_free_ = !tree.isNodeOccupied(*leaf);
-        std::size_t looked_at = 0;
+        std::size_t top_count = 0;
         for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
             if (!tree.isNodeOccupied(*leaf)) continue;
             const octomap::OcTreeKey low = leaf.getIndexKey();
             const int side = 1 << (tree.getTreeDepth() - leaf.getDepth());
-            looked_at += std::size_t(side) * std::size_t(side);
-            if (looked_at > most_tops)
+            top_count += std::size_t(side) * std::size_t(side);
+            if (top_count > most_tops)
                 throw FileError(file,
-                                "has leaves that are too large to be labelled by slope; label it as a whole (--label)");
+                                "has leaves that are too large to be labelled by slope; give the whole OctoMap one "
+                                "label with --label");
             add_leaf(tree, low, side);
             ++leaves_;
         }
@@ -49,7 +50,7 @@ public:
     const std::vector<Top>& all() const { return tops_; }
     std::size_t leaves() const { return leaves_; }
 
-    /// The top of a column that is nearest to a height; null if none is within `limit`.
+    /// Returns the top of a column that is nearest to a height; null if none is within `limit`.
     const Top* nearest(int x, int y, int z, double limit) const
     {
         const auto found = columns_.find(column(x, y));
@@ -80,8 +81,8 @@ private:
     }
 
     bool knows_free_ = false;
-    std::vector<Top> tops_;                                   ///< by column, from below
-    std::unordered_map<std::uint64_t, std::size_t> columns_;  ///< number of the column's first top
+    std::vector<Top> tops_;                                   ///< sorted by column, then by height
+    std::unordered_map<std::uint64_t, std::size_t> columns_;  ///< index of the column's first top
     std::size_t leaves_ = 0;
 };
 
@@ -93,7 +94,7 @@ bool is_ground(const Top& top, const OpenTops& tops, double max_slope)
     int count = 0;
     for (int dx = -reach; dx <= reach; ++dx)
         for (int dy = -reach; dy <= reach; ++dy) {
-            const double limit = 1 + rise * std::hypot(dx, dy);  // 1: heights are whole voxels
+            const double limit = 1 + rise * std::hypot(dx, dy);  // + 1, because heights are whole voxels
             const Top* const near = tops.nearest(top.x + dx, top.y + dy, top.z, limit);
             if (near == nullptr) continue;
             const Eigen::Vector3d row(dx, dy, 1);

@@ -39,15 +39,15 @@ void append_unknown(Scene& scene, const std::string& name, const octomap::OcTree
     }
 }
 
-std::string unknown_words(const octomap::OcTree& tree, const VoxelBox& extent, Unknown unknown)
+std::string unknown_notice(const octomap::OcTree& tree, const VoxelBox& extent, Unknown unknown)
 {
     const double voxel = tree.getResolution() * tree.getResolution() * tree.getResolution();
     const double all = extent.volume(), share = 1 - known_volume(tree) / all;
     char text[160];
     std::snprintf(text, sizeof text, "%.6g m3 of its %.6g m3 are unknown (%.1f %%) and ", share * all * voxel,
                   all * voxel, 100 * share);
-    return text + std::string(unknown == Unknown::Blocked ? "count as solid"
-                                                          : "count as free (--unknown blocked makes them solid)");
+    return text + std::string(unknown == Unknown::Blocked ? "are treated as solid"
+                                                          : "are treated as free (--unknown blocked makes them solid)");
 }
 
 }  // namespace
@@ -59,7 +59,8 @@ void append_octomap(Scene& scene, std::uint32_t part, const std::filesystem::pat
     constexpr double upright = 1e-6;  // rad
     if (auto_slope && std::hypot(pose.rotation(0, 2), pose.rotation(1, 2)) > upright)
         throw FileError(file.string(),
-                        "is tilted by its part's rpy, needs to be upright to be labelled by slope; give it a label");
+                        "is tilted by the rpy of its part, so it cannot be labelled by slope; set roll and pitch to 0, "
+                        "or give it a label");
     const std::vector<bool> is_ground = auto_slope ? ground_leaves(*tree, *auto_slope, file.string())
                                                    : std::vector<bool>();
     std::size_t occupied = 0;
@@ -77,7 +78,7 @@ void append_octomap(Scene& scene, std::uint32_t part, const std::filesystem::pat
     if (scene.parts[part].solid_pieces == 0) throw FileError(file.string(), "has no occupied leaf, needs at least one");
     const VoxelBox extent = known_extent(*tree);
     if (unknown == Unknown::Blocked) append_unknown(scene, scene.parts[part].name, *tree, extent, pose);
-    scene.notices.push_back(file.string() + ": " + unknown_words(*tree, extent, unknown));
+    scene.notices.push_back(file.string() + ": " + unknown_notice(*tree, extent, unknown));
 }
 
 }  // namespace spawnfield

@@ -7,7 +7,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr std::uint32_t all_voxels = 1u << 16;  // of a tree along each axis
+constexpr std::uint32_t all_voxels = 1u << 16;  // along each axis of a tree
 
 VoxelBox cube(const std::array<std::uint32_t, 3>& corner, std::uint32_t side)
 {
@@ -48,7 +48,7 @@ void visit(const octomap::OcTree& tree, const Known& known, const Missing& missi
         visit(tree, *tree.getRoot(), all, known, missing);
 }
 
-/// Joins boxes that lie against each other along an axis with the same sides; true if there were any.
+/// Joins boxes that touch along an axis and have the same sides there. Returns whether there were any.
 bool join(std::vector<VoxelBox>& boxes, std::size_t axis)
 {
     const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;

@@ -50,16 +50,17 @@ LabelCounts Scene::count_labels() const
 
 namespace {
 
-/// Coordinates as far out as UTM's; doubles have 1e-9 m there, the touch tolerance needs 1e-6 m.
+/// Limit of coordinates, as large as those of UTM. There, doubles have a resolution of 1e-9 m, which is enough for
+/// touch_margin.
 constexpr double farthest = 1e7;  // m
 
-/// False for what is no number, too.
+/// Returns whether the box lies within the limit. False also for NaN.
 bool is_near(const Bounds& box)
 {
     return (box.min.array().abs() <= farthest).all() && (box.max.array().abs() <= farthest).all();
 }
 
-/// Why there is nothing, where the notices tell.
+/// Returns the first notices, which may explain why there is no geometry.
 std::string first_reasons(const Scene& scene)
 {
     std::string out;
@@ -74,7 +75,7 @@ void check_extent(const Scene& scene, const std::string& file)
         if (is_near(box)) continue;
         throw FileError(file, "part \"" + scene.parts[element_part(scene, e)].name + "\" reaches from " +
                                   to_string(box, 3) + ", needs to lie within " + number(farthest) +
-                                  " m of 0, 0, 0; are its units, its place or its scale wrong?");
+                                  " m of 0, 0, 0; check its units, its position and its scale");
     }
 }
 
@@ -98,12 +99,13 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     const bool is_yaml = extension == ".yaml" || extension == ".yml", nav2 = is_yaml && is_nav2_map(file),
                yaml = is_yaml && !nav2;
     if (!nav2 && options.wall_height != 0)
-        throw ArgumentError("load_scene", "wall_height is for a 2D map; " + file.string() + " is none");
+        throw ArgumentError("load_scene",
+                            "wall_height is for a 2D map; " + file.string() + " is another kind of scene");
     const bool sdf = extension == ".sdf" || extension == ".world", urdf = extension == ".urdf";
     const bool gazebo = sdf || urdf;
     if ((yaml || gazebo) && (options.up != 0 || options.scale != 1.0))
         throw ArgumentError("load_scene", "up and scale are for a bare mesh; " +
-                                              (gazebo ? "Gazebo takes a world as it is"
+                                              (gazebo ? "Gazebo uses a world as it is"
                                                       : "give them in " + file.string() + " (keys up, scale)"));
     if ((yaml || gazebo) && !options.heightmap.empty())
         throw ArgumentError("load_scene",
@@ -119,16 +121,16 @@ Scene load_scene(const fs::path& scene_path, const SceneOptions& options)
     if (options.unknown && std::none_of(scene.parts.begin(), scene.parts.end(), is_octomap_part))
         scene.notices.push_back(file.string() + ": has no OctoMap, so --unknown has no effect");
     if (element_count(scene) == 0)
-        throw FileError(file.string(), "has no geometry: all of it is ignored" +
+        throw FileError(file.string(), "has no geometry: all parts are ignored" +
                                            std::string(gazebo ? ", missing or without collision" : "") +
                                            first_reasons(scene));
     check_extent(scene, file.string());
     const Remedies remedies = yaml     ? Remedies{"scale of its part:", "up of its part"}
                               : gazebo ? Remedies{"<scale> of its mesh:",
-                                                  "Gazebo takes a mesh's own axes, so the model's <pose>"}
+                                                  "Gazebo uses the axes of the mesh file, so the <pose> of its model"}
                                        : Remedies{"--scale", "--up y or z"};
     if (std::none_of(scene.parts.begin(), scene.parts.end(), is_mesh_part))
-        return scene;  // nothing else is scaled or turned by the user
+        return scene;  // the user can scale and rotate only meshes
     for (std::string& doubt : doubts_about(scene, file.string(), remedies)) scene.notices.push_back(std::move(doubt));
     return scene;
 }

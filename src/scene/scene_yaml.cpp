@@ -29,17 +29,18 @@ Label read_label(const YamlMap& map, const std::string& fallback)
 FaceRule read_rule(const YamlMap& rule)
 {
     rule.only({"node", "material", "label"});
-    if (!rule.has("node") && !rule.has("material")) rule.fail("needs node, material, or both: both must match");
+    if (!rule.has("node") && !rule.has("material"))
+        rule.fail("has neither node nor material, needs one of them or both (then both must match)");
     if (!rule.has("label")) rule.fail("label", "is missing");
     return {rule.text("node", "*"), rule.text("material", "*"), read_label(rule, "")};
 }
 
-/// A rule that matches nothing is most often a slip of the pen.
-void tell_idle_rules(const YamlMap& part, const std::vector<FaceRule>& rules, std::span<const FaceGroup> groups,
-                     Scene& scene)
+/// Adds a notice for each rule of a part that matches nothing, because it is most often a typing error.
+void note_unused_rules(const YamlMap& part, const std::vector<FaceRule>& rules, std::span<const FaceGroup> groups,
+                       Scene& scene)
 {
     for (const FaceRule& rule : rules) {
-        if (rule.either) continue;  // from the caller; told when all parts are read
+        if (rule.either) continue;  // from the caller; checked when all parts are read
         if (std::any_of(groups.begin(), groups.end(),
                         [&](const FaceGroup& group) { return rule.matches(group.node, group.material); }))
             continue;
@@ -50,7 +51,7 @@ void tell_idle_rules(const YamlMap& part, const std::vector<FaceRule>& rules, st
     }
 }
 
-/// Reads a file that the part names; what is wrong with it is told with part and key.
+/// Calls read(file) for a file that the part names. An error in the file is reported with the part and the key.
 template <class Read>
 void in_part(const YamlMap& map, const std::string& key, Read read)
 {
@@ -62,11 +63,13 @@ void in_part(const YamlMap& map, const std::string& key, Read read)
     }
 }
 
-/// rad, of the options or else of the part; nothing for a part with a label of its own.
+/// Returns the slope (rad) for labelling by slope, from the options or else from the part; empty if the part has its
+/// own label.
 std::optional<double> read_auto_slope(const YamlMap& part, const SceneOptions& options)
 {
     if (!part.has("auto_label")) return part.has("label") ? std::nullopt : options.auto_slope;
-    if (part.has("label")) part.fail("auto_label", "cannot stand beside label; labels: may");
+    if (part.has("label"))
+        part.fail("auto_label", "is given together with label, needs only one of them (labels: is allowed)");
     const YamlMap keys = part.map("auto_label");
     keys.only({"slope"});
     const double degrees = keys.positive("slope");
@@ -91,12 +94,12 @@ MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
     return mesh;
 }
 
-/// What the parts of a scene.yaml have in common.
+/// State that all parts of a scene.yaml share.
 struct SceneFile {
     fs::path folder;
     const SceneOptions& options;
     MeshFiles meshes;
-    Names names;  ///< that label rules of the options can match
+    Names names;  ///< names that label rules of the options can match
 
     void add(const Names& more)
     {
@@ -137,7 +140,7 @@ void read_part(const YamlMap& map, SceneFile& file, Scene& scene)
         in_part(map, "mesh", [&](const auto& path) {
             const std::span<const FaceGroup> groups = append_mesh(scene, part, *file.meshes.read(file.folder / path),
                                                                   mesh);
-            tell_idle_rules(map, mesh.rules, groups, scene);
+            note_unused_rules(map, mesh.rules, groups, scene);
             file.add(names_of(groups));
         });
     } else if (label == Label::Ignore) {
@@ -185,14 +188,15 @@ Scene read_scene_yaml(const fs::path& file, const SceneOptions& options)
         const YamlMap unnamed(node, file.string(), "part " + std::to_string(number));
         const std::string name = unnamed.text("name");
         const YamlMap map(node, file.string(), "part \"" + name + "\"");
-        if (!part_names.insert(name).second) map.fail("name", "is given to an earlier part too, needs to be unique");
+        if (!part_names.insert(name).second)
+            map.fail("name", "is also the name of an earlier part, needs to be unique");
         read_part(map, common, scene);
         if (scene.parts.back().name != name && !part_names.insert(scene.parts.back().name).second)
             map.fail("octomap", "has unknown space, but its part's name \"" + scene.parts.back().name +
-                                    "\" is given to another part");
+                                    "\" is already used; rename one of the parts");
     }
     if (scene.parts.empty()) root.fail("parts", "is empty, needs at least one part");
-    tell_idle_rules(file, options.labels, common.names, scene);
+    note_unused_rules(file, options.labels, common.names, scene);
     return scene;
 }
 

@@ -6,7 +6,7 @@
 
 namespace spawnfield {
 
-/// A scene.yaml (docs/input-files.md) with the files that its parts name. Throws FileError.
+/// Reads a scene.yaml (docs/input-files.md) and the files that its parts name. Throws FileError.
 Scene read_scene_yaml(const std::filesystem::path& file, const SceneOptions& options);
 
 }  // namespace spawnfield

@@ -6,7 +6,7 @@ namespace spawnfield {
 
 std::optional<Label> label_by_slope(const Shape& shape, double max_slope)
 {
-    constexpr double upright = 1e-6;  // rad; a metre on, the top differs by the touch tolerance
+    constexpr double upright = 1e-6;  // rad; at this angle a top rises by touch_margin over 1 m
     const Mat3& axes = shape.pose.rotation;
     if (shape.kind == ShapeKind::Cylinder)
         return std::abs(axes(2, 2)) > std::cos(max_slope) ? Label::Terrain : Label::Obstacle;

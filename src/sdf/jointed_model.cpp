@@ -39,13 +39,13 @@ public:
         sdf::Root root;
         check(root.Load(path_for_libsdformat(file_), session.config()));
         if (root.Model() == nullptr)
-            throw FileError(file_.string(), root.WorldCount() > 0 ? "holds a <world>, needs a <model> to be a robot"
+            throw FileError(file_.string(), root.WorldCount() > 0 ? "contains a <world>, needs a <model> to be a robot"
                                                                   : "has no <model>");
         const sdf::Model& model = *root.Model();
         out_.name = model.Name();
         if (model.RawPose() != ignition::math::Pose3d::Zero)
             out_.notices.push_back(file_.string() + ": the <pose> of model \"" + model.Name() +
-                                   "\" does not count: poses are those of its own frame");
+                                   "\" is ignored: poses are in its own frame");
         collect(model, {}, "");
         move_links(model);
         for (const Link& link : links_) add_link(link);
@@ -54,18 +54,18 @@ public:
 
 private:
     struct Link {
-        std::string name;  ///< with the nested models that it is in: "arm::hand"
+        std::string name;  ///< with the names of the nested models that contain it: "arm::hand"
         const sdf::Link* link;
         Pose robot_from_link;
     };
     /// A joint at its zero position.
     struct Hinge {
         Joint joint;
-        std::string parent, child;  ///< links
-        Vec3 origin, axis;          ///< robot frame
+        std::string parent, child;  ///< names of links
+        Vec3 origin, axis;          ///< in the robot frame
     };
 
-    /// Harmless errors become one notice, all others an end.
+    /// Adds one notice for all harmless errors, and one for each unknown element. Throws FileError for any other error.
     void check(const sdf::Errors& errors)
     {
         const sdf::Error* first = nullptr;
@@ -73,15 +73,17 @@ private:
         for (const sdf::Error& error : errors) {
             const SdfErrorKind kind = kind_of(error);
             if (kind == SdfErrorKind::Unknown) {
-                out_.notices.push_back(words_of(error, file_.string()));
+                out_.notices.push_back(text_of_error(error, file_.string()));
                 continue;
             }
-            if (kind != SdfErrorKind::Harmless) throw FileError(words_of(error, file_.string()), "it is needed");
+            if (kind != SdfErrorKind::Harmless)
+                throw FileError(text_of_error(error, file_.string()), "the model cannot be read without it");
             if (harmless++ == 0) first = &error;
         }
         if (first == nullptr) return;
-        out_.notices.push_back(words_of(*first, file_.string()) + " (where collisions are it does not change" +
-                               (harmless > 1 ? "; and " + std::to_string(harmless - 1) + " more such" : "") + ")");
+        out_.notices.push_back(text_of_error(*first, file_.string()) + " (this does not move any collision" +
+                               (harmless > 1 ? "; and " + std::to_string(harmless - 1) + " more of this kind" : "") +
+                               ")");
     }
 
     void collect(const sdf::Model& model, const Pose& robot_from_model, const std::string& prefix)
@@ -130,7 +132,8 @@ private:
         return hinge;
     }
 
-    /// Every link where the joints above it bring it; the canonical link, whose frame the model's hangs on, stays.
+    /// Moves every link as the joints between it and the root move it. The canonical link stays in place, because the
+    /// model's frame depends on it.
     void move_links(const sdf::Model& model)
     {
         std::vector<Joint> joints;
@@ -151,8 +154,8 @@ private:
         for (const Hinge& hinge : hinges_) {
             if (hinge.child != link) continue;
             if (above != nullptr || depth > hinges_.size())
-                throw FileError(file_.string(), "joints cannot be given: link \"" + link +
-                                                    "\" hangs on several joints, a closed chain");
+                throw FileError(file_.string(),
+                                "joints cannot be given: link \"" + link + "\" is in a closed chain of joints");
             above = &hinge;
         }
         if (above == nullptr) return {};
@@ -169,10 +172,10 @@ private:
             const sdf::Collision& collision = *link.link->CollisionByIndex(k);
             if (touches_nothing(collision)) {
                 out_.notices.push_back(file_.string() + ": \"" + link.name + "::" + collision.Name() +
-                                       "\" is left out: its <surface> says that it touches nothing");
+                                       "\" is ignored: by its <surface> it touches nothing");
                 continue;
             }
-            // A resolved pose of a collision is in its link's frame.
+            // libsdformat resolves the pose of a collision in its link's frame.
             out_.bodies.push_back({{out_.name, link.name, collision.Name()},
                                    link.robot_from_link * resolved(collision.SemanticPose(), ""),
                                    geometry_of(*collision.Geom(), {file_, link.name + "::" + collision.Name(),
@@ -186,7 +189,7 @@ private:
     JointedModel out_;
     std::vector<Link> links_;
     std::vector<Hinge> hinges_;
-    std::map<std::string, double> positions_;  ///< of joints
+    std::map<std::string, double> positions_;  ///< by name of the joint
 };
 
 }  // namespace

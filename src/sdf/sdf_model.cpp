@@ -12,11 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Side lengths of the largest plane, box or heightmap that the link draws, as the first two numbers; 0 if it draws
+/// Returns the side lengths of the largest plane, box or heightmap among the link's visuals, as x and y; 0 if there is
 /// none.
 Vec3 drawn_size(const sdf::Link& link)
 {
-    constexpr double largest = 1e6;  // m, as of shapes that collide
+    constexpr double largest = 1e6;  // m, the same limit as for collisions
     Vec3 size = Vec3::Zero();
     for (std::uint64_t v = 0; v < link.VisualCount(); ++v) {
         const sdf::Geometry* const geometry = link.VisualByIndex(v)->Geom();
@@ -44,8 +44,9 @@ public:
         sdf::Errors errors = text ? root.LoadSdfString(*text, session_.config())
                                   : root.Load(path_for_libsdformat(file_), session_.config());
         if (root.WorldCount() == 0 && root.Model() == nullptr) {
-            if (root.Light() != nullptr) return {};  // such as Gazebo's "sun"; what includes it is left to libsdformat
-            if (!errors.empty()) throw FileError(words_of(errors[0], file_.string()), "cannot be read as SDF");
+            if (root.Light() != nullptr)
+                return {};  // for example Gazebo's "sun"; libsdformat resolves an <include> of it
+            if (!errors.empty()) throw FileError(text_of_error(errors[0], file_.string()), "cannot be read as SDF");
             throw FileError(file_.string(), "has no <world> and no <model>, needs one of them");
         }
         if (root.WorldCount() > 1)
@@ -60,14 +61,15 @@ public:
     }
 
 private:
+    /// Throws FileError for errors that make poses wrong, and takes all others into the content's messages.
     void sort(const sdf::Errors& errors)
     {
         constexpr std::size_t most_unknown = 10;
         std::size_t inertias = 0, unknown = 0;
         for (const sdf::Error& error : errors) {
             const SdfErrorKind kind = kind_of(error);
-            const std::string words = words_of(error, file_.string());
-            if (kind == SdfErrorKind::Frames) throw FileError(words, "no pose can be told");
+            const std::string words = text_of_error(error, file_.string());
+            if (kind == SdfErrorKind::Frames) throw FileError(words, "a frame is wrong, so poses cannot be determined");
             if (error.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID)
                 ++inertias;
             else if (kind == SdfErrorKind::Duplicate)
@@ -79,11 +81,11 @@ private:
         }
         if (unknown > most_unknown)
             content_.complaints.push_back(file_.string() + ": " + std::to_string(unknown - most_unknown) +
-                                          " more elements that SDF does not have");
+                                          " more elements that are not part of SDF");
         if (inertias > 0)
-            content_.complaints.push_back(
-                file_.string() + ": " + std::to_string(inertias) + (inertias == 1 ? " link has" : " links have") +
-                " an invalid <inertia>: it counts for nothing here, but Gazebo may refuse it");
+            content_.complaints.push_back(file_.string() + ": " + std::to_string(inertias) +
+                                          (inertias == 1 ? " link has" : " links have") +
+                                          " an invalid <inertia>: it is ignored here, but Gazebo may refuse it");
     }
 
     void add_world(const sdf::World& world)
@@ -107,7 +109,8 @@ private:
         add_model(model, {});
     }
 
-    /// `pose` is that of the model in the content's frame; `names_` ends with the model's.
+    /// Adds the bodies of a model. `pose` is the model's pose in the content's frame; the last of `names_` is the
+    /// model's name.
     void add_model(const sdf::Model& model, const Pose& pose)
     {
         const std::size_t before = content_.bodies.size();
@@ -149,8 +152,8 @@ private:
 
     SdfPlace place_of(const sdf::Collision& collision) const
     {
-        const std::string from =
-            collision.Element()->FilePath();  // that of the include that it stands in; of a text, a name in brackets
+        // The path of the included file that contains the element. For text in memory it is a name in angle brackets.
+        const std::string from = collision.Element()->FilePath();
         return {from.empty() || from.front() == '<' ? file_ : fs::path(from), scoped_name({names_, {}, {}}),
                 collision.Element()->LineNumber()};
     }
@@ -160,7 +163,7 @@ private:
         ignition::math::Pose3d pose;
         const sdf::Errors errors = semantic.Resolve(pose);
         if (!errors.empty())
-            throw FileError(file_.string(), place() + ": its pose cannot be told: " + errors[0].Message());
+            throw FileError(file_.string(), place() + ": its pose cannot be determined: " + errors[0].Message());
         if (!pose.IsFinite()) throw FileError(file_.string(), place() + ": its pose has numbers that are not finite");
         return pose_of(pose);
     }
@@ -170,7 +173,7 @@ private:
     const fs::path file_;
     const SdfSession session_;
     SdfContent content_;
-    std::vector<std::string> names_;  ///< of what is being read, from the outermost model in
+    std::vector<std::string> names_;  ///< names from the outermost model to the element that is read now
 };
 
 }  // namespace

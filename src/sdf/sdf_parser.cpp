@@ -69,12 +69,12 @@ private:
             if (const std::string name = "<" + shape->GetName() + ">"; shapes.find(name) == std::string::npos)
                 shapes += (shapes.empty() ? "" : ", ") + name;
         if (shapes.find(',') != std::string::npos)
-            fail("<geometry> holds " + shapes + ", needs one shape; give each a <collision> of its own");
+            fail("<geometry> contains " + shapes + ", needs one shape; give each a <collision> of its own");
     }
 
     void set(CollisionGeometry& out, Kind kind, const std::string& what, const Vec3& size) const
     {
-        constexpr double largest = 1e6;  // m: beyond it, a slip of the pen
+        constexpr double largest = 1e6;  // m; a larger number is most likely a typing error
         for (const double side : size)
             if (!(side > 0) || side > largest) fail(what + " is " + number(side) + ", needs > 0 and at most 1000 km");
         out.kind = kind;
@@ -104,7 +104,7 @@ private:
             fail("<heightmap> <sampling> is " + std::to_string(out.sampling) + ", needs 1 to 16");
     }
 
-    /// What libsdformat 12 has no class for.
+    /// Reads geometry for which libsdformat 12 has no class.
     void set_by_element(CollisionGeometry& out, const sdf::ElementPtr& element) const
     {
         if (!element || !element->HasElement("polyline")) {
@@ -114,18 +114,19 @@ private:
         }
         double height = 0;
         for (sdf::ElementPtr line = element->GetElement("polyline"); line; line = line->GetNextElement("polyline")) {
-            if (height == 0) height = line->Get<double>("height");  // of the first, as Gazebo has it
+            if (height == 0) height = line->Get<double>("height");  // that of the first one, as in Gazebo
             auto& outline = out.outlines.emplace_back();
             for (sdf::ElementPtr point = line->HasElement("point") ? line->GetElement("point") : nullptr; point;
                  point = point->GetNextElement("point")) {
-                const auto at = point->Get<ignition::math::Vector2d>();
-                outline.push_back({at.X(), at.Y()});
+                const auto xy = point->Get<ignition::math::Vector2d>();
+                outline.push_back({xy.X(), xy.Y()});
             }
         }
         set(out, Kind::Polyline, "<polyline> <height>", Vec3(height, 1, 1));
     }
 
-    /// A file's text that was given has a name in brackets.
+    /// Returns the folder of the file that contains the geometry. For text in memory, libsdformat's file name is in
+    /// angle brackets; then it is the folder of the place.
     fs::path folder_of(const std::string& named) const
     {
         return named.empty() || named.front() == '<' || !fs::exists(named) ? place_.file.parent_path()
@@ -174,7 +175,8 @@ SdfErrorKind kind_of(const sdf::Error& error)
     case sdf::ErrorCode::ELEMENT_DEPRECATED:
     case sdf::ErrorCode::VERSION_DEPRECATED: return SdfErrorKind::Harmless;
     case sdf::ErrorCode::URI_LOOKUP:
-    case sdf::ErrorCode::URI_INVALID: return SdfErrorKind::Repeated;  // what is missing is told by who looked for it
+    case sdf::ErrorCode::URI_INVALID:
+        return SdfErrorKind::Repeated;  // the code that looks for a file reports that it is missing
     default: break;
     }
     const std::string words = error.Message();
@@ -185,20 +187,20 @@ SdfErrorKind kind_of(const sdf::Error& error)
 
 std::string path_for_libsdformat(const fs::path& file) { return fs::absolute(file).string(); }
 
-std::string words_of(const sdf::Error& error, const std::string& file)
+std::string text_of_error(const sdf::Error& error, const std::string& file)
 {
     std::string out = error.FilePath().value_or(file);
     if (out.empty() || out.front() == '<' || out == path_for_libsdformat(file))
-        out = file;  // text that was given has a name in brackets
+        out = file;  // for text in memory the name is in angle brackets
     if (error.LineNumber()) out += ": line " + std::to_string(*error.LineNumber());
     if (error.XmlPath()) out += ": " + *error.XmlPath();
     const SdfErrorKind kind = kind_of(error);
     if (kind == SdfErrorKind::Unknown)
-        return out + ": is no element that SDF has at this place: it counts for nothing; is it misspelt?";
+        return out + ": is not an SDF element at this place, so it is ignored; is it misspelt?";
     out += ": " + trimmed(error.Message());
-    if (kind == SdfErrorKind::Duplicate) out += " It is left out: give it a name of its own";
+    if (kind == SdfErrorKind::Duplicate) out += " It is ignored; give it a name of its own";
     if (error.Code() == sdf::ErrorCode::URI_LOOKUP)
-        out += "; --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH tell where models are";
+        out += "; give the folder of the models with --model-path, GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH";
     return out;
 }
 

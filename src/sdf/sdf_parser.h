@@ -13,9 +13,9 @@
 
 namespace spawnfield {
 
-/// libsdformat finds files through a global callback (nested includes ask that one alone) and prints on its own, as
-/// does the URDF parser that it tries on what it does not understand: all of it is held while this lives. One at a
-/// time.
+/// Prepares libsdformat while this object exists, and restores its settings at the end. libsdformat finds files through
+/// a global callback (the only one that nested includes use) and prints messages itself; so does the URDF parser that
+/// it tries for text that it does not know. Only one object exists at a time; others wait.
 class SdfSession {
 public:
     SdfSession(ModelPaths& paths, const std::filesystem::path& folder);
@@ -31,18 +31,18 @@ private:
     sdf::ParserConfig config_;
 };
 
-/// What an error of libsdformat means here.
+/// How an error of libsdformat is treated here.
 enum class SdfErrorKind {
-    Frames,     ///< poses are wrong, or lost, where frames are not understood
-    Unknown,    ///< an element that SDF does not know, and nobody reads
-    Duplicate,  ///< a second thing of a name, which libsdformat leaves out
-    Harmless,   ///< about mass or age, not about where collisions are
-    Repeated,   ///< of what is told in another way
+    Frames,     ///< a frame is wrong, so poses would be wrong or missing
+    Unknown,    ///< an element that is not part of SDF; it is ignored
+    Duplicate,  ///< a second element with the same name, which libsdformat ignores
+    Harmless,   ///< about inertia or old elements; collisions do not change
+    Repeated,   ///< already reported by another message
     Other
 };
 SdfErrorKind kind_of(const sdf::Error& error);
 
-/// What libsdformat itself throws (of numbers in attributes, mostly) becomes a FileError.
+/// Calls read() and turns exceptions of libsdformat (mostly about numbers in attributes) into FileError.
 template <class Read>
 auto without_foreign_exceptions(const std::filesystem::path& file, const Read& read)
 {
@@ -55,36 +55,39 @@ auto without_foreign_exceptions(const std::filesystem::path& file, const Read& r
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
-        throw FileError(file.string(),
-                        std::string("cannot be read as SDF: a number in it, or in what it includes, is none (") +
-                            error.what() + ")");
+        throw FileError(
+            file.string(),
+            std::string("cannot be read as SDF: a number in it, or in a file that it includes, is malformed (") +
+                error.what() + ")");
     }
 }
 
-/// A relative "model.sdf" or "world.sdf" it would take for the file of that name in its own folder, the description of
-/// <model>.
+/// Returns the absolute path of the file. libsdformat would take a relative "model.sdf" or "world.sdf" for the file of
+/// that name in its own folder, which describes the element <model>.
 std::string path_for_libsdformat(const std::filesystem::path& file);
 
-/// File, line, element and words of an error, without what it has not.
-std::string words_of(const sdf::Error& error, const std::string& file);
+/// Returns the message of an error with its file, line and element, as far as they are known.
+std::string text_of_error(const sdf::Error& error, const std::string& file);
 
 Vec3 vector_of(const ignition::math::Vector3d& v);
 Pose pose_of(const ignition::math::Pose3d& pose);
 
-/// What nobody collides with, by its <surface>: volumes for triggers and decoration.
+/// Returns whether nothing collides with a collision because of its <surface>. Triggers and decoration are made this
+/// way.
 bool touches_nothing(const sdf::Collision& collision);
 
-/// <geometry> without a shape, or with <empty/>.
+/// Returns whether a <geometry> has no shape, or has <empty/>.
 bool is_empty(const sdf::Geometry& geometry);
 
-/// Where a collision stands, for complaints.
+/// The place of a collision in its file, for messages.
 struct SdfPlace {
     std::filesystem::path file;
-    std::string name;  ///< scoped
+    std::string name;  ///< scoped name of the collision
     std::optional<int> line;
 };
 
-/// Throws FileError for more than one shape, for sizes that are no numbers > 0 or beyond 1000 km.
+/// Reads a <geometry>. Throws FileError if it has more than one shape, or a size that is not > 0 or is more than 1000
+/// km.
 CollisionGeometry geometry_of(const sdf::Geometry& geometry, const SdfPlace& place);
 
 }  // namespace spawnfield

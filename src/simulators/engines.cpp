@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A name may be in any encoding; what is no UTF-8 is replaced.
+/// Returns the text of a JSON value. Names may be in any encoding; bytes that are not UTF-8 are replaced.
 std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 void append(std::string& text, std::initializer_list<double> values)

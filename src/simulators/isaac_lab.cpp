@@ -10,7 +10,8 @@
 namespace spawnfield {
 namespace {
 
-/// Which of `count` equal parts of [low, high] a value lies in; beyond the ends the first or last.
+/// Returns the number of the part that contains a value, if [low, high] is divided into `count` equal parts. Values
+/// beyond the ends belong to the first or last part.
 int part_of(double value, double low, double high, int count)
 {
     const double share = high > low ? (value - low) / (high - low) : 0;
@@ -71,7 +72,7 @@ TerrainPatches terrain_patches(std::span<const Vec3> points, const TileGrid& gri
                 "terrain_patches",
                 "tile " + std::to_string(i / std::size_t(grid.cols)) + "," +
                     std::to_string(i % std::size_t(grid.cols)) +
-                    " (row, column, from 0) has no spawn, needs one in each: more spawns, or fewer tiles");
+                    " (row, column, from 0) has no spawn, needs one in each; ask for more spawns or fewer tiles");
         for (std::size_t n = 0; n < out.patches_per_tile; ++n) append(patches, tile[n % tile.size()]);
         append(origins, tile.empty() ? Vec3(Vec3::Constant(std::nan(""))) : tile.front());
     }

@@ -10,7 +10,7 @@ void append(std::string& text, double value)
     append_number(text, value);
 }
 
-/// x y z qw qx qy qz, then the joints.
+/// Appends x y z qw qx qy qz, then the joints.
 void append_qpos(std::string& text, const RobotStart& robot, const std::vector<double>& joints)
 {
     const Eigen::Quaterniond q = quaternion_in(Frame::Ros, robot.rpy);

@@ -11,7 +11,7 @@ namespace {
 
 struct Pattern {
     std::string before, after;
-    std::size_t digits = 0;  ///< at least so many
+    std::size_t digits = 0;  ///< smallest number of digits
     bool has_number = false;
 };
 
@@ -20,7 +20,7 @@ struct Pattern {
     throw ArgumentError("names", option + " \"" + text + "\" " + what);
 }
 
-/// Digits that what stands in the braces asks for; false if it is no number's place.
+/// Reads the text between braces: `i`, or `i:0D` for at least D digits. Returns false for any other text.
 bool read_place(const std::string& inside, std::size_t& digits)
 {
     if (inside == "i") return true;
@@ -40,7 +40,8 @@ Pattern read_pattern(const std::string& option, const std::string& text)
     const bool is_pair = open != std::string::npos && close != std::string::npos && open < close;
     if (!is_pair || !read_place(text.substr(open + 1, close - open - 1), pattern.digits))
         fail(option, text,
-             "has braces that are no {i} or {i:03} (the robot's number, with zeros up to so many digits, 1 to 9)");
+             "has braces that are neither {i} nor {i:03}; {i} is the robot's number, {i:03} has at least 3 digits (1 "
+             "to 9 are allowed)");
     pattern.before = text.substr(0, open);
     pattern.after = text.substr(close + 1);
     pattern.has_number = true;
@@ -52,17 +53,17 @@ Pattern read_pattern(const std::string& option, const std::string& text)
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// What is wrong with it, or nothing.
+/// Returns what is wrong with a name in ROS; an empty text if it is allowed.
 std::string ros_fault(const std::string& name, int ros)
 {
     if (name.empty() || name == "/") return "is empty";
     for (const char c : name)
         if (!is_letter(c) && !is_digit(c) && c != '_' && c != '/') return std::string("has \"") + c + "\"";
     const char first = name[0] == '/' ? name[1] : name[0];
-    if (ros == 1 && !is_letter(first)) return "begins with no letter";
+    if (ros == 1 && !is_letter(first)) return "does not begin with a letter";
     if (name.back() == '/' || name.find("//") != std::string::npos) return "has an empty segment";
     if (ros == 1) return "";
-    if (name.find("__") != std::string::npos) return "has two _ after each other";
+    if (name.find("__") != std::string::npos) return "has two _ in a row";
     for (std::size_t i = 0; i < name.size(); ++i)
         if (is_digit(name[i]) && (i == 0 || name[i - 1] == '/')) return "has a segment that begins with a digit";
     return "";
@@ -102,8 +103,8 @@ void check_ros_names(const std::string& option, std::span<const std::string> nam
     for (const std::string& name : names)
         if (const std::string fault = ros_fault(name, ros); !fault.empty())
             fail(option, name,
-                 fault + ", which no name in ROS " + std::to_string(ros) +
-                     " may; it needs letters, digits, _ and /, a letter first");
+                 fault + ", which is not allowed in ROS " + std::to_string(ros) +
+                     "; use letters, digits, _ and /, a letter first");
 }
 
 void check_model_names(const std::string& option, std::span<const std::string> names)
@@ -113,9 +114,9 @@ void check_model_names(const std::string& option, std::span<const std::string> n
             if (!is_letter(c) && !is_digit(c) && std::strchr("_-./+", c) == nullptr)
                 fail(option, name,
                      std::string("has \"") + c +
-                         "\", which no model's name may; it needs letters, digits and _ - . / +");
+                         "\", which is not allowed in a model's name; use letters, digits and _ - . / +");
         if (name.starts_with("__") && name.ends_with("__"))
-            fail(option, name, "has __ at both ends, which SDF keeps for itself");
+            fail(option, name, "has __ at both ends, which SDF reserves");
     }
 }
 

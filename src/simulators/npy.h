@@ -8,7 +8,7 @@
 
 namespace spawnfield {
 
-/// An array in C order (last index fastest) as numpy.save writes it: version 1.0, little-endian.
+/// Returns the bytes of an array in C order (last index fastest) as numpy.save writes them: version 1.0, little-endian.
 /// Source: NumPy Enhancement Proposal 1, A Simple File Format for NumPy Arrays.
 template <class T>
 std::string npy(std::initializer_list<std::size_t> shape, const std::vector<T>& values)

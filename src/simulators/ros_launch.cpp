@@ -16,12 +16,13 @@ bool ends_with_any(const std::string& text, std::initializer_list<const char*> e
 void check(const char* function, const LaunchOptions& options)
 {
     if (options.file.empty() && options.topic.empty())
-        throw ArgumentError(function, "there is neither a file nor a topic that the robots are made of");
+        throw ArgumentError(function, "has neither a file nor a topic for the robots' model, needs one of them");
     if (ends_with_any(options.file, {".xacro"}))
-        throw ArgumentError(function, options.file + " is a template: write the URDF first (xacro FILE > robot.urdf)");
+        throw ArgumentError(function,
+                            options.file + " is a template, needs a URDF; make one first (xacro FILE > robot.urdf)");
 }
 
-/// "-x 1 -y 2 -z 0 -R 0 -P 0 -Y 0".
+/// Returns the arguments of a pose: "-x 1 -y 2 -z 0 -R 0 -P 0 -Y 0".
 std::string pose_arguments(const RobotStart& robot)
 {
     const Vec3& p = robot.position;
@@ -29,7 +30,8 @@ std::string pose_arguments(const RobotStart& robot)
            plain_number(robot.rpy.roll) + " -P " + plain_number(robot.rpy.pitch) + " -Y " + plain_number(robot.rpy.yaw);
 }
 
-/// Of a word in args of XML: $(…) is for the launcher, so it must not be quoted away.
+/// Returns a word as an argument in XML. A word with $(…) is not quoted for the shell, because the launcher must
+/// replace it.
 std::string argument(const std::string& word)
 {
     const bool has_substitution = word.find("$(") != std::string::npos;

@@ -27,7 +27,7 @@ void add_robot(XMLElement& world, const RobotStart& robot, const std::string& ur
     add_text(include, "pose", spaced(robot));
 }
 
-/// Of the model that an <include> without <name> brings; empty if it is found nowhere.
+/// Returns the name of the model that an <include> without <name> adds; empty if the model is not found.
 std::string name_of_included(const XMLElement& include, const SdfWorldOptions& options, ModelPaths& paths)
 {
     const fs::path file = included_file(text_of(include, "uri"), fs::path(options.world_file).parent_path(), paths);
@@ -37,7 +37,8 @@ std::string name_of_included(const XMLElement& include, const SdfWorldOptions& o
     return attribute_of(model != nullptr ? *model : *document->RootElement(), "name");  // a URDF's root is the robot
 }
 
-/// Names in the world's own scope: of models, lights and the like, and those that includes are given or bring.
+/// Returns the names in the world's own scope: those of its models, lights and other elements, and those of included
+/// models.
 std::set<std::string> names_in(const XMLElement& world, const SdfWorldOptions& options)
 {
     ModelPaths paths(options.model_paths, options.world_file);
@@ -60,13 +61,14 @@ std::string printed(const tinyxml2::XMLDocument& document)
     return printer.CStr();
 }
 
-/// A world of a file, and its number among the file's.
+/// A world in a file, and its index among the file's worlds.
 struct FoundWorld {
     XMLElement* element = nullptr;
     int index = 0;
 };
 
-/// The one world of the file, or the one that is asked for by its name.
+/// Returns the only world of the file, or the one that has the wanted name. Throws FileError if there is none or
+/// several.
 FoundWorld find_world(XMLElement& sdf, const SdfWorldOptions& options)
 {
     FoundWorld found;
@@ -89,7 +91,7 @@ FoundWorld find_world(XMLElement& sdf, const SdfWorldOptions& options)
 FoundWorld parse_world(tinyxml2::XMLDocument& document, const std::string& text, const SdfWorldOptions& options)
 {
     if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-        throw FileError(options.world_file, "line " + std::to_string(document.ErrorLineNum()) + ": is no valid XML (" +
+        throw FileError(options.world_file, "line " + std::to_string(document.ErrorLineNum()) + ": is not valid XML (" +
                                                 document.ErrorName() + ")");
     XMLElement* const sdf = document.FirstChildElement("sdf");
     if (sdf == nullptr)
@@ -103,30 +105,31 @@ bool is_tag(std::string_view text, std::string_view start)
            std::string_view(" \t\r\n/>").find(text[start.size()]) != std::string_view::npos;
 }
 
-/// Where the end tag of the file's world of this number begins, in valid XML; npos if it has none (<world/>).
+/// Returns where the end tag of the file's world with this index begins. The XML must be valid. Returns npos if the
+/// world has no end tag (<world/>).
 std::size_t end_of_world(std::string_view text, int index)
 {
     int depth = 0, number = -1;
-    for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1)) {
-        const std::string_view rest = text.substr(at);
+    for (std::size_t place = text.find('<'); place != std::string_view::npos; place = text.find('<', place + 1)) {
+        const std::string_view rest = text.substr(place);
         if (rest.starts_with("<!--"))
-            at = text.find("-->", at);
+            place = text.find("-->", place);
         else if (rest.starts_with("<![CDATA["))
-            at = text.find("]]>", at);
+            place = text.find("]]>", place);
         else if (is_tag(rest, "</world") && --depth == 0 && number == index)
-            return at;
+            return place;
         else if (is_tag(rest, "<world")) {
             if (depth == 0) ++number;
-            at = text.find('>', at);
-            if (at != std::string_view::npos && text[at - 1] != '/') ++depth;
+            place = text.find('>', place);
+            if (place != std::string_view::npos && text[place - 1] != '/') ++depth;
         }
-        if (at == std::string_view::npos) return at;
+        if (place == std::string_view::npos) return place;
     }
     return std::string_view::npos;
 }
 
-/// The file's own text with the robots before the world's end tag, indented as that is; empty if this is no way to do
-/// it.
+/// Returns the file's own text with the robots before the world's end tag, indented like that tag; empty if the world
+/// has no end tag.
 std::string inserted(std::span<const RobotStart> robots, const SdfWorldOptions& options, int index)
 {
     const std::string& text = options.world_text;
@@ -147,7 +150,7 @@ std::string inserted(std::span<const RobotStart> robots, const SdfWorldOptions& 
     return out + text.substr(is_alone ? line : end);
 }
 
-/// The world with the robots; the rest of the file stays as it is to the letter, where that can be.
+/// Returns the world file with the robots. The rest of the file remains the same to the letter, if possible.
 std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& options)
 {
     tinyxml2::XMLDocument document;
@@ -171,7 +174,7 @@ std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& op
 
 std::string sdf_world(std::span<const RobotStart> robots, const SdfWorldOptions& options)
 {
-    if (options.uri.empty()) throw ArgumentError("sdf_world", "there is no URI of the robot's model");
+    if (options.uri.empty()) throw ArgumentError("sdf_world", "needs the URI of the robot's model");
     if (!options.world_text.empty()) return filled(robots, options);
     tinyxml2::XMLDocument document;
     document.Parse("<?xml version=\"1.0\"?>\n<sdf version=\"1.7\"/>\n");

@@ -11,7 +11,7 @@ namespace spawnfield {
 
 std::string plain_number(double value)
 {
-    char buffer[1200];  // the smallest doubles have some 770 digits, the zeros among them
+    char buffer[1200];  // more than any double needs
     const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed).ptr;
     return {buffer, end};
 }

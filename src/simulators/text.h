@@ -7,22 +7,23 @@
 
 namespace spawnfield {
 
-/// The shortest text without an exponent that reads back to the same double. (roslaunch's spawn_model takes -1e-05 for
-/// an option.)
+/// Returns the shortest text without an exponent that reads back as the same double. roslaunch's spawn_model would read
+/// -1e-05 as an option.
 std::string plain_number(double value);
 
+/// Returns a text with XML's special characters escaped, for elements and for attributes in double quotes.
 std::string xml_escaped(std::string_view text);
 
-/// One word for shlex and for a POSIX shell.
+/// Returns a word, quoted if needed, for shlex and for a POSIX shell.
 std::string shell_quoted(std::string_view word);
 
-/// A literal.
+/// Returns a text as a Python string literal.
 std::string python_quoted(std::string_view text);
 
-/// "x y z r p y" in m and rad.
+/// Returns a pose as "x y z roll pitch yaw" in m and rad.
 std::string spaced(const RobotStart& robot);
 
-/// "10 robots by spawnfield 0.2.0".
+/// Returns a text like "10 robots by spawnfield 0.2.0".
 std::string made_by(std::size_t robots);
 
 }  // namespace spawnfield

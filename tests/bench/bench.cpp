@@ -21,23 +21,26 @@ struct BenchArgs {
 
 void add_options(CLI::App& app, BenchArgs& args)
 {
-    app.add_option("--rounds", args.rounds, "Timed rounds after an untimed one (default 5)")
+    app.add_option("--rounds", args.rounds, "Number of timed rounds after one untimed round (default 5)")
         ->check(CLI::Range(1, 1000));
     app.add_option("--threads", args.threads, "Numbers of threads (default: 1 and all cores)")
         ->delimiter(',')
         ->check(CLI::Range(1, 1024));
-    app.add_option("--only", args.only, "Stages whose \"scene stage\" has this in it, as \"hills raster2d\"");
-    app.add_option(
-        "--csv", args.csv,
-        "Write scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks to this file; ms is the minimum");
-    app.add_option("--write-maps", args.maps, "Bake the scenes into this folder instead; writes map,seconds,bytes")
-        ->excludes(app.add_flag("--targets", args.targets,
-                                "The table of speed and memory to reach: whole programs, then stages and rivals"));
-    app.add_option("--scene", args.scene, "With --write-maps: this scene alone, as hills or hills-4x");
-    auto* quick = app.add_flag("--quick", args.quick,
-                               "Small scenes, one round, 1 and 2 threads: does it all work and compute the same?");
+    app.add_option("--only", args.only,
+                   "Only the stages whose \"scene stage\" contains this text, for example \"hills raster2d\"");
+    app.add_option("--csv", args.csv,
+                   "Write a table with the columns scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks "
+                   "to this file; ms is the minimum");
+    app.add_option("--write-maps", args.maps, "Only bake the scenes into this folder; prints map,seconds,bytes")
+        ->excludes(app.add_flag(
+            "--targets", args.targets,
+            "Measure the table of targets for speed and memory: first whole programs, then stages and alternatives"));
+    app.add_option("--scene", args.scene, "With --write-maps: bake only this scene, for example hills or hills-4x");
+    auto* quick = app.add_flag(
+        "--quick", args.quick,
+        "Small scenes, one round, 1 and 2 threads: only shows that all stages work and compute the same");
     app.add_flag("--full", args.full,
-                 "hills with cells of 0.1 m and rasters of 0.5 m; with --targets, also 16 times its area")
+                 "hills with cells of 0.1 m and rasters of 0.5 m; with --targets also with 16 times its area")
         ->excludes(quick);
     app.footer(
         "Example:\n"
@@ -65,7 +68,7 @@ std::string ratios(const std::vector<Row>& rows)
 {
     std::string text;
     for (std::size_t i = 1; i < rows.size(); ++i)
-        text += formatted("          %s takes %.2f times as long for each item\n", rows[i].stage.c_str(),
+        text += formatted("          %s takes %.2f times as long per item\n", rows[i].stage.c_str(),
                           times_slower(rows[i], rows[0]));
     return text;
 }
@@ -89,7 +92,7 @@ std::vector<Row> run_all(const BenchArgs& args)
     return rows;
 }
 
-std::string left_out()
+std::string missing_alternatives()
 {
     std::string text;
     if (!PlainFcl::is_available()) text += "built without Embree: alternative (b), plain FCL, is left out\n";
@@ -97,7 +100,7 @@ std::string left_out()
     return text;
 }
 
-/// Maps of the scene that was asked for, or of all that are no multiples of another.
+/// Bakes the scene that --scene names, or all scenes except the tiled ones.
 void write_maps(const BenchArgs& args)
 {
     std::vector<Setting> wanted = settings(extent_of(args));
@@ -105,31 +108,31 @@ void write_maps(const BenchArgs& args)
         const std::vector<Setting> tiled = tiled_settings(extent_of(args));
         wanted.insert(wanted.end(), tiled.begin(), tiled.end());
         std::erase_if(wanted, [&](const Setting& setting) { return setting.name != args.scene; });
-        if (wanted.empty()) throw std::runtime_error("there is no scene \"" + args.scene + "\"");
+        if (wanted.empty()) throw std::runtime_error("--scene: unknown scene \"" + args.scene + "\"");
     }
     for (const Setting& setting : wanted) std::cout << to_line(bake_setting(setting, args.maps, 0)) << std::flush;
 }
 
 void reach_targets(const BenchArgs& args)
 {
-    std::cout << machine() << "\n" << left_out() << "\n" << target_head() << std::flush;
+    std::cout << machine() << "\n" << missing_alternatives() << "\n" << target_head() << std::flush;
     TargetOptions options;
     options.quick = args.quick;
-    options.most = args.full;
+    options.largest = args.full;
     options.rounds = args.quick ? 1 : args.rounds;
     options.threads = thread_counts(args);
-    options.tell = [](const TargetRow& row) { std::cout << target_line(row) << std::flush; };
-    options.remark = [](const std::string& line) { std::cout << "          " << line << "\n" << std::flush; };
+    options.on_row = [](const TargetRow& row) { std::cout << target_line(row) << std::flush; };
+    options.on_comparison = [](const std::string& line) { std::cout << "          " << line << "\n" << std::flush; };
     const std::vector<TargetRow> rows = measure_targets(options);
     if (!args.csv.empty()) write_file_atomically(args.csv, target_csv(rows));
 }
 
 void measure(const BenchArgs& args)
 {
-    std::cout << machine() << "\n" << left_out() << "\n" << table_head() << std::flush;
+    std::cout << machine() << "\n" << missing_alternatives() << "\n" << table_head() << std::flush;
     const std::vector<Row> rows = run_all(args);
     check_same(rows);
-    if (rows.empty()) throw std::runtime_error("no stage has \"" + args.only + "\" in its name");
+    if (rows.empty()) throw std::runtime_error("--only: no \"scene stage\" contains \"" + args.only + "\"");
     if (!args.csv.empty()) write_file_atomically(args.csv, csv(rows));
 }
 
@@ -138,7 +141,7 @@ void measure(const BenchArgs& args)
 int main(int argc, char** argv)
 {
     CLI::App app{
-        "Times every stage of spawnfield on its benchmark scenes, and checks that it computes the same at any number "
+        "Times every stage of spawnfield on its benchmark scenes, and checks that it computes the same with any number "
         "of threads."};
     BenchArgs args;
     add_options(app, args);

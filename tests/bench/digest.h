@@ -11,7 +11,7 @@
 
 namespace bench {
 
-/// XXH64 (Collet, xxHash) of values told field by field: struct bytes include padding.
+/// XXH64 (Collet, xxHash) of values that are added field by field, because the bytes of a struct include padding.
 class Digest {
 public:
     Digest() { XXH64_reset(&state_, 0); }

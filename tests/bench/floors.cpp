@@ -13,7 +13,7 @@ namespace {
 constexpr double length = 40, width = 30, room = 5, storey = 3, slab = 0.25, wall = 0.2;
 constexpr int storeys = 4, rooms_x = 8, rooms_y = 6;
 
-/// The stairwell is the last two rooms along x, at y = 0: there every slab above the ground has a hole.
+/// The stairwell consists of the last two rooms along x, at y = 0. There every slab above the ground floor has a hole.
 constexpr double shaft_x0 = 30, shaft_x1 = 39.8, shaft_y0 = 0.2, shaft_y1 = 2.2;
 
 void add_slab(Scene& scene, int level)
@@ -27,19 +27,20 @@ void add_slab(Scene& scene, int level)
     scene.parts.back().name = "slab-" + std::to_string(level);
 }
 
-/// From the floor of a storey up to the next one's, along the stairwell.
+/// Adds a ramp along the stairwell, from the floor of a storey up to the next one.
 void add_ramp(Scene& scene, int level)
 {
     const double from = shaft_x0 + 0.3, to = shaft_x1 - 1.5, bottom = level * storey, top = bottom + storey;
     const hand::Mesh side = hand::extruded({{from, bottom}, {from + 0.6, bottom}, {to, top - slab}, {to, top}},
                                            -shaft_y1, -shaft_y0);
-    Mat3 upright;  // (x, y, z) to (x, -z, y)
+    Mat3 upright;  // maps (x, y, z) to (x, -z, y)
     upright << 1, 0, 0, 0, 0, -1, 0, 1, 0;
     hand::add_mesh(scene, Label::Terrain, hand::moved(side, {Vec3::Zero(), upright}));
     scene.parts.back().name = "ramp-" + std::to_string(level);
 }
 
-/// Coordinates of walls: their two faces at each multiple of a room, and in each room the sides of a door or window.
+/// Returns the coordinates of the walls along one axis: the two faces of each wall, and the two sides of a door or
+/// window in each room.
 std::vector<double> wall_lines(int rooms, double total)
 {
     std::vector<double> lines;
@@ -51,11 +52,11 @@ std::vector<double> wall_lines(int rooms, double total)
     return lines;
 }
 
-/// Along an axis blocks repeat every four: wall, room, opening, room.
+/// Along an axis the blocks repeat every four: wall, room, opening, room.
 bool is_wall(int block) { return block % 4 == 0; }
 bool is_opening(int block) { return block % 4 == 2; }
 
-/// What is left out of the walls of a storey, drawn once.
+/// The doors, windows and missing walls of a storey, drawn once.
 class Openings {
 public:
     Openings(Random& random, bool ground_floor)
@@ -65,23 +66,24 @@ public:
         ground_floor_ = ground_floor;
     }
 
-    /// Whether block (i, j) of level k (0 sill, 1 window, 2 lintel of the door) of the storey's walls is filled.
+    /// Returns whether block (i, j) of level k of the walls is filled; k is 0 for the sill, 1 for the window and 2 for
+    /// the lintel of the door.
     bool filled(int i, int j, int k) const
     {
         const bool along_y = is_wall(i), along_x = is_wall(j);
         if (!along_x && !along_y) return false;
-        if (along_x && along_y) return true;  // a pillar
+        if (along_x && along_y) return true;  // a corner between two walls
         if (is_in_shaft(i, j)) return false;
-        const int at = along_y ? j : i, line = along_y ? i : j;
+        const int along = along_y ? j : i, line = along_y ? i : j;
         const bool outer = line == 0 || line == 4 * (along_y ? rooms_x : rooms_y);
-        const std::size_t slot = std::size_t((at / 4 * 64 + line / 4 * 2 + along_y) % 1024);
-        if (outer) return !is_opening(at) || (k != 1 && !(ground_floor_ && k == 0 && doors_[slot]));
+        const std::size_t slot = std::size_t((along / 4 * 64 + line / 4 * 2 + along_y) % 1024);
+        if (outer) return !is_opening(along) || (k != 1 && !(ground_floor_ && k == 0 && doors_[slot]));
         if (gaps_[slot]) return false;  // no wall between these rooms
-        return !is_opening(at) || !doors_[slot] || k == 2;
+        return !is_opening(along) || !doors_[slot] || k == 2;
     }
 
 private:
-    /// No inner walls across the ramp.
+    /// Returns whether a wall is left out because it would cross the ramp.
     static bool is_in_shaft(int i, int j) { return is_wall(i) && i / 4 >= 6 && i / 4 < rooms_x && j < 4; }
 
     std::array<char, 1024> doors_{}, gaps_{};
@@ -108,7 +110,7 @@ void add_box(Scene& scene, const Vec3& size, const Vec3& bottom, double yaw)
     hand::add_shape(scene, Label::Obstacle, box);
 }
 
-/// A table on four legs with chairs, or a cupboard, or nothing.
+/// Adds a table on four legs with two chairs, or a cupboard, or nothing.
 void furnish(Scene& scene, Random& random, const Vec3& corner)
 {
     const double x = random.between(1.2, room - 1.2), y = random.between(1.2, room - 1.2),

@@ -18,12 +18,12 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-/// What a tile is made of.
+/// Contents of a tile.
 struct Amounts {
-    double side;  ///< m
-    int cells;    ///< of the terrain along a side
-    double relief;
-    int villages, houses, gardens, forests, trees, cars, rocks, fences;
+    double side;                                                         ///< m
+    int cells;                                                           ///< cells of the terrain along a side
+    double relief;                                                       ///< m from the lowest to the highest ground
+    int villages, houses, gardens, forests, trees, cars, rocks, fences;  ///< fences: panels
 };
 
 constexpr Amounts whole = {500, 512, 75, 7, 160, 20, 14, 780, 150, 310, 600};
@@ -31,7 +31,7 @@ constexpr Amounts small = {125, 128, 18.75, 1, 10, 1, 2, 49, 9, 19, 38};
 
 // ---- Land ----
 
-/// Heights of one tile; beyond its rim they repeat.
+/// Heights of one tile. Beyond its rim they repeat.
 class Land {
 public:
     Land(Random& random, const Amounts& amounts);
@@ -43,13 +43,13 @@ public:
     bool is_dry(const Vec2& p) const { return height(p) > water_ + 0.4; }
 
     double water() const { return water_; }
-    const Bounds& lake() const { return lake_; }  ///< in x and y; z is 0
+    const Bounds& lake() const { return lake_; }  ///< bounds in x and y; z is 0
 
 private:
     int wrapped(int i) const { return (i % cells_ + cells_) % cells_; }
     std::size_t slot(int row, int col) const { return std::size_t(wrapped(row)) * cells_ + wrapped(col); }
-    double& at(int row, int col) { return heights_[slot(row, col)]; }
-    double at(int row, int col) const { return heights_[slot(row, col)]; }
+    double& corner(int row, int col) { return heights_[slot(row, col)]; }
+    double corner(int row, int col) const { return heights_[slot(row, col)]; }
     void add_waves(Random& random);
     void scale_to(double relief);
     void add_hill(Random& random, double height, double spread);
@@ -75,7 +75,8 @@ Land::Land(Random& random, const Amounts& amounts)
     fill_lake(heights_.size() / 25);
 }
 
-/// Octaves of plane waves, a whole number of each to the tile.
+/// Adds octaves of plane waves. Each wave fits a whole number of times into the tile, so that tiles join without a
+/// step.
 void Land::add_waves(Random& random)
 {
     constexpr int octaves = 6, waves = 6;
@@ -89,7 +90,7 @@ void Land::add_waves(Random& random)
             const double height = std::pow(count, -1.8);
             for (int row = 0; row < cells_; ++row)
                 for (int col = 0; col < cells_; ++col)
-                    at(row, col) += height * sines[wrapped(across * col + up * row + phase)];
+                    corner(row, col) += height * sines[wrapped(across * col + up * row + phase)];
         }
 }
 
@@ -100,14 +101,14 @@ void Land::scale_to(double relief)
     for (double& height : heights_) height = (height - bottom) * scale;
 }
 
-/// A round hill; `spread` is its shape's standard deviation in tiles.
+/// Adds a round hill. Its shape is a Gaussian with `spread` as its standard deviation, in tiles.
 void Land::add_hill(Random& random, double height, double spread)
 {
     const int top_row = random.below(cells_), top_col = random.below(cells_);
     const auto distance = [this](int i, int j) { return std::min(wrapped(i - j), wrapped(j - i)) / double(cells_); };
     for (int row = 0; row < cells_; ++row)
         for (int col = 0; col < cells_; ++col)
-            at(row, col) +=
+            corner(row, col) +=
                 height * std::exp(-0.5 * (Vec2(distance(row, top_row), distance(col, top_col)) / spread).squaredNorm());
 }
 
@@ -116,10 +117,11 @@ void Land::move_lowest_to(int row, int col)
     const int lowest = int(std::min_element(heights_.begin(), heights_.end()) - heights_.begin());
     const Land before = *this;
     for (int r = 0; r < cells_; ++r)
-        for (int c = 0; c < cells_; ++c) at(r + row, c + col) = before.at(r + lowest / cells_, c + lowest % cells_);
+        for (int c = 0; c < cells_; ++c)
+            corner(r + row, c + col) = before.corner(r + lowest / cells_, c + lowest % cells_);
 }
 
-/// Floods from the lowest point on until the lake has at least so many cells and no lower shore.
+/// Floods the land from its lowest point until the lake has at least `cells` cells and no shore cell below its water.
 /// Source: Barnes, Lehman, Mulla, Priority-flood, 2014.
 void Land::fill_lake(std::size_t cells)
 {
@@ -129,7 +131,7 @@ void Land::fill_lake(std::size_t cells)
     const auto reach = [&](int row, int col) {
         if (row < 0 || col < 0 || row >= cells_ || col >= cells_ || seen[slot(row, col)]) return;
         seen[slot(row, col)] = 1;
-        shore.push({at(row, col), {row, col}});
+        shore.push({corner(row, col), {row, col}});
     };
     const int lowest = int(std::min_element(heights_.begin(), heights_.end()) - heights_.begin());
     reach(lowest / cells_, lowest % cells_);
@@ -153,8 +155,8 @@ double Land::height(const Vec2& p) const
     const double x = p.x() / side_ * cells_, y = p.y() / side_ * cells_;
     const int col = int(std::floor(x)), row = int(std::floor(y));
     const double u = x - col, v = y - row;
-    return (1 - v) * ((1 - u) * at(row, col) + u * at(row, col + 1)) +
-           v * ((1 - u) * at(row + 1, col) + u * at(row + 1, col + 1));
+    return (1 - v) * ((1 - u) * corner(row, col) + u * corner(row, col + 1)) +
+           v * ((1 - u) * corner(row + 1, col) + u * corner(row + 1, col + 1));
 }
 
 Vec3 Land::normal(const Vec2& p) const
@@ -163,9 +165,9 @@ Vec3 Land::normal(const Vec2& p) const
     return Vec3(height(p - dx) - height(p + dx), height(p - dy) - height(p + dy), 3).normalized();
 }
 
-// ---- What stands on it ----
+// ---- Obstacles ----
 
-/// One tile's obstacles, added to a scene at a corner.
+/// Adds the obstacles of one tile, with its corner at `corner`, to a scene.
 class Settler {
 public:
     Settler(Random random, const Land& land, const Vec2& corner, Scene& scene)
@@ -178,12 +180,12 @@ public:
 private:
     struct Site {
         Vec2 place;
-        double radius;  ///< kept free around it, m
+        double radius;  ///< m, kept free around it
     };
     struct Wish {
         Vec2 near;
-        double spread;    ///< m around it
-        double radius;    ///< to keep free, m
+        double spread;    ///< m around `near`
+        double radius;    ///< m, to keep free
         double steepest;  ///< rad
     };
 
@@ -253,7 +255,7 @@ bool Settler::is_clear(const Site& site) const
     });
 }
 
-/// A dry, gentle place that is free; with every attempt it may lie further out and be steeper.
+/// Returns a dry, gentle and free place. With every attempt the place may be further from `near` and steeper.
 Vec2 Settler::find_site(const Wish& wish)
 {
     Vec2 place = wish.near;
@@ -278,7 +280,7 @@ void Settler::add(const char* name, const Pieces& pieces, const Pose& pose)
     add_thing(scene_, name, Label::Obstacle, pieces, Pose{{corner_.x(), corner_.y(), 0}, Mat3::Identity()} * pose);
 }
 
-/// Its floor at the highest ground around it, its foundation below the lowest.
+/// Adds a house. Its floor is at the highest ground around it, and its foundation reaches below the lowest.
 void Settler::add_house(const Vec2& village, bool garden)
 {
     const Vec2 place = find_site({village, 45, garden ? 12.5 : 8.0, 0.2});
@@ -293,7 +295,7 @@ void Settler::add_house(const Vec2& village, bool garden)
     if (garden) add_garden(place, turn);
 }
 
-/// A fence of 3 m panels on a rectangle around a house, with a gate.
+/// Adds a fence of 3 m panels on a rectangle around a house, with a gate.
 void Settler::add_garden(const Vec2& place, double turn)
 {
     const Eigen::Rotation2Dd rotation(turn);
@@ -331,7 +333,8 @@ void Settler::add_rock()
     add("rock", rock(random_), {on_ground(place), along_ground(place, turn)});
 }
 
-/// Over the fields, in a gentle bend, until it comes to water or to the tile's rim.
+/// Adds a fence over the fields, in a gentle bend, which ends at water, at the rim of the tile or after `longest`
+/// panels.
 void Settler::add_field_fence(int longest)
 {
     Vec2 from = anywhere();

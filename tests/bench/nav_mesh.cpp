@@ -29,16 +29,16 @@ void require(bool done, const char* step)
     if (!done) throw std::runtime_error(std::string("Recast: ") + step + " failed");
 }
 
-/// Recast's y is up: (x, y, z) is its (x, z, -y).
+/// Appends a point in Recast's frame, where y is up: (x, y, z) becomes (x, z, -y).
 void append(std::vector<float>& out, const Vec3& p)
 {
     for (const double value : {p.x(), p.z(), -p.y()}) out.push_back(float(value));
 }
 
-/// All solid triangles in Recast's frame, and the boxes of water.
+/// All solid triangles in the frame of Recast, and the boxes of water.
 struct Soup {
-    std::vector<float> vertices;  ///< 3 corners x 3 numbers for each triangle
-    std::vector<char> terrain;    ///< one for each triangle
+    std::vector<float> vertices;  ///< 3 corners x 3 coordinates for each triangle
+    std::vector<char> terrain;    ///< whether the triangle is terrain; one for each triangle
     std::vector<std::array<float, 6>> water;
 
     void add(const Vec3& a, const Vec3& b, const Vec3& c, Label label)
@@ -54,7 +54,9 @@ struct Soup {
 void Soup::add_box(const Primitive& primitive)
 {
     const Shape& box = primitive.shape;
-    if (box.kind != ShapeKind::Box) throw std::invalid_argument("Recast: a primitive that is no box");
+    if (box.kind != ShapeKind::Box)
+        throw std::invalid_argument(
+            "Recast: the scene has a primitive that is not a box; only boxes and meshes are supported");
     const auto corner = [&](int i) -> Vec3 {
         const Vec3 sign(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
         return box.pose.rotation * box.size.cwiseProduct(sign) + box.pose.position;
@@ -66,7 +68,7 @@ void Soup::add_box(const Primitive& primitive)
     }
 }
 
-/// For each part of water what lies below its highest point, within the rectangle around it.
+/// Adds, for each part of water, the space below its highest point within the rectangle around it.
 void Soup::add_water(const Scene& scene)
 {
     std::vector<Bounds> around(scene.parts.size());
@@ -101,7 +103,7 @@ Soup soup_of(const Scene& scene)
     return soup;
 }
 
-/// Recast's settings as its sample program derives them from the agent.
+/// Returns Recast's settings, derived from the agent as in the sample program of Recast.
 rcConfig config_of(const Walker& walker, const std::array<float, 6>& bounds)
 {
     rcConfig config{};
@@ -133,7 +135,7 @@ public:
     {
         cols_ = std::max(1, int(std::ceil((bounds_[3] - bounds_[0]) / side())));
         rows_ = std::max(1, int(std::ceil((bounds_[5] - bounds_[2]) / side())));
-        bin();
+        sort_by_tile();
     }
 
     int cols() const { return cols_; }
@@ -141,12 +143,12 @@ public:
     float side() const { return float(tile_cells * walker_.cell); }
     const float* origin() const { return bounds_.data(); }
 
-    /// Detour's bytes of a tile, from dtAlloc; empty where nothing is walkable.
+    /// Returns the data of a tile in the format of Detour, allocated by dtAlloc; empty where nothing is walkable.
     std::pair<unsigned char*, int> build(int col, int row);
 
 private:
     std::size_t slot(int col, int row) const { return std::size_t(row) * std::size_t(cols_) + std::size_t(col); }
-    void bin();
+    void sort_by_tile();
     void rasterize(const std::vector<std::uint32_t>& triangles, const rcConfig& config, rcHeightfield& solid);
     void erode(const rcConfig& config, rcCompactHeightfield& open);
     std::pair<unsigned char*, int> pack(int col, int row, const rcConfig& config, rcPolyMesh& mesh,
@@ -161,8 +163,8 @@ private:
     rcContext context_{false};
 };
 
-/// Triangles of each tile, its border included.
-void TileBuilder::bin()
+/// Collects the triangles of each tile, including its border.
+void TileBuilder::sort_by_tile()
 {
     bins_.resize(slot(0, rows_));
     const float border = float(config_.borderSize) * config_.cs;
@@ -274,7 +276,7 @@ std::pair<unsigned char*, int> TileBuilder::pack(int col, int row, const rcConfi
     return {data, size};
 }
 
-/// Detour asks a plain function for its random numbers.
+/// Detour takes its random numbers from a plain function, so the generator is global.
 thread_local Random detour_random{0};
 float detour_unit() { return std::min(float(detour_random.between(0, 1)), 0.99999994f); }
 
@@ -320,7 +322,7 @@ std::vector<Vec3> NavMesh::draw(std::size_t count, std::uint64_t seed) const
     std::vector<Vec3> out;
     for (std::size_t tries = 0; out.size() < count && tries < 10 * count; ++tries) {
         dtPolyRef polygon = 0;
-        float p[3] = {};  // now and then no height is found for a point on a polygon's edge
+        float p[3] = {};  // sometimes Detour finds no height for a point on the edge of a polygon
         if (dtStatusSucceed(impl_->query->findRandomPoint(&filter, detour_unit, &polygon, p)))
             out.emplace_back(p[0], -p[2], p[1]);
     }

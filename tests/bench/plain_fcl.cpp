@@ -28,12 +28,12 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 
 // ---- Rays ----
 
-/// Triangles of a kind, for vertical rays.
+/// The triangles of one kind, for vertical rays.
 class Rays {
 public:
     explicit Rays(RTCDevice device) : scene_(rtcNewScene(device)), device_(device)
     {
-        rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);  // no gaps along edges
+        rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);  // so that rays find no gaps along edges
     }
     Rays(const Rays&) = delete;
     ~Rays() { rtcReleaseScene(scene_); }
@@ -66,9 +66,9 @@ public:
 
     struct Hit {
         double z;
-        bool upward;  ///< whether the face looks up
+        bool upward;  ///< whether the face points up
     };
-    /// The nearest face straight above (direction 1) or below (-1) a point, up to a distance.
+    /// Returns the nearest face directly above (direction 1) or below (-1) a point, up to a distance.
     std::optional<Hit> first(const Vec3& from, float direction, double distance) const
     {
         if (is_empty_) return std::nullopt;
@@ -132,7 +132,7 @@ Geometry hull_of(const RobotPart& part)
                                                  int(part.hull_faces.size()), faces);
 }
 
-/// A mesh of some triangles of the scene, each corner once.
+/// Returns a mesh of some triangles of the scene. Each corner is stored once.
 Geometry bvh_of(const Scene& scene, const std::vector<std::uint32_t>& triangles)
 {
     std::vector<std::uint32_t> used;
@@ -142,13 +142,13 @@ Geometry bvh_of(const Scene& scene, const std::vector<std::uint32_t>& triangles)
     used.erase(std::unique(used.begin(), used.end()), used.end());
     std::vector<Vec3> vertices;
     for (const std::uint32_t v : used) vertices.push_back(scene.vertices[v]);
-    const auto place = [&](std::uint32_t v) {
+    const auto index_of = [&](std::uint32_t v) {
         return std::size_t(std::lower_bound(used.begin(), used.end(), v) - used.begin());
     };
     std::vector<fcl::Triangle> faces;
     for (const std::uint32_t t : triangles) {
         const Triangle& corners = scene.triangles[t];
-        faces.emplace_back(place(corners[0]), place(corners[1]), place(corners[2]));
+        faces.emplace_back(index_of(corners[0]), index_of(corners[1]), index_of(corners[2]));
     }
     auto model = std::make_shared<fcl::BVHModel<fcl::OBB<double>>>();
     model->beginModel(int(faces.size()), int(vertices.size()));
@@ -157,7 +157,7 @@ Geometry bvh_of(const Scene& scene, const std::vector<std::uint32_t>& triangles)
     return model;
 }
 
-/// Twelve triangles, looking out.
+/// Adds the twelve triangles of a box, with normals that point out.
 void add_box(const Shape& box, Rays& rays)
 {
     const auto corner = [&](int i) -> Vec3 {
@@ -192,7 +192,8 @@ struct PlainFcl::Impl {
     std::vector<std::unique_ptr<Object>> objects;
     fcl::DynamicAABBTreeCollisionManager<double> manager;
     Robot robot;
-    std::vector<Pose> robot_from_shape;  ///< of its parts; the corners of hulls are in the robot's frame already
+    /// For each part; the identity for hulls, whose corners are in the frame of the robot.
+    std::vector<Pose> robot_from_shape;
 
     Rays& rays_of(Label label) { return label == Label::Terrain ? terrain : label == Label::Water ? water : obstacles; }
 
@@ -223,14 +224,16 @@ struct PlainFcl::Impl {
             if (primitive.shape.kind == ShapeKind::Box)
                 add_box(primitive.shape, rays_of(primitive.label));
             else if (primitive.label == Label::Terrain)
-                throw std::invalid_argument("plain FCL: terrain that is no box or mesh");
+                throw std::invalid_argument(
+                    "plain FCL: the scene has a terrain primitive that is not a box; only boxes and meshes are "
+                    "supported");
             if (primitive.label != Label::Water) add_object(geometry_of(primitive.shape), primitive.shape.pose);
         }
     }
 
-    /// The robot, to be put at one pose after the other by one thread. Shapes of its own, as FCL's objects write to
-    /// theirs when they are made (local bounds).
-    std::vector<Object> own_robot() const
+    /// Returns a copy of the robot for one thread, which moves it from pose to pose. It has its own shapes, because
+    /// objects of FCL write to their shapes (local bounds) when they are created.
+    std::vector<Object> robot_copy() const
     {
         std::vector<Object> own;
         for (const RobotPart& part : robot.parts)
@@ -256,7 +259,7 @@ struct PlainFcl::Impl {
         return surface && *surface >= ground;
     }
 
-    /// Highest face that looks up at or below a point, down to a distance. Undersides are passed by.
+    /// Returns the highest face that points up at or below a point, down to a distance. Skips faces that point down.
     static std::optional<double> top_below(const Rays& rays, Vec3 from, double distance)
     {
         const double bottom = from.z() - distance;
@@ -298,7 +301,7 @@ struct PlainFcl::Impl {
     VerdictCounts judge_row(const RasterGrid& grid, int row, double max_height, bool height_check) const
     {
         VerdictCounts counts;
-        std::vector<Object> own = own_robot();
+        std::vector<Object> own = robot_copy();
         for (int i = 0; i < grid.cols; ++i)
             for (int k = grid.heights - 1; k >= 0; --k) {
                 const Pose pose{{grid.x_of(i), grid.y_of(row), grid.z_of(k)}, Mat3::Identity()};
@@ -336,7 +339,7 @@ std::vector<std::optional<PlainFcl::TopPose>> PlainFcl::raster_top(const RasterG
 {
     std::vector<std::optional<TopPose>> out(std::size_t(grid.rows) * std::size_t(grid.cols));
     parallel_for(std::size_t(grid.rows), threads, {}, [&](std::size_t row) {
-        std::vector<Object> own = impl_->own_robot();
+        std::vector<Object> own = impl_->robot_copy();
         for (int i = 0; i < grid.cols; ++i)
             out[row * std::size_t(grid.cols) + std::size_t(i)] = impl_->judge_top(own, grid.x_of(i),
                                                                                   grid.y_of(int(row)), offset);
@@ -359,7 +362,7 @@ std::vector<Verdict> PlainFcl::check(const std::vector<Pose>& poses, double max_
     constexpr std::size_t block = 256;
     std::vector<Verdict> out(poses.size());
     parallel_for((poses.size() + block - 1) / block, threads, {}, [&](std::size_t b) {
-        std::vector<Object> own = impl_->own_robot();
+        std::vector<Object> own = impl_->robot_copy();
         for (std::size_t i = b * block; i < std::min(poses.size(), (b + 1) * block); ++i)
             out[i] = impl_->judge(own, poses[i], max_height);
     });

@@ -36,11 +36,11 @@ std::string read_all(int file)
 ProcessRun run_process(const std::filesystem::path& program, const std::vector<std::string>& args)
 {
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe to " + program.string());
+    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("cannot create a pipe to " + program.string());
     ProcessRun out;
     spawnfield::Stopwatch watch;
     const pid_t child = fork();
-    if (child < 0) throw std::runtime_error("no process for " + program.string());
+    if (child < 0) throw std::runtime_error("cannot start a process for " + program.string());
     if (child == 0) become(program, args, ends[1]);
     close(ends[1]);
     out.output = read_all(ends[0]);

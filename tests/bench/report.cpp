@@ -11,8 +11,8 @@ std::string hex(std::uint64_t hash) { return formatted("%016llx", static_cast<un
 
 [[noreturn]] void fail_differing(const Row& row, std::uint64_t other, const std::string& when)
 {
-    throw std::runtime_error(row.scene + " " + row.stage + " at " + std::to_string(row.threads) + " threads gave " +
-                             hex(row.hash) + ", but " + hex(other) + " " + when);
+    throw std::runtime_error(row.scene + " " + row.stage + " with --threads " + std::to_string(row.threads) +
+                             " gave the hash " + hex(row.hash) + ", but " + hex(other) + " " + when);
 }
 
 }  // namespace
@@ -22,7 +22,7 @@ Row row_of(const std::string& scene, const std::string& stage, int threads, cons
     Row row{scene, stage, threads, rounds.front().items, rounds.front().hash, rounds.front().exact_checks};
     std::vector<double> seconds;
     for (const Measurement& round : rounds) {
-        if (round.items == 0) throw std::runtime_error(scene + " " + stage + " did nothing");
+        if (round.items == 0) throw std::runtime_error(scene + " " + stage + " processed no items");
         if (round.hash != row.hash) fail_differing(row, round.hash, "in another round");
         seconds.push_back(round.seconds);
     }
@@ -38,7 +38,7 @@ void check_same(const std::vector<Row>& rows)
     for (const Row& row : rows)
         for (const Row& other : rows)
             if (row.scene == other.scene && row.stage == other.stage && row.hash != other.hash)
-                fail_differing(row, other.hash, "at " + std::to_string(other.threads));
+                fail_differing(row, other.hash, "with --threads " + std::to_string(other.threads));
 }
 
 std::string table_head()

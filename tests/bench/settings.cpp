@@ -98,7 +98,7 @@ Setting floors(Extent extent)
     return out;
 }
 
-/// Poses 1 m apart, from the origin on.
+/// Returns a setting with poses 1 m apart, starting at the origin.
 Setting lattice(const std::string& name, int heights)
 {
     Setting out{.name = name, .has_ground = false, .height_check = false};

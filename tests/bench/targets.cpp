@@ -23,13 +23,13 @@ double median(std::vector<double> values)
     return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
 }
 
-/// A stage of a workbench with what it has to reach.
+/// A stage of a workbench with its target.
 struct Target {
     const char *scene, *stage, *work;
-    int threads = 0;           ///< at which the target holds; 0: all cores
-    double seconds = any;      ///< at most
-    double ms_per_1000 = any;  ///< at most
-    double over_fcl = 0;       ///< at least
+    int threads = 0;           ///< for which the target holds; 0: all cores
+    double seconds = any;      ///< upper limit
+    double ms_per_1000 = any;  ///< upper limit
+    double over_fcl = 0;       ///< lower limit of the time of (b) divided by ours
 };
 
 constexpr Target in_process[] = {
@@ -65,7 +65,7 @@ constexpr Target in_process[] = {
     {.scene = "empty", .stage = "raster3d", .work = "1,000,000 aerial poses", .ms_per_1000 = 0.01},
 };
 
-std::string words_of(const Target& target)
+std::string text_of(const Target& target)
 {
     std::string text;
     if (target.seconds < any) text = formatted("<= %.4g s", target.seconds);
@@ -96,18 +96,18 @@ TargetRow measure(const Target& target, const Workbench::Stage& stage, int threa
     out.measured = per_1000 ? ours.seconds_per_item() * 1e6 : ours.median;
     out.unit = per_1000 ? "ms per 1,000" : "s";
     out.exact_share = double(ours.exact_checks) / double(ours.items);
-    const std::string words = words_of(target);
+    const std::string words = text_of(target);
     if (!judged || words.empty()) return out;
     out.target = words;
     out.reached = is_reached(target, ours, out.over_fcl);
     return out;
 }
 
-using Tell = std::function<void(TargetRow)>;
+using OnRow = std::function<void(TargetRow)>;
 
 Extent extent_of(const TargetOptions& options) { return options.quick ? Extent::Quick : Extent::Full; }
 
-void measure_stages(const TargetOptions& options, const Tell& tell)
+void measure_stages(const TargetOptions& options, const OnRow& on_row)
 {
     for (const Setting& setting : settings(extent_of(options))) {
         Workbench workbench(setting);
@@ -116,10 +116,10 @@ void measure_stages(const TargetOptions& options, const Tell& tell)
                 if (setting.name != target.scene || stage.name != target.stage) continue;
                 for (const int threads : stage.parallel ? options.threads : std::vector<int>{1}) {
                     const bool judged = threads == (target.threads == 0 ? options.threads.back() : target.threads);
-                    tell(measure(target, stage, threads, judged, options.rounds));
+                    on_row(measure(target, stage, threads, judged, options.rounds));
                 }
                 for (const std::string& line : workbench.comparisons(setting.name + " " + stage.name))
-                    options.remark(line);
+                    options.on_comparison(line);
             }
     }
 }
@@ -128,10 +128,10 @@ void measure_stages(const TargetOptions& options, const Tell& tell)
 
 [[noreturn]] void fail(const std::filesystem::path& program, const ProcessRun& run)
 {
-    throw std::runtime_error(program.string() + " exited with " + std::to_string(run.status));
+    throw std::runtime_error(program.string() + " ended with status " + std::to_string(run.status) + ", needs 0");
 }
 
-/// Reads the lines that this program writes with --write-maps.
+/// Reads a line that this program prints with --write-maps.
 BakedMap baked_map_of(const std::string& line)
 {
     const std::size_t bytes = line.rfind(','), seconds = line.rfind(',', bytes - 1);
@@ -142,10 +142,10 @@ BakedMap baked_map_of(const std::string& line)
 struct Bake {
     BakedMap map;
     double seconds = 0;      ///< median
-    double peak_memory = 0;  ///< bytes, the scene and its making included
+    double peak_memory = 0;  ///< bytes, including the scene and making it
 };
 
-/// A scene baked by a process of its own, so that its memory is its own.
+/// Bakes a scene in a separate process, so that its memory can be measured.
 Bake bake_by_process(const std::string& scene, const TempFolder& folder, const TargetOptions& options)
 {
     std::vector<std::string> args = {"--write-maps", folder.path().string(), "--scene", scene};
@@ -164,11 +164,11 @@ Bake bake_by_process(const std::string& scene, const TempFolder& folder, const T
 }
 
 struct Query {
-    double seconds = 0, query = 0;  ///< medians: of the whole process, and of its query alone
+    double seconds = 0, query = 0;  ///< medians of the whole process, and of its query alone
     double peak_memory = 0;         ///< bytes
 };
 
-/// A command of the spawnfield program on a map, an untimed time and then for so many rounds.
+/// Runs a command of spawnfield on a map: once untimed, then `rounds` times.
 Query query_by_process(std::vector<std::string> args, const TempFolder& folder, int rounds)
 {
     const std::filesystem::path program = spawnfield_program(), summary = folder / "summary.json";
@@ -198,7 +198,7 @@ TargetRow row(const std::string& scene, const std::string& work, double measured
     return out;
 }
 
-/// `limit` in the row's unit.
+/// Sets the upper limit of a row, in the unit of the row, and whether it is reached.
 TargetRow at_most(double limit, TargetRow row)
 {
     row.target = formatted("<= %.4g %s", limit, row.unit.c_str());
@@ -211,23 +211,23 @@ std::vector<std::string> sample_args(const std::filesystem::path& map, bool quic
     return {"sample", map.string(), "-n", quick ? "20" : "2000", "--min-distance", "2.5"};
 }
 
-void measure_bake_and_sample(const TargetOptions& options, const TempFolder& folder, const Tell& tell)
+void measure_bake_and_sample(const TargetOptions& options, const TempFolder& folder, const OnRow& on_row)
 {
     const Bake bake = bake_by_process("hills", folder, options);
-    tell(at_most(5, row("hills", "bake at 0.1 m", bake.seconds, "s", bake.peak_memory)));
-    tell(at_most(1000, row("hills", "bake at 0.1 m, peak memory", bake.peak_memory / mega, "MB", bake.peak_memory)));
-    tell(at_most(250, row("hills", "bake at 0.1 m, on disk", double(bake.map.bytes) / mega, "MB", 0)));
+    on_row(at_most(5, row("hills", "bake at 0.1 m", bake.seconds, "s", bake.peak_memory)));
+    on_row(at_most(1000, row("hills", "bake at 0.1 m, peak memory", bake.peak_memory / mega, "MB", bake.peak_memory)));
+    on_row(at_most(250, row("hills", "bake at 0.1 m, on disk", double(bake.map.bytes) / mega, "MB", 0)));
     if (spawnfield_program().empty()) return;
     const Query sample = query_by_process(sample_args(bake.map.folder, options.quick), folder, options.rounds);
-    tell(at_most(
+    on_row(at_most(
         100, row("hills", "2,000 samples 2.5 m apart, whole process", sample.seconds * 1e3, "ms", sample.peak_memory)));
-    tell(at_most(10,
-                 row("hills", "2,000 samples 2.5 m apart, query alone", sample.query * 1e3, "ms", sample.peak_memory)));
+    on_row(at_most(
+        10, row("hills", "2,000 samples 2.5 m apart, query alone", sample.query * 1e3, "ms", sample.peak_memory)));
 }
 
-/// What a tiled landscape costs.
+/// The cost of a tiled landscape.
 struct AreaCost {
-    int area;  ///< in tiles
+    int area;  ///< number of tiles
     Bake bake;
     Query raster, sample;
 };
@@ -243,30 +243,31 @@ AreaCost measure_area(int area, const TargetOptions& options, const TempFolder& 
     return out;
 }
 
-/// Costs for each tile, as multiples of what one tile alone costs.
-void tell_growth(const AreaCost& one, const AreaCost& many, const Tell& tell)
+/// Reports the cost per tile as a multiple of the cost of a single tile.
+void report_growth(const AreaCost& one, const AreaCost& many, const OnRow& on_row)
 {
     const std::string scene = "hills-" + std::to_string(many.area) + "x";
     const auto growth = [&](double of_many, double of_one) { return of_many / many.area / of_one; };
-    const auto tell_times = [&](const char* work, double times, double memory) {
-        tell(at_most(1.15, row(scene, work, times, "times", memory)));
+    const auto report_growth_of = [&](const char* work, double times, double memory) {
+        on_row(at_most(1.15, row(scene, work, times, "times", memory)));
     };
-    tell_times("bake at 0.5 m, time for each tile", growth(many.bake.seconds, one.bake.seconds), many.bake.peak_memory);
-    tell_times("2D raster, step 1 m, query for each tile", growth(many.raster.query, one.raster.query),
-               many.raster.peak_memory);
-    tell_times("2,000 samples, memory of the process", many.sample.peak_memory / one.sample.peak_memory,
-               many.sample.peak_memory);
-    tell(row(scene, "2,000 samples, whole process", many.sample.seconds * 1e3, "ms", many.sample.peak_memory));
+    report_growth_of("bake at 0.5 m, time for each tile", growth(many.bake.seconds, one.bake.seconds),
+                     many.bake.peak_memory);
+    report_growth_of("2D raster, step 1 m, query for each tile", growth(many.raster.query, one.raster.query),
+                     many.raster.peak_memory);
+    report_growth_of("2,000 samples, memory of the process", many.sample.peak_memory / one.sample.peak_memory,
+                     many.sample.peak_memory);
+    on_row(row(scene, "2,000 samples, whole process", many.sample.seconds * 1e3, "ms", many.sample.peak_memory));
 }
 
-void measure_growth(const TargetOptions& options, const TempFolder& folder, const Tell& tell)
+void measure_growth(const TargetOptions& options, const TempFolder& folder, const OnRow& on_row)
 {
     const AreaCost one = measure_area(1, options, folder);
-    tell(row("hills-1x", "bake at 0.5 m", one.bake.seconds, "s", one.bake.peak_memory));
-    tell(row("hills-1x", "2D raster, step 1 m, query", one.raster.query, "s", one.raster.peak_memory));
-    tell(row("hills-1x", "2,000 samples, whole process", one.sample.seconds * 1e3, "ms", one.sample.peak_memory));
-    tell_growth(one, measure_area(4, options, folder), tell);
-    if (options.most) tell_growth(one, measure_area(16, options, folder), tell);
+    on_row(row("hills-1x", "bake at 0.5 m", one.bake.seconds, "s", one.bake.peak_memory));
+    on_row(row("hills-1x", "2D raster, step 1 m, query", one.raster.query, "s", one.raster.peak_memory));
+    on_row(row("hills-1x", "2,000 samples, whole process", one.sample.seconds * 1e3, "ms", one.sample.peak_memory));
+    report_growth(one, measure_area(4, options, folder), on_row);
+    if (options.largest) report_growth(one, measure_area(16, options, folder), on_row);
 }
 
 std::string ratio(const std::optional<double>& value) { return value ? formatted("%.2f", *value) : "-"; }
@@ -292,10 +293,10 @@ std::string to_line(const BakedMap& map)
 std::vector<TargetRow> measure_targets(const TargetOptions& options)
 {
     std::vector<TargetRow> rows;
-    const Tell keep = [&](TargetRow row) {
+    const OnRow keep = [&](TargetRow row) {
         if (options.quick) row.target.clear(), row.reached.reset();
         rows.push_back(std::move(row));
-        options.tell(rows.back());
+        options.on_row(rows.back());
     };
     {
         const TempFolder folder;

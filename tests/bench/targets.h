@@ -4,37 +4,37 @@
 
 namespace bench {
 
-/// A line of the table "Speed and memory to reach".
+/// A row of the table of targets for speed and memory.
 struct TargetRow {
     std::string scene = {}, work = {};
-    int threads = 0;                             ///< 0: does not matter
-    std::string target = {};                     ///< in words; empty for rows that only inform
+    int threads = 0;                             ///< 0: not applicable
+    std::string target = {};                     ///< as text; empty for rows without a target
     double measured = 0;                         ///< median
     std::string unit = {};                       ///< of `measured`: "s", "ms", "ms per 1,000", "MB", "times"
-    std::optional<double> over_exhaustive = {};  ///< times that (a) takes for an item
-    std::optional<double> over_fcl = {};         ///< times that (b) takes for an item
+    std::optional<double> over_exhaustive = {};  ///< time of (a) per item, divided by ours
+    std::optional<double> over_fcl = {};         ///< time of (b) per item, divided by ours
     std::optional<bool> reached = {};
-    double memory = 0;  ///< bytes: of the whole process, or what a query took on top of scene and map
-    std::optional<double> exact_share = {};  ///< of the items that FCL decided
+    double memory = 0;  ///< bytes of the whole process, or bytes that a query needed in addition to scene and map
+    std::optional<double> exact_share = {};  ///< share of the items that FCL decided
 };
 
 struct TargetOptions {
-    bool quick = false;  ///< small scenes: whether all of it works; nothing is judged
-    bool most = false;   ///< with the landscape of 10 million triangles
+    bool quick = false;    ///< small scenes, without targets: only shows that everything works
+    bool largest = false;  ///< also measures the landscape of 10 million triangles
     int rounds = 5;
-    std::vector<int> threads = {1, 2};               ///< the last is all cores
-    std::function<void(const TargetRow&)> tell;      ///< hears of each row as soon as it is known
-    std::function<void(const std::string&)> remark;  ///< and of how far the alternatives' verdicts agree
+    std::vector<int> threads = {1, 2};             ///< the last one is the number of cores
+    std::function<void(const TargetRow&)> on_row;  ///< is called with each row as soon as it is known
+    /// Is called with texts that compare the verdicts of the alternatives with ours.
+    std::function<void(const std::string&)> on_comparison;
 };
 
-/// Measures every row. Whole programs come first, as long as this process is small (process.h,
-/// ProcessRun::peak_memory).
+/// Measures every row. Whole programs come first, while this process is still small (see ProcessRun::peak_memory).
 std::vector<TargetRow> measure_targets(const TargetOptions& options);
 
-/// What `--write-maps` prints of each map, and the measurement of whole programs reads.
+/// A line that --write-maps prints for a map. measure_targets reads it.
 struct BakedMap {
     std::filesystem::path folder = {};
-    double seconds = 0;       ///< of the bake alone
+    double seconds = 0;       ///< time of the bake only
     std::uint64_t bytes = 0;  ///< on disk
 };
 std::string to_line(const BakedMap& map);

@@ -18,7 +18,7 @@ using Vec2 = Eigen::Vector2d;
 
 struct Extents {
     double side;  ///< m
-    int cells;    ///< of the ground along a side
+    int cells;    ///< cells of the ground along a side
 };
 
 constexpr double block = 80, street = 12, pavement = 2.5, kerb = 0.15, ground = 2;  // m
@@ -49,14 +49,15 @@ private:
     Scene scene_;
 };
 
-/// x of the coast: a bay, half of the square under water.
+/// Returns the x of the coast at y. The coast is a bay; half of the square is under water.
 double Town::shore(double y) const
 {
     const double turn = 2 * std::numbers::pi * y / side_;
     return side_ * (0.5 + 0.06 * std::sin(turn) + 0.02 * std::sin(3 * turn));
 }
 
-/// Level land 2 m above the water, give or take 5 cm, a beach, and a sea bed with dunes.
+/// Returns the height of the ground: level land 2 m above the water (with bumps of 5 cm), a beach, and a sea bed with
+/// dunes.
 double Town::height(double x, double y) const
 {
     const double inland = shore(y) - x;
@@ -77,7 +78,7 @@ void Town::add_ground()
     scene_.parts.back().name = "sea";
 }
 
-/// From the coast out over the water: ramps up to a deck on piers, with railings.
+/// Adds a bridge from the coast out over the water: a ramp up to a deck on piers, with railings.
 void Town::add_bridge()
 {
     const double y = side_ / 2, from = shore(y) - 60, to = std::min(side_ - 20, shore(y) + 0.3 * side_), deck = 7,
@@ -85,7 +86,7 @@ void Town::add_bridge()
     const std::vector<Vec2> profile = {
         {from, height(from, y) - 1}, {from + 50, deck - 0.8}, {to, deck - 0.8}, {to, deck},
         {from + 50, deck},           {from, height(from, y)}};
-    // Seen from its first corner all of the profile lies in view only in two halves.
+    // profile_along_y needs a polygon that is visible from its first corner, so the profile is split in two.
     add_thing(scene_, "bridge", Label::Terrain,
               {profile_along_y({profile[0], profile[1], profile[4], profile[5]}, y - half, y + half)}, {});
     hand::add_piece(scene_, profile_along_y({profile[1], profile[2], profile[3], profile[4]}, y - half, y + half));
@@ -121,7 +122,7 @@ void Town::add_house(const Vec2& centre, double turn)
         add_thing(scene_, "house", Label::Obstacle, {recessed_house(random_)}, pose);
 }
 
-/// A fence with gaps around the yard within the block, and trees in it.
+/// Adds a fence with gaps around the yard inside the block, and trees in the yard.
 void Town::add_garden(const Vec2& centre)
 {
     const double half = 11;
@@ -141,18 +142,18 @@ void Town::add_garden(const Vec2& centre)
     }
 }
 
-/// Cars along the kerbs, and trees on the pavements.
+/// Adds cars along the kerbs, and trees on the pavements.
 void Town::add_street_things(const Vec2& corner)
 {
     for (int i = 0; i < 5; ++i) {
         const bool along_x = random_.chance(0.5);
-        const double at = random_.between(street, block - street), side = street / 2 - 1.1;
-        const Vec2 place = corner + (along_x ? Vec2(at, side) : Vec2(side, at));
+        const double distance = random_.between(street, block - street), side = street / 2 - 1.1;
+        const Vec2 place = corner + (along_x ? Vec2(distance, side) : Vec2(side, distance));
         const Pose pose = {{place.x(), place.y(), ground}, rotation_from_rpy(0, 0, along_x ? 0 : std::numbers::pi / 2)};
         add_thing(scene_, "car", Label::Obstacle, car(random_), pose);
     }
-    for (double at = street; at < block - street; at += 14) {
-        const Vec2 place = corner + Vec2(at, street / 2 + 0.7);
+    for (double distance = street; distance < block - street; distance += 14) {
+        const Vec2 place = corner + Vec2(distance, street / 2 + 0.7);
         add_thing(scene_, "tree", Label::Obstacle, tree(random_),
                   {{place.x(), place.y(), ground + kerb}, Mat3::Identity()});
     }

@@ -2,11 +2,11 @@
 
 #include <stdexcept>
 
-// Where Embree is not installed: the benchmark leaves alternative (b) out.
+// This file replaces plain_fcl.cpp if Embree is not installed. The benchmark then leaves alternative (b) out.
 namespace bench {
 namespace {
 
-[[noreturn]] void fail() { throw std::logic_error("plain FCL was left out of this build"); }
+[[noreturn]] void fail() { throw std::logic_error("this build has no plain FCL, because Embree is not installed"); }
 
 }  // namespace
 

@@ -42,7 +42,7 @@ Options with_threads(Options options, int threads)
     return options;
 }
 
-/// Up to 1 m above a random layer of a random column.
+/// Returns poses that are up to 1 m above a random layer of a random column.
 std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
 {
     Random random(17);
@@ -58,7 +58,7 @@ std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
     return poses;
 }
 
-/// The raster that the library makes of bounds with these steps.
+/// Returns the raster that the library uses for bounds and steps.
 RasterGrid grid_of(const Bounds& bounds, const RasterOptions& options)
 {
     const auto count = [](double from, double to, double step) {
@@ -76,7 +76,7 @@ RasterGrid grid_of(const Bounds& bounds, const RasterOptions& options)
     return grid;
 }
 
-/// The same with every so many-th row and column.
+/// Returns the options with only every `thinning`-th row and column.
 RasterOptions thinned(RasterOptions options, int thinning)
 {
     options.step_z = options.step;
@@ -84,10 +84,11 @@ RasterOptions thinned(RasterOptions options, int thinning)
     return options;
 }
 
-/// How two lists of verdicts differ.
+/// The differences between two lists of verdicts.
 struct Differences {
-    std::size_t poses = 0, wrong = 0, inside = 0,
-                missed = 0;  ///< missed: a ray that passes by on an edge of the ground
+    std::size_t poses = 0, wrong = 0;
+    std::size_t inside = 0;  ///< plain FCL does not see that the robot is inside a closed mesh
+    std::size_t missed = 0;  ///< a ray misses an edge of the ground
 
     void add(const PlainFcl& fcl, const Vec3& centre, Verdict ours, Verdict theirs)
     {
@@ -101,15 +102,17 @@ struct Differences {
     {
         std::string out = formatted("%zu poses, %zu verdicts of plain FCL differ", poses, wrong);
         for (const auto& [pair, count] : pairs) out += formatted(", %zu %s", count, pair.c_str());
-        return out + formatted(
-                         "; %zu more where the robot is wholly inside closed meshes, %zu where Embree's ray misses an "
-                         "edge of the ground",
-                         inside, missed);
+        return out +
+               formatted(
+                   "; %zu more where the robot is completely inside closed meshes, %zu where the ray of Embree misses "
+                   "an edge of the ground",
+                   inside, missed);
     }
-    std::map<std::string, std::size_t> pairs;  ///< "<ours> but <theirs>", and how many
+    std::map<std::string, std::size_t> pairs;  ///< "<ours> but <theirs>", and how often
 };
 
-/// A circle around the robot seen from above; climb and slope as far as its level underside stays clear of the ground.
+/// Returns an agent with the circle around the robot. Its climb and slope are as large as its level underside can stay
+/// clear of the ground.
 Walker walker_of(const Robot& robot, double offset)
 {
     const Bounds bounds = robot.bounds();
@@ -186,7 +189,7 @@ void Workbench::add_spawns(std::vector<Stage>& out)
          [this](int threads) { return search(exhaustive_judge(), with_threads(search_options(), threads)); }, true});
 }
 
-/// What the alternatives take before their first answer.
+/// Adds stages for the time that the alternatives need before their first answer.
 void Workbench::add_set_ups(std::vector<Stage>& out)
 {
     if (has_plain_fcl() && elements(scene()) > 0)
@@ -206,7 +209,7 @@ void Workbench::add_set_ups(std::vector<Stage>& out)
 
 namespace {
 
-/// Bytes that a run takes on top of what this process held before.
+/// Returns the bytes that a run needs in addition to what this process used before.
 std::uint64_t memory_of(const std::function<void()>& run)
 {
     reset_peak_memory();
@@ -236,13 +239,13 @@ std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& 
         if (measured[i].empty()) measured[i] = {untimed[i]};
         rows.push_back(row_of(scene, contestants[i].name, threads, measured[i]));
         if (contestants[i].has_same_result && rows[i].hash != rows[0].hash)
-            throw std::runtime_error(scene + " " + rows[i].stage + " gave something else than " + rows[0].stage);
+            throw std::runtime_error(scene + " " + rows[i].stage + " gave another result than " + rows[0].stage);
     }
     rows[0].own_memory = memory;
     return rows;
 }
 
-// ---- What stages need ----
+// ---- Data of the stages ----
 
 BakeReport Workbench::bake_into(const std::filesystem::path& folder, Scene made, int threads) const
 {
@@ -296,7 +299,7 @@ const std::vector<Pose>& Workbench::poses()
     return poses_;
 }
 
-// ---- Ours ----
+// ---- spawnfield ----
 
 Measurement Workbench::make() const
 {
@@ -497,7 +500,8 @@ std::string Workbench::compare_checks()
     return setting_.name + " check: " + differences.text();
 }
 
-/// Collisions among Recast's points, as they are drawn, and with each set onto the nearest layer under or over it.
+/// Returns the share of collisions among the points of Recast, first as they are drawn and then on the nearest layer
+/// above or below.
 std::string Workbench::compare_nav_mesh()
 {
     Random random(23);
@@ -518,7 +522,7 @@ std::string Workbench::compare_nav_mesh()
            shares(drawn) + " as drawn; " + shares(snapped) + " at 0.1 m above the true ground; " + coverage();
 }
 
-/// How much of the ground that our samples lie on Recast leaves out.
+/// Returns how many of our samples lie on ground that the mesh of Recast covers.
 std::string Workbench::coverage()
 {
     const SpawnList ours = spawnfield::sample(judge(), sample_options());
@@ -528,7 +532,7 @@ std::string Workbench::coverage()
                      ours.spawns.size());
 }
 
-/// "4.7 % collide (4.0 % wholly inside closed meshes), 94.8 % valid".
+/// Returns text such as "4.7 % collide (4.0 % with their centre inside closed meshes), 94.8 % valid".
 std::string Workbench::shares(const std::vector<Pose>& asked)
 {
     const std::vector<Judgement> judged = judge().check(asked);

@@ -13,41 +13,41 @@
 
 namespace bench {
 
-/// A 2D raster among the stages.
+/// A stage that makes a 2D raster.
 struct RasterWork {
     std::string name;
     double step, offset;  ///< m
     spawnfield::LayerChoice layers = {};
 };
 
-/// A scene, and how much of it each stage does.
+/// A scene, and the amount of work for each stage.
 struct Setting {
     std::string name;
     std::function<spawnfield::Scene()> make = {};
     std::function<spawnfield::Robot()> robot = {};
-    spawnfield::Bounds bounds = {};  ///< of the map; empty: the scene's
-    bool one_layer = false;          ///< of terrain: all of it is the top one, which is what plain FCL knows
-    bool has_ground = true;          ///< false: a 3D raster is all there is to do
-    bool height_check = true;        ///< of that raster
-    bool has_rivals = true;          ///< whether alternatives (b) and (c) run on it
-    double cell = 0.5;               ///< of the terrain raster, m; a voxel is 2.5 cells
+    spawnfield::Bounds bounds = {};  ///< of the map; empty: those of the scene
+    bool one_layer = false;          ///< all terrain is in the top layer, the only one that plain FCL can handle
+    bool has_ground = true;          ///< false: the scene has only a 3D raster
+    bool height_check = true;        ///< of the 3D raster
+    bool has_rivals = true;          ///< whether alternatives (b) and (c) run on this scene
+    double cell = 0.5;               ///< m, of the terrain raster; a voxel is 2.5 cells
     std::vector<RasterWork> rasters = {};
-    double step_3d = 1;
-    int thinning = 1;            ///< plain FCL does every so many-th row and column of the 3D raster
-    std::size_t poses = 100000;  ///< to check
+    double step_3d = 1;          ///< m
+    int thinning = 1;            ///< plain FCL checks only every `thinning`-th row and column of the 3D raster
+    std::size_t poses = 100000;  ///< number of poses to check
     std::size_t samples = 2000;
     double sample_distance = 2.5;  ///< m
-    std::size_t finds = 500;       ///< valid ones of a search
+    std::size_t finds = 500;       ///< number of valid poses that a search must find
     double search_distance = 2.5;  ///< m
     std::size_t nav_points = 100000;
 };
 
 enum class Extent { Quick, Usual, Full };
 std::vector<Setting> settings(Extent extent);
-std::vector<Setting> tiled_settings(Extent extent);  ///< hills-1x, hills-4x, hills-16x: as many tiles, for baking
+std::vector<Setting> tiled_settings(Extent extent);  ///< landscapes of 1, 4 and 16 tiles, for baking
 spawnfield::Robot husky_box();                       ///< box:0.99,0.67,0.39
 
-/// One scene with all that its stages need, made when it is first asked for.
+/// One scene with everything that its stages need. Each thing is made when it is first needed.
 class Workbench {
 public:
     explicit Workbench(const Setting& setting);
@@ -56,18 +56,19 @@ public:
     struct Rival {
         std::string name;
         Run run;
-        bool has_same_result = false;  ///< it has to compute the stage's very bytes
+        bool has_same_result = false;  ///< its result must have the same bytes as that of the stage
     };
     struct Stage {
         std::string name;
-        bool parallel;  ///< whether it has a number of threads
+        bool parallel;  ///< whether it uses several threads
         Run run;
         std::vector<Rival> rivals = {};
     };
-    /// In the order in which they run; they refer to this workbench.
+    /// Returns the stages in the order in which they run. They refer to this workbench.
     std::vector<Stage> stages();
 
-    /// What plain FCL and Recast say of the stages whose name has `only` in it, compared with ours: lines of text.
+    /// Returns lines of text that compare plain FCL and Recast with spawnfield, for the stages whose name contains
+    /// `only`.
     std::vector<std::string> comparisons(const std::string& only);
 
     spawnfield::BakeReport bake_into(const std::filesystem::path& folder, spawnfield::Scene scene, int threads) const;
@@ -129,9 +130,9 @@ private:
     std::vector<spawnfield::Pose> poses_;
 };
 
-/// A stage and its rivals ("stage rival"), each once untimed and then in turns: round after round each of them once.
-/// What takes longer than 10 s is not run again: then the first time counts. Throws std::runtime_error where results
-/// differ that have to be the same.
+/// Runs a stage and its rivals (named "stage rival"), each once untimed and then in turns: each of them once in every
+/// round. If a run takes longer than 10 s it is not repeated, and its first time counts. Throws std::runtime_error if
+/// results differ that must be the same.
 std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& stage, int threads, int rounds);
 
 }  // namespace bench

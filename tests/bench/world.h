@@ -4,7 +4,7 @@
 
 namespace bench {
 
-/// What a bake of the scene at this resolution (m) and its reading give, without files.
+/// Returns the map that baking the scene at this resolution (m) and reading it would give, but without files.
 spawnfield::Map map_of(const spawnfield::Scene& scene, const spawnfield::Bounds& bounds, double cell);
 
 }  // namespace bench

@@ -1,11 +1,11 @@
-# Checks that docs/library.md shows the programs of this folder as they are. Then installs into a clean prefix, builds them
-# against the package there, runs them and checks what they print.
+# Checks that docs/library.md shows the programs of this folder as they are. Then installs into an empty prefix, builds
+# them against the package there, runs them and checks what they print.
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
-    message(FATAL_ERROR "failed: ${ARGN}")
+    message(FATAL_ERROR "this command failed with status ${status}: ${ARGN}")
   endif()
 endfunction()
 
@@ -31,8 +31,8 @@ if(SANITIZE)
   set(flags "-fsanitize=${SANITIZE}")
 endif()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_BUILD_TYPE=Release
-    -DCMAKE_CXX_FLAGS=${flags})
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/prefix
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS=${flags})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 
 set(maps ${WORK}/prefix/share/spawnfield/maps)

@@ -17,15 +17,15 @@ struct FuzzArgs {
 
 void add_options(CLI::App& app, FuzzArgs& args)
 {
-    app.add_option("--seconds", args.seconds, "Start no scene after this time (default 60)")
+    app.add_option("--seconds", args.seconds, "Start no new scene after this time (default 60)")
         ->check(CLI::PositiveNumber);
-    app.add_option("--seed", args.seed, "Of the first scene; the next ones follow (default 1)");
-    app.add_option("--scenes", args.scenes, "At most so many scenes (default: as many as the time allows)");
+    app.add_option("--seed", args.seed, "Seed of the first scene; the next scenes use the next seeds (default 1)");
+    app.add_option("--scenes", args.scenes, "Maximum number of scenes (default: as many as the time allows)");
     app.add_flag("--independent", args.independent,
-                 "Compare check with the tests' own decision instead, which knows neither FCL nor a mask");
-    app.add_flag("--keep-going", args.keep_going, "Go on after a difference; the exit status still tells");
+                 "Compare check with the independent decision of the tests instead, which uses neither FCL nor a mask");
+    app.add_flag("--keep-going", args.keep_going, "Continue after a difference; the exit status is 1 all the same");
     app.footer(
-        "Example, and how to repeat what it printed:\n"
+        "Example, and how to repeat a scene that it printed:\n"
         "  spawnfield_fuzz --seconds 600 --seed 1\n"
         "  spawnfield_fuzz --seed 4711 --scenes 1");
 }
@@ -55,7 +55,7 @@ int run(const FuzzArgs& args)
 {
     const Clock::time_point start = Clock::now();
     compare::Tally all;
-    double told = 0;
+    double printed_at = 0;
     std::uint64_t scenes = 0;
     for (; seconds_since(start) < args.seconds && (args.scenes == 0 || scenes < args.scenes); ++scenes) {
         const HardCase hard = hard_case(args.seed + scenes);
@@ -65,9 +65,9 @@ int run(const FuzzArgs& args)
         all.add(tally);
         if (tally.differences > 0) print_difference(hard, tally);
         if (tally.differences > 0 && !args.keep_going) return 1;
-        if (seconds_since(start) - told < 10) continue;
-        told = seconds_since(start);
-        print_progress(scenes + 1, told, all);
+        if (seconds_since(start) - printed_at < 10) continue;
+        printed_at = seconds_since(start);
+        print_progress(scenes + 1, printed_at, all);
     }
     print_progress(scenes, seconds_since(start), all);
     return all.differences > 0 ? 1 : 0;
@@ -78,7 +78,8 @@ int run(const FuzzArgs& args)
 int main(int argc, char** argv)
 {
     CLI::App app{
-        "Asks random hard scenes everything with the free-space mask and exhaustively: the answers must be the same"};
+        "Asks all queries in random hard scenes, with the free-space mask and exhaustively. The answers must be the "
+        "same"};
     FuzzArgs args;
     add_options(app, args);
     CLI11_PARSE(app, argc, argv);

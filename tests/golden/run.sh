@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Prints the SHA-256 of every file that a dozen commands write: run.sh BIN_FOLDER SOURCE_FOLDER WORK_FOLDER THREADS.
-# BIN_FOLDER holds spawnfield and spawnfield_worlds. tests/golden/digests.txt has the output that every build must give.
+# BIN_FOLDER contains spawnfield and spawnfield_worlds. Every build must print the lines of tests/golden/digests.txt.
 set -euo pipefail
 bin=$1
 source=$2
@@ -10,7 +10,7 @@ threads=$4
 rm -rf "$work"
 mkdir -p "$work/results"
 cd "$work"
-# The results must not depend on the folders of this machine, so all inputs are named relative to the work folder.
+# The results must not depend on the folders of a machine, so all inputs have paths relative to the work folder.
 cp -r "$source/maps" maps
 "$bin/spawnfield_worlds" low-complexity -o low --seed 1 >/dev/null
 "$bin/spawnfield_worlds" complex -o district --seed 1 >/dev/null
@@ -29,13 +29,16 @@ spawnfield raster results/training --robot $robot --dims 2 --step 0.5 --max-slop
 spawnfield raster results/training --robot $robot --dims 3 --step 1 --snap -o results/training_3d.csv
 spawnfield raster results/low --robot box:0.99,0.67,0.39 --dims 2 --step 1 --offset 1 --yaw 30deg -o results/low_2d.csv
 spawnfield raster results/district --robot maps/robots/cart.urdf --dims 2 --step 1 -o results/district_2d.csv
-spawnfield sample results/training --robot $robot -n 50 --min-distance 1 --yaw random --seed 7 -o results/training_sample.csv
+spawnfield sample results/training --robot $robot -n 50 --min-distance 1 --yaw random --seed 7 \
+  -o results/training_sample.csv
 spawnfield sample results/yard --robot maps/robots/cart.urdf -n 1000 --min-distance 3 -o results/yard_full.json ||
-  [ $? = 3 ]  # 3: fewer than 1000 spawns fit, which is the case that this line is for
+  [ $? = 3 ]  # 3: fewer than 1000 spawns fit; this line tests that case
 spawnfield sample results/storeys --robot $robot -n 40 --min-distance 1 --floor 1 -o results/storeys_sample.csv
-spawnfield search results/low --robot box:0.99,0.67,0.39 -n 40 --min-distance 2 --yaw random --seed 3 -o results/low_search.csv
+spawnfield search results/low --robot box:0.99,0.67,0.39 -n 40 --min-distance 2 --yaw random --seed 3 \
+  -o results/low_search.csv
 spawnfield check results/low --robot $robot --poses results/low_search.csv --max-slope 20 -o results/low_check.csv
-spawnfield check results/training --robot $robot --poses results/training_3d.csv --format json -o results/training_check.json
+spawnfield check results/training --robot $robot --poses results/training_3d.csv --format json \
+  -o results/training_check.json
 spawnfield check results/district --robot box:2,2,1 --poses results/district_2d.csv -o results/district_check.csv
 poses="--robot maps/robots/cart.urdf --poses results/training_sample.csv"
 spawnfield export results/yard --format ros2-launch-py $poses --topic robot_description -o results/yard_launch.py

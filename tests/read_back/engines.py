@@ -1,26 +1,29 @@
-"""CARLA, Unreal, Unity: what their axes and angles mean, by their own rules, against the robots as they are."""
+"""Checks files for CARLA, Unreal and Unity: by the rules of these programs they must give the true poses."""
 import csv
 import json
 import math
 
 from truth import FOLDER, ROBOTS, check_pose, from_quaternion, from_rpy, multiply, transpose
 
-# Columns: where REP-103's forward, left and up point in the target.
+# The columns are the directions forward, left and up of REP-103 in the axes of the other program.
 UNREAL = [[1, 0, 0], [0, -1, 0], [0, 0, 1]]
 UNITY = [[0, -1, 0], [0, 0, 1], [1, 0, 0]]
 
 
 def unreal_axes(roll, pitch, yaw):
-    """Forward, right and up of a rotator in degrees: yaw turns forward to the right, then pitch lifts it, then roll about it."""
+    """Returns the axes forward, right and up of an Unreal rotator, in degrees.
+
+    Yaw turns forward to the right, then pitch lifts it, then roll turns about it.
+    """
     r, p, y = (math.radians(a) for a in (roll, pitch, yaw))
-    turn = [[math.cos(y), -math.sin(y), 0], [math.sin(y), math.cos(y), 0], [0, 0, 1]]   # x to y
-    lift = [[math.cos(p), 0, -math.sin(p)], [0, 1, 0], [math.sin(p), 0, math.cos(p)]]   # x to z
-    lower = [[1, 0, 0], [0, math.cos(r), math.sin(r)], [0, -math.sin(r), math.cos(r)]]  # right to down
+    turn = [[math.cos(y), -math.sin(y), 0], [math.sin(y), math.cos(y), 0], [0, 0, 1]]   # turns x to y
+    lift = [[math.cos(p), 0, -math.sin(p)], [0, 1, 0], [math.sin(p), 0, math.cos(p)]]   # turns x to z
+    lower = [[1, 0, 0], [0, math.cos(r), math.sin(r)], [0, -math.sin(r), math.cos(r)]]  # turns right to down
     return multiply(turn, multiply(lift, lower))
 
 
 def back(position, rotation, world, body, unit=1):
-    """In REP-103: world^T p, world^T R body."""
+    """Returns position and rotation in REP-103: world^T p and world^T R body."""
     turned = multiply(transpose(world), multiply(rotation, body))
     return [sum(world[k][i] * position[k] for k in range(3)) / unit for i in range(3)], turned
 
@@ -45,9 +48,11 @@ for robot, thing in zip(ROBOTS, json.loads((FOLDER / 'objects.json').read_text()
 for robot, row in zip(ROBOTS, rows('unreal.csv'), strict=True):
     assert row['Name'] == robot['name']
     place = [float(row[a]) for a in 'XYZ']
-    check_pose(robot, *back(place, unreal_axes(float(row['Roll']), float(row['Pitch']), float(row['Yaw'])), UNREAL, UNREAL, 100))
+    axes = unreal_axes(float(row['Roll']), float(row['Pitch']), float(row['Yaw']))
+    check_pose(robot, *back(place, axes, UNREAL, UNREAL, 100))
 
-# A world that Unity wrote as glTF has x negated, and was baked with y up as (x, -z, y): this is the way back to Unity.
+# A world that Unity exported as glTF has x negated. It was baked with y up as (x, -z, y). This matrix leads back to
+# Unity.
 GLTF = [[-1, 0, 0], [0, 0, 1], [0, -1, 0]]
 for name, world in (('unity.csv', UNITY), ('unity_gltf.csv', GLTF)):
     for robot, row in zip(ROBOTS, rows(name), strict=True):

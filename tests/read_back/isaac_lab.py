@@ -1,4 +1,4 @@
-"""Isaac Lab: the arrays as numpy reads them."""
+"""Checks the arrays for Isaac Lab, as numpy reads them."""
 import sys
 
 from truth import FOLDER, ROBOTS, check_pose, from_quaternion

@@ -1,4 +1,4 @@
-"""MuJoCo: a model that includes the keys is loaded, and its bodies stand where the robots do."""
+"""Checks the keys for MuJoCo: in a model that includes them, the bodies must have the poses of the robots."""
 import sys
 
 from truth import FOLDER, ROBOTS, check_pose

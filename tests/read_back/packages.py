@@ -1,4 +1,4 @@
-"""Every package of tests/requirements.txt is installed: without them this and other tests leave checks out."""
+"""Checks that every package of tests/requirements.txt is installed; without them other tests leave checks out."""
 import importlib.metadata
 import pathlib
 import sys

@@ -1,4 +1,7 @@
-"""ROS 1: every file as roslaunch reads it (by roslaunch's own loader where it is installed), every node as spawn_model does."""
+"""Checks the launch files for ROS 1. The arguments of each node are parsed like those of spawn_model.
+
+If roslaunch is installed, its own loader reads the files, too.
+"""
 import argparse
 import shlex
 import xml.etree.ElementTree
@@ -13,7 +16,7 @@ except ImportError:
 
 
 def spawn_model(arguments):
-    """As gazebo_ros's spawn_model takes them."""
+    """Parses arguments like spawn_model of gazebo_ros."""
     parser = argparse.ArgumentParser()
     kind = parser.add_mutually_exclusive_group(required=True)
     kind.add_argument('-urdf', action='store_true')
@@ -28,11 +31,12 @@ def spawn_model(arguments):
 
 
 def groups(file):
-    """Namespace, parameters and spawn_model's arguments of each group."""
+    """Yields the namespace, the parameters and the arguments of spawn_model for each group."""
     for group in xml.etree.ElementTree.parse(file).getroot().findall('group'):
         node, = group.findall('node')
         assert (node.get('pkg'), node.get('type')) == ('gazebo_ros', 'spawn_model')
-        yield group.get('ns'), {p.get('name'): p.get('textfile') for p in group.findall('param')}, shlex.split(node.get('args'))
+        parameters = {p.get('name'): p.get('textfile') for p in group.findall('param')}
+        yield group.get('ns'), parameters, shlex.split(node.get('args'))
 
 
 for name in ('file', 'sdf', 'topic'):
@@ -61,4 +65,4 @@ if roslaunch is not None:
             args = spawn_model(shlex.split(node.args))
             assert args.model == robot['name']
             check_pose(robot, (args.x, args.y, args.z), from_rpy(args.R, args.P, args.Y))
-print('roslaunch', 'read them too' if roslaunch is not None else 'is not installed (python3-roslaunch)')
+print('roslaunch', 'read the files, too' if roslaunch is not None else 'is not installed; install python3-roslaunch')

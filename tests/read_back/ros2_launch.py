@@ -1,4 +1,7 @@
-"""ROS 2: the Python files run with stand-ins for launch and launch_ros, the XML files are read; arguments as gflags takes them."""
+"""Checks the launch files for ROS 2. Arguments are parsed like those of gflags.
+
+The Python files run with stand-ins for launch and launch_ros. The XML files are parsed.
+"""
 import ast
 import runpy
 import shlex
@@ -22,7 +25,8 @@ class LaunchDescription:
 
 
 def install_stand_ins():
-    for name, members in (('launch', {'LaunchDescription': LaunchDescription}), ('launch_ros', {}), ('launch_ros.actions', {'Node': Node})):
+    for name, members in (('launch', {'LaunchDescription': LaunchDescription}), ('launch_ros', {}),
+                          ('launch_ros.actions', {'Node': Node})):
         module = types.ModuleType(name)
         module.__dict__.update(members)
         sys.modules[name] = module

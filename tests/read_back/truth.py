@@ -1,4 +1,4 @@
-"""What spawnfield_read_back wrote, and what its files must tell: position and rotation of each robot, to 1e-9."""
+"""Reads the true poses that spawnfield_read_back wrote, and compares poses with them (tolerance 1e-9)."""
 import json
 import math
 import pathlib
@@ -18,7 +18,7 @@ def transpose(a):
 
 
 def from_rpy(roll, pitch, yaw):
-    """Fixed axes x, y, z."""
+    """Returns the rotation about the fixed axes x, y and z."""
     cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
     x = [[1, 0, 0], [0, cr, -sr], [0, sr, cr]]
     y = [[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]]

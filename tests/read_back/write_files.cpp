@@ -1,5 +1,5 @@
-/// Writes robots with any rotation in every format, and truth.json with what they are, for the readers beside this
-/// file.
+/// Writes robots with all kinds of rotations in every format, and their true poses to truth.json. The Python programs
+/// beside this file read them.
 #include "worlds/random.h"
 
 #include <spawnfield/output_file.h>
@@ -30,7 +30,7 @@ std::vector<RobotStart> random_robots(std::size_t count)
                        rpy});
     }
     out[1].rpy = {0, 0, 0};
-    out[2].rpy = {1e-7, -2.5e-9, -3e-5};  // numbers that a shortest text gives exponents
+    out[2].rpy = {1e-7, -2.5e-9, -3e-5};  // numbers whose shortest text has an exponent
     out[3].position = {-1e-5, 1e-17, 12345678.25};
     out[4].rpy = {0.3, pi / 2, -0.4};  // nose down
     out[5].rpy = {-2, -pi / 2, 3};

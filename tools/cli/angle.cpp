@@ -1,5 +1,8 @@
 #include "angle.h"
 
+#include "messages.h"
+#include "numbers.h"
+
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -15,7 +18,7 @@ double parse(const CommonArgs& args, const std::string& text, const std::string&
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     const std::string unit(stop, end);
     if (error != std::errc{} || !(unit.empty() || unit == "deg"))
-        throw ArgumentError("--yaw is \"" + text + "\", needs rad, as 1.57, or degrees, as 90deg" + others);
+        throw ArgumentError("--yaw is \"" + text + "\", needs radians such as 1.57 or degrees such as 90deg" + others);
     parse_finite("--yaw", value, unit.empty() ? "rad" : "degrees");
     if (!unit.empty()) return value * radians_per_degree;
     if (std::abs(value) > turn)

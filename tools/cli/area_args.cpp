@@ -1,5 +1,8 @@
 #include "area_args.h"
 
+#include "messages.h"
+#include "numbers.h"
+#include "session.h"
 #include "streams.h"
 
 #include <spawnfield/region_file.h>
@@ -27,32 +30,35 @@ Region read_one(const CommonArgs& common, const std::string& option, const std::
     return out;
 }
 
-void tell_about(const CommonArgs& common, const Map& map, const std::string& option, const Region& region)
+void notice_about(const CommonArgs& common, const Map& map, const std::string& option, const Region& region)
 {
     const Bounds bounds = region.bounds();
-    tell_if_off_map(common, map, option + " " + region.name, bounds);
+    notice_if_off_map(common, map, option + " " + region.name, bounds);
     if (!bounds.meets(map.bounds, 2) && map.origin)
-        notice(common, "regions are in the map's frame: its 0, 0 is x " + number(map.origin->x) + ", y " +
-                           number(map.origin->y) + " of the survey");
+        notice(common, "regions are in the map's frame, not in survey coordinates; 0, 0 of the map is x " +
+                           number(map.origin->x) + ", y " + number(map.origin->y) + " of the survey");
     const auto longest = [](const Bounds& b) { return (b.max - b.min).head<2>().maxCoeff(); };
     if (longest(bounds) < 1e-3 * longest(map.bounds) && bounds.max.head<2>().cwiseAbs().maxCoeff() <= 180)
-        notice(common, option + " " + region.name + " is " + to_string(bounds, 2) +
-                           ", tiny beside the map; degrees need to become metres in the map's frame");
+        notice(common,
+               option + " " + region.name + " is " + to_string(bounds, 2) +
+                   ", tiny compared with the map; if these are degrees, convert them to metres in the map's frame");
 }
 
 }  // namespace
 
 void add_area(CLI::App& command, AreaArgs& args)
 {
+    start_group(command, help_group::region);
     command
         .add_option("--region", args.regions,
-                    "Where poses are wanted: x0,y0,x1,y1 or x0,y0,z0,x1,y1,z1 in m, or a file in the map's metres: "
-                    "GeoJSON, CSV (x,y), map.yaml of nav2 (free cells); "
-                    "- for GeoJSON or CSV on standard input; repeatable: in any of them")
+                    "Poses are only wanted here: x0,y0,x1,y1 or x0,y0,z0,x1,y1,z1 in m, or a file in the map's metres: "
+                    "GeoJSON, CSV (x,y), map.yaml of nav2 (its free cells). - is GeoJSON or CSV on standard input. "
+                    "Repeatable: poses are wanted in any of them")
         ->allow_extra_args(false);
     command
         .add_option("--keep-out", args.keep_outs,
-                    "Where not, in the same ways; of a nav2 map the occupied cells (repeatable)")
+                    "Poses are not wanted here; the same values as for --region. Of a map.yaml: its occupied cells "
+                    "(repeatable)")
         ->allow_extra_args(false);
 }
 
@@ -73,10 +79,10 @@ Area read_area(const CommonArgs& common, const AreaArgs& args)
     return out;
 }
 
-void tell_about_area(const CommonArgs& common, const Map& map, const Area& area)
+void notice_about_area(const CommonArgs& common, const Map& map, const Area& area)
 {
-    for (const Region& region : area.within) tell_about(common, map, "--region", region);
-    for (const Region& region : area.keep_out) tell_about(common, map, "--keep-out", region);
+    for (const Region& region : area.within) notice_about(common, map, "--region", region);
+    for (const Region& region : area.keep_out) notice_about(common, map, "--keep-out", region);
 }
 
 }  // namespace spawnfield::cli

@@ -1,22 +1,29 @@
 #pragma once
 
-#include "cli.h"
+#include "common_args.h"
+
+#include <spawnfield/map.h>
+#include <spawnfield/region.h>
+
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace spawnfield::cli {
 
-/// Where poses are wanted: of `sample`, `search`, `raster`, `heatmap` and `experiment`.
+/// Where poses are wanted: options of `sample`, `search`, `raster`, `heatmap` and `experiment`.
 struct AreaArgs {
     std::vector<std::string> regions, keep_outs;
 };
 void add_area(CLI::App& command, AreaArgs& args);
 
-/// What --region has if it is there once, with a box; else nothing. Throws ArgumentError.
+/// Returns the box of --region if it was given once, with a box; otherwise nothing. Throws ArgumentError.
 std::optional<Bounds> lone_box(const AreaArgs& args);
 
-/// Reads the files and tells what is odd about them. Throws ArgumentError, FileError.
+/// Reads the files and prints their notices. Throws ArgumentError, FileError.
 Area read_area(const CommonArgs& common, const AreaArgs& args);
 
-/// A notice for each region that lies off the map, or is so small that it may be in degrees.
-void tell_about_area(const CommonArgs& common, const Map& map, const Area& area);
+/// Prints a notice for each region that lies off the map, or is so small that it may be in degrees.
+void notice_about_area(const CommonArgs& common, const Map& map, const Area& area);
 
 }  // namespace spawnfield::cli

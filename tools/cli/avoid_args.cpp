@@ -1,5 +1,8 @@
 #include "avoid_args.h"
 
+#include "messages.h"
+#include "numbers.h"
+#include "session.h"
 #include "streams.h"
 
 #include <algorithm>
@@ -7,7 +10,7 @@
 namespace spawnfield::cli {
 namespace {
 
-/// The distance of each file. Throws ArgumentError.
+/// Returns the distance for each file. Throws ArgumentError.
 std::vector<double> distances_of(const AvoidArgs& args, double min_distance)
 {
     if (args.files.empty() && !args.distances.empty()) throw ArgumentError("--avoid-distance needs --avoid FILE");
@@ -20,7 +23,8 @@ std::vector<double> distances_of(const AvoidArgs& args, double min_distance)
         throw ArgumentError("--avoid-distance is given " + std::to_string(args.distances.size()) +
                             " times, needs once or once for each --avoid (" + std::to_string(args.files.size()) + ")");
     if (!(min_distance > 0))
-        throw ArgumentError("--avoid needs --avoid-distance M, or a --min-distance > 0, which is its default");
+        throw ArgumentError(
+            "--avoid needs --avoid-distance M, or --min-distance > 0 (the default of --avoid-distance)");
     return std::vector<double>(args.files.size(), min_distance);
 }
 
@@ -28,17 +32,16 @@ std::vector<double> distances_of(const AvoidArgs& args, double min_distance)
 
 void add_avoid(CLI::App& command, AvoidArgs& args)
 {
+    start_group(command, help_group::region);
     command
         .add_option("--avoid", args.files,
-                    "CSV file of poses, for example of robots that are placed already: no spawn is nearer to one than "
-                    "--avoid-distance "
-                    "(repeatable; - for standard input)")
+                    "CSV file of poses, for example of robots that are placed already. No spawn is nearer to one of "
+                    "them than --avoid-distance (repeatable; - for standard input)")
         ->allow_extra_args(false);
     command
         .add_option("--avoid-distance", args.distances,
-                    "Between a spawn and each pose of --avoid, from origin to origin in 3D as --min-distance, m "
-                    "(default: --min-distance; once for all "
-                    "files, or once for each)")
+                    "Smallest distance between a spawn and each pose of --avoid, from origin to origin in 3D, m "
+                    "(default: --min-distance; given once for all files, or once for each file)")
         ->allow_extra_args(false);
 }
 
@@ -56,7 +59,7 @@ std::vector<AvoidedPoints> read_avoided(const CommonArgs& common, const AvoidArg
     return out;
 }
 
-void tell_about_avoided(const CommonArgs& common, const Map& map, const std::vector<AvoidedPoints>& avoid)
+void notice_about_avoided(const CommonArgs& common, const Map& map, const std::vector<AvoidedPoints>& avoid)
 {
     for (const AvoidedPoints& group : avoid) {
         const auto is_off = [&](const Vec3& p) { return !map.bounds.contains_xy(p.x(), p.y(), group.distance); };

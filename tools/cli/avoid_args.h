@@ -1,6 +1,11 @@
 #pragma once
 
-#include "cli.h"
+#include "common_args.h"
+
+#include <spawnfield/query.h>
+
+#include <string>
+#include <vector>
 
 namespace spawnfield::cli {
 
@@ -15,10 +20,10 @@ void add_avoid(CLI::App& command, AvoidArgs& args);
 /// FileError.
 std::vector<AvoidedPoints> read_avoided(const CommonArgs& common, const AvoidArgs& args, double min_distance);
 
-/// A notice for each file whose poses all lie off the map.
-void tell_about_avoided(const CommonArgs& common, const Map& map, const std::vector<AvoidedPoints>& avoid);
+/// Prints a notice for each file whose poses all lie off the map.
+void notice_about_avoided(const CommonArgs& common, const Map& map, const std::vector<AvoidedPoints>& avoid);
 
-/// "spawns.csv: 10 poses, 2 m", for reports.
+/// Returns "spawns.csv: 10 poses, 2 m", for reports.
 std::string words_of(const AvoidedPoints& group);
 
 }  // namespace spawnfield::cli

@@ -1,4 +1,7 @@
+#include "command.h"
 #include "ground_args.h"
+#include "messages.h"
+#include "numbers.h"
 #include "scene_args.h"
 
 #include <spawnfield/bake.h>
@@ -23,13 +26,12 @@ std::string words(const BakeReport& report)
            " occupancy leaves, " + megabytes;
 }
 
-int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
+Ending run_bake(const BakeArgs& args, const CLI::App& command, Summary& summary)
 {
-    Summary summary("bake", args);
     SceneOptions reading = scene_options(args, args);
     BakeOptions options;
-    if (resolution_given) options.resolution = parse_positive("--resolution", args.resolution);
-    if (occupancy_given)
+    if (command.count("--resolution") > 0) options.resolution = parse_positive("--resolution", args.resolution);
+    if (command.count("--occupancy-resolution") > 0)
         options.occupancy_resolution = parse_positive("--occupancy-resolution", args.occupancy_resolution);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, false);
     if (!args.z.empty() && !args.bounds.empty())
@@ -49,39 +51,38 @@ int run_bake(const BakeArgs& args, bool resolution_given, bool occupancy_given)
     summary.more_stages = report.seconds;
     summary.map_hash = report.hash;
     summary.extra = {args.out, words(report)};
-    summary.finish();
-    return done;
+    return {};
 }
 
 }  // namespace
 
-void add_bake(CLI::App& app, Run& run)
+void add_bake(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<BakeArgs>();
     CLI::App& command = *app.add_subcommand("bake", "Make a map from a scene");
     command
         .add_option(
             "scene", args->scene,
-            "scene.yaml, a Gazebo world or model (.world, .sdf, a model's folder), a mesh (any format assimp reads), "
+            "scene.yaml, a Gazebo world or model (.world, .sdf, a model's folder), a mesh (any format of assimp), "
             "an OctoMap (.bt), an elevation model (.tif, .asc, .png, .raw) or a 2D map (map.yaml of nav2 or ROS)")
         ->required();
     command.add_option("--out,-o", args->out, "Map folder to write; an older map there is replaced")
         ->required()
         ->check(not_empty());
-    auto* resolution = command.add_option("--resolution", args->resolution, "Side of a terrain cell, m (default 0.1)");
-    auto* occupancy = command.add_option("--occupancy-resolution", args->occupancy_resolution,
-                                         "Side of a voxel, m (default 2.5 cells)");
+    add_label_options(command, *args);
+    add_model_path(command, *args);
+    command.add_option("--resolution", args->resolution, "Side of a terrain cell, m (default 0.1)");
+    command.add_option("--occupancy-resolution", args->occupancy_resolution, "Side of a voxel, m (default 2.5 cells)");
     command.add_option("--bounds", args->bounds,
                        "x0,y0,z0,x1,y1,z1 in m (default: the scene's). z0 and z1 are z limits: layers beyond them are "
-                       "no ground, poses beyond them outside");
-    command.add_option("--z", args->z, "LOW:HIGH in m: z limits alone, of the whole scene (5: and :8 have one limit)");
+                       "not ground, and poses beyond them are outside");
+    command.add_option("--z", args->z,
+                       "LOW:HIGH in m: only z limits; x and y are the scene's (5: and :8 are one limit)");
     add_scene_options(command, *args);
-    add_model_path(command, *args);
-    command.add_flag("--allow-no-terrain", args->allow_no_terrain, "Bake a scene in which nothing is terrain");
+    command.add_flag("--allow-no-terrain", args->allow_no_terrain, "Accept a scene without terrain");
     add_common(command, *args);
     command.footer("Example:\n  spawnfield bake maps/training/scene.yaml -o /tmp/training");
-    command.callback(
-        [=, &run] { run = [=] { return run_bake(*args, resolution->count() > 0, occupancy->count() > 0); }; });
+    set_work(command, args, chosen, run_bake);
 }
 
 }  // namespace spawnfield::cli

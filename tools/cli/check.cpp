@@ -1,8 +1,12 @@
-#include "cli.h"
+#include "command.h"
+#include "messages.h"
+#include "numbers.h"
+#include "output.h"
+#include "session.h"
+#include "spelling.h"
+#include "streams.h"
 
 #include <spawnfield/verdict_report.h>
-
-#include <iostream>
 
 namespace spawnfield::cli {
 namespace {
@@ -24,8 +28,8 @@ void write_verdicts(const CheckArgs& args, const VerdictReport& report)
     });
 }
 
-/// Says on standard error how many poses are not valid, and why the first ones are not.
-void tell_not_valid(const VerdictReport& report)
+/// Returns how many poses are not valid, and why the first ones are not.
+std::string not_valid_words(const VerdictReport& report)
 {
     constexpr std::size_t shown = 5;
     const std::vector<std::string> names = pose_names(report.table);
@@ -35,63 +39,60 @@ void tell_not_valid(const VerdictReport& report)
         if (report.judgements[i].verdict != Verdict::Valid && ++count <= shown)
             first += "\n  " + names[i] + ": " + report.judge.describe(report.table.poses[i], report.judgements[i]);
     if (count > shown) first += "\n  and " + std::to_string(count - shown) + " more";
-    std::cerr << "spawnfield: --require-valid: " << count << " of " << counted(names.size(), "pose")
-              << (count == 1 ? " is" : " are") << " not valid:" << first << "\n";
+    return "--require-valid: " + std::to_string(count) + " of " + counted(names.size(), "pose") +
+           (count == 1 ? " is" : " are") + " not valid:" + first;
 }
 
-int run_check(const CheckArgs& args)
+Ending run_check(const CheckArgs& args, const CLI::App&, Summary& summary)
 {
-    Summary summary("check", args);
     const PoseTable table = open_poses(args, args.poses);
     for (const std::string& name : replaced_columns(table))
-        notice(args, args.poses + ": column " + name + " is replaced by a new one");
+        notice(args, input_name(args.poses) + ": the new column " + name + " replaces the old one");
     const Session session = open_session(args, summary);
     summary.lap("load");
     const std::vector<Judgement> judgements = session.judge->check(
         table.poses, {.threads = args.threads, .progress = progress_bar(args, "check")});
     summary.lap("query");
     VerdictCounts counts;
+    std::uint64_t exact_checks = 0;
     for (const Judgement& judged : judgements) {
         ++counts[judged.verdict];
-        summary.exact_checks += judged.exact_check;
+        exact_checks += judged.exact_check;
     }
+    summary.set_verdicts(counts, exact_checks);
     const VerdictReport report{table, judgements, *session.judge};
     write_verdicts(args, report);
-    summary.lap("write");
-    summary.set_counts(counts);
-    summary.map_hash = session.map.hash;
-    summary.finish();
-    if (!args.require_valid || counts[Verdict::Valid] == judgements.size()) return done;
-    tell_not_valid(report);
-    return not_valid;
+    if (!args.require_valid || counts[Verdict::Valid] == judgements.size()) return {};
+    return {.status = not_valid, .complaint = not_valid_words(report)};
 }
 
 }  // namespace
 
-void add_check(CLI::App& app, Run& run)
+void add_check(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<CheckArgs>();
     CLI::App& command = *app.add_subcommand("check", "Verdict and reason for each pose of a CSV file");
-    add_query(command, *args);
+    add_map_and_robot(command, *args);
     command
         .add_option("--poses,-p", args->poses,
-                    "CSV file: x,y,z[,roll,pitch,yaw | ,roll_deg,pitch_deg,yaw_deg | ,qx,qy,qz,qw]; m, rad, degrees; "
-                    "other columns are kept, but "
-                    "verdict,ground,height_above,hit replaced (- for standard input)")
+                    "CSV file: x,y,z[,roll,pitch,yaw | ,roll_deg,pitch_deg,yaw_deg | ,qx,qy,qz,qw]; m, rad, degrees. "
+                    "Other columns are copied; verdict,ground,height_above,hit are replaced (- for standard input)")
         ->required();
-    add_allow_empty(command, *args);
     command.add_option("--out,-o", args->out, "File to write (default: standard output)");
     command
         .add_option("--format", args->format,
                     "csv: the input's columns and the verdict; json; or junit: a test case for each pose (default csv)")
         ->check(one_of({"csv", "json", "junit"}));
     command.add_flag("--require-valid", args->require_valid,
-                     "End with status 3 if any pose is not valid; all rows are written in either case");
+                     "End with status 3 if a pose is not valid; all rows are written in any case");
+    add_verdict_options(command, *args);
+    add_robot_and_run(command, *args);
+    add_allow_empty(command, *args);
     command.footer(
         "Example:\n"
         "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/two_poses.csv\n"
         "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv");
-    command.callback([=, &run] { run = [=] { return run_check(*args); }; });
+    set_work(command, args, chosen, run_check);
 }
 
 }  // namespace spawnfield::cli

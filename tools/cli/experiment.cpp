@@ -1,6 +1,9 @@
 #include "angle.h"
+#include "command.h"
 #include "experiment_report.h"
 #include "interrupt.h"
+#include "messages.h"
+#include "numbers.h"
 #include "raster_args.h"
 #include "spawn_args.h"
 
@@ -21,8 +24,8 @@ struct ExperimentArgs : RasterArgs {
     std::string steps, steps_z, out, command_line;
 };
 
-/// "FROM:TO:BY", TO included (to 1e-9 of BY), or one number; m. Each is rounded to 1e-9 m, so that 0.1:0.5:0.1 has 0.3
-/// in it and not its neighbour. Throws ArgumentError.
+/// Reads "FROM:TO:BY" with TO included (to 1e-9 of BY), or one number; m. Steps are rounded to 1e-9 m, so that
+/// 0.1:0.5:0.1 contains 0.3 and not a double next to it. Throws ArgumentError.
 std::vector<double> parse_steps(const std::string& option, const std::string& text)
 {
     constexpr double most = 10000;
@@ -38,7 +41,8 @@ std::vector<double> parse_steps(const std::string& option, const std::string& te
     return out;
 }
 
-/// Steps across and up, pairwise; up is 0, which means as across, if nothing else was asked for.
+/// Returns pairs of steps between columns and between heights. Without --steps-z the second one is 0: as between
+/// columns.
 std::vector<std::pair<double, double>> step_pairs(const ExperimentArgs& args)
 {
     const std::vector<double> across = parse_steps("--steps", args.steps);
@@ -59,27 +63,28 @@ void check_usage(const ExperimentArgs& args, const CLI::App& command)
     if (args.search) {
         refuse(command,
                {"--dims", "--steps", "--steps-z", "--offset", "--layers", "--floor", "--no-height-check", "--snap"},
-               "is for rasters, not for --search");
-        if (command.count("-n") == 0) throw ArgumentError("--search needs -n, the spawns wanted");
+               "is only for rasters, not for --search");
+        if (command.count("-n") == 0) throw ArgumentError("--search needs -n, the number of spawns");
         return;
     }
     refuse(command, {"-n", "--min-distance", "--max-failures", "--seed"}, "needs --search");
-    if (command.count("--dims") == 0) throw ArgumentError("--dims is required, 2 or 3 (or --search)");
-    if (args.steps.empty()) throw ArgumentError("--steps is required, as 0.5:2:0.5 (or --search)");
+    if (command.count("--dims") == 0) throw ArgumentError("--dims is missing; give --dims 2, --dims 3 or --search");
+    if (args.steps.empty()) throw ArgumentError("--steps is missing; give for example --steps 0.5:2:0.5, or --search");
     if (args.dims == 2)
-        tell_idle(args, command, {"--steps-z"}, "it is for --dims 3; in 2D poses stand on their layers");
+        notice_no_effect(args, command, {"--steps-z"}, "it is only for --dims 3; in 2D each pose stands on a layer");
 }
 
-/// The share of all runs that is done.
+/// Returns the progress of one run as the share of all runs.
 Progress share_of_runs(const Progress& whole, std::size_t done, std::size_t all)
 {
     return [=](double share) { whole((double(done) + share) / double(all)); };
 }
 
-/// The command's stages: what was asked for, then the map, then run after run.
+/// The command's stages: reads the options, then the map, then does run after run.
 class ExperimentCommand {
 public:
-    ExperimentCommand(const ExperimentArgs& args, const CLI::App& command) : args_(args), summary_("experiment", args)
+    ExperimentCommand(const ExperimentArgs& args, const CLI::App& command, Summary& summary)
+        : args_(args), summary_(summary)
     {
         check_usage(args, command);
         if (args.search)
@@ -88,15 +93,15 @@ public:
             prepare_rasters(command);
     }
 
-    int run()
+    Ending run()
     {
         OutputFolder folder(args_.out, holds_only(experiment_files, "former experiment"));
         session_ = open_session(args_, summary_);
         if (args_.search) {
             search_.bounds = with_heights(search_.bounds, heights_of(args_.ground, search_.bounds, "--bounds"),
                                           session_.map);
-            tell_if_off_map(args_, session_.map, "--bounds", search_.bounds);
-            tell_about_area(args_, session_.map, search_.area);
+            notice_if_off_map(args_, session_.map, "--bounds", search_.bounds);
+            notice_about_area(args_, session_.map, search_.area);
         } else {
             complete(raster_, args_, session_, summary_);
         }
@@ -161,74 +166,82 @@ private:
     {
         clear_progress_bar();
         VerdictCounts counts;
+        std::uint64_t exact_checks = 0;
         for (const ExperimentRun& run : runs) {
             counts += run.counts;
-            summary_.exact_checks += run.exact_checks;
+            exact_checks += run.exact_checks;
         }
-        summary_.set_counts(counts);
+        summary_.set_verdicts(counts, exact_checks);
         Experiment experiment{args_.command_line,  session_.map.name,  session_.map.hash,
                               session_.robot.name, summary_.threads(), {},
                               std::move(runs)};
         if (args_.search) experiment.seed = search_.seed;
         write_file_atomically(folder.path() / "experiment.csv", experiment_csv(experiment.runs));
         write_file_atomically(folder.path() / "experiment.md", experiment_markdown(experiment));
-        if (was_interrupted()) throw Interrupted{};
+        stop_if_interrupted();
         folder.commit();
-        summary_.lap("write");
     }
 
-    int finish()
+    Ending finish()
     {
         const std::string runs = counted(std::uint64_t(args_.runs), "run");
         summary_.extra = {args_.out, args_.search ? runs : runs + " of " + counted(steps_.size(), "step")};
-        summary_.map_hash = session_.map.hash;
         summary_.seed = args_.search ? search_.seed : 0;
-        summary_.finish();
-        if (short_runs_ == 0) return done;
-        notice(args_, counted(short_runs_, "run") + " of " + std::to_string(args_.runs) + " found fewer than " +
+        if (short_runs_ == 0) return {};
+        return {.status = fewer_found,
+                .notice = counted(short_runs_, "run") + " of " + std::to_string(args_.runs) + " found fewer than " +
                           std::to_string(search_.count) +
                           " spawns; a smaller --min-distance, more --max-failures or a wider " +
-                          (search_.area.is_everywhere() ? "--bounds" : "--region") + " may give more");
-        return fewer_found;
+                          (search_.area.is_everywhere() ? "--bounds" : "--region") + " may give more"};
     }
 
     const ExperimentArgs& args_;
-    Summary summary_;
-    RasterOptions raster_;  ///< but for the steps
+    Summary& summary_;
+    RasterOptions raster_;  ///< without the steps
     SearchOptions search_;  ///< of the first run
     std::vector<std::pair<double, double>> steps_;
     Session session_;
     std::uint64_t short_runs_ = 0;
 };
 
+Ending run_experiment(const ExperimentArgs& args, const CLI::App& command, Summary& summary)
+{
+    return ExperimentCommand(args, command, summary).run();
+}
+
 }  // namespace
 
-void add_experiment(CLI::App& app, const std::string& command_line, Run& run)
+void add_experiment(CLI::App& app, const std::string& command_line, ChosenCommand& chosen)
 {
     auto args = std::make_shared<ExperimentArgs>();
     args->command_line = command_line;
     CLI::App& command = *app.add_subcommand(
-        "experiment", "Rasters of many steps, or random searches of many seeds, timed and counted");
-    add_raster_query(command, *args);
-    command.add_option("--steps", args->steps, "Between columns: FROM:TO:BY with TO included, or one number, m");
-    command.add_option("--steps-z", args->steps_z,
-                       "Between heights: as many as --steps, pairwise, or one for all, m (default: --steps)");
-    command.add_option("--runs", args->runs, "Of each step, or of the search (default 1)");
-    command.add_flag("--search", args->search,
-                     "Random searches instead of rasters: seed --seed, the next one for each further run");
-    add_draws(command, args->draws);
-    add_max_failures(command, args->draws);
+        "experiment", "Rasters of many steps, or random searches of many seeds, with counts and times");
+    add_map_and_robot(command, *args);
     command
-        .add_option("--out,-o", args->out, "Folder to write: experiment.csv, experiment.md; a former one is replaced")
+        .add_option("--out,-o", args->out,
+                    "Folder to write: experiment.csv, experiment.md; an older experiment there is replaced")
         ->required()
         ->check(not_empty());
+    command.add_option("--runs", args->runs, "Number of runs of each step, or of the search (default 1)");
+    add_dims(command, *args);
+    command.add_option("--steps", args->steps,
+                       "Distances between columns, m: FROM:TO:BY with TO included, or one number");
+    command.add_option("--steps-z", args->steps_z,
+                       "3D: distances between heights, m: one for each of --steps, or one for all (default: --steps)");
+    command.add_flag("--search", args->search,
+                     "Random searches instead of rasters: the first with --seed, each further one with the next seed");
+    start_group(command, "Searches");
+    add_draws(command, args->draws);
+    add_max_failures(command, args->draws);
+    add_raster_query(command, *args);
     command.footer(
         "Example:\n"
         "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --steps 0.5:2:0.5 --offset 0.5 "
         "--runs 3 -o /tmp/box_steps\n"
         "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --search -n 20 --min-distance 1.5 --runs 5 "
         "-o /tmp/box_searches");
-    command.callback([=, &command, &run] { run = [=, &command] { return ExperimentCommand(*args, command).run(); }; });
+    set_work(command, args, chosen, run_experiment);
 }
 
 }  // namespace spawnfield::cli

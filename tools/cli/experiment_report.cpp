@@ -1,8 +1,8 @@
 #include "experiment_report.h"
 
-#include "cli.h"
 #include "common/machine.h"
 #include "common/statistics.h"
+#include "numbers.h"
 
 #include <cstdio>
 #include <span>
@@ -14,7 +14,7 @@ using Runs = std::span<const ExperimentRun>;
 
 std::string number_or_nothing(const std::optional<double>& value) { return value ? number(*value) : ""; }
 
-/// Valid first, as in summary lines.
+/// Visits the verdicts with `valid` first, as in summary lines.
 template <class Visit>
 void for_each_verdict(const Visit& visit)
 {
@@ -23,7 +23,7 @@ void for_each_verdict(const Visit& visit)
 
 std::uint64_t poses_of(const ExperimentRun& run) { return run.counts.total(); }
 
-/// As people read it; the CSV file has all digits.
+/// Returns six digits for the table; the CSV file has all digits.
 std::string six_digits(double value)
 {
     char text[32];
@@ -31,7 +31,7 @@ std::string six_digits(double value)
     return text;
 }
 
-/// Runs of the same step from `first` on.
+/// Returns the runs from `first` on that have the same step.
 Runs runs_of_step(Runs all, std::size_t first)
 {
     std::size_t end = first + 1;

@@ -1,12 +1,16 @@
 #include "angle.h"
+#include "command.h"
 #include "export.h"
+#include "spelling.h"
+
+#include <spawnfield/error.h>
 
 #include <algorithm>
 
 namespace spawnfield::cli {
 namespace {
 
-/// All formats, in the order in which --help tells them: further tables are to be appended here.
+/// Returns all formats in the order of --help. Append further tables here.
 const std::vector<ExportFormat>& formats()
 {
     static const std::vector<ExportFormat> table = [] {
@@ -40,7 +44,7 @@ bool uses(const ExportFormat& format, const std::string& option)
     return contains(format.needs, option) || contains(format.takes, option);
 }
 
-/// "glb, ply": those that an option is for.
+/// Returns the formats that use an option: "glb, ply".
 std::string users_of(const std::string& option)
 {
     std::string names;
@@ -49,7 +53,7 @@ std::string users_of(const std::string& option)
     return names;
 }
 
-/// Options that are there for all formats, or help.
+/// Options that every format accepts.
 const std::vector<std::string> general{"map",     "--format",  "--out",  "--threads",
                                        "--quiet", "--summary", "--help", "--allow-empty"};
 
@@ -59,46 +63,43 @@ void check_options(const ExportArgs& args, const CLI::App& command)
     for (const std::string& option : format.needs)
         if (command.count(option) == 0) throw ArgumentError("--format " + args.format + " needs " + option);
     if (contains(format.needs, "--out") && args.out == "-")
-        throw ArgumentError("--out is \"-\": --format " + args.format + " cannot go to standard output, name a file");
+        throw ArgumentError("--out is \"-\": --format " + args.format +
+                            " cannot go to standard output; give a file name");
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         if (option->count() == 0 || contains(general, name) || uses(format, name)) continue;
         throw ArgumentError(name + " is not for --format " + args.format + "; it is for " + users_of(name));
     }
-    if (args.robot.empty()) refuse(command, asking_options(), "needs --robot");
+    if (args.robot.empty()) refuse(command, pose_options(), "needs --robot");
 }
 
-int run_export(const ExportArgs& args, const CLI::App& command)
+Ending run_export(const ExportArgs& args, const CLI::App& command, Summary& summary)
 {
     check_options(args, command);
-    Summary summary("export", args);
     const Session session = open_session(args, summary);
     summary.lap("load");
     format_of(args.format).write({args, command, session, summary});
-    summary.lap("write");
-    summary.map_hash = session.map.hash;
     if (!args.out.empty() && args.out != "-") summary.extra.push_back(args.out);
-    summary.finish();
-    return done;
+    return {};
 }
 
 std::string help()
 {
     std::size_t width = 0;
     for (const std::string& name : format_names()) width = std::max(width, name.size());
-    std::string text = "Formats (docs/exports.md and docs/simulators.md tell of their pixels, frames and colours):\n";
+    std::string text = "Formats (docs/exports.md and docs/simulators.md describe them):\n";
     for (const ExportFormat& format : formats()) {
         const std::string name = format.name;
         text += "  " + name + std::string(width - name.size() + 2, ' ') + format.about + "\n";
     }
     return text +
-           "Example:\n  spawnfield export /tmp/training --format nav2 --robot box:0.99,0.67,0.39 -o "
+           "\nExample:\n  spawnfield export /tmp/training --format nav2 --robot box:0.99,0.67,0.39 -o "
            "/tmp/training_nav2.yaml";
 }
 
 }  // namespace
 
-const std::vector<std::string>& asking_options()
+const std::vector<std::string>& pose_options()
 {
     static const std::vector<std::string> options{"--model-path",      "--joints",    "--mesh-parts", "--max-height",
                                                   "--max-water-depth", "--max-slope", "--collision",  "--exhaustive",
@@ -106,32 +107,37 @@ const std::vector<std::string>& asking_options()
     return options;
 }
 
-void add_export(CLI::App& app, Run& run)
+void add_export(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<ExportArgs>();
     args->ground.layers.clear();  // the default depends on the format
     CLI::App& command = *app.add_subcommand("export", "A map, or poses in it, in a file of another program");
-    add_query(command, *args);
+    add_map_and_robot(command, *args);
     command.get_option("--robot")->required(false);
-    command.add_option("--format", args->format, "One of the formats below")->required()->check(one_of(format_names()));
-    command.add_option("--out,-o", args->out, "File to write (default: standard output, where the format can)");
-    add_ground(command, args->ground,
-               "Layers that count: all (ply alone, its default), top (the default of others), bottom, or N from the "
-               "top (0 first)");
-    command.add_option("--yaw", args->yaw, "Of all poses, " + yaw_help + " (default 0)");
-    command.add_option("--resolution", args->resolution, "Side of a pixel, m (default: the map's)");
-    command.add_option("--step", args->step, "Between columns, m");
+    command.add_option("--format", args->format, "One of the formats below")
+        ->required()
+        ->check(one_of(format_names()).description(""));
+    command.add_option("--out,-o", args->out, "File to write (default: standard output, if the format allows it)");
+    command.add_option("--poses,-p", args->poses,
+                       "CSV file of poses, for example from sample or check. Without --name, its column name names the "
+                       "robots (- for standard input)");
+    command.add_option("--resolution", args->resolution, "nav2, geotiff: side of a pixel, m (default: the map's)");
+    command.add_option("--step", args->step, "ply: distance between columns, m");
+    command.add_flag("--local", args->local, "geotiff: use the map's own frame, not the survey's coordinates");
+    add_ground(
+        command, args->ground,
+        "Layers that count: top (the default), bottom, N from the top (0 first), or all (only ply, its default)");
+    command.add_option("--yaw", args->yaw, "Yaw of all poses: " + yaw_help + " (default 0)");
+    add_verdict_options(command, *args);
+    start_group(command, help_group::region);
     command.add_option(
         "--bounds", args->bounds,
-        "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
-    command.add_flag("--local", args->local, "In the map's own frame, though the survey's coordinates are known");
-    command.add_option("--poses,-p", args->poses,
-                       "CSV file of poses, as sample and check write them; a column name names the robots where --name "
-                       "does not (- for standard input)");
-    add_allow_empty(command, *args);
+        "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are not ground (default: the map's)");
     add_simulator_options(command, args->simulator);
+    add_robot_and_run(command, *args);
+    add_allow_empty(command, *args);
     command.footer(help());
-    command.callback([=, &command, &run] { run = [=, &command] { return run_export(*args, command); }; });
+    set_work(command, args, chosen, run_export);
 }
 
 }  // namespace spawnfield::cli

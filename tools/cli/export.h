@@ -1,11 +1,12 @@
 #pragma once
 
 #include "ground_args.h"
+#include "session.h"
 #include "simulator_output.h"
 
 namespace spawnfield::cli {
 
-/// Options of `export`; which of them a format takes its row of the table says.
+/// Options of `export`. The table of formats says which of them a format accepts.
 struct ExportArgs : QueryArgs {
     GroundArgs ground;
     std::string format, out, bounds, poses, yaw = "0";
@@ -14,12 +15,12 @@ struct ExportArgs : QueryArgs {
     double resolution = 0, step = 0;
 };
 
-/// What a format's writer gets.
+/// The input of a format's writer.
 struct ExportJob {
     const ExportArgs& args;
     const CLI::App& command;
-    const Session& session;  ///< the map alone if no --robot was given
-    Summary& summary;        ///< lap("load") is done; what comes after the last lap goes to "write"
+    const Session& session;  ///< only the map if no --robot was given
+    Summary& summary;        ///< lap("load") is done; the time after the last lap is that of "write"
 
     bool has_robot() const { return session.judge.has_value(); }
     bool was_given(const std::string& option) const { return command.count(option) > 0; }
@@ -28,20 +29,19 @@ struct ExportJob {
 /// A row of the table of formats.
 struct ExportFormat {
     const char* name;
-    const char* about;  ///< one line for --help
-    std::vector<std::string>
-        needs;  ///< options that it cannot do without; --out where it does not go to standard output
-    std::vector<std::string> takes;  ///< further options that say something to it; others are refused
+    const char* about;               ///< one line for --help
+    std::vector<std::string> needs;  ///< required options; --out if it cannot go to standard output
+    std::vector<std::string> takes;  ///< further options that it accepts; others are refused
     void (*write)(const ExportJob&);
 };
 
-/// Options of what asks where --robot can stand; without it they are refused.
-const std::vector<std::string>& asking_options();
+/// Options about where --robot can stand. They are refused without --robot.
+const std::vector<std::string>& pose_options();
 
-/// Formats that are made of a whole map.
+/// Formats that contain a whole map.
 std::vector<ExportFormat> map_formats();
 
-/// Formats that are made of the poses of a CSV file.
+/// Formats that contain the poses of a CSV file.
 std::vector<ExportFormat> pose_export_formats();
 
 }  // namespace spawnfield::cli

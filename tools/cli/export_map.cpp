@@ -1,5 +1,9 @@
 #include "angle.h"
+#include "command.h"
 #include "export.h"
+#include "messages.h"
+#include "numbers.h"
+#include "output.h"
 #include "streams.h"
 
 #include <spawnfield/map_export.h>
@@ -23,12 +27,12 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     options.z = with_floor(heights_of(args.ground, options.bounds, "--bounds"), args.ground, job.session.map);
     options.offset = choose_offset(args, parse_offset(args.ground.offset), job.session.robot, job.summary);
-    tell_if_no_layer(args, job.session.map, options.layers);
+    notice_if_no_layer(args, job.session.map, options.layers);
     require_above_ground(job.session.robot, *options.offset);
     return options;
 }
 
-/// What was asked, for people who find the file.
+/// Returns a comment for the file: the map and the poses that its verdicts are for.
 std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& options, const std::string& layers)
 {
     const Session& session = job.session;
@@ -43,11 +47,12 @@ std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& o
 void check_one_layer(const ExportJob& job, const LayerChoice& layers)
 {
     if (layers.kind == LayerChoice::Kind::All)
-        throw ArgumentError("--layers is all, needs top, bottom or a number from 0 (the highest) on: a pixel of " +
-                            job.args.format + " has one value");
+        throw ArgumentError(
+            "--layers is all, needs top, bottom or a number (0 is the highest layer), because a pixel of " +
+            job.args.format + " has one value");
 }
 
-/// One layer: a pixel has one value.
+/// Returns the options for one layer, because a pixel has one value.
 RasterOptions image_options(const ExportJob& job)
 {
     const RasterOptions options = raster_options(job, "top");
@@ -66,26 +71,25 @@ VerdictImage ask(const ExportJob& job, const RasterOptions& options, const GridF
 {
     VerdictImage image = verdict_image(*job.session.judge, frame, options);
     job.summary.lap("query");
-    job.summary.set_counts(image.counts);
-    job.summary.exact_checks = image.exact_checks;
+    job.summary.set_verdicts(image.counts, image.exact_checks);
     return image;
 }
 
 void write_nav2(const ExportJob& job)
 {
-    nav2_image_of(job.args.out);  // a wrong name is told before all work
+    nav2_image_of(job.args.out);  // refuses a wrong name before all work
     const RasterOptions options = image_options(job);
     const VerdictImage image = ask(job, options, image_frame(job));
     clear_progress_bar();
     write_nav2_map(image, job.args.out, comment_of(job, options, "top"));
 }
 
-/// Of a picture that needs no robot.
+/// Returns the layer of an image without a robot.
 LayerChoice image_layers(const ExportJob& job)
 {
     const LayerChoice layers = parse_layers(job.args.ground.layers.empty() ? "top" : job.args.ground.layers);
     check_one_layer(job, layers);
-    tell_if_no_layer(job.args, job.session.map, layers);
+    notice_if_no_layer(job.args, job.session.map, layers);
     return layers;
 }
 
@@ -114,11 +118,10 @@ void write_ply(const ExportJob& job)
 {
     RasterOptions options = raster_options(job, "all");
     options.step = parse_positive("--step", job.args.step);
-    tell_if_off_map(job.args, job.session.map, "--bounds", options.bounds);
+    notice_if_off_map(job.args, job.session.map, "--bounds", options.bounds);
     const RasterResult result = raster(*job.session.judge, options);
     job.summary.lap("query");
-    job.summary.set_counts(result.counts);
-    job.summary.exact_checks = result.exact_checks;
+    job.summary.set_verdicts(result.counts, result.exact_checks);
     write_output(job.args.out,
                  [&](const auto& sink) { spawnfield::write_ply(result, comment_of(job, options, "all"), sink); });
 }
@@ -128,7 +131,7 @@ void write_glb(const ExportJob& job)
     GlbMarkers markers;
     if (job.has_robot()) markers.robot = &job.session.robot;
     if (job.args.poses.empty()) {
-        tell_idle(job.args, job.command, {"--robot"}, "without --poses there is nowhere to draw it");
+        notice_no_effect(job.args, job.command, {"--robot"}, "without --poses there is no place to draw it");
     } else {
         const PoseTable table = open_poses(job.args, job.args.poses);
         markers.poses = table.poses;
@@ -147,22 +150,22 @@ std::vector<ExportFormat> map_formats()
 {
     return {
         {"nav2",
-         "map_server's pair for ROS: -o FILE.yaml and FILE.pgm beside it, free where --robot can stand",
+         "map for map_server of ROS and nav2: FILE.yaml with FILE.pgm; free where --robot can stand",
          {"--robot", "--out"},
-         with(asking_options(), {"--layers", "--z", "--floor", "--resolution"}),
+         with(pose_options(), {"--layers", "--z", "--floor", "--resolution"}),
          write_nav2},
         {"geotiff",
-         "bands of elevation, layers, clearance, slope, water, obstacle, and the verdict of --robot if there is one",
+         "bands of elevation, layers, clearance, slope, water and obstacle; with --robot also of verdicts",
          {"--out"},
-         with(asking_options(), {"--robot", "--layers", "--z", "--floor", "--resolution", "--local"}),
+         with(pose_options(), {"--robot", "--layers", "--z", "--floor", "--resolution", "--local"}),
          write_geotiff},
         {"ply",
-         "points where --robot was asked to stand, every --step metres, coloured by verdict",
+         "a point for each pose of --robot, every --step metres, coloured by verdict",
          {"--robot", "--step"},
-         with(asking_options(), {"--layers", "--z", "--floor", "--bounds"}),
+         with(pose_options(), {"--layers", "--z", "--floor", "--bounds"}),
          write_ply},
         {"glb",
-         "the scene by labels, with a marker at each of --poses: --robot's shape, coloured by a column verdict",
+         "the scene by labels, with a marker at each of --poses: --robot, in the colour of a column verdict",
          {},
          {"--robot", "--model-path", "--joints", "--mesh-parts", "--poses"},
          write_glb},

@@ -24,8 +24,8 @@ std::vector<ExportFormat> pose_export_formats()
 {
     return {row("csv", "--poses as x,y,z,roll,pitch,yaw"),
             row("json", "--poses with names and quaternions"),
-            row("ros1-launch", "--poses for roslaunch: a spawn_model in a group for each"),
-            row("ros2-launch-py", "--poses for ros2 launch, in Python: a ros_gz_sim create for each"),
+            row("ros1-launch", "--poses for roslaunch: a group with a spawn_model for each robot"),
+            row("ros2-launch-py", "--poses for ros2 launch, in Python: a node ros_gz_sim create for each robot"),
             row("ros2-launch-xml", "the same in XML"),
             row("sdf", "--poses as robots in a Gazebo world"),
             row("mujoco", "--poses as MuJoCo's keyframes"),

@@ -1,5 +1,8 @@
 #include "ground_args.h"
 
+#include "command.h"
+#include "numbers.h"
+
 #include <cmath>
 #include <cstdio>
 
@@ -17,7 +20,7 @@ Floor floor_of(const GroundArgs& args, const Map& map)
                         counted(floors.size(), "floor") + list);
 }
 
-/// For people to read: an automatic offset is not a round number.
+/// Returns six digits, because an automatic offset is not a round number.
 std::string rounded(double metres)
 {
     char text[32];
@@ -29,16 +32,17 @@ std::string rounded(double metres)
 
 void add_ground(CLI::App& command, GroundArgs& args, const std::string& layers_help)
 {
+    start_group(command, help_group::ground);
     command.add_option("--offset", args.offset,
-                       "Height of the robot's origin above its layer, m; auto: the robot's lowest point is 0.1 m above "
+                       "Height of the robot's origin above its layer, m. auto: the robot's lowest point is 0.1 m above "
                        "the layer (default auto)");
     command.add_option("--layers,--layer", args.layers, layers_help);
-    command.add_option("--z", args.z,
-                       "LOW:HIGH in m: layers at other heights are no ground (5: and :8 have one limit)");
     command
         .add_option("--floor", args.floor,
-                    "Layers of this floor alone, 0 the lowest; `spawnfield info MAP` lists floors")
+                    "Only layers of this floor, 0 the lowest; `spawnfield info MAP` lists floors")
         ->check(CLI::Range(0, 1000000));
+    command.add_option("--z", args.z,
+                       "LOW:HIGH in m: layers at other heights are not ground (5: and :8 are one limit)");
 }
 
 std::string z_text(const ZRange& z)
@@ -55,7 +59,7 @@ ZRange parse_z(const std::string& option, const std::string& text)
     ZRange z;
     if (colon > 0) z.low = parse_numbers(option, text.substr(0, colon))[0];
     if (colon + 1 < text.size()) z.high = parse_numbers(option, text.substr(colon + 1))[0];
-    if (!(z.low <= z.high)) throw ArgumentError(option + " is \"" + text + "\": the lower height comes first");
+    if (!(z.low <= z.high)) throw ArgumentError(option + " is \"" + text + "\"; give the lower height first");
     return z;
 }
 
@@ -94,7 +98,7 @@ Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map)
     out.min.z() = first_finite(heights.low, bounds.is_empty() ? heights.low : bounds.min.z(), map.bounds.min.z());
     out.max.z() = first_finite(heights.high, bounds.is_empty() ? heights.high : bounds.max.z(), map.bounds.max.z());
     if (!(out.min.z() <= out.max.z()))
-        throw ArgumentError("--z lies off the map, which is z " + number(map.bounds.min.z()) + " to " +
+        throw ArgumentError("--z is outside the map, whose heights are " + number(map.bounds.min.z()) + " to " +
                             number(map.bounds.max.z()) + " m");
     return out;
 }

@@ -1,7 +1,12 @@
 #include "angle.h"
 #include "area_args.h"
+#include "command.h"
 #include "ground_args.h"
+#include "messages.h"
+#include "numbers.h"
 #include "picture_args.h"
+#include "session.h"
+#include "spelling.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/headings.h>
@@ -23,7 +28,7 @@ struct HeatmapArgs : QueryArgs {
     bool names = false;
 };
 
-/// About 300 columns along the longer side: fine enough to look at, and quick.
+/// Returns the step that gives about 300 columns along the longer side: fine enough to look at, and quick.
 double default_step(const Map& map, const RasterOptions& options)
 {
     const Bounds bounds = options.bounds.is_empty() ? map.bounds : options.bounds;
@@ -46,7 +51,7 @@ struct Facing {
 
 bool is_same_yaw(double a, double b) { return std::abs(std::remainder(a - b, 2 * std::numbers::pi)) <= 1e-6; }
 
-/// --yaw if it is given, else as the spawns face.
+/// Returns --yaw if it is given, else the yaw of the spawns.
 Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
 {
     Facing facing;
@@ -68,7 +73,7 @@ Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
     return facing;
 }
 
-/// Spawns of --spawns with their verdicts and, with --names, their names.
+/// Reads the spawns of --spawns with their verdicts and, with --names, their names.
 void read_spawns(const HeatmapArgs& args, HeatmapOptions& picture)
 {
     if (args.spawns.empty()) return;
@@ -95,13 +100,14 @@ RasterOptions raster_options(const HeatmapArgs& args)
 
 HeatmapOptions picture_options(const HeatmapArgs& args)
 {
-    if (args.names && args.spawns.empty()) throw ArgumentError("--names needs --spawns: it writes the names of spawns");
+    if (args.names && args.spawns.empty())
+        throw ArgumentError("--names needs --spawns, because it writes the names of spawns");
     HeatmapOptions picture{.quantity = quantity_of(args.quantity), .pixels = args.size, .threads = args.threads};
     read_spawns(args, picture);
     return picture;
 }
 
-/// The raster that the picture shows; what belongs to several headings goes to the picture's options.
+/// Returns the raster that the picture shows. With several headings, fills the picture's options about them.
 RasterResult shown_raster(const Session& session, const RasterOptions& options, bool any_heading,
                           HeatmapOptions& picture)
 {
@@ -112,7 +118,8 @@ RasterResult shown_raster(const Session& session, const RasterOptions& options, 
     return std::move(result.raster);
 }
 
-/// What has ground at these heights, with 2 m around it, as far as the map goes; nothing if that is all of it or none.
+/// Returns the part of the map that has ground at these heights, with 2 m around it. Returns nothing if that is the
+/// whole map, or if there is no such ground.
 std::optional<Bounds> ground_bounds(const Map& map, const TerrainMap& terrain, const ZRange& z)
 {
     constexpr double around = 2;  // m
@@ -131,7 +138,7 @@ std::optional<Bounds> ground_bounds(const Map& map, const TerrainMap& terrain, c
     return out;
 }
 
-/// A picture of some heights shows the part of the map that has ground there, unless --bounds says what it shows.
+/// If the heights are limited, shows only the part of the map that has ground there, unless --bounds selects a part.
 void crop_to_ground(const HeatmapArgs& args, const Map& map, const TerrainMap& terrain, RasterOptions& options)
 {
     if (options.z.is_unlimited() || !options.bounds.is_empty()) return;
@@ -142,18 +149,17 @@ void crop_to_ground(const HeatmapArgs& args, const Map& map, const TerrainMap& t
                      ", where there is ground at these heights (--bounds shows another part)");
 }
 
-int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
+Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& summary)
 {
-    Summary summary("heatmap", args);
     const PictureFile file = picture_file(args.out, args.format);
     RasterOptions options = raster_options(args);
     HeatmapOptions picture = picture_options(args);
     const Facing facing = facing_of(args, picture.spawns);
     options.yaw = facing.yaw;
     const Session session = open_session(args, summary);
-    tell_if_off_map(args, session.map, "--bounds", options.bounds);
-    tell_about_area(args, session.map, options.area);
-    tell_if_no_layer(args, session.map, options.layers);
+    notice_if_off_map(args, session.map, "--bounds", options.bounds);
+    notice_about_area(args, session.map, options.area);
+    notice_if_no_layer(args, session.map, options.layers);
     options.z = with_floor(options.z, args.ground, session.map);
     options.offset = choose_offset(args, options.offset, session.robot, summary);
     require_above_ground(session.robot, *options.offset);
@@ -170,52 +176,53 @@ int run_heatmap(const HeatmapArgs& args, const CLI::App& command)
     picture.robot = &session.robot;
     picture.format = file.format;
     write_heatmap(session.map, terrain, result, picture, file.path);
-    summary.lap("write");
-    summary.set_counts(result.counts);
-    summary.exact_checks = result.exact_checks;
-    summary.map_hash = session.map.hash;
+    summary.set_verdicts(result.counts, result.exact_checks);
     summary.extra.insert(summary.extra.begin(), args.out);
-    summary.finish();
-    return done;
+    return {};
 }
 
 }  // namespace
 
-void add_heatmap(CLI::App& app, Run& run)
+void add_heatmap(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<HeatmapArgs>();
     CLI::App& command = *app.add_subcommand("heatmap", "Picture of where the robot can stand");
-    add_query(command, *args);
+    add_map_and_robot(command, *args);
     command.add_option("--out,-o", args->out, "Picture to write: .png, .svg or .pdf (- for standard output)")
         ->required()
         ->check(not_empty());
-    command.add_option("--format", args->format, "png, svg or pdf (default: as the ending of -o says, else png)")
-        ->check(one_of({"png", "svg", "pdf"}));
     command.add_option("--quantity", args->quantity, "verdict, height, clearance or slope (default verdict)")
         ->check(one_of({"verdict", "height", "clearance", "slope"}));
     command.add_option("--spawns", args->spawns,
-                       "CSV file of spawns to draw (- for standard input), as footprints of the robot or as arrows; "
-                       "a column verdict (from `check`) gives their colours");
-    add_allow_empty(command, *args);
-    command.add_flag("--names", args->names,
-                     "Write each spawn's name beside it: its column name, or else the number of its row, from 1");
-    add_ground(command, args->ground,
-               "all (valid if one layer is), top, bottom, or N from the top (0 first; default all)");
-    command.add_option("--step", args->step, "Between columns, m (default: 300 columns along the longer side)");
-    command.add_option("--yaw", args->yaw,
-                       "Of all poses, " + yaw_help +
-                           "; random: show at how many of 16 headings the robot fits "
-                           "(default: as the spawns face, else 0)");
+                       "CSV file of spawns to draw, as footprints of the robot or as arrows. A column verdict (from "
+                       "`check`) gives their colours (- for standard input)");
     command.add_option(
-        "--bounds", args->bounds,
-        "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are no ground (default: the map's)");
-    add_area(command, args->area);
+        "--yaw", args->yaw,
+        "Yaw of all poses: " + yaw_help +
+            "; or random: at how many of 16 headings the robot fits (default: that of the spawns, or 0)");
+    start_group(command, help_group::picture);
+    command.add_flag("--names", args->names,
+                     "Write each spawn's name beside it: its column name, or the number of its row, from 1");
+    command.add_option("--step", args->step,
+                       "Distance between columns, m (default: 300 columns along the longer side)");
     command
         .add_option("--size", args->size,
-                    "Longer side of the picture, pixels (default 1000; texts can be read from about 500 on)")
+                    "Longer side of the picture, pixels (default 1000; texts are legible from about 500 on)")
         ->check(CLI::Range(200, 16000));
+    command.add_option("--format", args->format, "png, svg or pdf (default: the ending of -o, else png)")
+        ->check(one_of({"png", "svg", "pdf"}));
+    add_ground(
+        command, args->ground,
+        "all (a column is valid if one of its layers is), top, bottom, or N from the top (0 first; default all)");
+    add_verdict_options(command, *args);
+    add_area(command, args->area);
+    command.add_option(
+        "--bounds", args->bounds,
+        "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are not ground (default: the map's)");
+    add_robot_and_run(command, *args);
+    add_allow_empty(command, *args);
     command.footer("Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png");
-    command.callback([=, &command, &run] { run = [=, &command] { return run_heatmap(*args, command); }; });
+    set_work(command, args, chosen, run_heatmap);
 }
 
 }  // namespace spawnfield::cli

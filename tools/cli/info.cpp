@@ -1,3 +1,7 @@
+#include "command.h"
+#include "messages.h"
+#include "numbers.h"
+#include "output.h"
 #include "picture_args.h"
 #include "scene_args.h"
 
@@ -53,7 +57,7 @@ Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
     return out;
 }
 
-/// Labels of what each part holds, in the order of Label.
+/// Returns the labels that occur in each part, in the order of Label.
 Json labels_of_parts(const Scene& scene)
 {
     std::vector<std::array<bool, 4>> found(scene.parts.size());
@@ -70,7 +74,7 @@ Json labels_of_parts(const Scene& scene)
     return out;
 }
 
-/// What label rules can match in a mesh.
+/// Returns the names and labels of faces that label rules can match.
 Json json_of(const FaceGroup& group)
 {
     Json triangles = Json::object();
@@ -91,7 +95,8 @@ Json scene_json(const Scene& scene)
     for (std::size_t p = 0; p < scene.parts.size(); ++p) out["parts"][p]["labels"] = labels[p];
     for (const FaceGroup& group : scene.face_groups)
         if (scene.parts[group.part].kind == "mesh")
-            out["parts"][group.part]["names"].push_back(json_of(group));  // others are meshes of our own making
+            out["parts"][group.part]["names"].push_back(
+                json_of(group));  // other kinds are meshes that spawnfield made itself
     for (const NameRule& rule : scene.rules)
         out["rules"].push_back({{"what", rule.what}, {"label", to_string(rule.label)}, {"collisions", rule.count}});
     if (scene.origin) out["origin"] = json_of(*scene.origin);
@@ -195,7 +200,7 @@ std::string extent_lines(const Json& bounds)
     return out.str();
 }
 
-/// In full, as millions of metres are usual.
+/// Returns all digits, because survey coordinates are millions of metres.
 std::string origin_line(const Json& out)
 {
     if (!out.contains("origin")) return "";
@@ -205,7 +210,7 @@ std::string origin_line(const Json& out)
            (origin["unit"] == 1.0 ? "" : ", in units of " + number(origin["unit"]) + " m") + "\n";
 }
 
-/// Says what is filled and what is a shell, as nothing surprises more.
+/// Returns a line that says what is filled and what is a shell, because this is the most frequent surprise.
 std::string part_line(const Json& part)
 {
     std::string labels = part["label"];
@@ -233,7 +238,7 @@ std::string more_line(std::size_t count)
     return count > most_lines ? "  … and " + std::to_string(count - most_lines) + " more (--json lists all)\n" : "";
 }
 
-/// A line for each node and material of the meshes, those of the most triangles first.
+/// Returns a line for each node and material of the meshes; those with the most triangles come first.
 std::string name_lines(const Json& parts)
 {
     struct Line {
@@ -283,7 +288,7 @@ std::string scene_lines(const Json& scene)
     return out + more_line(parts.size()) + name_lines(parts);
 }
 
-/// "floors: --floor K selects one", then a line for each, the highest first as they lie above each other.
+/// Returns a heading, then a line for each floor, the highest first.
 std::string floor_lines(const Json& map)
 {
     const Json& floors = map["floors"];
@@ -299,7 +304,7 @@ std::string floor_lines(const Json& map)
     return out;
 }
 
-/// Heights beyond which poses are outside, if the map has such limits.
+/// Returns a line about the z limits, or nothing if the map has none.
 std::string z_limits_line(const Json& map)
 {
     if (!map.contains("z_limits")) return "";
@@ -307,7 +312,7 @@ std::string z_limits_line(const Json& map)
         return map["z_limits"][end].is_null() ? "" : number(map["z_limits"][end]);
     };
     return "  z limits " + limit(0) + ":" + limit(1) +
-           " m: layers beyond them are no ground, poses beyond them are outside\n";
+           " m: layers beyond them are not ground, poses beyond them are outside\n";
 }
 
 std::string map_lines(const Json& map)
@@ -322,14 +327,14 @@ std::string map_lines(const Json& map)
     return out;
 }
 
-/// How well the hulls of a mesh collision fit it.
+/// Returns a line that says how well the hulls of a mesh collision fit it.
 std::string mesh_line(const Json& mesh)
 {
     char text[120];
     const double volume = mesh["volume"];
     if (mesh["mesh_volume"].is_null())
         std::snprintf(text, sizeof text,
-                      "%.4g m3; not watertight, or it overlaps itself: how much is added is not known", volume);
+                      "%.4g m3; added volume unknown, because the mesh is not watertight or overlaps itself", volume);
     else
         std::snprintf(text, sizeof text, "%.4g m3, %.1f %% more than the mesh", volume,
                       100 * (volume / mesh["mesh_volume"].get<double>() - 1));
@@ -352,12 +357,13 @@ std::string robot_lines(const Json& robot)
     out += "footprint\n  turns within " + metres(Json::array({robot["turning_radius"]})) + " m of its origin\n";
     out += "contacts\n";
     const bool are_taken = robot.contains("contacts_taken");
-    if (are_taken) out += "  none given: --max-slope takes the corners of what lies within 2 cm of the lowest point\n";
+    if (are_taken)
+        out += "  none given: --max-slope uses the corners of all that lies within 2 cm of the lowest point\n";
     for (const Json& contact : robot[are_taken ? "contacts_taken" : "contacts"]) out += "  " + metres(contact) + " m\n";
     return out;
 }
 
-/// All bytes of a regular file; empty for anything else.
+/// Returns all bytes of a regular file; nothing for anything else.
 std::string text_of(const fs::path& file)
 {
     std::error_code unreachable;
@@ -365,21 +371,21 @@ std::string text_of(const fs::path& file)
     return read_file(file);
 }
 
-/// False for links that go round in circles, too.
+/// Whether the path is a folder. A link that leads back to itself is none.
 bool is_folder(const fs::path& path)
 {
     std::error_code unreachable;
     return fs::is_directory(path, unreachable);
 }
 
-/// An SDF model that can move, rather than a world or a piece of scenery.
+/// Whether the text is an SDF model that can move, not a world or a piece of scenery.
 bool is_moving_model(const std::string& text)
 {
     const auto has = [&](const char* what) { return text.find(what) != std::string::npos; };
     return has("<model") && !has("<world") && !has("<static>true") && !has("<static>1");
 }
 
-/// Options tell a URDF or SDF model that could be both.
+/// Whether the argument is a robot. For a URDF or SDF model that could also be a scene, the options decide.
 bool is_robot(const std::string& what, bool has_robot_options, bool has_scene_options)
 {
     const std::string extension = fs::path(what).extension().string();
@@ -396,12 +402,11 @@ bool is_robot(const std::string& what, bool has_robot_options, bool has_scene_op
            text_of(what).find("spawnfield-robot/") != std::string::npos;
 }
 
-int run_info(const InfoArgs& args, const CLI::App& command)
+Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
 {
     const std::optional<PictureFile> picture_to = args.picture.empty() ? std::nullopt
                                                                        : std::optional(picture_file(args.picture));
     const Progress listen = progress_bar(args, "info");
-    Summary summary("info", args);
     Json out;
     std::vector<std::string> robot_options_of_info = robot_option_names;
     robot_options_of_info.emplace_back("--picture");
@@ -411,23 +416,23 @@ int run_info(const InfoArgs& args, const CLI::App& command)
     };
     const bool robot_given = is_robot(args.what, has_one_of(robot_options_of_info), has_one_of(scene_option_names));
     if (is_folder(args.what) && !robot_given && !fs::exists(fs::path(args.what) / "model.config")) {
-        refuse(command, scene_option_names, "is for a scene; " + args.what + " is a map's folder");
-        refuse(command, robot_options_of_info, "is for a robot; " + args.what + " is a map's folder");
-        refuse(command, {"--model-path"}, "is for a scene or a robot; " + args.what + " is a map's folder");
+        refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a map");
+        refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is a map");
+        refuse(command, {"--model-path"}, "is only for scenes and robots; " + args.what + " is a map");
         if (args.verify) verify_map(args.what);
         const Map map = read_map(args.what);
         summary.map_hash = map.hash;
         out = map_json(map, args.verify);
     } else if (robot_given) {
-        refuse(command, scene_option_names, "is for a scene; " + args.what + " is a robot");
-        refuse(command, {"--verify"}, "is for a map; " + args.what + " is a robot");
+        refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a robot");
+        refuse(command, {"--verify"}, "is only for maps; " + args.what + " is a robot");
         const Robot robot = load_robot(args.what, robot_options(args));
         notices(args, robot.notices);
         if (picture_to) write_robot_picture(robot, picture_to->path);
         out = robot_json(robot);
     } else {
-        refuse(command, robot_options_of_info, "is for a robot; " + args.what + " is none");
-        refuse(command, {"--verify"}, "is for a map folder; " + args.what + " is none");
+        refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is not a robot");
+        refuse(command, {"--verify"}, "is only for maps; " + args.what + " is not a map");
         const Scene scene = load_scene(args.what, scene_options(args, args));
         notices(args, scene.notices);
         out = scene_json(scene);
@@ -441,33 +446,35 @@ int run_info(const InfoArgs& args, const CLI::App& command)
                                                : "scene " + out["name"].get<std::string>() + "\n" +
                                                      extent_lines(out["bounds"]) + origin_line(out) + scene_lines(out);
     write_output("", [&](const auto& sink) { sink(text); });
-    summary.lap("write");
     summary.extra = {args.what};
-    summary.finish();
-    return done;
+    return {};
 }
 
 }  // namespace
 
-void add_info(CLI::App& app, Run& run)
+void add_info(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<InfoArgs>();
-    CLI::App& command = *app.add_subcommand("info", "What a map, a scene or a robot holds");
+    CLI::App& command = *app.add_subcommand("info", "Contents of a map, a scene or a robot");
     command
         .add_option("what", args->what,
                     "Map folder, scene or world file, model folder, robot.yaml, .urdf, SDF model or box:LX,LY,LZ")
         ->required();
-    command.add_flag("--json", args->json, "As JSON");
+    command.add_flag("--json", args->json, "Print JSON");
     command.add_option("--picture", args->picture,
-                       "Picture (.png, .svg or .pdf): draw a robot from above, from the side and from the front");
+                       "Picture of a robot to write (.png, .svg or .pdf): from above, from the side and from the front "
+                       "(- for standard output)");
     command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
+    add_label_options(command, *args);
+    add_model_path(command, *args);
     add_scene_options(command, *args);
+    start_group(command, help_group::robot);
     add_robot_options(command, *args);
     add_common(command, *args);
     command.footer(
         "Example:\n  spawnfield info maps/training/scene.yaml\n  spawnfield info maps/robots/husky.yaml --picture "
         "/tmp/husky.png");
-    command.callback([=, &command, &run] { run = [=, &command] { return run_info(*args, command); }; });
+    set_work(command, args, chosen, run_info);
 }
 
 }  // namespace spawnfield::cli

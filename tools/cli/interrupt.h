@@ -2,9 +2,14 @@
 
 namespace spawnfield::cli {
 
-/// From now on Ctrl-C, SIGTERM and a lost terminal (SIGHUP) are noticed by progress_bar's callback; a second one ends
+/// The user pressed Ctrl-C; nothing was written.
+struct Interrupted {};
+
+/// From now on Ctrl-C, SIGTERM and a lost terminal (SIGHUP) are noticed by stop_if_interrupted(). A second signal ends
 /// the program at once.
 void catch_interrupts();
-bool was_interrupted();
+
+/// Throws Interrupted if such a signal has come.
+void stop_if_interrupted();
 
 }  // namespace spawnfield::cli

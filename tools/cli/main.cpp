@@ -1,5 +1,8 @@
-#include "cli.h"
+#include "command.h"
+#include "help_format.h"
 #include "interrupt.h"
+#include "messages.h"
+#include "spelling.h"
 #include "streams.h"
 
 #include <spawnfield/error.h>
@@ -9,37 +12,36 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
-#include <iostream>
 
 namespace {
 
 using namespace spawnfield;
 using namespace spawnfield::cli;
 
-int tell(int status, const std::string& message)
+/// Prints the message and returns the exit status.
+int failed(int status, const std::string& message)
 {
-    clear_progress_bar();
-    std::cerr << "spawnfield: " << message << "\n";
+    complain(message);
     return status;
 }
 
-int guarded(const CLI::App& app, const Run& run)
+int run_guarded(const CLI::App& app, const ChosenCommand& chosen)
 {
     try {
         for (const CLI::App* const command : app.get_subcommands()) check_streams(*command);
-        return run();
+        return run_command(chosen);
     } catch (const Interrupted&) {
-        return tell(interrupted, "interrupted; nothing was written");
+        return failed(interrupted, "interrupted; nothing was written");
     } catch (const ArgumentError& error) {
-        return tell(wrong_usage, error.message());
+        return failed(wrong_usage, error.message());
     } catch (const NothingFits& nothing) {
-        return tell(fewer_found, nothing.why);
+        return failed(fewer_found, nothing.why);
     } catch (const FileError& error) {
-        return tell(input_refused, error.what());
+        return failed(input_refused, error.what());
     } catch (const std::bad_alloc&) {
-        return tell(failure, "out of memory; a coarser --resolution or --step, or smaller --bounds, needs less");
+        return failed(failure, "out of memory; a coarser --resolution or --step, or smaller --bounds, needs less");
     } catch (const std::exception& error) {
-        return tell(failure, error.what());
+        return failed(failure, error.what());
     }
 }
 
@@ -51,7 +53,7 @@ std::vector<std::string> command_names(CLI::App& app)
     return names;
 }
 
-/// What a shell would read as one word.
+/// Returns the text that a shell reads as this one word.
 std::string quoted_if_needed(const std::string& word)
 {
     const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
@@ -70,7 +72,7 @@ std::string command_line(int argc, char** argv)
     return out;
 }
 
-/// Whether the first argument is meant to be a command, but is none.
+/// Whether the first argument stands in the place of a command but is not the name of one.
 bool has_unknown_command(const std::vector<std::string>& names, int argc, char** argv)
 {
     return argc > 1 && argv[1][0] != '-' && std::find(names.begin(), names.end(), argv[1]) == names.end();
@@ -81,35 +83,37 @@ bool has_unknown_command(const std::vector<std::string>& names, int argc, char**
 int main(int argc, char** argv)
 {
     CLI::App app{"spawnfield: where can this robot stand in this world?", "spawnfield"};
-    app.set_version_flag("--version", version());
+    app.formatter(std::make_shared<HelpFormat>());
+    app.get_help_ptr()->description("Print this help and exit");
+    app.set_version_flag("--version", version(), "Print the version and exit");
     app.require_subcommand(1);
     app.footer(
         "Example:\n"
         "  spawnfield bake maps/training/scene.yaml -o /tmp/training\n"
         "  spawnfield sample /tmp/training --robot maps/robots/husky.yaml -n 10");
-    Run run;
-    add_bake(app, run);
-    add_info(app, run);
-    add_check(app, run);
-    add_raster(app, run);
-    add_search(app, run);
-    add_sample(app, run);
-    add_heatmap(app, run);
-    add_export(app, run);
-    add_experiment(app, command_line(argc, argv), run);
+    ChosenCommand chosen;
+    add_bake(app, chosen);
+    add_info(app, chosen);
+    add_check(app, chosen);
+    add_raster(app, chosen);
+    add_search(app, chosen);
+    add_sample(app, chosen);
+    add_heatmap(app, chosen);
+    add_export(app, chosen);
+    add_experiment(app, command_line(argc, argv), chosen);
     const std::vector<std::string> names = command_names(app);
     if (has_unknown_command(names, argc, argv))
-        return tell(wrong_usage, std::string(argv[1]) + " is no command, needs one of " +
-                                     CLI::detail::join(names, ", ") + suggestion(argv[1], names));
+        return failed(wrong_usage, std::string(argv[1]) + " is not a command; the commands are " +
+                                       CLI::detail::join(names, ", ") + suggestion(argv[1], names));
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (const std::string words = error.get_exit_code() == 0 ? "" : unknown_option(app); !words.empty())
-            return tell(wrong_usage, words + "\nRun with --help for more information.");
+            return failed(wrong_usage, words + "\nRun with --help for more information.");
         return app.exit(error) == 0 ? done : wrong_usage;
     }
     catch_interrupts();
-    // The process is the program's alone: --threads may ask for more threads than there are cores.
+    // The process belongs to the program alone: --threads may ask for more threads than there are cores.
     const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, most_threads);
-    return guarded(app, run);
+    return run_guarded(app, chosen);
 }

@@ -7,7 +7,7 @@
 
 namespace spawnfield::cli {
 
-/// Where models and ROS packages are, for scenes and robots.
+/// Folders with models and ROS packages, for scenes and robots.
 struct ModelPathArgs {
     std::vector<std::string> model_paths;
 };
@@ -16,9 +16,8 @@ inline void add_model_path(CLI::App& command, ModelPathArgs& args)
 {
     command
         .add_option("--model-path,--package-path", args.model_paths,
-                    "Folder that holds models or ROS packages, for model:// and package:// in SDF and URDF "
-                    "(repeatable; then come GZ_SIM_RESOURCE_PATH, "
-                    "GAZEBO_MODEL_PATH and the folders above the file)")
+                    "Folder with models or ROS packages, for model:// and package:// in SDF and URDF (repeatable). "
+                    "GZ_SIM_RESOURCE_PATH, GAZEBO_MODEL_PATH and the folders above the file are searched after it")
         ->check(CLI::ExistingDirectory);
 }
 

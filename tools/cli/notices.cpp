@@ -7,10 +7,10 @@
 namespace spawnfield::cli {
 namespace {
 
-constexpr std::size_t most_shown = 5;  // of what further notices of a kind are about
+constexpr std::size_t most_shown = 5;  // names of further notices of one kind
 
-/// Words between spaces, without the colon or comma behind them. Text in quotation marks or parentheses is in one word,
-/// with its spaces.
+/// Returns the words between spaces, without the colon or comma behind them. Text in quotation marks or parentheses is
+/// one word, with its spaces.
 std::vector<std::string> split_at_spaces(const std::string& text)
 {
     std::vector<std::string> out(1);
@@ -28,13 +28,14 @@ std::vector<std::string> split_at_spaces(const std::string& text)
     return out;
 }
 
-/// Whether the word is a name, a path or a number, which differ between notices of one kind.
+/// Whether the word is a name, a path or a number. Notices of one kind differ only in such words.
 bool is_detail(const std::string& word)
 {
     return word.find_first_of("\"/0123456789") != std::string::npos || word.find("::") != std::string::npos;
 }
 
-/// The text with "*" in place of each detail, and without counts in parentheses, which some notices of a kind have.
+/// Returns the text with "*" in place of each detail, and without counts in parentheses, which not every notice of a
+/// kind has.
 std::string kind_of(const std::vector<std::string>& words)
 {
     std::string out;
@@ -46,7 +47,7 @@ std::string kind_of(const std::vector<std::string>& words)
     return out;
 }
 
-/// The first name or path that the example does not have; "" if there is none.
+/// Returns the first name or path that the example does not contain; empty if there is none.
 std::string subject_of(const std::vector<std::string>& words, const std::vector<std::string>& example)
 {
     const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };

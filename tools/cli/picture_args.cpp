@@ -1,5 +1,8 @@
 #include "picture_args.h"
 
+#include "numbers.h"
+#include "streams.h"
+
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -14,7 +17,7 @@ PictureFormat format_named(const std::string& name)
     return PictureFormat::Png;
 }
 
-/// At most four significant digits, for people to read.
+/// Returns at most four significant digits.
 std::string short_number(double value)
 {
     char text[32];
@@ -33,7 +36,7 @@ std::string layer_words(const std::string& layers)
 
 PictureFile picture_file(const std::string& file, const std::string& format)
 {
-    const std::string path = file == "-" ? "/dev/stdout" : file;
+    const std::string path = output_name(file);
     const PictureFormat by_ending = picture_format(path);
     const PictureFormat chosen = format.empty() ? by_ending : format_named(format);
     if (std::filesystem::path(path).has_extension() && chosen != by_ending)

@@ -12,11 +12,12 @@ struct PictureFile {
     PictureFormat format;
 };
 
-/// The file with the format that --format (may be empty) or its ending names; "-" is standard output. Throws
-/// ArgumentError for endings of other formats, and where both contradict each other. To be called before all work.
+/// Returns the file with the format that --format (may be empty) or the file's ending names; "-" is standard output.
+/// Throws ArgumentError for other endings, and if both contradict each other. Call it before all work.
 PictureFile picture_file(const std::string& file, const std::string& format = "");
 
-/// Second line of a heat map: what its verdicts hold for. `options` are complete; `yaw` in words, empty: the raster's.
+/// Returns the second line of a heat map: the poses that its verdicts are for. `options` are complete. `yaw` is in
+/// words; empty: the raster's yaw.
 std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Judge& judge,
                             const std::string& yaw = "");
 

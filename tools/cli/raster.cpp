@@ -1,5 +1,10 @@
+#include "command.h"
+#include "messages.h"
+#include "numbers.h"
+#include "output.h"
 #include "picture_args.h"
 #include "raster_args.h"
+#include "spelling.h"
 #include "streams.h"
 #include "thesis_output.h"
 
@@ -19,19 +24,20 @@ struct RasterCommandArgs : RasterArgs {
     bool is_thesis() const { return format == "thesis"; }
 };
 
-/// In the thesis's terms poses off the terrain are aerial too, and those 2D rasters have.
+/// For the thesis, poses off the terrain are aerial, too, and a 2D raster may have such poses.
 void check_write_aerial(const RasterCommandArgs& args, const CLI::App& command, const RasterOptions& options)
 {
     if (args.dims == 2 && !args.is_thesis())
-        refuse(command, {"--write-aerial"}, "is for --dims 3: in 2D poses stand on their layers");
+        refuse(command, {"--write-aerial"}, "is only for --dims 3: in 2D each pose stands on a layer");
     if (args.write_aerial && args.dims == 3 && options.layers.kind != LayerChoice::Kind::All)
-        throw ArgumentError("--write-aerial needs --layers all: aerial poses are above no layer");
+        throw ArgumentError("--write-aerial needs --layers all: aerial poses do not belong to a layer");
 }
 
 RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
 {
     RasterOptions options = raster_options(args, command);
-    if (args.dims == 2) tell_idle(args, command, {"--step-z"}, "it is for --dims 3; in 2D poses stand on their layers");
+    if (args.dims == 2)
+        notice_no_effect(args, command, {"--step-z"}, "it is only for --dims 3; in 2D each pose stands on a layer");
     options.step = parse_positive("--step", args.step);
     if (command.count("--step-z") > 0) options.step_z = parse_positive("--step-z", args.step_z);
     check_write_aerial(args, command, options);
@@ -63,9 +69,8 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     return out;
 }
 
-int run_raster(const RasterCommandArgs& args, const CLI::App& command)
+Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summary& summary)
 {
-    Summary summary("raster", args);
     RasterOptions options = options_of(args, command);
     const std::optional<PictureFile> picture_to = args.heatmap.empty() ? std::nullopt
                                                                        : std::optional(picture_file(args.heatmap));
@@ -96,38 +101,35 @@ int run_raster(const RasterCommandArgs& args, const CLI::App& command)
     else
         write_output(
             args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink); }, draw);
-    summary.lap("write");
-    summary.set_counts(result.counts);
-    summary.exact_checks = result.exact_checks;
-    summary.map_hash = session.map.hash;
-    summary.finish();
-    return done;
+    summary.set_verdicts(result.counts, result.exact_checks);
+    return {};
 }
 
 }  // namespace
 
-void add_raster(CLI::App& app, Run& run)
+void add_raster(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<RasterCommandArgs>();
     CLI::App& command = *app.add_subcommand("raster", "Verdict at every position of a 2D or 3D raster");
-    add_raster_query(command, *args);
-    command.get_option("--dims")->required();
-    command.add_option("--step", args->step, "Between columns, m")->required();
-    command.add_option("--step-z", args->step_z, "Between heights, m (default: --step)");
-    command.add_flag("--write-aerial", args->write_aerial,
-                     "3D: write aerial poses too; with --format thesis those off the terrain, in 2D as well");
+    add_map_and_robot(command, *args);
+    add_dims(command, *args)->required();
+    command.add_option("--step", args->step, "Distance between columns, m")->required();
+    command.add_option("--step-z", args->step_z, "3D: distance between heights, m (default: --step)");
+    command.add_option("--out,-o", args->out,
+                       "CSV file, or folder, to write (default: standard output, or nothing with --heatmap)");
     command
         .add_option("--format", args->format,
-                    "csv, or thesis: a folder of Valid_Locations.txt and the like in Unity's frame (default csv)")
+                    "csv, or thesis: a folder of Valid_Locations.txt and similar files in Unity's frame (default csv)")
         ->check(one_of({"csv", "thesis"}));
-    command.add_option("--out,-o", args->out,
-                       "CSV file, or folder, to write (default: standard output, or none with --heatmap)");
-    command.add_option("--heatmap", args->heatmap, "Picture to draw: .png, .svg or .pdf (- for standard output)");
+    command.add_option("--heatmap", args->heatmap, "Picture to write: .png, .svg or .pdf (- for standard output)");
+    add_raster_query(command, *args);
+    command.add_flag("--write-aerial", args->write_aerial,
+                     "3D: write aerial poses, too. With --format thesis, in 2D and 3D: also those off the terrain");
     command.footer(
         "Example:\n"
         "  spawnfield raster /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --step 0.5 --offset 0.5 -o "
         "/tmp/box_raster.csv");
-    command.callback([=, &command, &run] { run = [=, &command] { return run_raster(*args, command); }; });
+    set_work(command, args, chosen, run_raster);
 }
 
 }  // namespace spawnfield::cli

@@ -2,10 +2,11 @@
 
 #include "area_args.h"
 #include "ground_args.h"
+#include "session.h"
 
 namespace spawnfield::cli {
 
-/// Options of rasters beside steps and outputs, as `raster` and `experiment` take them.
+/// Options of rasters except steps and outputs, for `raster` and `experiment`.
 struct RasterArgs : QueryArgs {
     int dims = 2;
     AreaArgs area;
@@ -13,16 +14,20 @@ struct RasterArgs : QueryArgs {
     std::string bounds, yaw = "0";
     bool no_height_check = false, snap = false;
 };
+
+/// Adds --dims.
+CLI::Option* add_dims(CLI::App& command, RasterArgs& args);
+
+/// Adds the groups of options on poses, ground, region, robot and run.
 void add_raster_query(CLI::App& command, RasterArgs& args);
 
-/// Everything but the steps and what complete() adds. Tells of options without effect; throws ArgumentError for those
-/// that do not go together.
+/// Returns the raster's options without the steps and what complete() adds. Prints notices about options without
+/// effect. Throws ArgumentError for options that do not go together.
 RasterOptions raster_options(const RasterArgs& args, const CLI::App& command);
 
-/// Completes the options once the map and the robot are known, and notes the offset in the summary. Prints notices
-/// where an answer is plain before it is asked for. Throws ArgumentError for a floor that there is not, or an offset
-/// above
-/// --max-height, NothingFits where the robot collides with all flat ground.
+/// Completes the options when the map and the robot are known, and puts the offset into the summary. Prints a notice if
+/// an answer is known without a query. Throws ArgumentError for a floor that the map does not have and for an offset
+/// above --max-height, NothingFits if the robot collides with all flat ground.
 void complete(RasterOptions& options, const RasterArgs& args, const Session& session, Summary& summary);
 
 }  // namespace spawnfield::cli

@@ -1,11 +1,12 @@
 #include "robot_args.h"
 
-#include "cli.h"
+#include "common_args.h"
+#include "numbers.h"
 
 namespace spawnfield::cli {
 namespace {
 
-/// "name=value,name=value". A name may hold "=": the last one counts.
+/// Reads "name=value,name=value". A name may contain "="; the last one separates. Throws ArgumentError.
 void parse_joints(const std::string& text, std::vector<JointPosition>& out)
 {
     for (std::size_t start = 0; start <= text.size();) {
@@ -13,7 +14,7 @@ void parse_joints(const std::string& text, std::vector<JointPosition>& out)
         const std::string one = text.substr(start, comma - start);
         const std::size_t equals = one.rfind('=');
         if (equals == std::string::npos || equals == 0)
-            throw ArgumentError("--joints: \"" + one + "\" is no joint, needs name=value[,name=value…], rad or m");
+            throw ArgumentError("--joints: \"" + one + "\" is not a joint; write name=value[,name=value…] in rad or m");
         out.push_back(
             {one.substr(0, equals), parse_numbers("--joints: " + one.substr(0, equals), one.substr(equals + 1)).at(0)});
         start = comma + 1;
@@ -24,13 +25,12 @@ void parse_joints(const std::string& text, std::vector<JointPosition>& out)
 
 void add_robot_options(CLI::App& command, RobotArgs& args)
 {
-    add_model_path(command, args);
     command.add_option("--joints", args.joints,
-                       "name=value,…: where joints of a URDF or SDF model stand, rad or m (default 0; repeatable)");
+                       "name=value,…: positions of joints of a URDF or SDF model, rad or m (default 0; repeatable)");
     command
         .add_option(
             "--mesh-parts", args.mesh_parts,
-            "Split each mesh collision of the robot into at most so many convex parts (default 1: its convex hull)")
+            "Split each mesh collision of the robot into at most this many convex parts (default 1: its convex hull)")
         ->check(CLI::Range(1, 64));
 }
 

@@ -6,11 +6,13 @@
 
 namespace spawnfield::cli {
 
-/// How a robot's file is read.
+/// Options on how a robot's file is read.
 struct RobotArgs : ModelPathArgs {
     std::vector<std::string> joints;
     int mesh_parts = 1;
 };
+
+/// Adds --joints and --mesh-parts.
 void add_robot_options(CLI::App& command, RobotArgs& args);
 inline const std::vector<std::string> robot_option_names{"--joints", "--mesh-parts"};
 

@@ -1,5 +1,8 @@
 #include "scene_args.h"
 
+#include "numbers.h"
+#include "spelling.h"
+
 #include <numbers>
 #include <sstream>
 
@@ -15,7 +18,7 @@ LabelRule parse_label(const std::string& text)
     throw ArgumentError("--label is \"" + text + "\", needs GLOB=terrain, GLOB=obstacle, GLOB=water or GLOB=ignore");
 }
 
-/// rad
+/// Returns the slope of --auto-label, rad. Throws ArgumentError.
 double parse_slope(const std::string& text)
 {
     const std::string key = "slope=";
@@ -29,32 +32,35 @@ double parse_slope(const std::string& text)
 
 }  // namespace
 
+void add_label_options(CLI::App& command, SceneArgs& args)
+{
+    command.add_option("--label", args.labels,
+                       "'GLOB=LABEL': label of all nodes, materials, parts, models, links or collisions whose name "
+                       "matches (repeatable; the first match wins)");
+    command.add_option("--auto-label", args.auto_label,
+                       "slope=DEG: label by slope what no label names. Faces that look up and are less steep than DEG "
+                       "degrees are terrain, others obstacles (meshes, OctoMaps, worlds)");
+}
+
 void add_scene_options(CLI::App& command, SceneArgs& args)
 {
-    command.add_option("--up", args.up, "Up axis of a bare mesh: y or z (default: what the format says, else z)")
+    start_group(command, help_group::scene);
+    command.add_option("--up", args.up, "Up axis of a bare mesh: y or z (default: the format's own, else z)")
         ->check(one_of({"y", "z"}));
     command.add_option("--scale", args.scale, "Metres per unit of a bare mesh (default 1)");
     command.add_option("--heightmap", args.heightmap,
                        "Keys of a bare elevation model as in scene.yaml: 'size: [513, 513], z: [0, 75]'");
     command
         .add_option("--unknown", args.unknown,
-                    "What an OctoMap has not seen, within the box around what it has: free or blocked (default: free, "
-                    "or what scene.yaml says)")
+                    "free or blocked: meaning of unknown space in an OctoMap, inside the box around all known space "
+                    "(default: that of scene.yaml, else free)")
         ->check(one_of({"free", "blocked"}));
     command.add_option("--wall-height", args.wall_height,
-                       "Of the walls of a 2D map (map.yaml of nav2 or ROS), m (default 2)");
-    command.add_option("--label", args.labels,
-                       "'GLOB=LABEL': label of the nodes, materials, parts, models, links or collisions whose name "
-                       "matches (repeatable; first match wins)");
-    command.add_option("--auto-label", args.auto_label,
-                       "slope=DEG: what no label names is terrain where it looks up and is less steep than DEG "
-                       "degrees, else obstacle (meshes, OctoMaps, worlds)");
+                       "Height of the walls of a 2D map (map.yaml of nav2 or ROS), m (default 2)");
     auto* strict = command.add_flag(
         "--strict", args.strict,
-        "Refuse a world of which anything is missing: a mesh, for example (a missing include is always refused)");
-    command
-        .add_flag("--allow-missing", args.allow_missing,
-                  "Leave out the models that a world includes and that are not found")
+        "Refuse a world with a missing file, for example a mesh (missing includes are always refused)");
+    command.add_flag("--allow-missing", args.allow_missing, "Leave out included models that are not found")
         ->excludes(strict);
 }
 

@@ -1,6 +1,10 @@
 #include "simulator_output.h"
 
 #include "interrupt.h"
+#include "messages.h"
+#include "numbers.h"
+#include "output.h"
+#include "spelling.h"
 
 #include <spawnfield/input_file.h>
 
@@ -16,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array isaac_files{"root_pose.npy", "flat_patches.npy", "terrain_origins.npy", "isaaclab.json"};
 
-/// Which formats (as their beginnings) an option is for.
+/// The formats that use an option, by the beginnings of their names.
 struct OptionUse {
     const char* option;
     std::vector<std::string> formats;
@@ -55,7 +59,7 @@ TileGrid parse_tiles(const std::string& text)
     return grid;
 }
 
-/// A path that holds wherever the file is read from. What a launcher fills in stays as it is.
+/// Returns the absolute path. A path with $(…), which a launcher fills in, stays unchanged.
 std::string lasting_path(const std::string& option, const std::string& file)
 {
     if (file.find("$(") != std::string::npos) return file;
@@ -66,7 +70,7 @@ std::string lasting_path(const std::string& option, const std::string& file)
 
 fs::path folder_of(const std::string& file) { return fs::absolute(file).lexically_normal().parent_path(); }
 
-/// Of an SDF file; empty if there is none.
+/// Returns the first relative <uri> of an SDF text; empty if there is none.
 std::string first_relative_uri(const std::string& text)
 {
     const std::string begin = "<uri>";
@@ -82,7 +86,7 @@ std::string first_relative_uri(const std::string& text)
     return "";
 }
 
-/// The height of the ground below each robot.
+/// Returns the point on the ground below each robot. Throws ArgumentError if a robot has no ground.
 std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map& map)
 {
     std::vector<Vec3> points;
@@ -107,41 +111,45 @@ std::vector<std::string> simulator_options_of(const std::string& format)
     return options;
 }
 
-void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format)
+void notice_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format)
 {
     for (const OptionUse& use : option_uses)
         if (!is_for(use, format))
-            tell_idle(common, command, {use.option}, "--format " + format + " does not ask for it");
+            notice_no_effect(common, command, {use.option}, "--format " + format + " does not use it");
 }
 
 void add_simulator_options(CLI::App& command, SimulatorArgs& args)
 {
-    const std::string names = "Files for simulators";
+    start_group(command, help_group::simulator);
     const auto add = [&](const char* option, std::string& value, const char* help) {
-        return command.add_option(option, value, help)->group(names);
+        return command.add_option(option, value, help);
     };
-    add("--name", args.name, "Robots' names: {i} is the number from 1 on, {i:03} the same as 001 (default robot_{i})");
-    add("--namespace", args.name_space, "Their ROS namespaces, by the same kind of pattern (default: their names)");
+    add("--name", args.name,
+        "Pattern of the robots' names: {i} is the number from 1 on, {i:03} has three digits (default robot_{i})");
+    add("--namespace", args.name_space, "ROS, json: pattern of the robots' namespaces (default: their names)");
     add("--robot-file", args.robot_file,
-        "URDF or SDF that launch files and worlds spawn (default: --robot, if it is one)");
-    add("--robot-uri", args.robot_uri, "sdf: URI of the robot's model, as model://husky, in place of a file");
+        "ROS, sdf: URDF or SDF file of the robot to spawn (default: --robot, if it is such a file)");
+    add("--robot-uri", args.robot_uri, "sdf: URI of the robot's model instead of a file, for example model://husky");
     add("--topic", args.topic,
-        "ROS 2: topic, ROS 1: parameter in each namespace that tells the robot's description, in place of a file");
-    add("--world", args.world, "sdf: the world file that gets the robots (default: a new world of nothing else)");
+        "ROS: topic (ROS 1: parameter) in each namespace that contains the robot's description, instead of a file");
+    add("--world", args.world,
+        "sdf: world file to which the robots are added (default: a new world without anything else)");
     add("--world-name", args.world_name,
-        "ROS 2: Gazebo's name of the world (default: the one that runs); sdf: that of a new world, or which one of "
+        "ROS 2: Gazebo's name of the world (default: the running one). sdf: name of the new world, or of one world in "
         "--world");
-    add("--joint-qpos", args.joint_qpos, "mujoco: q,q,... of the joints that follow each free joint (default: none)");
+    add("--joint-qpos", args.joint_qpos,
+        "mujoco: q,q,... of the joints that follow each free joint (default: no further joints)");
     add("--keys", args.keys,
-        "mujoco: each, a key per spawn for a model of one robot; together, one key for a model of all (default each)")
+        "mujoco: each: a key for each spawn, for a model of one robot; together: one key for a model of all robots "
+        "(default each)")
         ->check(one_of({"each", "together"}));
-    add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw from 3 on (default wxyz)")
+    add("--quaternion", args.quaternion, "isaaclab: wxyz for Isaac Lab 1 and 2, xyzw for 3 and later (default wxyz)")
         ->check(one_of({"wxyz", "xyzw"}));
-    add("--tiles", args.tiles, "isaaclab: ROWS,COLS of the terrain patches, along x and y (default 1,1)");
-    add("--blueprint", args.blueprint, "carla: what is spawned (default vehicle.tesla.model3)");
+    add("--tiles", args.tiles, "isaaclab: ROWS,COLS: number of terrain tiles along x and along y (default 1,1)");
+    add("--blueprint", args.blueprint, "carla: blueprint to spawn (default vehicle.tesla.model3)");
     add("--unity-axes", args.unity_axes,
-        "unity: ros, as Unity's ROS packages turn them; gltf, for a world that Unity exported as glTF, FBX or OBJ "
-        "(default ros)")
+        "unity: ros: axes of Unity's ROS packages; gltf: for a world that Unity exported as glTF, FBX or OBJ (default "
+        "ros)")
         ->check(one_of({"ros", "gltf"}));
 }
 
@@ -149,13 +157,13 @@ SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& comma
                                  Target target)
     : common_(common), args_(args), target_(std::move(target))
 {
-    tell_idle_options(common, command, target_.format);
-    tell_joints();
-    constexpr std::size_t enough = 1000;  // of the first names, to see whether the pattern is one
+    notice_idle_options(common, command, target_.format);
+    notice_joints();
+    constexpr std::size_t enough = 1000;  // this many names show whether the pattern gives different ones
     std::vector<RobotStart> some(std::min(target_.count, enough));
     give_names(some);
-    if (is_ros()) settle_launch();
-    if (is("sdf")) settle_sdf();
+    if (is_ros()) prepare_launch();
+    if (is("sdf")) prepare_sdf();
     if (is("mujoco") && !args_.joint_qpos.empty()) keys_.joints = parse_numbers("--joint-qpos", args_.joint_qpos);
     keys_.together = args_.keys == "together";
     if (!is("isaaclab")) return;
@@ -191,16 +199,15 @@ void SimulatorOutput::check_rules(const std::string& option, std::span<const std
     check_ros_names(origin, name_spaces, is("ros1-launch") ? 1 : 2);
 }
 
-/// Poses are judged with the joints where --joints has them; few files can say so.
-void SimulatorOutput::tell_joints() const
+/// Prints a notice if the file cannot contain the joint positions for which the poses were judged.
+void SimulatorOutput::notice_joints() const
 {
-    const bool says_so = is("ros1-launch") || is("json") || (is("mujoco") && !args_.joint_qpos.empty());
-    if (target_.reading.joints.empty() || says_so) return;
-    notice(
-        common_,
-        "--format " + target_.format +
-            " says nothing about joints: robots start with theirs at 0, unless you put them where --joints has them" +
-            (is("mujoco") ? " (--joint-qpos)" : ""));
+    const bool has_joints = is("ros1-launch") || is("json") || (is("mujoco") && !args_.joint_qpos.empty());
+    if (target_.reading.joints.empty() || has_joints) return;
+    notice(common_, "--format " + target_.format +
+                        " does not contain joints: the robots start with joints at 0, not at the positions of "
+                        "--joints; set them in the simulator" +
+                        (is("mujoco") ? ", or with --joint-qpos" : ""));
 }
 
 std::string SimulatorOutput::own_file() const
@@ -213,57 +220,58 @@ std::string SimulatorOutput::own_file() const
 
 std::string SimulatorOutput::robot_is_neither() const
 {
-    return target_.robot.empty() ? "" : "; --robot " + target_.robot + " is neither";
+    return target_.robot.empty() ? "" : "; --robot " + target_.robot + " is not such a file";
 }
 
-void SimulatorOutput::settle_launch()
+void SimulatorOutput::prepare_launch()
 {
     launch_.world = args_.world_name;
     launch_.topic = args_.topic;
     if (!args_.topic.empty() && !args_.robot_file.empty())
-        throw ArgumentError("--topic and --robot-file are both given; robots are made of one of them");
+        throw ArgumentError("--topic and --robot-file are both given; give one of them");
     if (args_.topic.empty()) launch_.file = own_file();
     if (fs::is_directory(launch_.file)) launch_.file = scene_file_of(launch_.file).string();  // ROS spawns files
     if (is("ros1-launch")) launch_.joints = target_.reading.joints;
     if (is("ros1-launch") && fs::exists(launch_.file) && model_placement(launch_.file).has_pose)
         throw ArgumentError("--format ros1-launch: " + launch_.file +
-                            " has a <pose> of its own, which gazebo_ros adds to the one of each robot; take it away");
+                            " has a <pose> of its own, which gazebo_ros adds to the pose of each robot; remove it");
     if (launch_.topic.empty() && launch_.file.empty())
         throw ArgumentError("--format " + target_.format +
                             " needs --robot-file FILE, a URDF or SDF to spawn, or --topic robot_description" +
                             robot_is_neither());
     target_.format == "ros2-launch-py" ? ros2_launch_py({}, launch_)
-                                       : ros1_launch({}, launch_);  // to be told of a bad file now
+                                       : ros1_launch({}, launch_);  // refuses a wrong file now
 }
 
-void SimulatorOutput::settle_sdf()
+void SimulatorOutput::prepare_sdf()
 {
     if (!args_.robot_uri.empty() && !args_.robot_file.empty())
-        throw ArgumentError("--robot-uri and --robot-file are both given; robots are made of one of them");
+        throw ArgumentError("--robot-uri and --robot-file are both given; give one of them");
     sdf_.uri = args_.robot_uri.empty() ? own_file() : args_.robot_uri;
     sdf_.world_name = args_.world_name;
     if (sdf_.uri.find("$(") != std::string::npos)
-        throw ArgumentError("--format sdf: " + sdf_.uri +
-                            " has a $(…), which is for launch files; name the file itself, or --robot-uri");
+        throw ArgumentError(
+            "--format sdf: " + sdf_.uri +
+            " has a $(…), which only launch files can contain; give the path of the file, or --robot-uri");
     if (fs::exists(sdf_.uri))
         if (const std::string frame = model_placement(sdf_.uri).frame; !frame.empty())
             throw ArgumentError("--format sdf: " + sdf_.uri + " has placement_frame=\"" + frame +
-                                "\": <include> would put that frame where the model's own was judged; take it away");
+                                "\", so <include> would put that frame, not the model's own, at the pose; remove it");
     if (sdf_.uri.empty())
         throw ArgumentError(
-            "--format sdf needs --robot-uri URI, as model://husky, or --robot-file FILE, a URDF or SDF" +
+            "--format sdf needs --robot-uri URI, for example model://husky, or --robot-file FILE, a URDF or SDF" +
             robot_is_neither());
     if (args_.world.empty()) return;
     sdf_.world_file = args_.world;
     sdf_.world_text = read_file(args_.world);
     sdf_.model_paths = target_.reading.model_paths;
-    sdf_world({}, sdf_);  // to be told of a bad file now
+    sdf_world({}, sdf_);  // refuses a wrong file now
     const std::string relative = first_relative_uri(sdf_.world_text);
     const bool is_beside = !target_.out.empty() && folder_of(target_.out) == folder_of(args_.world);
     if (!relative.empty() && !is_beside)
         notice(common_, args_.world + ": " + relative +
-                            " and the like are relative to this file, and will be looked for beside the new one; " +
-                            "-o beside it keeps them right");
+                            " and similar paths are relative to this file, but the new file is in another folder; " +
+                            "write it beside this file");
 }
 
 std::string SimulatorOutput::text_of(std::span<const RobotStart> robots) const
@@ -311,7 +319,7 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     write_file_atomically(into / "flat_patches.npy", patches.flat_patches);
     write_file_atomically(into / "terrain_origins.npy", patches.terrain_origins);
     write_file_atomically(into / "isaaclab.json", about.dump(2) + "\n");
-    if (was_interrupted()) throw Interrupted{};
+    stop_if_interrupted();
     folder_->commit();
 }
 

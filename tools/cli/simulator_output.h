@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli.h"
+#include "session.h"
 
 #include <spawnfield/output_folder.h>
 #include <spawnfield/simulators.h>
@@ -9,47 +9,46 @@
 
 namespace spawnfield::cli {
 
-/// What --format may be besides thesis: lists of poses, and files that simulators load.
+/// Values of --format except thesis: lists of poses, and files that simulators load.
 inline const std::vector<std::string> pose_formats = {
     "csv",    "json",     "ros1-launch", "ros2-launch-py", "ros2-launch-xml", "sdf",
     "mujoco", "isaaclab", "carla",       "carla-ros",      "unity",           "unreal"};
 
-/// Options of these files and of robots' names.
+/// Options of the files for simulators and of the robots' names.
 struct SimulatorArgs {
     std::string name, name_space;                                 ///< patterns; empty: robot_{i}, and the name
-    std::string robot_file, robot_uri, topic, world, world_name;  ///< what is spawned, and where
+    std::string robot_file, robot_uri, topic, world, world_name;  ///< the robot that is spawned, and the world
     std::string joint_qpos, keys = "each", quaternion = "wxyz", tiles = "1,1", blueprint = "vehicle.tesla.model3",
                             unity_axes = "ros";
 };
 void add_simulator_options(CLI::App& command, SimulatorArgs& args);
 
-/// Those of these options that say something to the format.
+/// Returns the names of those options that the format uses.
 std::vector<std::string> simulator_options_of(const std::string& format);
 
-/// A notice for each of these options that was given and says nothing to the format.
-void tell_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format);
+/// Prints a notice for each of these options that was given although the format does not use it.
+void notice_idle_options(const CommonArgs& common, const CLI::App& command, const std::string& format);
 
-/// Robots as a file or folder in one of `pose_formats`. All that can be wrong with the options is told when it is made,
-/// before all work.
+/// Robots as a file or folder in one of `pose_formats`. The constructor reports every wrong option, before all work.
 class SimulatorOutput {
 public:
     struct Target {
-        std::string format, out;    ///< `out` as -o has it
-        std::string robot;          ///< as --robot has it
-        std::size_t count = 1;      ///< of robots, at most
-        RobotOptions reading = {};  ///< how the robot that was judged is read
+        std::string format, out;    ///< `out` is the value of -o
+        std::string robot;          ///< the value of --robot
+        std::size_t count = 1;      ///< largest number of robots
+        RobotOptions reading = {};  ///< how the robot was read for its verdicts
     };
-    /// Throws ArgumentError, FileError; OutputError where a folder may not be replaced. Tells of options without
-    /// effect.
+    /// Prints notices about options without effect. Throws ArgumentError, FileError, and OutputError for a folder that
+    /// may not be replaced.
     SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target);
 
-    /// Whether robots have names in it: all but a csv without --name.
+    /// Whether the robots have names: in every format except csv without --name.
     bool has_names() const { return !is("csv") || !args_.name.empty(); }
 
-    /// Names and namespaces for the robots; their `own` names, if they have any, count where --name was not given.
+    /// Gives the robots names and namespaces. Without --name their `own` names are used, if there are any.
     void give_names(std::vector<RobotStart>& robots, const std::vector<std::string>& own = {}) const;
 
-    /// Whole or not at all. `json` gives what is written for --format json.
+    /// Writes the file completely or not at all. `json` returns the text for --format json.
     void write(std::span<const RobotStart> robots, const Map& map, const std::function<std::string()>& json) const;
 
 private:
@@ -57,9 +56,9 @@ private:
     bool is_ros() const { return target_.format.starts_with("ros"); }
     void check_rules(const std::string& option, std::span<const std::string> names,
                      std::span<const std::string> name_spaces) const;
-    void settle_launch();
-    void settle_sdf();
-    void tell_joints() const;
+    void prepare_launch();
+    void prepare_sdf();
+    void notice_joints() const;
     std::string own_file() const;
     std::string robot_is_neither() const;
     std::string text_of(std::span<const RobotStart> robots) const;
@@ -75,9 +74,9 @@ private:
     std::unique_ptr<OutputFolder> folder_;
 };
 
-/// Poses of a CSV file, as they are, in one of `pose_formats`: what `export MAP --poses FILE` does. Names are those of
-/// --name, else of the file's column `name`, else robot_{i}. `target.count` is not asked for. Throws as SimulatorOutput
-/// and read_poses do.
+/// Writes the poses of a CSV file in one of `pose_formats`, without judging them. Names are those of --name, else of
+/// the file's column `name`, else robot_{i}. `target.count` is not used. Throws what SimulatorOutput and read_poses()
+/// throw.
 void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args,
                   const std::string& poses, SimulatorOutput::Target target, const Session& session);
 

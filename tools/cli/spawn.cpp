@@ -1,9 +1,14 @@
 #include "angle.h"
 #include "area_args.h"
 #include "avoid_args.h"
+#include "command.h"
 #include "ground_args.h"
+#include "messages.h"
+#include "numbers.h"
+#include "output.h"
 #include "simulator_output.h"
 #include "spawn_args.h"
+#include "spelling.h"
 #include "thesis_output.h"
 
 #include <spawnfield/error.h>
@@ -57,7 +62,7 @@ std::string shortfall(const Options& options, double max_slope, const SpawnList&
            " m2 of the region; it is proven that none fits elsewhere. " + upper_first(advice) + " may give more";
 }
 
-/// What was asked for, and by `own` what the command alone has; then what was found.
+/// Returns the options, then those that only this command has (`own`), then what was found.
 template <class Options>
 Settings settings_of(const SpawnArgs& args, const Session& session, const Options& options, const SpawnList& list,
                      const std::string& command, const Settings& own)
@@ -96,15 +101,10 @@ void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& 
     output.write(robots, session.map, [&] { return spawns_json(robots, list, *session.judge, options); });
 }
 
-/// `hopeless`: why no pose can be valid, or empty.
 template <class Options>
-int finish(Summary& summary, const SpawnArgs& args, const Session& session, const Options& options,
-           const SpawnList& list, const std::string& command, const std::string& hopeless)
+void fill(Summary& summary, const Options& options, const SpawnList& list)
 {
-    summary.lap("write");
-    summary.set_counts(list.counts);
-    summary.exact_checks = list.exact_checks;
-    summary.map_hash = session.map.hash;
+    summary.set_verdicts(list.counts, list.exact_checks);
     summary.seed = options.seed;
     summary.extra.insert(summary.extra.begin(),
                          std::to_string(list.spawns.size()) + " of " + std::to_string(options.count) + " spawns");
@@ -116,24 +116,21 @@ int finish(Summary& summary, const SpawnArgs& args, const Session& session, cons
                      {"too_close", list.too_close},
                      {"near_avoided", list.near_avoided},
                      {"off_region", list.off_area}};
-    summary.finish();
-    if (list.spawns.size() == options.count) return done;
-    notice(args, hopeless.empty() ? shortfall(options, session.judge->options().max_slope, list, command) : hopeless);
-    return fewer_found;
 }
 
-/// A command's own part of run_spawn, once the map and the robot are known.
+/// The part of run_spawn() that differs between the commands.
 template <class Options>
 struct SpawnQuery {
-    std::function<Settings(const Session&, Options&)>
-        prepare;  ///< returns settings that the other command does not have
+    /// Completes the options when the map and the robot are known. Returns the settings that only this command has.
+    std::function<Settings(const Session&, Options&)> prepare;
     SpawnList (*run)(const Judge&, const Options&);
+    /// Returns why no pose can be valid, or an empty text.
     std::function<std::string(const Session&, const Options&)> find_hopeless = [](const auto&, const auto&) {
         return "";
     };
 };
 
-/// Nothing was drawn: all of the region is undecided.
+/// Returns the result without any draw: the whole region is undecided.
 SpawnList nothing_drawn(const Map& map, const Bounds& bounds)
 {
     const Bounds box = bounds.is_empty() ? map.bounds : bounds;
@@ -142,17 +139,18 @@ SpawnList nothing_drawn(const Map& map, const Bounds& bounds)
     return out;
 }
 
-/// Both commands, once their options are known.
+/// Runs `search` or `sample` with its options.
 template <class Options>
-int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArgs& args, const CLI::App& app,
-              Options options, const std::string& command)
+Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArgs& args, const CLI::App& app,
+                 Options options)
 {
+    const std::string command = app.get_name();
     const std::optional<double> yaw = parse_yaw_or_random(args, args.yaw);
     options.random_yaw = !yaw;
     options.yaw = yaw.value_or(0);
     options.avoid = read_avoided(args, args.avoid, options.min_distance);
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
-    if (folder) tell_idle_options(args, app, args.format);
+    if (folder) notice_idle_options(args, app, args.format);
     std::optional<SimulatorOutput> output;
     if (!folder)
         output.emplace(args, app, args.simulator,
@@ -160,7 +158,7 @@ int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArg
     const Session session = open_session(args, summary);
     const Settings own = query.prepare(session, options);
     const std::string hopeless = query.find_hopeless(session, options);
-    tell_about_avoided(args, session.map, options.avoid);
+    notice_about_avoided(args, session.map, options.avoid);
     summary.lap("load");
     const SpawnList list = hopeless.empty() ? query.run(*session.judge, options)
                                             : nothing_drawn(session.map, options.bounds);
@@ -171,28 +169,30 @@ int run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArg
                      [&](const auto& into) { return write_thesis_locations(into, list); });
     else
         write(args, *output, session, options, list);
-    return finish(summary, args, session, options, list, command, hopeless);
+    fill(summary, options, list);
+    if (list.spawns.size() == options.count) return {};
+    return {.status = fewer_found,
+            .notice = hopeless.empty() ? shortfall(options, session.judge->options().max_slope, list, command)
+                                       : hopeless};
 }
 
-int run_search(const SpawnArgs& args, const CLI::App& command)
+Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summary)
 {
-    Summary summary("search", args);
     SearchOptions options = search_options(args, args.draws, args.bounds, "search", !args.ground.z.empty());
     options.area = read_area(args, args.area);
     const ZRange heights = heights_of(args.ground, options.bounds, "--bounds");
     const auto prepare = [&](const Session& session, SearchOptions& asked) {
         asked.bounds = with_heights(asked.bounds, heights, session.map);
-        tell_if_off_map(args, session.map, "--bounds", asked.bounds);
-        tell_about_area(args, session.map, asked.area);
+        notice_if_off_map(args, session.map, "--bounds", asked.bounds);
+        notice_about_area(args, session.map, asked.area);
         return Settings{{"Max failures", std::to_string(asked.max_failures)},
                         {"Max height (m)", number(session.judge->options().max_height)}};
     };
-    return run_spawn<SearchOptions>({prepare, search}, summary, args, command, options, "search");
+    return run_spawn<SearchOptions>({prepare, search}, summary, args, command, options);
 }
 
-int run_sample(const SpawnArgs& args, const CLI::App& command)
+Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summary)
 {
-    Summary summary("sample", args);
     check_draws(args.draws);
     SampleOptions options{.count = std::size_t(args.draws.count),
                           .min_distance = args.draws.min_distance,
@@ -202,7 +202,7 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
                           .area = read_area(args, args.area),
                           .threads = args.threads,
                           .progress = progress_bar(args, "sample")};
-    if (const auto box = lone_box(args.area)) {  // as bounds its draws are all within
+    if (const auto box = lone_box(args.area)) {  // as bounds, so that every draw is within the region
         options.bounds = *box;
         options.area.within.clear();
     }
@@ -210,9 +210,9 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
     const auto prepare = [&](const Session& session, SampleOptions& asked) {
         asked.z = with_floor(heights, args.ground, session.map);
         asked.offset = choose_offset(args, asked.offset, session.robot, summary);
-        tell_if_off_map(args, session.map, "--region", asked.bounds);
-        tell_about_area(args, session.map, asked.area);
-        tell_if_no_layer(args, session.map, asked.layers);
+        notice_if_off_map(args, session.map, "--region", asked.bounds);
+        notice_about_area(args, session.map, asked.area);
+        notice_if_no_layer(args, session.map, asked.layers);
         Settings own{{"Offset (m)", number(*asked.offset)}, {"Layers", args.ground.layers}};
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
         return own;
@@ -220,57 +220,70 @@ int run_sample(const SpawnArgs& args, const CLI::App& command)
     const auto find_hopeless = [](const Session& session, const SampleOptions& asked) {
         return flat_ground_complaint(session.robot, *asked.offset);
     };
-    return run_spawn<SampleOptions>({prepare, sample, find_hopeless}, summary, args, command, options, "sample");
+    return run_spawn<SampleOptions>({prepare, sample, find_hopeless}, summary, args, command, options);
 }
 
-void add_spawn_options(CLI::App& command, SpawnArgs& args)
+/// Adds the most common options.
+void add_common_spawn_options(CLI::App& command, SpawnArgs& args)
 {
-    add_query(command, args);
+    add_map_and_robot(command, args);
     add_draws(command, args.draws);
     command.get_option("--count")->required();
-    add_area(command, args.area);
-    add_avoid(command, args.avoid);
-    add_allow_empty(command, args);
-    command.add_option("--yaw", args.yaw, yaw_help + ", or random (default 0)");
+    command.add_option("--yaw", args.yaw, "Yaw of all spawns: " + yaw_help + ", or random (default 0)");
+    command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
     std::vector<std::string> formats = pose_formats;
     formats.push_back("thesis");
     command
         .add_option(
             "--format", args.format,
-            "csv, json; a file for a simulator; or thesis: a folder of Valid_Locations.txt and the like (default csv)")
-        ->check(one_of(formats));
-    command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
+            "csv, json, thesis (a folder of Valid_Locations.txt and similar files), or a file for a simulator: " +
+                CLI::detail::join(std::vector(pose_formats.begin() + 2, pose_formats.end()), ", ") + " (default csv)")
+        ->check(one_of(formats).description(""));
+}
+
+/// Adds the groups that both commands have.
+void add_spawn_groups(CLI::App& command, SpawnArgs& args)
+{
+    add_area(command, args.area);
+    add_avoid(command, args.avoid);
     add_simulator_options(command, args.simulator);
+    add_robot_and_run(command, args);
+    add_allow_empty(command, args);
 }
 
 }  // namespace
 
-void add_search(CLI::App& app, Run& run)
+void add_search(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<SpawnArgs>();
     CLI::App& command = *app.add_subcommand(
-        "search", "N spawns by random search in a box, away from all positions checked before");
-    add_spawn_options(command, *args);
+        "search", "N spawns by random search in a box, at a distance from all positions checked before");
+    add_common_spawn_options(command, *args);
     add_max_failures(command, args->draws);
+    add_verdict_options(command, *args);
+    start_group(command, help_group::region);
     command.add_option("--bounds", args->bounds,
                        "Box of the draws: x0,y0,z0,x1,y1,z1 in m, or with --z x0,y0,x1,y1 (default: the map's)");
     command.add_option("--z", args->ground.z,
-                       "LOW:HIGH in m: heights of the draws, short for those of --bounds (5: and :8 have one limit)");
+                       "LOW:HIGH in m: heights of the draws, in place of those of --bounds (5: and :8 are one limit)");
+    add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 "
         "--max-failures 10000");
-    command.callback([=, &command, &run] { run = [=, &command] { return run_search(*args, command); }; });
+    set_work(command, args, chosen, run_search);
 }
 
-void add_sample(CLI::App& app, Run& run)
+void add_sample(CLI::App& app, ChosenCommand& chosen)
 {
     auto args = std::make_shared<SpawnArgs>();
     CLI::App& command = *app.add_subcommand("sample", "N valid spawns, uniform by area");
-    add_spawn_options(command, *args);
+    add_common_spawn_options(command, *args);
     add_ground(command, args->ground, "all, top, bottom, or N from the top (0 first; default all)");
+    add_verdict_options(command, *args);
+    add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");
-    command.callback([=, &command, &run] { run = [=, &command] { return run_sample(*args, command); }; });
+    set_work(command, args, chosen, run_sample);
 }
 
 }  // namespace spawnfield::cli

@@ -1,12 +1,14 @@
 #include "spawn_args.h"
 
 #include "common/seed.h"
+#include "numbers.h"
 
 namespace spawnfield::cli {
+
 void add_draws(CLI::App& command, DrawArgs& args)
 {
-    command.add_option("-n,--count", args.count, "Spawns wanted");
-    command.add_option("--min-distance", args.min_distance, "Between positions, m (default 0)");
+    command.add_option("-n,--count", args.count, "Number of spawns");
+    command.add_option("--min-distance", args.min_distance, "Smallest distance between positions, m (default 0)");
     command.add_option("--seed", args.seed, "The same seed gives the same spawns (default 0)")
         ->check(tools::seed_complaint);
 }
@@ -14,7 +16,7 @@ void add_draws(CLI::App& command, DrawArgs& args)
 void add_max_failures(CLI::App& command, DrawArgs& args)
 {
     command.add_option("--max-failures", args.max_failures,
-                       "Draws in a row that gave nothing, after which it stops (default 100000)");
+                       "Stop after so many draws in a row without a spawn (default 100000)");
 }
 
 void check_draws(const DrawArgs& args)

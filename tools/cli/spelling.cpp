@@ -6,7 +6,8 @@
 namespace spawnfield::cli {
 namespace {
 
-/// Fewest letters to insert, delete, replace or swap with their neighbour (Damerau: optimal string alignment).
+/// Returns the smallest number of letters to insert, delete, replace or swap with their neighbour (Damerau: optimal
+/// string alignment).
 std::size_t edit_distance(const std::string& a, const std::string& b)
 {
     std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
@@ -31,7 +32,7 @@ std::vector<std::string> words_that(const std::vector<std::string>& words,
     return out;
 }
 
-/// Words that begin with the text; else those that are nearest to it; else those that it is a part of.
+/// Returns the words that begin with the text, or else those nearest to it, or else those that contain it.
 std::vector<std::string> likely(const std::string& text, const std::vector<std::string>& words)
 {
     const std::string core = text.substr(std::min(text.find_first_not_of('-'), text.size()));
@@ -48,7 +49,7 @@ std::vector<std::string> likely(const std::string& text, const std::vector<std::
     return words_that(words, [&](const std::string& word) { return word.find(core) != std::string::npos; });
 }
 
-/// "a", "a or b", "a, b or c".
+/// Returns "a", "a or b", "a, b or c".
 std::string choice_of(const std::vector<std::string>& words)
 {
     std::string out;

@@ -16,7 +16,7 @@ constexpr std::array inputs{"--poses", "--spawns", "--avoid", "--region", "--kee
 /// Options whose value goes to standard output if it is `-`.
 constexpr std::array outputs{"--out", "--summary", "--heatmap", "--picture"};
 
-/// An option that cannot be read from standard input, and what it takes.
+/// An option that cannot be read from standard input, and its meaning.
 struct Unable {
     const char* option;
     const char* what;
@@ -30,7 +30,7 @@ constexpr std::array unable{Unable{"scene", "a scene, which names other files be
                             Unable{"--world", "a world, which names other files beside it"},
                             Unable{"--model-path", "a folder"}};
 
-/// How often an option was given as `-`.
+/// Returns how often an option was given as `-`.
 std::size_t standard_uses(const CLI::App& command, const std::string& name)
 {
     const CLI::Option* const option = command.get_option_no_throw(name);
@@ -45,7 +45,7 @@ bool was_given(const CLI::App& command, const std::string& name)
     return option != nullptr && option->count() > 0;
 }
 
-/// Whether the result goes to standard output because nothing else was said.
+/// Whether the result goes to standard output by default.
 bool prints_by_default(const CLI::App& command)
 {
     if (command.get_name() == "info") return true;

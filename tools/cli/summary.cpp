@@ -1,4 +1,8 @@
-#include "cli.h"
+#include "summary.h"
+
+#include "messages.h"
+#include "numbers.h"
+#include "output.h"
 #include "streams.h"
 
 #include <nlohmann/json.hpp>
@@ -10,12 +14,18 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <numeric>
 #include <thread>
 
 namespace spawnfield::cli {
 namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::uint64_t sum_of(const VerdictCounts& counts)
+{
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
 
 std::uint64_t peak_memory_bytes()
 {
@@ -30,7 +40,7 @@ Summary::Summary(std::string command, const CommonArgs& args)
     : command_(std::move(command)), args_(args), start_(now()), last_(start_)
 {
     std::error_code ignored;
-    const bool is_pipe = std::filesystem::is_fifo(args.summary, ignored);  // to open it is to wait for its reader
+    const bool is_pipe = std::filesystem::is_fifo(args.summary, ignored);  // opening a pipe waits for its reader
     if (!args.summary.empty() && !is_standard(args.summary) && !is_pipe) file_.emplace(args.summary);
 }
 
@@ -41,11 +51,10 @@ void Summary::lap(const std::string& stage)
     last_ = time;
 }
 
-void Summary::set_counts(const VerdictCounts& counts)
+void Summary::set_verdicts(const VerdictCounts& counts, std::uint64_t exact_checks)
 {
     counts_ = counts;
-    has_counts_ = true;
-    poses = counts.total();
+    exact_checks_ = exact_checks;
 }
 
 unsigned Summary::threads() const
@@ -66,13 +75,13 @@ std::string Summary::line(double total) const
 {
     std::string text = "spawnfield " + command_ + ": ";
     for (const std::string& words : extra) text += words + "; ";
-    if (has_counts_) {
-        text += counted(poses, "pose");
+    if (counts_) {
+        text += counted(sum_of(*counts_), "pose");
         std::string verdicts;
         for (auto verdict = all_verdicts.rbegin(); verdict != all_verdicts.rend(); ++verdict)  // valid first
-            if (const std::uint64_t count = counts_[*verdict]; count > 0)
+            if (const std::uint64_t count = (*counts_)[*verdict]; count > 0)
                 verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(count) + " " + to_string(*verdict);
-        text += verdicts + "; " + counted(exact_checks, "exact check") + "; ";
+        text += verdicts + "; " + counted(exact_checks_, "exact check") + "; ";
     }
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.3f s", total);
@@ -83,11 +92,11 @@ std::string Summary::json(double total) const
 {
     nlohmann::ordered_json out;
     out["command"] = command_;
-    out["poses"] = poses;
+    out["poses"] = counts_ ? sum_of(*counts_) : 0;
     out["counts"] = nlohmann::ordered_json::object();
-    if (has_counts_)
-        for (const Verdict verdict : all_verdicts) out["counts"][to_string(verdict)] = counts_[verdict];
-    out["exact_checks"] = exact_checks;
+    if (counts_)
+        for (const Verdict verdict : all_verdicts) out["counts"][to_string(verdict)] = (*counts_)[verdict];
+    out["exact_checks"] = exact_checks_;
     if (fullness) {
         out["full"] = fullness->is_full;
         out["undecided_area"] = fullness->undecided_area;
@@ -95,7 +104,7 @@ std::string Summary::json(double total) const
     if (offset) out["offset"] = *offset;
     for (const auto& [what, count] : draws) out["draws"][what] = count;
     const double load = seconds_of("load"), write = seconds_of("write");
-    // Exact checks run on all threads: their share of the query's time is told.
+    // Exact checks run on all threads, so their seconds are divided by the number of threads.
     const double query = total - load - write, judging = seconds_of("query");
     const double exact = std::min(judging, double(exact_time.nanoseconds) * 1e-9 / threads());
     out["seconds"] = {{"load", load},   {"query", query}, {"mask", judging - exact},

@@ -1,6 +1,8 @@
 #include "thesis_output.h"
 
 #include "interrupt.h"
+#include "messages.h"
+#include "numbers.h"
 
 namespace spawnfield::cli {
 
@@ -36,7 +38,7 @@ void write_thesis(OutputFolder& folder, const Settings& settings, const VerdictC
                                                              "\nQuery (s): " + number(summary.seconds_of("query")) +
                                                              "\nTotal (s): " + number(summary.elapsed()) + "\n");
     then();
-    if (was_interrupted()) throw Interrupted{};
+    stop_if_interrupted();
     folder.commit();
 }
 

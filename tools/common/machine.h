@@ -4,13 +4,13 @@
 
 namespace tools {
 
-/// "spawnfield 0.2.0 on <CPU>, 2 cores".
+/// Returns text such as "spawnfield 0.2.0 on <CPU>, 2 cores".
 std::string machine();
 
-/// What follows `key` on its line of a file under /proc, without the colon; empty if there is none.
+/// Returns the text after `key` and the colon in a file under /proc; empty if the key is not there.
 std::string proc_value(const char* file, const std::string& key);
 
-/// printf into a string of up to 1023 characters.
+/// Returns what printf would print, up to 1023 characters.
 std::string formatted(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 }  // namespace tools

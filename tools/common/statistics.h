@@ -4,7 +4,7 @@
 
 namespace tools {
 
-/// Of value(item) over all items, at least one.
+/// Returns the mean of value(item) over all items; there must be at least one.
 template <class Items, class Value = std::identity>
 double mean(const Items& items, const Value& value = {})
 {
@@ -13,7 +13,7 @@ double mean(const Items& items, const Value& value = {})
     return sum / double(items.size());
 }
 
-/// With n - 1; 0 for fewer than two items.
+/// Returns the sample variance (with n - 1); 0 for fewer than two items.
 template <class Items, class Value = std::identity>
 double sample_variance(const Items& items, const Value& value = {})
 {

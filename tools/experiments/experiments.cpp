@@ -57,7 +57,8 @@ void check_same(const std::vector<Run>& runs)
                 to_string(runs[0].mode), (unsigned long long)runs[0].valid, (unsigned long long)runs[0].positions));
 }
 
-/// With the mask so many times, and with FCL at every position; all have to give the same counts.
+/// Runs a raster several times with the mask and several times with FCL at every position. Throws std::runtime_error if
+/// their counts differ.
 std::vector<Run> repeated(const Environment& environment, const Robot& robot, const RasterOptions& options,
                           const Run& like, int mask_times, int fcl_times)
 {
@@ -82,8 +83,8 @@ RasterOptions benchmark_options(const Settings& settings, int heights)
     return {.dims = 3, .step = 1, .bounds = {{0, 0, 0}, {9, 9, double(heights - 1)}}, .threads = settings.threads};
 }
 
-/// Limits of the thesis's rasters and searches. Its counts of test 4 and 6 at 1.5 m and more are those of a square: 1 m
-/// more in y.
+/// Returns the limits of the rasters and searches in the thesis. Its counts for tests 4 and 6 at steps of 1.5 m and
+/// more are those of a square, which is 1 m longer in y.
 Bounds limits(int test, double step)
 {
     if (test % 2 == 1) return {{0, 0, 31}, {500, 500, 124}};
@@ -137,7 +138,7 @@ std::vector<Run> aerial_runs(const Settings& settings)
     std::vector<Run> runs;
     for (const thesis::Aerial& figure : thesis::aerial()) {
         const int heights = int(figure.positions / 100);
-        settings.tell(tools::formatted("test 1: %d positions", heights * 100));
+        settings.on_step(tools::formatted("test 1: %d positions", heights * 100));
         const Environment empty = empty_environment(heights);
         for (const char* const name : {"box", "hull"})
             append(runs, repeated(empty, robot(settings, name), benchmark_options(settings, heights), {.test = 1},
@@ -150,7 +151,7 @@ std::vector<Run> collision_runs(const Settings& settings, const Environment& cub
 {
     std::vector<Run> runs;
     for (const thesis::Collision& figure : thesis::collision()) {
-        settings.tell(std::string("test 2: ") + figure.robot + " against " + figure.obstacle);
+        settings.on_step(std::string("test 2: ") + figure.robot + " against " + figure.obstacle);
         const Environment& environment = figure.obstacle == std::string("cubes") ? cubes : balls;
         RasterOptions options = benchmark_options(settings, int(environment.map.bounds.max.z()) + 1);
         options.height_check = false;
@@ -158,7 +159,8 @@ std::vector<Run> collision_runs(const Settings& settings, const Environment& cub
         append(runs, repeated(environment, robot(settings, figure.robot), options, like, settings.quick ? 2 : 10,
                               settings.quick ? 1 : 3));
         if (runs.back().invalid != runs.back().positions)
-            throw std::runtime_error("test 2: a position without collision");
+            throw std::runtime_error("test 2: " + std::to_string(runs.back().positions - runs.back().invalid) +
+                                     " positions do not collide; every position must");
     }
     return runs;
 }
@@ -169,14 +171,14 @@ std::vector<Run> raster_runs(const Settings& settings, const Districts& district
     for (int test = 3; test <= 6; ++test)
         for (const thesis::Raster& figure : thesis::raster(test)) {
             const double step = settings.quick ? 16 * figure.step : figure.step;
-            settings.tell(tools::formatted("test %d: step %g m", test, step));
+            settings.on_step(tools::formatted("test %d: step %g m", test, step));
             for (const char* const name : {"box", "hull"}) {
                 append(runs, repeated(environment_of(districts, test), robot(settings, name),
                                       raster_options(settings, test, step), {.test = test}, settings.quick ? 2 : 5, 1));
                 if (!settings.quick && runs.back().positions != figure.positions)
-                    throw std::runtime_error(tools::formatted("test %d, step %g: %llu positions, needs %llu", test,
-                                                              step, (unsigned long long)runs.back().positions,
-                                                              (unsigned long long)figure.positions));
+                    throw std::runtime_error(tools::formatted(
+                        "test %d, step %g: the raster has %llu positions; the thesis needs %llu", test, step,
+                        (unsigned long long)runs.back().positions, (unsigned long long)figure.positions));
             }
         }
     return runs;
@@ -188,7 +190,7 @@ std::vector<Run> search_runs(const Settings& settings, const Districts& district
     const Robot box = robot(settings, "box");
     for (const int test : {7, 8})
         for (const bool with_distance : {true, false}) {
-            settings.tell(tools::formatted("test %d: %s distance check", test, with_distance ? "with" : "without"));
+            settings.on_step(tools::formatted("test %d: %s distance check", test, with_distance ? "with" : "without"));
             for (int seed = 1; seed <= (settings.quick ? 2 : 20); ++seed)
                 runs.push_back(run_search(environment_of(districts, test), box,
                                           search_options(settings, test, with_distance, seed), test));
@@ -221,22 +223,22 @@ std::vector<Milestone> milestones(const Settings& settings, const Districts& dis
 
 std::vector<ColumnFinds> column_finds(const Settings& settings, const Environment& low)
 {
-    settings.tell("2D beside 3D");
+    settings.on_step("comparing 2D and 3D rasters");
     const Judge judge(low.map, robot(settings, "box"));
     std::map<std::pair<double, double>, ColumnFinds> columns;
-    const auto look = [&](const RasterOptions& options, bool ColumnFinds::*found) {
+    const auto add_finds = [&](const RasterOptions& options, bool ColumnFinds::*found) {
         for (const RasterPose& pose : raster(judge, options).poses)
             columns.try_emplace({pose.y, pose.x}, ColumnFinds{pose.x, pose.y, false, false, false}).first->second.*
                 found |= pose.verdict == Verdict::Valid;
     };
     RasterOptions options = raster_options(settings, 5, settings.quick ? 20 : 2.5);
-    look(options, &ColumnFinds::in_2d);
+    add_finds(options, &ColumnFinds::in_2d);
     options.dims = 3;
-    look(options, &ColumnFinds::in_3d);
+    add_finds(options, &ColumnFinds::in_3d);
     options.snap = true;
-    look(options, &ColumnFinds::in_3d_snapped);
+    add_finds(options, &ColumnFinds::in_3d_snapped);
     std::vector<ColumnFinds> out;
-    for (const auto& [at, finds] : columns) out.push_back(finds);
+    for (const auto& [place, finds] : columns) out.push_back(finds);
     return out;
 }
 

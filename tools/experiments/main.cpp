@@ -57,19 +57,22 @@ int main(int argc, char** argv)
         "Runs the eight experiments of the thesis that spawnfield grew from, and writes tables, pictures and a report"};
     Settings settings;
     std::string command = "spawnfield_experiments";
-    app.add_option("-o,--output", settings.folder, "Folder of all results, made where missing")->required();
-    app.add_flag("--quick", settings.quick, "Coarse steps and maps: counts and invariants, no times worth a look");
-    app.add_option("--threads", settings.threads, "0: all cores (default 0)")->check(CLI::Range(0, 1024));
-    app.add_option("--command", command, "What the report says it was made by")->capture_default_str();
+    app.add_option("-o,--output", settings.folder, "Folder of all results; it is created if it does not exist")
+        ->required();
+    app.add_flag("--quick", settings.quick,
+                 "Coarse steps and maps: checks counts and invariants; the times have no meaning");
+    app.add_option("--threads", settings.threads, "Number of threads; 0: all cores (default 0)")
+        ->check(CLI::Range(0, 1024));
+    app.add_option("--command", command, "Command that the report names as its origin")->capture_default_str();
     app.footer(
         "Example:\n  spawnfield_experiments --quick -o /tmp/experiments\ntools/experiments.sh runs it and draws the "
         "plots.");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;  // as spawnfield: wrong usage
+        return app.exit(error) == 0 ? 0 : 2;  // 2 means wrong usage, as in spawnfield
     }
-    settings.tell = [](const std::string& what) { std::cerr << what << std::endl; };
+    settings.on_step = [](const std::string& what) { std::cerr << what << std::endl; };
     try {
         run(settings, command);
     } catch (const std::exception& error) {

@@ -11,7 +11,8 @@ namespace experiments {
 namespace {
 
 constexpr int case_pixels = 640, map_pixels = 560;
-constexpr double columns_across = 320;  // of the rasters behind the pictures
+constexpr double columns_across =
+    320;  // number of columns across the longer side, in the rasters that the pictures show
 
 struct Case {
     const char* landmark;
@@ -22,7 +23,7 @@ Bounds region_of(const Environment& environment, const std::string& name)
 {
     for (const worlds::Landmark& landmark : environment.landmarks)
         if (landmark.name == name) return landmark.where;
-    throw std::runtime_error("the environment " + environment.name + " has no landmark " + name);
+    throw std::runtime_error("the environment " + environment.name + " has no landmark named " + name);
 }
 
 RasterResult verdicts_in(const Settings& settings, const Environment& environment, const Bounds& bounds, double offset)
@@ -51,7 +52,7 @@ Picture draw_case(const Settings& settings, const Environment& environment, cons
 std::vector<Picture> draw_cases(const Settings& settings, const Districts& districts, const Environment& bridge_deck,
                                 const std::filesystem::path& folder)
 {
-    settings.tell("pictures of special cases");
+    settings.on_step("pictures of special cases");
     std::vector<Picture> out;
     for (const Case& shown : {Case{"fountain", "the fountain on the square"}, Case{"lake", "open ground and lake"},
                               Case{"dense_forest", "dense forest"}})
@@ -66,7 +67,7 @@ std::vector<Picture> draw_cases(const Settings& settings, const Districts& distr
 std::vector<Picture> draw_spawns(const Settings& settings, const Districts& districts,
                                  const std::filesystem::path& folder)
 {
-    settings.tell("pictures of random spawns");
+    settings.on_step("pictures of random spawns");
     std::vector<Picture> out;
     for (const int test : {7, 8}) {
         const Environment& environment = test == 7 ? districts.low : districts.complex;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plots of the experiments, from the tables that spawnfield_experiments writes.
+"""Draws plots of the experiments from the tables that spawnfield_experiments writes.
 
 plot.py FOLDER reads FOLDER/{runs,thesis,milestones,column_finds}.csv and writes FOLDER/experiments/*.png and *.svg.
 Colours: Okabe, Ito, Color Universal Design, 2008.
@@ -12,14 +12,14 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
-matplotlib.rcParams["svg.hashsalt"] = "spawnfield"  # the same bytes for the same tables
+matplotlib.rcParams["svg.hashsalt"] = "spawnfield"  # gives the same bytes for the same tables
 import matplotlib.pyplot as plt
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 BLUE, ORANGE, GREEN, GREY, BLACK = "#0072B2", "#D55E00", "#009E73", "#BBBBBB", "#000000"
 ENVIRONMENTS = ("low-complexity", "complex")
-BREAK_EVEN = 1.8  # m, of the thesis
+BREAK_EVEN = 1.8  # m; step at which 2D and 3D rasters of the thesis take the same time
 
 
 def read(file):
@@ -35,7 +35,7 @@ def save(figure, folder, name, room_below=0.0):
 
 
 def mean_seconds(rows):
-    """(step, positions, mean seconds) for each step, the smallest first."""
+    """Returns (step, positions, mean seconds) for each step, in ascending order."""
     groups = {}
     for row in rows:
         groups.setdefault((float(row["step"]), int(row["positions"])), []).append(float(row["seconds"]))
@@ -46,12 +46,15 @@ def plot_steps(runs, thesis, folder):
     figure, axes = plt.subplots(2, 2, figsize=(10, 7.5), sharey=True)
     for column, environment in enumerate(ENVIRONMENTS):
         for dims, test, colour in (("3D", 3 + column, BLUE), ("2D", 5 + column, ORANGE)):
-            ours = mean_seconds([r for r in runs if int(r["test"]) == test and r["robot"] == "box" and r["mode"] == "mask"])
-            fcl = mean_seconds([r for r in runs if int(r["test"]) == test and r["robot"] == "box" and r["mode"] == "fcl"])
+            box_runs = [r for r in runs if int(r["test"]) == test and r["robot"] == "box"]
+            ours = mean_seconds([r for r in box_runs if r["mode"] == "mask"])
+            fcl = mean_seconds([r for r in box_runs if r["mode"] == "fcl"])
             theirs = mean_seconds([r for r in thesis if int(r["test"]) == test])
-            for points, style, label in ((ours, "o-", "spawnfield"), (fcl, "x:", "FCL at every position"), (theirs, "s--", "thesis")):
-                axes[0][column].plot([p[1] for p in points], [p[2] for p in points], style, color=colour, label=f"{dims}, {label}")
-                axes[1][column].plot([p[0] for p in points], [p[2] for p in points], style, color=colour, label=f"{dims}, {label}")
+            for points, style, name in ((ours, "o-", "spawnfield"), (fcl, "x:", "FCL at every position"),
+                                        (theirs, "s--", "thesis")):
+                seconds, label = [p[2] for p in points], f"{dims}, {name}"
+                axes[0][column].plot([p[1] for p in points], seconds, style, color=colour, label=label)
+                axes[1][column].plot([p[0] for p in points], seconds, style, color=colour, label=label)
         axes[0][column].set(xscale="log", yscale="log", xlabel="positions checked", title=environment)
         axes[1][column].axvline(BREAK_EVEN, color=GREY, linestyle="-.", label="the thesis's break-even of 2D and 3D")
         axes[1][column].set(yscale="log", xlabel="step, m")
@@ -65,11 +68,14 @@ def plot_steps(runs, thesis, folder):
 def plot_milestones(milestones, thesis, folder):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.5))
     for axis, environment, test in zip(axes, ENVIRONMENTS, (7, 8)):
-        for with_distance, colour, label in (("1", BLUE, "2.5 m from all checked positions"), ("0", ORANGE, "no distance check")):
+        for with_distance, colour, label in (("1", BLUE, "2.5 m from all checked positions"),
+                                             ("0", ORANGE, "no distance check")):
             rows = [m for m in milestones if m["environment"] == environment and m["distance_check"] == with_distance]
             for number, repetition in enumerate(sorted({row["repetition"] for row in rows}, key=int)):
-                points = [(int(row["found"]), 1e3 * float(row["seconds"])) for row in rows if row["repetition"] == repetition]
-                axis.plot(*zip(*sorted(points)), ".-", color=colour, linewidth=0.9, label=label if number == 0 else None)
+                points = [(int(row["found"]), 1e3 * float(row["seconds"]))
+                          for row in rows if row["repetition"] == repetition]
+                axis.plot(*zip(*sorted(points)), ".-", color=colour, linewidth=0.9,
+                          label=label if number == 0 else None)
         theirs = next(float(row["seconds"]) for row in thesis if int(row["test"]) == test)
         axis.plot([2000], [1e3 * theirs], "s", color=BLACK, label=f"thesis, mean: {theirs:g} s")
         axis.set(yscale="log", xlabel="spawns found", ylabel="time, ms", title=environment)
@@ -79,7 +85,7 @@ def plot_milestones(milestones, thesis, folder):
 
 
 def plot_columns(finds, folder):
-    """Columns in which each raster finds a place to stand, side by side."""
+    """Draws side by side in which columns each raster finds a place to stand."""
     xs, ys = sorted({float(f["x"]) for f in finds}), sorted({float(f["y"]) for f in finds})
     col, row = {x: i for i, x in enumerate(xs)}, {y: i for i, y in enumerate(ys)}
     names = (("in_2d", "2D"), ("in_3d", "3D"), ("in_3d_snapped", "3D, --snap"))
@@ -94,7 +100,8 @@ def plot_columns(finds, folder):
                     extent=(xs[0], xs[-1], ys[0], ys[-1]))
         axis.set(title=title, xlabel="x, m")
     axes[0].set_ylabel("y, m")
-    figure.legend(handles=[Patch(color=GREEN, label="a place to stand"), Patch(color=ORANGE, label="missed: 2D finds one"), Patch(color=GREY, label="none")],
+    figure.legend(handles=[Patch(color=GREEN, label="a place to stand"),
+                           Patch(color=ORANGE, label="missed: 2D finds one"), Patch(color=GREY, label="none")],
                   loc="lower center", ncol=3, fontsize=9, frameon=False)
     save(figure, folder, "columns_2d_3d", room_below=0.07)
 

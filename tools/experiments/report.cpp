@@ -122,17 +122,18 @@ std::string environments_section(const std::vector<const Environment*>& environm
                           seconds_text(environment->read_seconds).c_str(), map.hash.c_str());
     }
     return text +
-           "\nThe originals are not public: these have their extents, content and statistics "
-           "([maps](../maps/README.md) shows them). Making and baking is\n"
-           "done once for a world; the times below are those of the queries, the mask's preparation with it, without "
-           "reading map and robot.\n\n";
+           "\nThe original environments are not public. These have the same extents, content and statistics "
+           "([maps](../maps/README.md)\n"
+           "shows them). Making and baking is done once for a world. The times below are those of the queries with the "
+           "preparation\n"
+           "of the mask, without reading map and robot.\n\n";
 }
 
 std::string aerial_section(const std::vector<Run>& runs, Ratios& ratios)
 {
     std::string text =
-        "## Test 1: aerial positions\n\nThe empty environment, 10 × 10 columns, 1 m. What has no ground is counted by "
-        "arithmetic.\n\n"
+        "## Test 1: aerial positions\n\nThe empty environment: 10 × 10 columns, step 1 m. Positions without ground are "
+        "counted by arithmetic.\n\n"
         "| positions | robot | thesis | spawnfield, mean | variance, s² | ratio |\n|---|---|---|---|---|---|\n";
     for (const Group& group : groups_of(runs, [](const Run& run) { return run.test == 1 && run.mode == Mode::Mask; }))
         for (const thesis::Aerial& figure : thesis::aerial()) {
@@ -150,9 +151,9 @@ std::string aerial_section(const std::vector<Run>& runs, Ratios& ratios)
 std::string collision_section(const std::vector<Run>& runs, Ratios& ratios)
 {
     std::string text =
-        "## Test 2: collisions\n\n10 × 10 × 500 obstacles, 1 m apart, a position in each: every position collides "
-        "(`--no-height-check`). "
-        "Time for 1,000 positions.\n\n"
+        "## Test 2: collisions\n\n10 × 10 × 500 obstacles, 1 m apart, with a position in each, so every position "
+        "collides (`--no-height-check`).\n"
+        "Times are for 1,000 positions.\n\n"
         "| robot / obstacle | thesis | spawnfield, mean | variance, ms² | ratio | FCL at every position, mean | "
         "variance, ms² | ratio |\n"
         "|---|---|---|---|---|---|---|---|\n";
@@ -201,33 +202,37 @@ std::string raster_section(int test, const std::vector<Run>& runs, Ratios& ratio
     const bool low = test % 2 == 1, in_3d = test <= 4;
     std::string text = formatted("## Test %d: %s raster, %s\n\n", test, in_3d ? "3D" : "2D",
                                  low ? "low-complexity" : "complex");
-    text += in_3d ? "Heights up to 1.0 m above the ground count; the others are aerial.\n"
-                  : "Origin 1.0 m above the ground.\n";
-    if (!low) text += "At 1.5 m and more up to y = 1068: the thesis's counts there are those of a square.\n";
+    text += in_3d ? "Positions up to 1.0 m above the ground are judged; higher ones are aerial.\n"
+                  : "The robot's origin is 1.0 m above the ground.\n";
+    if (!low)
+        text +=
+            "With steps of 1.5 m and more y ends at 1068 m, because the thesis's counts for these steps are those of a "
+            "square.\n";
     text +=
         "\n| step | robot | thesis: checks | valid | invalid | time | spawnfield: checks | valid | invalid | time, "
-        "mean | variance, s² | asked FCL | ratio | FCL "
+        "mean | variance, s² | decided by FCL | ratio | FCL "
         "at every position |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
     const std::vector<Group> groups = groups_of(runs, [&](const Run& run) { return run.test == test; });
     for (const Group& group : groups)
         if (group.first.mode == Mode::Mask) text += raster_line(group, groups, thesis::raster(test), ratios[test]);
-    text += "\nChecks follow from limits and steps, limits included";
+    text += "\nThe number of checks follows from limits and steps, limits included";
     if (test == 3) text += "; the thesis rounds its first two";
     if (test == 4) text += "; the thesis rounds its first three";
-    text += ". Valid and invalid differ with the environments, which are others of the same statistics";
-    return text + (in_3d ? "; in 3D\nalso with how the ground's heights lie between the steps: at 1.5 m and more a "
-                           "level plain is in reach of a step, or none of it.\n\n"
-                         : ".\n\n");
+    text +=
+        ".\nThe numbers of valid and invalid positions differ because the environments differ, although their "
+        "statistics are the\nsame.";
+    return text + (in_3d ? " In 3D they also depend on how the ground's heights lie between the steps: with steps of "
+                           "1.5 m and more,\neither all of a level plain is in reach of a step, or nothing of it.\n\n"
+                         : "\n\n");
 }
 
 std::string search_section(int test, const std::vector<Run>& runs, Ratios& ratios)
 {
     const thesis::Random figure = thesis::random_search(test);
     std::string text = formatted(
-        "## Test %d: random search, %s\n\n2,000 spawns, 2.5 m from all checked positions, up to 100,000 failures in a "
-        "row. The thesis: %g s, variance "
-        "%g s².\n\n| distance check | runs | found | draws judged | mean | variance, s² | ratio "
-        "|\n|---|---|---|---|---|---|---|\n",
+        "## Test %d: random search, %s\n\n2,000 spawns, 2.5 m away from all checked positions, at most 100,000 "
+        "failures in a row. The thesis took %g s\n(variance %g s²).\n\n| distance check | runs | found | draws judged "
+        "| mean | variance, s² | ratio |\n|---|---|---|---|---|---|---|\n",
         test, test == 7 ? "low-complexity" : "complex", figure.mean, figure.variance);
     for (const Group& group : groups_of(runs, [&](const Run& run) { return run.test == test; }))
         for (const std::size_t count : std::set{std::min<std::size_t>(5, group.seconds.size()), group.seconds.size()}) {
@@ -240,15 +245,17 @@ std::string search_section(int test, const std::vector<Run>& runs, Ratios& ratio
                               grouped(group.first.positions).c_str(), seconds_text(mean).c_str(),
                               sample_variance(seconds), with_distance ? times_text(figure.mean / mean).c_str() : "");
         }
-    return text + "\nFound and draws are those of the first run.\n\n";
+    return text + "\nThe columns \"found\" and \"draws judged\" are those of the first run.\n\n";
 }
 
 std::string ratios_section(const Ratios& ratios)
 {
     std::string text =
-        "## Ours to theirs\n\nThe thesis ran in Unity (PhysX) on a Ryzen 7 3700X, with scenes that had the same "
-        "extents and statistics but were others. Machine, engine\n"
-        "and scene differ: the ratios tell what a user gains, not which processor or collision library is faster.\n\n"
+        "## Ratios: time of the thesis to time of spawnfield\n\nThe thesis ran in Unity (PhysX) on a Ryzen 7 3700X. "
+        "Its scenes had the same extents and statistics, but other content.\n"
+        "Because machine, engine and scene differ, the ratios show what a user gains, not which processor or "
+        "collision\n"
+        "library is faster.\n\n"
         "| test | least | most | goal | reached |\n|---|---|---|---|---|\n";
     for (const auto& [test, all] : ratios) {
         const auto [least, most] = std::minmax_element(all.begin(), all.end());
@@ -271,8 +278,8 @@ std::string break_even_text(const std::vector<Run>& runs)
                  }))
                 if (two.first.step == three.first.step && tools::mean(three.seconds) <= tools::mean(two.seconds))
                     steps.push_back(two.first.step);
-        text += std::string(test == 3 ? "low-complexity: " : "; complex: ") +
-                (steps.empty() ? "at no step asked for"
+        text += std::string(test == 3 ? "low-complexity, " : "; complex, ") +
+                (steps.empty() ? "at no tested step"
                                : formatted("from %g m on", *std::min_element(steps.begin(), steps.end())));
     }
     return text;
@@ -285,8 +292,9 @@ std::string plots_section(const Results& results, const std::string& pictures)
     };
     std::string text = "## Time against steps, 2D beside 3D\n\n" +
                        image("time_against_steps.png", "time against number of steps and step size");
-    text += formatted("\nBreak-even, where 3D takes no more time than 2D: theirs 1.8 m; ours, %s.\n\n",
-                      break_even_text(results.runs).c_str());
+    text += formatted(
+        "\n3D takes no more time than 2D from a certain step on. The thesis: from 1.8 m on.\nspawnfield: %s.\n\n",
+        break_even_text(results.runs).c_str());
     text += "## Time against spawns found\n\n" + image("time_against_spawns.png", "time against spawns found") +
             "\n## 2D beside 3D\n\n";
     std::uint64_t in_2d = 0, missed = 0, missed_snapped = 0;
@@ -296,17 +304,18 @@ std::string plots_section(const Results& results, const std::string& pictures)
         missed_snapped += finds.in_2d && !finds.in_3d_snapped;
     }
     text += formatted(
-        "At 2.5 m steps and up to 1 m above the ground, low-complexity. Of %s columns in which the 2D raster finds a "
-        "place to stand, the 3D raster has a step\n"
-        "in reach above the ground in some alone: it misses %s of them (%s). With `--snap` it misses %s.\n\n",
+        "The world is low-complexity, with steps of 2.5 m, up to 1 m above the ground. The 2D raster finds a place to "
+        "stand in\n%s columns. The 3D raster misses %s of them (%s), because none of its steps is in reach above their "
+        "ground.\nWith `--snap` it misses %s.\n\n",
         grouped(in_2d).c_str(), grouped(missed).c_str(), percent(missed, in_2d).c_str(),
         grouped(missed_snapped).c_str());
     text += image("columns_2d_3d.png", "2D beside 3D") +
             "\n## Special cases\n\nVerdicts of the box 0.3 m above the ground. "
-            "What is brown beside an obstacle is too near to it for a robot that looks along x.\n\n";
+            "Brown ground beside an obstacle is too near to it for a robot that looks\nalong x.\n\n";
     for (const Picture& picture : results.cases) text += image(picture.file, picture.title);
     text +=
-        "\n## Random spawns\n\nThe first runs of tests 7 and 8, over the verdicts of the box 1 m above the ground.\n\n";
+        "\n## Random spawns\n\nThe spawns of the first runs of tests 7 and 8, drawn over the verdicts of the box 1 m "
+        "above the ground.\n\n";
     for (const Picture& picture : results.spawns) text += image(picture.file, picture.title);
     return text;
 }
@@ -370,16 +379,19 @@ std::string report(const Settings& settings, const std::vector<const Environment
     for (const int test : {7, 8}) tests += search_section(test, results.runs, ratios);
     std::string text =
         "# The thesis's eight experiments\n\nRopelato's thesis on feasible spawn locations in Unity, from which "
-        "spawnfield grew, timed eight tests. They are run here with its\n"
-        "parameters; the robot is the Husky's base as a box (0.99 × 0.67 × 0.39 m), or a convex hull of 196 triangles "
-        "of that size.\n\n";
+        "spawnfield grew, timed eight tests. This report\n"
+        "repeats them with the same parameters. The robot is the Husky's base as a box (0.99 × 0.67 × 0.39 m), or a "
+        "convex hull\nof 196 triangles of that size.\n\n";
     if (settings.quick)
-        text += "**A quick run: coarse steps and maps, for counts and invariants. Its times say nothing.**\n\n";
-    text += "Made by `" + command + "` with " + tools::machine() +
-            formatted(
-                ", in %.0f s with the making and baking of the environments;\nlibraries %s. Searches draw with the "
-                "seeds 1 to 20.\n\n",
-                results.total_seconds, libraries(environments.front()->map).c_str());
+        text +=
+            "**This was a quick run with coarse steps and maps, for counts and invariants. Its times have no "
+            "meaning.**\n\n";
+    text +=
+        "Made by `" + command + "` with " + tools::machine() +
+        formatted(
+            ", in %.0f s, which includes making\nand baking the environments. Libraries: %s.\nSearches use the seeds 1 "
+            "to 20.\n\n",
+            results.total_seconds, libraries(environments.front()->map).c_str());
     return text + (settings.quick ? "" : ratios_section(ratios)) + environments_section(environments) + tests +
            plots_section(results, pictures);
 }

@@ -26,12 +26,12 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// A superellipsoid (Barr, Superquadrics and Angle-Preserving Transformations, 1981) of the Husky's size as an OBJ
-/// file; its faces are of no account, as a robot's mesh is taken for its convex hull.
+/// Returns a superellipsoid of the Husky's size as an OBJ file. Its faces do not matter, because a robot uses the
+/// convex hull of a mesh. Source: Barr, Superquadrics and Angle-Preserving Transformations, 1981.
 std::string husky_body()
 {
     constexpr int slices = 14, rings = 7;  // rings of corners between the poles
-    constexpr double exponent = 0.4;       // 1: an ellipsoid; 0: a box
+    constexpr double exponent = 0.4;       // 1 gives an ellipsoid, 0 a box
     const auto rounded = [](double x) { return std::copysign(std::pow(std::abs(x), exponent), x); };
     std::string text;
     const auto add = [&](double up, double around) {
@@ -54,7 +54,7 @@ std::string husky_body()
 Environment environment(const Settings& settings, const std::string& name,
                         const std::function<worlds::World(std::uint64_t)>& make, double resolution)
 {
-    settings.tell(name + ": making, baking");
+    settings.on_step(name + ": making, baking");
     Environment out{.name = name, .map = {}, .seed = 1};
     const std::filesystem::path world_folder = settings.folder / "worlds" / name,
                                 map_folder = settings.folder / "maps" / name;

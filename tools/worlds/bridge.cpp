@@ -9,7 +9,7 @@ using namespace spawnfield;
 namespace worlds {
 namespace {
 
-// m
+// All lengths in m.
 constexpr double ramp_length = 28, thickness = 0.6, foundation = 2, overlap = 0.5;
 constexpr double post = 0.4, beam = 0.5, railing_height = 1.1, railing_width = 0.1, pillar = 1;
 constexpr double half_length = bridge_length / 2, half_span = half_length - ramp_length;
@@ -24,7 +24,8 @@ hand::Mesh across(const std::vector<Eigen::Vector2d>& profile)
     return profile_along_y(profile, -bridge_half_width, bridge_half_width);
 }
 
-/// A level slab between two wedges, which reach a little into it: what is rounded on its way to a file leaves no gap.
+/// Returns a level slab between two wedges. The wedges overlap the slab a little, so that no gap opens when coordinates
+/// are rounded in the file.
 Pieces deck_of(const BridgeSite& site)
 {
     const double foot = std::min({site.left_ground, site.right_ground, site.bed}) - foundation,
@@ -43,7 +44,7 @@ Pieces deck_of(const BridgeSite& site)
                 {inner, site.deck}})};
 }
 
-/// Two posts beside the path and a beam over it.
+/// Returns two posts beside the path and a beam over it.
 Pieces frame_at(double x, double deck)
 {
     const double outer = bridge_half_width, inner = bridge_half_width - post, under_beam = deck + frame_top - beam;

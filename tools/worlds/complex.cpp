@@ -16,13 +16,13 @@ namespace {
 
 constexpr int house_models = 28, tower_models = 4, car_models = 6;
 constexpr int wild_trees = 1500;
-constexpr double highest = 80;         // m, of all that stands on the island
-constexpr double deepest_floor = 1.5;  // m under the sea: houses do not stand deeper
-constexpr double panel = 3;            // m, length of a fence's
+constexpr double highest = 80;         // m, limit for the tops of buildings
+constexpr double deepest_floor = 1.5;  // m below the sea; no building, car, tree or fence stands deeper
+constexpr double panel = 3;            // m, length of a fence panel
 constexpr double low_fence = 0.9, high_fence = 1.6;
 constexpr double lot_width = 17, lot_depth = (StreetGrid::block_v - StreetGrid::street) / 2;
 
-/// A model and the room that it takes around its middle, m.
+/// A model and its size around its own origin, m.
 struct Model {
     Pieces pieces;
     Vec2 half_size;
@@ -40,7 +40,7 @@ Model model_of(Pieces pieces)
     return model;
 }
 
-/// A frame of the town: its middle in the world, and its turn in quarters from the streets' direction.
+/// A frame in the town: its middle in the world, and its rotation as quarter turns from the direction of the streets.
 struct Site {
     Vec2 middle;
     int quarters;
@@ -49,14 +49,15 @@ struct Site {
     Vec2 to_world(const Vec2& local) const { return middle + Eigen::Rotation2Dd(yaw()) * local; }
 };
 
-/// Places are whole centimetres, so that equal models stay equal when they are written.
+/// Returns a pose at a place that is rounded to whole centimetres, so that equal models stay equal when they are
+/// written.
 Pose pose_at(const Vec2& p, double z, double yaw)
 {
     const auto rounded = [](double x) { return std::round(100 * x) / 100; };
     return {{rounded(p.x()), rounded(p.y()), rounded(z)}, rotation_from_rpy(0, 0, yaw)};
 }
 
-/// Fills the island with what stands on it.
+/// Adds the houses, cars, fences and trees to the island.
 class Settler {
 public:
     Settler(std::uint64_t seed, Bridge bridge) : random_(seed), island_(random_), bridge_(bridge) {}
@@ -66,7 +67,7 @@ public:
 private:
     struct Ground {
         double low, high;  ///< m
-        bool whole;        ///< no place without ground
+        bool whole;        ///< the ground has no hole here
     };
 
     void make_models();
@@ -98,7 +99,7 @@ private:
 
 void Settler::make_models()
 {
-    constexpr double foundation = 3;  // m: the ground may fall so far under a house
+    constexpr double foundation = 3;  // m; the ground may fall by this much under a house
     for (int i = 0; i < house_models; ++i)
         houses_.push_back(model_of(i % 4 == 0 ? house(random_, foundation)
                                               : Pieces{recessed_house(random_, {.foundation = foundation})}));
@@ -135,7 +136,8 @@ void Settler::add_bridge_of_canal()
     add_bridge(world_.scene, site, bridge_);
 }
 
-/// Its floor at the highest ground around it. Not where it falls too steeply, lies too deep or would rise too high.
+/// Adds a building with its floor at the highest ground around it. Returns false, and adds nothing, if the ground has a
+/// hole or is too steep or too deep under the sea, or if the building would be too high.
 bool Settler::add_building(const Site& site, const Model& model)
 {
     const Ground ground = ground_under(site, model.half_size);
@@ -155,7 +157,7 @@ void Settler::add_car(const Site& site, double steepest)
               pose_at(site.middle, (ground.low + ground.high) / 2 - 0.05, site.yaw()));
 }
 
-/// The trunk alone: a robot passes under what a crown would be.
+/// Adds a trunk without a crown, because a robot would pass under the crown.
 void Settler::add_tree(const Vec2& p)
 {
     const double radius = random_.between(0.12, 0.3), length = random_.between(4, 9);
@@ -166,7 +168,8 @@ void Settler::add_tree(const Vec2& p)
     world_.scene.parts.back().name = "tree-" + std::to_string(world_.scene.parts.size() - 1);
 }
 
-/// A thin upright box that follows the ground and reaches a little into it.
+/// Adds a thin upright box that follows the ground and reaches a little into it. Adds nothing where the ground is
+/// missing, too steep or too deep.
 void Settler::add_panel(const Vec2& from, const Vec2& to, double height)
 {
     constexpr double sunk = 0.3, thickness = 0.04;  // m
@@ -182,7 +185,7 @@ void Settler::add_panel(const Vec2& from, const Vec2& to, double height)
     world_.scene.parts.back().name = "fence-" + std::to_string(world_.scene.parts.size() - 1);
 }
 
-/// Panels, some of which are gone.
+/// Adds a row of panels, with about one in ten missing.
 void Settler::add_fence(const Vec2& from, const Vec2& to, double height)
 {
     const int panels = std::max(1, int((to - from).norm() / panel));
@@ -191,7 +194,7 @@ void Settler::add_fence(const Vec2& from, const Vec2& to, double height)
         if (!random_.chance(0.1)) add_panel(from + i * step, from + (i + 1) * step, height);
 }
 
-/// A house at the street (towards -y), and a garden behind it with fences and a tree.
+/// Adds a house at the street (towards -y), and a garden with fences and a tree behind it.
 void Settler::add_lot(const Site& lot)
 {
     const Model& model = houses_[std::size_t(random_.below(house_models))];
@@ -206,7 +209,7 @@ void Settler::add_lot(const Site& lot)
     add_tree(lot.to_world({x, y}));
 }
 
-/// Five lots side by side; `row` is the middle of them.
+/// Adds five lots side by side; `row` is their middle.
 void Settler::add_row(const Site& row)
 {
     for (int lot = -2; lot <= 2; ++lot) add_lot({row.to_world({lot * lot_width, 0}), row.quarters});
@@ -216,8 +219,10 @@ void Settler::add_towers(const Site& block)
 {
     for (const double x : {-28.0, 0.0, 28.0}) {
         const double y = random_.between(-12, 12);
-        add_building({block.to_world({x, y}), block.quarters + random_.below(2)},
-                     towers_[std::size_t(random_.below(tower_models))]);
+        // These are drawn before the call, because compilers may compute arguments in any order.
+        const Model& model = towers_[std::size_t(random_.below(tower_models))];
+        const int quarters = block.quarters + random_.below(2);
+        add_building({block.to_world({x, y}), quarters}, model);
     }
     for (int i = 0; i < 14; ++i) {
         const double x = random_.between(-40, 40), y = random_.between(17, 25) * (i % 2 == 0 ? 1 : -1);
@@ -225,7 +230,7 @@ void Settler::add_towers(const Site& block)
     }
 }
 
-/// A car park of three rows.
+/// Adds a car park with three rows of cars.
 void Settler::add_cars_in_rows(const Site& block)
 {
     for (const double y : {-18.0, 0.0, 18.0})
@@ -249,14 +254,14 @@ void Settler::add_park(const Site& block)
     }
 }
 
-/// Left behind along two streets of a block, and some across them.
+/// Adds cars along two streets of a block; some stand across the street.
 void Settler::add_street_cars(const Vec2& corner)
 {
     for (int i = 0; i < 5; ++i) {
         const bool along_u = random_.chance(0.6), across = random_.chance(0.1);
-        const double at = random_.between(8, along_u ? StreetGrid::block_u - 8 : StreetGrid::block_v - 8);
+        const double distance = random_.between(8, along_u ? StreetGrid::block_u - 8 : StreetGrid::block_v - 8);
         const double side = random_.between(across ? 0 : 2.6, across ? 1.5 : 3.6) * (random_.chance(0.5) ? 1 : -1);
-        const Vec2 uv = corner + (along_u ? Vec2(at, side) : Vec2(side, at));
+        const Vec2 uv = corner + (along_u ? Vec2(distance, side) : Vec2(side, distance));
         add_car({StreetGrid::to_world(uv), (along_u ? 0 : 1) + (across ? 1 : 0) + 2 * random_.below(2)}, 0.12);
     }
 }
@@ -277,7 +282,7 @@ void Settler::add_block(int i, int j)
     add_street_cars(corner);
 }
 
-/// On dry ground out of the town.
+/// Adds trees on dry ground outside the town.
 void Settler::add_wild_trees()
 {
     for (int i = 0; i < wild_trees; ++i) {

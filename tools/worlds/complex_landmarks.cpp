@@ -10,7 +10,7 @@ using namespace spawnfield;
 namespace worlds {
 namespace {
 
-/// Bounds of each part: of its triangles, and of its primitives' middles and upper ends.
+/// Returns the bounds of each part: around its triangles, and around the middles and upper ends of its primitives.
 std::vector<Bounds> bounds_of_parts(const Scene& scene)
 {
     std::vector<Bounds> bounds(scene.parts.size());
@@ -48,7 +48,7 @@ private:
     const std::vector<Bounds> bounds_;
 };
 
-/// A square on the ground, as high as what stands in it. Rounded to metres.
+/// Returns a square on the ground that is as high as the highest thing in it. Coordinates are rounded to metres.
 Bounds Guide::around(const Vec2& middle, double half) const
 {
     const Vec2 low = (middle.array() - half).round(), high = (middle.array() + half).round();
@@ -63,7 +63,7 @@ Bounds Guide::around(const Vec2& middle, double half) const
     return region;
 }
 
-/// Share of 9 x 9 places in a square that lie under the sea.
+/// Returns the share of 9 x 9 places in a square that lie under the sea.
 double Guide::wet_share(const Vec2& middle, double half) const
 {
     int wet = 0;
@@ -82,7 +82,7 @@ std::vector<Vec2> Guide::middles_of(const std::string& kind) const
     return middles;
 }
 
-/// The place with the least of a measure. Throws std::runtime_error if there is none at all.
+/// Returns the place with the smallest measure. Throws std::runtime_error if there are no places.
 Vec2 best_of(const std::vector<Vec2>& places, const std::function<double(const Vec2&)>& measure)
 {
     if (places.empty()) throw std::runtime_error("complex_district: no place for a landmark");
@@ -91,7 +91,7 @@ Vec2 best_of(const std::vector<Vec2>& places, const std::function<double(const V
     return places[std::size_t(std::min_element(measures.begin(), measures.end()) - measures.begin())];
 }
 
-/// Dry, and near the middle of the island.
+/// Returns the region around a car on dry ground near the middle of the island.
 Landmark Guide::car() const
 {
     const Vec2 place = best_of(
@@ -99,14 +99,14 @@ Landmark Guide::car() const
     return {"car", around(place, 8)};
 }
 
-/// A panel in the middle of a place that is half under water.
+/// Returns the region around a fence panel in a place that is half under water.
 Landmark Guide::fence_and_water() const
 {
     const Vec2 place = best_of(middles_of("fence"), [&](const Vec2& p) { return std::abs(wet_share(p, 12) - 0.5); });
     return {"fence_and_water", around(place, 12)};
 }
 
-/// Most of them within 40 m, and dry.
+/// Returns the dry region of 80 x 80 m with the most houses.
 Landmark Guide::houses() const
 {
     constexpr double half = 40;
@@ -118,7 +118,7 @@ Landmark Guide::houses() const
     return {"houses", around(place, half)};
 }
 
-/// Where the first dry ground rises from the western sea.
+/// Returns the region where dry ground begins, going east from the western edge of the sea.
 Landmark Guide::shore() const
 {
     Vec2 p(Island::low_x, StreetGrid::origin().y());

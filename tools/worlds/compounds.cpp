@@ -16,13 +16,13 @@ Element box(const std::string& name, const Vec3& size, const Vec3& centre, const
     return {name, {.kind = ShapeKind::Box, .size = size, .pose = {centre, rotation}}};
 }
 
-/// A box that stands in the ground.
+/// Returns a box that stands on the ground and reaches `sunk` into it.
 Element block(const std::string& name, const Vec3& size, double x, double y)
 {
     return box(name, {size.x(), size.y(), size.z() + sunk}, {x, y, (size.z() - sunk) / 2});
 }
 
-/// A capsule along `rotation`'s z, `length` from end to end.
+/// Returns a capsule along the z axis of `rotation`, `length` m from end to end.
 Element capsule(const std::string& name, double radius, double length, const Vec3& centre,
                 const Mat3& rotation = Mat3::Identity())
 {
@@ -34,7 +34,7 @@ Element upright_capsule(const std::string& name, double radius, double bottom, d
     return capsule(name, radius, top - bottom, {x, y, (bottom + top) / 2});
 }
 
-/// Two slabs over walls that end at `eaves`, and an attic that fills what is between them.
+/// Adds two slabs over the walls, and an attic that fills the space between them.
 void add_roof(const HouseSize& size, double pitch, double x, Compound& out)
 {
     constexpr double thickness = 0.25, overhang = 0.5;  // m

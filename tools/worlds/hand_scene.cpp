@@ -9,7 +9,7 @@ using namespace spawnfield;
 namespace hand {
 namespace {
 
-/// Edges with an odd number of faces: none where a piece is watertight.
+/// Returns the number of edges with an odd number of faces; 0 for a watertight piece.
 std::uint32_t open_edges(const Mesh& mesh)
 {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -79,10 +79,10 @@ Mesh rectangle(double size_x, double size_y)
 Mesh relief(int cells, double size, const std::function<double(double x, double y)>& height)
 {
     Mesh mesh;
-    const auto place = [&](int i) { return size * (double(i) / cells - 0.5); };
+    const auto coordinate = [&](int i) { return size * (double(i) / cells - 0.5); };
     for (int row = 0; row <= cells; ++row)
         for (int col = 0; col <= cells; ++col)
-            mesh.vertices.emplace_back(place(col), place(row), height(place(col), place(row)));
+            mesh.vertices.emplace_back(coordinate(col), coordinate(row), height(coordinate(col), coordinate(row)));
     const auto width = std::uint32_t(cells + 1);
     for (std::uint32_t row = 0; row + 1 < width; ++row)
         for (std::uint32_t col = 0; col + 1 < width; ++col) {

@@ -11,26 +11,26 @@ using namespace spawnfield;
 namespace worlds {
 namespace {
 
-// Shares of the square's columns, which fix the rim and the height of the sea.
-constexpr double ground_share = 0.7325;  // the rim's own columns come on top
-constexpr double dry_share = 0.4335;
+// Shares of the square. They decide where the rim and the sea level are.
+constexpr double ground_share = 0.7325;  // share with ground; the columns on the rim itself come on top
+constexpr double dry_share = 0.4335;     // share above the sea
 
-// m, beside the lengths in StreetGrid.
+// Lengths in m, in addition to those in StreetGrid.
 constexpr double rim_radius = 583, shore_inland = 95;
 constexpr double coast_width = 120, dune_height = 0.4;
-constexpr double highest_block = 26;                                          // above the sea
+constexpr double highest_block = 26;                                          // m above the sea
 constexpr double bed_slope = 0.056, bank_slope = 0.5, steepest_block = 0.13;  // rise per run
 constexpr double canal_depth = 2.5, canal_width = 30, canal_end = 80;
 constexpr double kerb = 0.2, roughness = 0.4;
 
-/// m from the canal's middle line; `uv` in the streets' frame.
+/// Returns the distance from the middle line of the canal, m; `uv` is in the frame of the streets.
 double canal_distance(const Vec2& uv)
 {
     const double middle = Island::canal_u + 8 * std::sin((uv.y() - Island::bridge_v) / 90);
     return std::hypot(uv.x() - middle, std::max(0.0, uv.y() - canal_end));
 }
 
-/// Of about one length (m), in all directions.
+/// Returns waves in all directions, with wavelengths of 0.75 to 1.3 times `length` (m).
 Waves waves(Random& random, double length)
 {
     constexpr int count = 9;
@@ -43,8 +43,8 @@ Waves waves(Random& random, double length)
     return out;
 }
 
-/// Mean 0, standard deviation 1.
-double swing(const Waves& waves, const Vec2& p) { return waves.at(p) / std::sqrt(0.5 * double(waves.count())); }
+/// Returns the sum of the waves, scaled to mean 0 and standard deviation 1.
+double swing(const Waves& waves, const Vec2& p) { return waves.sum_at(p) / std::sqrt(0.5 * double(waves.count())); }
 
 }  // namespace
 
@@ -66,7 +66,7 @@ Island::Island(Random& random)
     raise_to_sea_level();
 }
 
-/// m from the rim inwards: a rounded square with bays and coves.
+/// Returns the distance inwards from the rim, m. The rim is a rounded square with bays and coves.
 double Island::inland(const Vec2& p) const
 {
     const Vec2 d = (p - StreetGrid::origin()).cwiseAbs();
@@ -75,13 +75,14 @@ double Island::inland(const Vec2& p) const
            5 * std::clamp(swing(coves_, p), -2.0, 2.0);
 }
 
-/// m from the shore inwards: it keeps away from the rim, now more, now less.
+/// Returns the distance inwards from the shore, m. The distance between shore and rim varies.
 double Island::from_shore(const Vec2& p) const
 {
     return inland(p) - shore_inland - 24 * std::clamp(swing(shoals_, p), -1.6, 1.6);
 }
 
-/// m above the sea, far from shore and canal: low in the south-west, hills in the north-east.
+/// Returns the height above the sea far from the shore and the canal, m: low in the south-west, hills in the
+/// north-east.
 double Island::land(const Vec2& p) const
 {
     const double north_east = (p - StreetGrid::origin()).dot(Vec2(0.6, 0.8));
@@ -91,7 +92,7 @@ double Island::land(const Vec2& p) const
     return height;
 }
 
-/// m above the sea, without kerbs and roughness.
+/// Returns the height above the sea without kerbs and roughness, m.
 double Island::smooth_height(const Vec2& p) const
 {
     const double depth = from_shore(p);
@@ -101,7 +102,7 @@ double Island::smooth_height(const Vec2& p) const
     return std::min(dune + land(p) * std::min(1.0, depth / coast_width), std::max(bank, -canal_depth));
 }
 
-/// Those inland that lie neither high nor steep.
+/// Chooses the blocks of the town: inland, not too high and not too steep.
 void Island::choose_blocks()
 {
     for (int j = -most_blocks; j < most_blocks; ++j)
@@ -126,7 +127,7 @@ bool Island::is_in_town(const Vec2& uv) const
     return is_settled(int(std::floor(uv.x() / StreetGrid::block_u)), int(std::floor(uv.y() / StreetGrid::block_v)));
 }
 
-/// Streets run on all sides of the settled blocks.
+/// Returns whether p is on a street. Streets run on all sides of the settled blocks.
 bool Island::is_street(const Vec2& p) const
 {
     const Vec2 uv = StreetGrid::from_world(p), block(StreetGrid::block_u, StreetGrid::block_v);
@@ -139,7 +140,7 @@ bool Island::is_street(const Vec2& p) const
     return false;
 }
 
-/// Heights above the sea: smooth on the streets, which lie a kerb lower, rough elsewhere.
+/// Computes all heights above the sea: smooth on the streets, which lie lower by one kerb, and rough elsewhere.
 void Island::shape(Random& random)
 {
     for (int row = 0; row <= cells; ++row)
@@ -150,7 +151,7 @@ void Island::shape(Random& random)
         }
 }
 
-/// Leaves ground to the cells that lie furthest inland, a given share of all.
+/// Gives ground to the given share of cells, those furthest inland, and none to the others.
 void Island::cut_rim()
 {
     std::vector<double> depths;
@@ -162,7 +163,7 @@ void Island::cut_rim()
     for (const double depth : depths) has_ground_.push_back(depth >= *rim);
 }
 
-/// Moves all heights so that a given share of the square is land, and the sea lies at its level.
+/// Shifts all heights so that the sea level is as given and the given share of the square lies above it.
 void Island::raise_to_sea_level()
 {
     std::vector<double> sorted;
@@ -190,7 +191,7 @@ bool Island::has_ground(const Vec2& p) const
     return col >= 0 && row >= 0 && col < cells && row < cells && has_ground_[cell_slot(row, col)];
 }
 
-/// The sheet's cells on the streets, or all others.
+/// Returns the cells of the sheet that lie on streets, or all other cells.
 hand::Mesh Island::sheet(bool streets) const
 {
     hand::Mesh mesh;

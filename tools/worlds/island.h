@@ -8,41 +8,42 @@ namespace worlds {
 
 using Vec2 = Eigen::Vector2d;
 
-/// A grid of streets, turned against the axes. Block (i, j) lies between the middles of streets i and i + 1 (u = i
-/// block_u) and j and j + 1 (v = j block_v); u runs along the blocks' longer sides.
+/// A grid of streets, rotated against the axes. Block (i, j) lies between the middles of streets i and i + 1 (street i
+/// is at u = i * block_u) and of streets j and j + 1 (street j is at v = j * block_v). The longer sides of the blocks
+/// run along u.
 struct StreetGrid {
     static constexpr double block_u = 96, block_v = 64, street = 10;  // m
-    static constexpr double turn = 0.3;                               // rad, of u from x
+    static constexpr double turn = 0.3;                               // rad, from x to u
 
-    static Vec2 origin() { return {512, 428}; }  ///< in the world: the middle of the square
+    static Vec2 origin() { return {512, 428}; }  ///< in the world; the middle of the square
     static Vec2 to_world(const Vec2& uv);
     static Vec2 from_world(const Vec2& p);
 };
 
-/// The ground of the complex district: an island in a square of sea, its lower half partly flooded, streets over it,
-/// and a canal that ends among them. A sheet of 2 m cells; beyond the island's rim there is none.
+/// The ground of the complex district: an island in a square of sea. Its lower half is partly flooded, streets cover
+/// it, and a canal ends among them. The ground is a sheet of 2 m cells, and there is none beyond the rim of the island.
 class Island {
 public:
     static constexpr double low_x = -128, low_y = -212, side = 1280;  // m, of the square
     static constexpr double cell = 2, sea_level = 3.35;               // m
-    static constexpr double canal_u = -StreetGrid::block_u / 2;       // m, of its middle line where the bridge is
-    static constexpr double bridge_v = -StreetGrid::block_v;          // m, of the street that crosses it
+    static constexpr double canal_u = -StreetGrid::block_u / 2;  // m, of the middle line of the canal at the bridge
+    static constexpr double bridge_v = -StreetGrid::block_v;     // m, of the street that crosses the canal
 
-    static constexpr int most_blocks = 16;  ///< in each direction from the middle
+    static constexpr int most_blocks = 16;  ///< number of blocks in each direction from the middle
 
     explicit Island(Random& random);
 
-    double height(const Vec2& p) const;     ///< m; beyond the rim as the sea bed goes on
-    bool has_ground(const Vec2& p) const;   ///< whether the sheet reaches here
+    double height(const Vec2& p) const;     ///< m; beyond the rim the height of the sea bed continues
+    bool has_ground(const Vec2& p) const;   ///< whether the sheet covers p
     bool is_settled(int i, int j) const;    ///< whether block (i, j) is part of the town
-    bool is_in_town(const Vec2& uv) const;  ///< whether a place in the streets' frame lies in a settled block
+    bool is_in_town(const Vec2& uv) const;  ///< whether a place in the frame of the streets lies in a settled block
 
     void add_to(spawnfield::Scene& scene) const;  ///< ground, streets and sea
 
 private:
     struct Hill {
         Vec2 top;
-        double height, spread;  ///< m; the spread is its shape's standard deviation
+        double height, spread;  ///< m; the shape is a Gaussian with `spread` as its standard deviation
     };
     static constexpr int cells = int(side / cell);
 
@@ -63,8 +64,8 @@ private:
 
     Waves bays_, coves_, shoals_, swell_, knolls_;
     std::vector<Hill> hills_;
-    std::vector<double> heights_;   ///< m, of the corners, row after row from the least y
-    std::vector<char> has_ground_;  ///< of the cells, likewise
+    std::vector<double> heights_;   ///< m, of the corners of the cells; row after row, starting at the smallest y
+    std::vector<char> has_ground_;  ///< of the cells, in the same order
     std::vector<char> settled_;     ///< of the blocks
 };
 

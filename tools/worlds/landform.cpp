@@ -14,7 +14,7 @@ void Waves::add(double direction, double wavelength, double phase)
     waves_.push_back({per_metre * Vector2d(std::cos(direction), std::sin(direction)), phase});
 }
 
-double Waves::at(const Vector2d& p) const
+double Waves::sum_at(const Vector2d& p) const
 {
     double sum = 0;
     for (const auto& [turns, phase] : waves_) sum += std::sin(turns.dot(p) + phase);

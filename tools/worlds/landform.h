@@ -9,10 +9,10 @@ namespace worlds {
 /// A sum of plane sine waves, each of amplitude 1.
 class Waves {
 public:
-    /// Direction and phase in rad, wavelength in m.
+    /// Adds a wave. Direction and phase are in rad, the wavelength in m.
     void add(double direction, double wavelength, double phase);
 
-    double at(const Eigen::Vector2d& p) const;
+    double sum_at(const Eigen::Vector2d& p) const;
     std::size_t count() const { return waves_.size(); }
 
 private:
@@ -23,7 +23,7 @@ private:
     std::vector<Wave> waves_;
 };
 
-/// 0 up to `from`, 1 from `to` on, smooth between them.
+/// Returns 0 up to `from`, 1 from `to` on, and a smooth transition between them.
 double smooth_step(double from, double to, double x);
 
 }  // namespace worlds

@@ -45,7 +45,9 @@ Scene grid_of_balls(int cols, int rows, int heights, std::uint64_t seed)
     Random random(seed);
     return lattice("grid-hull", {cols, rows, heights}, [&](Scene& scene, const Vec3& place) {
         hand::Mesh mesh = ball();
-        const Vec3 radii(random.between(0.1, 0.2), random.between(0.1, 0.2), random.between(0.1, 0.2));
+        // These are drawn one by one, because compilers may compute arguments in any order.
+        const double z = random.between(0.1, 0.2), y = random.between(0.1, 0.2), x = random.between(0.1, 0.2);
+        const Vec3 radii(x, y, z);
         for (Vec3& vertex : mesh.vertices) vertex = vertex.cwiseProduct(radii);
         hand::add_mesh(scene, Label::Obstacle, hand::moved(mesh, {place, any_rotation(random)}));
     });

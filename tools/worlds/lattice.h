@@ -5,16 +5,17 @@
 
 namespace worlds {
 
-/// cols x rows x heights obstacles 1 m apart in the open, the first at the origin: nothing that casts ground. Each is
-/// 0.2 to 0.4 m across; a robot that is less than 0.5 m long from its origin meets one at each lattice point.
+/// Returns a scene of cols x rows x heights boxes without any ground. They are 1 m apart, the first at the origin, and
+/// 0.2 to 0.4 m across. A robot that is less than 0.5 m long from its origin meets exactly one of them at each lattice
+/// point.
 spawnfield::Scene grid_of_boxes(int cols, int rows, int heights, std::uint64_t seed = 1);
 
-/// The same of closed convex meshes, 80 triangles each.
+/// Returns the same with closed convex meshes of 80 triangles each.
 spawnfield::Scene grid_of_balls(int cols, int rows, int heights, std::uint64_t seed = 1);
 
-spawnfield::Scene empty_scene();  ///< nothing at all
+spawnfield::Scene empty_scene();  ///< without any part
 
-/// An ellipsoid as large as the Husky's box, of 224 triangles.
+/// Returns an ellipsoid of 224 triangles, as large as the Husky's box.
 spawnfield::Robot hull_robot();
 
 }  // namespace worlds

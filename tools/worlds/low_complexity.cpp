@@ -12,15 +12,15 @@ namespace worlds {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double world_side = 500, ground_side = 499.9;  // m: the last column of a raster has no ground
-constexpr int ground_cells = 500;                        // along a side
-constexpr double lowest = 31, highest = 124;             // m: of all that is solid
+constexpr double world_side = 500, ground_side = 499.9;  // m; the last column of a raster has no ground
+constexpr int ground_cells = 500;                        // cells along a side
+constexpr double lowest = 31, highest = 124;             // m, of everything that is solid
 
-/// What grows on a stretch of land.
+/// The plants in one kind of area.
 struct Growth {
-    int count;                ///< of plants; fewer where there is no room
+    int count;                ///< number of plants; fewer if there is no room
     double spacing;           ///< m between neighbours
-    double conifers, bushes;  ///< shares; the others are broad trees
+    double conifers, bushes;  ///< shares of the plants; the others are broad trees
     std::function<bool(const Vec2&)> grows_at;
 };
 
@@ -53,7 +53,7 @@ private:
     World world_;
     Random random_;
     const ValleyLand land_;
-    const Waves edge_;  ///< of the forest
+    const Waves edge_;  ///< of the dense forest
     Placer placer_;
     const TownFrame town_ = {land_.town().centre, 0.2};
     Vec2 landing_ = Vec2::Zero();  ///< where the jetty begins
@@ -61,7 +61,7 @@ private:
 
 Vec2 Valley::anywhere()
 {
-    constexpr double margin = 3;  // m: no crown reaches over the edge
+    constexpr double margin = 3;  // m, so that no crown reaches over the edge
     const double x = random_.between(margin, ground_side - margin), y = random_.between(margin, ground_side - margin);
     return {x, y};
 }
@@ -76,7 +76,7 @@ void Valley::add_ground()
     world_.scene.parts.back().name = "ground";
 }
 
-/// Its water, and a jetty on the town's side on piles that reach down to the lowest height of the world.
+/// Adds the water, and a jetty on the side of the town. Its piles reach down to the lowest height of the world.
 void Valley::add_lake()
 {
     constexpr double deck = ValleyLand::water + 0.5, length = 24;  // m
@@ -93,25 +93,26 @@ void Valley::add_lake()
     placer_.add("jetty", jetty(length, deck - lowest), {{landing_.x(), landing_.y(), deck}, rotation});
 }
 
-/// Stones in the corners: with them the scene spans 500 x 500 m.
+/// Adds stones in the corners, so that the scene spans 500 x 500 m.
 void Valley::add_border()
 {
-    constexpr double inside = 0.05;  // m: half of a stone
+    constexpr double inside = 0.05;  // m, half of the width of a stone
     for (const double y : {inside, world_side - inside})
         for (const double x : {inside, world_side - inside}) placer_.add("border", border_stone(), {x, y}, 0);
 }
 
-/// On the hill, up to the world's greatest height.
+/// Adds a mast on the hill, up to the greatest height of the world, and a hut beside it.
 void Valley::add_mast()
 {
-    constexpr double foot = 100;  // m: within the hill
+    constexpr double foot = 100;  // m, inside the hill
     const Vec2 top = land_.hill().centre;
     placer_.add("mast", mast(highest - foot), {{top.x(), top.y(), foot}, Mat3::Identity()});
     placer_.add("hut", hut(), top + Vec2(4, 1), 0.3);
     placer_.keep_clear({top, 9});
 }
 
-/// From the town to the jetty, through the dense forest, and up the hill: ground alone, no tree stands on it.
+/// Keeps the ground of the paths free of trees: from the town to the jetty, through the dense forest, up the hill, and
+/// out of the town.
 void Valley::keep_paths()
 {
     constexpr double half_width = 2.2;  // m
@@ -126,7 +127,7 @@ void Valley::keep_paths()
         for (std::size_t i = 1; i < path.size(); ++i) placer_.keep_clear(path[i - 1], path[i], half_width);
 }
 
-/// A plant where there is room for it.
+/// Adds a plant if there is room for it.
 bool Valley::plant(const Disc& ground, double conifers, double bushes)
 {
     if (!land_.is_dry(ground.centre) || !placer_.is_clear(ground)) return false;
@@ -141,18 +142,19 @@ bool Valley::plant(const Disc& ground, double conifers, double bushes)
     return true;
 }
 
-/// A winding row of bushes with a tree now and then.
+/// Adds a winding row of bushes with some trees.
 void Valley::add_hedge(const Vec2& from, const Vec2& to)
 {
-    constexpr double bend = 16, bushes = 0.94;  // m; share
+    constexpr double bend = 16;      // m
+    constexpr double bushes = 0.94;  // share
     const double length = (to - from).norm();
-    for (double at = 0; at < length; at += random_.between(1.3, 2.1)) {
-        const Vec2 straight = from + at / length * (to - from);
+    for (double distance = 0; distance < length; distance += random_.between(1.3, 2.1)) {
+        const Vec2 straight = from + distance / length * (to - from);
         plant({straight + bend * Vec2(swing(edge_, straight), swing(edge_, -straight)), 0.5}, 0, bushes);
     }
 }
 
-/// Between the forest and the hill: hedges along fields, and an orchard.
+/// Adds hedges along fields, and an orchard, between the forest and the hill.
 void Valley::add_fields()
 {
     constexpr double left = 215, right = 360, bottom = 325, top = 480, row = 8;  // m
@@ -171,9 +173,9 @@ bool Valley::is_dense_forest(const Vec2& p) const
 
 void Valley::grow(const Growth& growth)
 {
-    constexpr int draws = 60;  // for each plant
+    constexpr int draws_per_plant = 60;
     int missing = growth.count;
-    for (int left = draws * growth.count; missing > 0 && left > 0; --left) {
+    for (int draws = draws_per_plant * growth.count; missing > 0 && draws > 0; --draws) {
         const Vec2 place = anywhere();
         if (growth.grows_at(place) && plant({place, growth.spacing / 2}, growth.conifers, growth.bushes)) --missing;
     }
@@ -206,7 +208,7 @@ void Valley::add_boulders()
     }
 }
 
-/// A square on the map, `side` m across, as low as its ground and as high as what stands in it.
+/// Adds a landmark: a square on the map, `side` m across, from its lowest ground to the top of the highest thing in it.
 void Valley::add_landmark(const char* name, const Vec2& centre, int side)
 {
     const Vec2 corner = centre - Vec2(side / 2.0, side / 2.0);

@@ -33,9 +33,9 @@ int main(int argc, char** argv)
     std::uint64_t seed = 1;
     std::vector<std::string> names;
     for (const auto& [known, make] : makers()) names.push_back(known);
-    app.add_option("world", name, "Which")->required()->check(CLI::IsMember(names));
-    app.add_option("-o,--output", folder, "Folder, made where missing")->required();
-    app.add_option("--seed", seed, "The same seed gives the same bytes; the benchmark's worlds have none")
+    app.add_option("world", name, "Name of the world")->required()->check(CLI::IsMember(names));
+    app.add_option("-o,--output", folder, "Folder of the output; it is created if it does not exist")->required();
+    app.add_option("--seed", seed, "The same seed gives the same bytes; the benchmark worlds do not use it")
         ->check(tools::seed_complaint)
         ->capture_default_str();
     app.footer(
@@ -45,7 +45,7 @@ int main(int argc, char** argv)
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;  // as spawnfield: wrong usage
+        return app.exit(error) == 0 ? 0 : 2;  // 2 means wrong usage, as in spawnfield
     }
     try {
         worlds::write_world(makers().at(name)(seed), folder);

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-/// SplitMix64 (Steele 2014): the same numbers everywhere, which std distributions don't promise.
+/// SplitMix64 (Steele 2014). It gives the same numbers everywhere, which std distributions do not guarantee.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state_{seed} {}

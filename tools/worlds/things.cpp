@@ -78,7 +78,7 @@ hand::Mesh icosahedron()
     return mesh;
 }
 
-/// Each triangle of a ball in four, the new corners on the ball too.
+/// Splits each triangle of a ball into four. The new corners are on the ball, too.
 hand::Mesh subdivided(const hand::Mesh& ball)
 {
     hand::Mesh out = {ball.vertices, {}};
@@ -95,7 +95,7 @@ hand::Mesh subdivided(const hand::Mesh& ball)
     return out;
 }
 
-/// A ball of 80 or, where fine, 320 triangles that is dented here and there.
+/// Returns an uneven ball of 80 triangles, or of 320 if `fine`.
 hand::Mesh rough_ball(Random& random, bool fine, const Vec3& radii, const Vec3& centre)
 {
     static const hand::Mesh coarse_ball = subdivided(icosahedron()), fine_ball = subdivided(coarse_ball);
@@ -105,7 +105,7 @@ hand::Mesh rough_ball(Random& random, bool fine, const Vec3& radii, const Vec3& 
 }
 
 struct Gable {
-    double length, width, walls, ridge;  ///< m; walls and ridge above the ground
+    double length, width, walls, ridge;  ///< m; walls and ridge are heights above the ground
 };
 
 void add_gabled_house(const Gable& size, double foundation, const Pose& pose, Pieces& out)
@@ -161,7 +161,7 @@ hand::Mesh blocks(const BlockGrid& grid)
                                        grid.z[std::size_t(at[2])]);
         return found->second;
     };
-    /// The side of a block towards +-axis.
+    // Adds the side of a block towards -axis (side 0) or +axis (side 1).
     const auto add_side = [&](const std::array<int, 3>& block, int axis, int side) {
         std::array<std::array<int, 3>, 4> at;
         at.fill(block);

@@ -3,27 +3,29 @@
 #include "hand_scene.h"
 #include "random.h"
 
-/// What stands in the benchmark's landscapes: closed pieces around their own origin, the ground at z = 0, metres.
+/// Things that consist of closed pieces. Each is built around its own origin with the ground at z = 0, in metres.
 namespace worlds {
 
 using Pieces = std::vector<hand::Mesh>;
 
 hand::Mesh ball();  ///< of radius 1, 80 triangles
 
-/// A profile in y and z, counterclockwise seen from +x, extruded along x.
+/// Returns a profile in y and z, extruded along x. The profile is counterclockwise as seen from +x.
 hand::Mesh profile_along_x(const std::vector<Eigen::Vector2d>& profile, double length);
 
-/// A profile in x and z, counterclockwise seen from -y, extruded from y0 to y1.
+/// Returns a profile in x and z, extruded from y0 to y1. The profile is counterclockwise as seen from -y.
 hand::Mesh profile_along_y(const std::vector<Eigen::Vector2d>& profile, double y0, double y1);
 
-/// A building of blocks: what lies between neighbouring coordinates is filled or not. Closed, whatever is filled.
+/// A building that consists of blocks. The block between neighbouring coordinates is either filled or empty. The
+/// surface is closed for every choice of filled blocks.
 struct BlockGrid {
     std::vector<double> x, y, z;                ///< m, ascending
     std::function<bool(int, int, int)> filled;  ///< block (i, j, k) lies between x[i] and x[i + 1], …
 };
 hand::Mesh blocks(const BlockGrid& grid);
 
-/// Walls with gables, a roof that juts out, a chimney, at times a wing; `foundation` m deep. Along x.
+/// Returns a house along x: walls with gables, a roof that juts out, a chimney, and sometimes a wing. Its foundation
+/// reaches `foundation` m into the ground.
 Pieces house(Random& random, double foundation);
 
 struct RecessedHouse {
@@ -31,17 +33,18 @@ struct RecessedHouse {
     int least_storeys = 1, most_storeys = 3;
 };
 
-/// A block of a house, along x, its door to -y: windows and the door are recesses; some have an upper storey set back.
+/// Returns a house along x as one block, with its door towards -y. Windows and the door are recesses. Some houses have
+/// a top storey that is set back.
 hand::Mesh recessed_house(Random& random, const RecessedHouse& plan = {});
 
-Pieces tree(Random& random);  ///< trunk and crown, either of needles (cones) or of leaves (a rough ball)
+Pieces tree(Random& random);  ///< a trunk and a crown, which is either cones or a rough ball
 Pieces car(Random& random);   ///< a coarse body on four wheels, along x
 Pieces rock(Random& random);  ///< a rough ball, half sunk
 
-/// A post at `from`, and two rails 2 to 4 cm thick from there to `to`.
+/// Returns a post at `from`, and two rails, 2 to 4 cm thick, from there to `to`.
 Pieces fence_panel(Random& random, const spawnfield::Vec3& from, const spawnfield::Vec3& to);
 
-/// Adds a part of these pieces, named after its number in the scene.
+/// Adds a part with these pieces. Its name is `name` with its number in the scene.
 void add_thing(spawnfield::Scene& scene, const char* name, spawnfield::Label label, const Pieces& pieces,
                const spawnfield::Pose& pose);
 

@@ -9,9 +9,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double plain_height = 50, town_height = 50.3, hill_height = 56;  // m
-constexpr double broad_height = 1.2, rough_height = 0.5;                   // m, of the waves up and down
+constexpr double broad_height = 1.2, rough_height = 0.5;                   // m, amplitude of the waves
 
-/// 1 in the middle of a disc, 0 on its rim, level at both.
+/// Returns 1 in the middle of a disc and 0 on its rim and beyond, with a level tangent at both.
 double bell(const Disc& disc, const Vec2& p)
 {
     const double distance = std::min(1.0, (p - disc.centre).norm() / disc.radius);
@@ -32,7 +32,7 @@ Waves waves_between(Random& random, double shortest, double longest)
     return out;
 }
 
-double swing(const Waves& waves, const Vec2& p) { return waves.at(p) / double(waves.count()); }
+double swing(const Waves& waves, const Vec2& p) { return waves.sum_at(p) / double(waves.count()); }
 
 ValleyLand::ValleyLand(Random& random)
     : broad_(waves_between(random, 120, 260)), rough_(waves_between(random, 18, 40)),
@@ -44,7 +44,7 @@ ValleyLand::ValleyLand(Random& random)
 {
 }
 
-/// 0 in the middle of the lake, 1 at its shore, which has bays and capes.
+/// Returns 0 in the middle of the lake and 1 at its shore, which has bays and capes.
 double ValleyLand::from_shore(const Vec2& p) const
 {
     const Vec2 out = p - lake_.centre;
@@ -61,7 +61,7 @@ double ValleyLand::unevenness(const Vec2& p) const
     return std::max(east_of_town, south * smooth_step(230, 270, p.x()));
 }
 
-/// The land without town and lake.
+/// Returns the height of the land without the town and the lake, m.
 double ValleyLand::plain(const Vec2& p) const
 {
     return plain_height + broad_height * swing(broad_, p) + rough_height * unevenness(p) * swing(rough_, p) +

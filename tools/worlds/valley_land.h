@@ -7,10 +7,10 @@ namespace worlds {
 
 using Vec2 = Eigen::Vector2d;
 
-/// Eight waves in all directions, of wavelengths between two limits, m.
+/// Returns eight waves in all directions, with wavelengths between two limits, m.
 Waves waves_between(Random& random, double shortest, double longest);
 
-/// Of the waves' sum, -1 .. 1.
+/// Returns the sum of the waves, scaled to -1 .. 1.
 double swing(const Waves& waves, const Vec2& p);
 
 /// A disc on the map.
@@ -22,12 +22,12 @@ struct Disc {
 /// Heights of a valley of 500 x 500 m: a plain with a lake, level ground for a town, uneven ground, and a hill.
 class ValleyLand {
 public:
-    static constexpr double water = 46.5;     ///< m: height of the lake's surface
-    static constexpr double lake_bed = 31.2;  ///< m: lowest ground
+    static constexpr double water = 46.5;     ///< m, height of the lake's surface
+    static constexpr double lake_bed = 31.2;  ///< m, height of the lowest ground
 
     explicit ValleyLand(Random& random);
 
-    const Disc& lake() const { return lake_; }  ///< all of its water lies within
+    const Disc& lake() const { return lake_; }  ///< contains all of the water
     const Disc& town() const { return town_; }
     const Disc& hill() const { return hill_; }
 

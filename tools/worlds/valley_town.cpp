@@ -8,7 +8,8 @@ namespace worlds {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double square = 18, street = 4.5, street_end = 88;  // m: half side, half width, length from the centre
+constexpr double square = 18, street = 4.5,
+                 street_end = 88;  // m: half of a side, half of the width, length from the centre
 
 class Town {
 public:
@@ -24,7 +25,7 @@ public:
     }
 
 private:
-    /// The point (u, v) of the town turned around its centre.
+    /// Returns the point (u, v) of the town after a rotation of the town around its centre.
     Vec2 turned(double turn, double u, double v) const
     {
         return TownFrame{frame_.centre, frame_.turn + turn}.point(u, v);
@@ -69,7 +70,7 @@ void Town::add_church()
     placer_.keep_clear({frame_.point(u + 8, v), 10});
 }
 
-/// Unless its ground is taken or wet.
+/// Adds a house unless its ground is taken or wet. Returns whether it did.
 bool Town::add_house(double turn, double u, double v, double yaw)
 {
     const HouseSize size = {random_.between(9.5, 13), random_.between(7.5, 9.5), random_.between(2.8, 5.8)};
@@ -81,7 +82,7 @@ bool Town::add_house(double turn, double u, double v, double yaw)
     return true;
 }
 
-/// One arm of the crossing: houses on both sides with their fronts to it, lamps, parked cars.
+/// Adds one arm of the crossing: houses on both sides that face the street, lamps, and parked cars.
 void Town::add_street(double turn)
 {
     constexpr double front = 7, first = 30, spacing = 16.5;  // m
@@ -104,7 +105,7 @@ void Town::add_back_houses(double turn)
     }
 }
 
-/// Fences on three sides of a plot, and a gap in one.
+/// Adds fences on three sides of a plot, one of them with a gap.
 void Town::add_garden(double turn, double u, double v)
 {
     constexpr double half = 9, gap = 5;  // m

@@ -4,7 +4,7 @@
 
 namespace worlds {
 
-/// The turned frame of a town: its two streets run along u and v through its centre.
+/// The rotated frame of a town. Its two streets run along u and v through its centre.
 struct TownFrame {
     Vec2 centre;
     double turn;  ///< rad from x to u
@@ -16,7 +16,8 @@ struct TownFrame {
     }
 };
 
-/// A square with a fountain where two streets cross, houses along them and behind, a church, gardens, lamps, cars.
+/// Adds a town: a square with a fountain where two streets cross, houses along the streets and behind them, a church,
+/// gardens, lamps and cars.
 void add_town(Placer& placer, Random& random, const TownFrame& frame);
 
 }  // namespace worlds

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rounded to so many decimals, without zeros at the end.
+/// Returns the value rounded to `decimals` decimals, without trailing zeros.
 std::string decimal(double value, int decimals)
 {
     const double unit = std::pow(10.0, decimals), rounded = std::round(value * unit) / unit + 0.0;  // -0 becomes 0
@@ -47,10 +47,10 @@ std::string shape_text(const Shape& shape)
     case ShapeKind::Capsule: return "capsule: " + round;
     case ShapeKind::Hull: break;
     }
-    throw std::runtime_error("write_world: a scene has no hulls");
+    throw std::runtime_error("write_world: a hull cannot be written to a scene file");
 }
 
-/// What stands in a scene for each of its parts.
+/// The primitives and pieces of a part.
 struct PartItems {
     std::vector<const Primitive*> primitives;
     std::vector<const Piece*> pieces;
@@ -106,7 +106,7 @@ private:
                pose_text({(bounds.min + bounds.max) / 2, Mat3::Identity()});
     }
 
-    /// Meshes that are equal but for their place share a file.
+    /// Returns the text of a mesh, and writes its file. Meshes that differ only in their place share a file.
     std::string mesh_text(const Part& part, const std::vector<const Piece*>& pieces)
     {
         Vec3 place = scene_.vertices[scene_.triangles[pieces[0]->first_triangle][0]];
@@ -132,8 +132,9 @@ private:
                 for (const std::uint32_t v : scene_.triangles[pieces[p]->first_triangle + t]) {
                     const auto [found, is_new] = numbers.try_emplace(v, count + 1);
                     if (is_new) {
-                        const Vec3 at = scene_.vertices[v] - origin;
-                        vertices += "v " + length(at.x()) + " " + length(at.y()) + " " + length(at.z()) + "\n";
+                        const Vec3 vertex = scene_.vertices[v] - origin;
+                        vertices += "v " + length(vertex.x()) + " " + length(vertex.y()) + " " + length(vertex.z()) +
+                                    "\n";
                         ++count;
                     }
                     faces += " " + std::to_string(found->second);
@@ -146,7 +147,7 @@ private:
 
     const Scene& scene_;
     const fs::path folder_;
-    std::map<std::string, std::string> files_;  ///< contents to name
+    std::map<std::string, std::string> files_;  ///< from the contents to the name of the file
 };
 
 std::string landmarks_text(const std::vector<Landmark>& landmarks)

@@ -1,0 +1,44 @@
+#include "common_args.h"
+
+#include "messages.h"
+
+#include <spawnfield/error.h>
+
+namespace spawnfield::cli {
+
+void start_group(CLI::App& command, const std::string& name) { command.option_defaults()->group(name); }
+
+void add_common(CLI::App& command, CommonArgs& args)
+{
+    start_group(command, help_group::run);
+    command.add_option("--threads", args.threads, "Number of threads; 0: all cores. It never changes the result")
+        ->check(CLI::Range(0, most_threads));
+    command.add_flag("--quiet,-q", args.quiet, "Print no notices, no progress and no summary line");
+    command.add_option("--summary", args.summary, "JSON file to which the summary is written (- for standard output)");
+}
+
+void add_allow_empty(CLI::App& command, CommonArgs& args)
+{
+    command.add_flag("--allow-empty", args.allow_empty, "Accept a file of poses that has a header but no pose");
+}
+
+CLI::Validator not_empty()
+{
+    return {[](const std::string& text) { return text.empty() ? "is empty; is a variable of the shell not set?" : ""; },
+            ""};
+}
+
+void refuse(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason)
+{
+    for (const std::string& option : options)
+        if (command.count(option) > 0) throw ArgumentError(option + " " + reason);
+}
+
+void notice_no_effect(const CommonArgs& args, const CLI::App& command, const std::vector<std::string>& options,
+                      const std::string& reason)
+{
+    for (const std::string& option : options)
+        if (command.count(option) > 0) notice(args, option + " has no effect: " + reason);
+}
+
+}  // namespace spawnfield::cli

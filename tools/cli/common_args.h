@@ -1,0 +1,46 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace spawnfield::cli {
+
+/// Largest value of --threads.
+inline constexpr int most_threads = 1024;
+
+/// Options that every command has.
+struct CommonArgs {
+    int threads = 0;
+    bool quiet = false;
+    std::string summary;
+    bool allow_empty = false;  ///< files of poses may contain no pose; set by --allow-empty
+};
+
+/// Headings of --help, below a command's most common options.
+namespace help_group {
+inline const std::string ground = "Poses and ground", region = "Region", robot = "Robot", scene = "Scene",
+                         picture = "Picture", simulator = "Files for simulators", run = "Output and run";
+}
+
+/// All options that are added from now on stand below this heading of --help.
+void start_group(CLI::App& command, const std::string& name);
+
+/// Adds --threads, --quiet and --summary.
+void add_common(CLI::App& command, CommonArgs& args);
+
+/// Adds --allow-empty, for commands that read poses.
+void add_allow_empty(CLI::App& command, CommonArgs& args);
+
+/// Rejects an empty value, for example from an unset shell variable.
+CLI::Validator not_empty();
+
+/// Throws ArgumentError "--option REASON" if one of the options was given.
+void refuse(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason);
+
+/// Prints a notice for each of the options that was given although it has no effect.
+void notice_no_effect(const CommonArgs& args, const CLI::App& command, const std::vector<std::string>& options,
+                      const std::string& reason);
+
+}  // namespace spawnfield::cli

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "common_args.h"
+#include "robot_args.h"
+
+#include <spawnfield/query.h>
+
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace spawnfield::cli {
+
+/// Options of every command that judges poses in a map.
+struct QueryArgs : CommonArgs, RobotArgs {
+    std::string map, robot, collision = "geometry";
+    double max_height = 1.0;
+    bool exhaustive = false;
+    double max_water_depth = std::numeric_limits<double>::infinity();
+    std::optional<double> max_slope;  ///< degrees
+};
+
+/// Adds the map and --robot.
+void add_map_and_robot(CLI::App& command, QueryArgs& args);
+
+/// Adds, below the heading "Poses and ground", the options on which every verdict depends.
+void add_verdict_options(CLI::App& command, QueryArgs& args);
+
+/// Adds the options on how the robot is read, and those that every command has.
+void add_robot_and_run(CLI::App& command, QueryArgs& args);
+
+/// Returns the options of the Judge. The time of exact checks is added to `exact_time`. Throws ArgumentError for limits
+/// out of range.
+JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time);
+
+}  // namespace spawnfield::cli

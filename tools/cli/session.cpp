@@ -1,0 +1,66 @@
+#include "session.h"
+
+#include "messages.h"
+#include "numbers.h"
+#include "streams.h"
+
+#include <cstdio>
+
+namespace spawnfield::cli {
+namespace {
+
+/// Prints a notice if the robot is larger than the map: most likely one of them is in wrong units.
+void notice_if_larger_than_map(const CommonArgs& args, const Robot& robot, const Map& map)
+{
+    const Bounds box = robot.bounds();
+    const Vec3 size = box.max - box.min, room = map.bounds.max - map.bounds.min;
+    if (size.head<2>().maxCoeff() <= room.head<2>().maxCoeff()) return;
+    char text[300];
+    std::snprintf(
+        text, sizeof text,
+        "the robot is %.6g x %.6g m, larger than the map (%.6g x %.6g m); is one of them not in metres? Correct it "
+        "with `scale` in robot.yaml or scene.yaml, or with bake --scale",
+        size.x(), size.y(), room.x(), room.y());
+    notice(args, text);
+}
+
+}  // namespace
+
+Session open_session(const QueryArgs& args, Summary& summary)
+{
+    const JudgeOptions options = judge_options(args, summary.exact_time);
+    Session session;
+    if (!args.robot.empty()) {
+        session.robot = load_robot(args.robot, robot_options(args));
+        notices(args, session.robot.notices);
+    }
+    session.map = read_map(args.map);
+    summary.map_hash = session.map.hash;
+    if (args.robot.empty()) return session;
+    notice_if_larger_than_map(args, session.robot, session.map);
+    session.judge.emplace(session.map, session.robot, options);
+    return session;
+}
+
+PoseTable open_poses(const CommonArgs& args, const std::string& file)
+{
+    PoseTable table = is_standard(file) ? parse_poses(read_standard_input(), input_name(file), args.allow_empty)
+                                        : read_poses(file, args.allow_empty);
+    for (const std::string& text : table.notices) notice(args, text);
+    return table;
+}
+
+void notice_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds)
+{
+    if (!bounds.is_empty() && !bounds.meets(map.bounds, 2))
+        notice(args, option + " " + to_string(bounds, 2) + " lies off the map, which is " + to_string(map.bounds, 2));
+}
+
+void notice_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice& layers)
+{
+    if (layers.kind == LayerChoice::Kind::Index && layers.index >= map.layers)
+        notice(args, "--layers " + std::to_string(layers.index) + " does not exist: a cell of the map has at most " +
+                         counted(std::uint64_t(map.layers), "layer") + " (0 is the highest)");
+}
+
+}  // namespace spawnfield::cli

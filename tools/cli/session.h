@@ -1,0 +1,31 @@
+#pragma once
+
+#include "query_args.h"
+#include "summary.h"
+
+#include <spawnfield/poses.h>
+
+#include <optional>
+
+namespace spawnfield::cli {
+
+/// The map and the robot of a command.
+struct Session {
+    Map map;
+    Robot robot;
+    std::optional<Judge> judge;  ///< nothing if the command was given no robot
+};
+
+/// Reads the map and the robot, and puts the map's hash into the summary. The time of exact checks is added to the
+/// summary, too. Without --robot, in commands that allow this, reads only the map. Throws ArgumentError for limits out
+/// of range, before it reads anything.
+Session open_session(const QueryArgs& args, Summary& summary);
+
+/// Reads poses from a CSV file, or from standard input if it is `-`. Prints the file's notices.
+PoseTable open_poses(const CommonArgs& args, const std::string& file);
+
+/// Print a notice if the answer is known without a query: the region lies off the map, or no column has that layer.
+void notice_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds);
+void notice_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice& layers);
+
+}  // namespace spawnfield::cli

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "common_args.h"
+
+#include <spawnfield/output_file.h>
+#include <spawnfield/query.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spawnfield::cli {
+
+/// What a run did: a line on standard error and, with --summary, JSON (docs/commands.md).
+class Summary {
+public:
+    /// Opens the JSON file before all work, so that a wrong name leaves nothing half done. Throws OutputError.
+    Summary(std::string command, const CommonArgs& args);
+
+    void lap(const std::string& stage);  ///< the seconds since the last lap belong to this stage
+    void set_verdicts(const VerdictCounts& counts, std::uint64_t exact_checks);
+    double seconds_of(const std::string& stage) const;
+    double elapsed() const;  ///< seconds since the start
+    unsigned threads() const;
+
+    std::uint64_t seed = 0;
+    std::string map_hash;
+    ExactTime exact_time;                                     ///< for a query's options
+    std::vector<std::string> extra;                           ///< further words, at the beginning of the line
+    std::optional<double> offset;                             ///< m, of poses on layers
+    std::vector<std::pair<std::string, double>> more_stages;  ///< of a bake: name and seconds
+    struct Fullness {
+        bool is_full;
+        double undecided_area;  // m2
+    };
+    std::optional<Fullness> fullness;  ///< of a sample
+    /// Of a sample or search: the number of draws, and how many were dropped for each reason.
+    std::vector<std::pair<std::string, std::uint64_t>> draws;
+
+    void finish();  ///< prints the line and writes the JSON
+
+private:
+    std::string line(double total) const;
+    std::string json(double total) const;
+
+    std::string command_;
+    const CommonArgs& args_;
+    std::optional<OutputFile> file_;
+    std::optional<VerdictCounts> counts_;
+    std::uint64_t exact_checks_ = 0;
+    std::vector<std::pair<std::string, double>> seconds_;
+    double start_, last_;
+};
+
+}  // namespace spawnfield::cli
