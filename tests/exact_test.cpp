@@ -46,8 +46,8 @@ void check_verdicts(const compare::Tally& tally, const std::vector<Verdict>& exp
 void print(const char* what, const compare::Tally& tally)
 {
     std::cout << what << ": " << tally.poses << " poses,";
-    for (std::size_t i = 0; i < verdict_count; ++i)
-        std::cout << " " << tally.verdicts[i] << " " << to_string(Verdict(i)) << ",";
+    for (const Verdict verdict : all_verdicts)
+        std::cout << " " << tally.verdicts[verdict] << " " << to_string(verdict) << ",";
     std::cout << " " << tally.exact << " of " << tally.asked << " checked exactly\n";
 }
 

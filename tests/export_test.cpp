@@ -141,7 +141,7 @@ GeoTiff read_geotiff(const fs::path& file)
                 tag_values<std::uint16_t>(tiff.get(), 34735),
                 tag_text(tiff.get(), 42112),
                 tag_text(tiff.get(), 42113)};
-    HeightImage tile(int(side), int(side));
+    HeightImage tile{int(side), int(side)};
     for (std::uint16_t band = 0; band < bands; ++band) {
         HeightImage& image = out.bands.emplace_back(int(rows), int(cols));
         for (std::uint32_t top = 0; top < rows; top += side)

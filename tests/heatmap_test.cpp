@@ -241,7 +241,7 @@ TEST_CASE("the longer side of a picture has the requested length, and nothing is
     const int pixels = GENERATE(200, 1000, 2000);
     const auto quantity = GENERATE(HeatmapQuantity::Verdict, HeatmapQuantity::Height);
     RasterResult raster = raster_of(Drawing(std::size_t(rows), std::string(std::size_t(cols), 'V')));
-    raster.counts[0] = 1234567;
+    raster.counts[Verdict::Outside] = 1234567;
     const std::string title = "a title that is so long that a narrow picture has to make room for it";
     const Picture picture = draw(raster, {.quantity = quantity, .pixels = pixels, .title = title});
 

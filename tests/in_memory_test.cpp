@@ -55,14 +55,16 @@ TEST_CASE("a map made in memory gives the same answers as the folder that bake w
         const BakeOptions options{.resolution = 0.3, .z = seed == 2 ? ZRange{-1, 2} : ZRange{}};
         bake(scene, file, temp / "map", options);
         const Map baked = read_map(temp / "map"), made = make_map(scene, options);
-        CHECK((made.layers == baked.layers && made.bounds.min == baked.bounds.min && made.bounds.max == baked.bounds.max));
+        CHECK((made.layers == baked.layers && made.bounds.min == baked.bounds.min &&
+               made.bounds.max == baked.bounds.max));
         CHECK((made.resolution == baked.resolution && made.z_limits == baked.z_limits));
         REQUIRE(made.floors->size() == baked.floors->size());
         for (std::size_t f = 0; f < made.floors->size(); ++f)
             CHECK((*made.floors)[f].height == (*baked.floors)[f].height);
         const Robot robot = random_robot(seed);
         for (const Obstacles obstacles : {Obstacles::Geometry, Obstacles::Voxels}) {
-            const Judge of_file(baked, robot, {.obstacles = obstacles}), of_memory(made, robot, {.obstacles = obstacles});
+            const Judge of_file(baked, robot, {.obstacles = obstacles}),
+                of_memory(made, robot, {.obstacles = obstacles});
             const RasterResult there = raster(of_file, {.step = 0.7}), here = raster(of_memory, {.step = 0.7});
             CHECK(csv(here) == csv(there));
             CHECK(here.exact_checks == there.exact_checks);
@@ -125,7 +127,7 @@ TEST_CASE("parts of a scene that make no sense are refused by name, value and li
                       "add_mesh: part \"a\": a vertex is (0, 0, nan), needs coordinates within 1e7 m of 0");
     CHECK_THROWS_AS(add_shape(scene, "a", Label::Terrain, box_shape({1, 0, 1})), ArgumentError);
     CHECK_THROWS_AS(add_shape(scene, "a", Label::Terrain, sphere_shape(1, {2e7, 0, 0})), ArgumentError);
-    CHECK_THROWS_AS(add_shape(scene, "a", Label::Terrain, {.kind = ShapeKind::Hull}), ArgumentError);
+    CHECK_THROWS_AS(add_shape(scene, "a", Label::Terrain, {ShapeKind::Hull, Vec3::Zero(), {}}), ArgumentError);
     CHECK(scene.parts.empty());
     CHECK_THROWS_WITH(make_map(scene), Contains("make_map: the scene has no terrain"));
     add_mesh(scene, "a", Label::Terrain, corners, {{0, 1, 2}});
@@ -152,8 +154,9 @@ TEST_CASE("parts of a robot that make no sense are refused")
 {
     CHECK_THROWS_WITH(make_robot("none", {}), "make_robot: parts is empty, needs at least one");
     CHECK_THROWS_AS(shape_part(box_shape({1, 1, -1})), ArgumentError);
-    CHECK_THROWS_AS(shape_part({.kind = ShapeKind::Hull}), ArgumentError);
-    CHECK_THROWS_WITH(hull_part({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), Contains("hull_part: the hull of the points has no volume"));
+    CHECK_THROWS_AS(shape_part({ShapeKind::Hull, Vec3::Zero(), {}}), ArgumentError);
+    CHECK_THROWS_WITH(hull_part({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}),
+                      Contains("hull_part: the hull of the points has no volume"));
     CHECK_THROWS_AS(hull_part({{0, 0, std::nan("")}}), ArgumentError);
     CHECK_THROWS_WITH(make_robot("far", {shape_part(sphere_shape(1, {1500, 0, 0}))}),
                       "make_robot: reach from the origin is 1501, needs at most 1000 m");

@@ -35,9 +35,7 @@ TEST_CASE("queries with different numbers of threads run at the same time and le
 {
     const TestMap map = map_of(random_scene(6));
     const Judge judge(map, random_robot(6));
-    const auto allowed = [] {
-        return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    };
+    const auto allowed = [] { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); };
     const std::size_t before = allowed();
     std::atomic<std::size_t> changed{0};
     const auto run = [&](int threads) {

@@ -220,7 +220,7 @@ TEST_CASE("with unknown space blocked the mask and the independent decision stil
     CHECK(tally.verdicts[Verdict::Collision] > 100);
     CHECK(tally.verdicts[Verdict::Valid] > 10);
     const std::vector<Pose> poses = random_poses(map.scene, 5, 400);
-    const auto fast = judge.check(poses);
+    const auto fast = Judge(map, robot).check(poses);
     std::size_t decided = 0;
     for (std::size_t k = 0; k < poses.size(); ++k) {
         const slow::Decision slow = slow::decide(map.scene, map.bounds, robot, poses[k], 1.0, 1e9);

@@ -195,7 +195,9 @@ TEST_CASE("verdicts follow the columns of the poses")
     judgements[3].verdict = Verdict::Collision;
     judgements[3].ground = Ground{0, true, 0};
     judgements[3].hit = CollisionHit{};
-    CHECK(verdicts_csv(table, judgements, scene.parts) ==
+    Map map;
+    map.geometry = Geometry(scene);
+    CHECK(verdicts_csv(table, judgements, map) ==
           "id,x,y,z,verdict,ground,height_above,hit\n"
           "7,0,0,0.1,valid,-0.05,0.15000000000000002,\n"
           "8,0,0,5,outside,,,\n"

@@ -296,10 +296,7 @@ TEST_CASE("the valid share of the low-complexity world is that of the thesis, fo
 TEST_CASE("a raster that reaches 500 m has no ground in its last row and column in the low-complexity world")
 {
     const TestMap map = map_of(worlds::low_complexity().scene, 2.0);
-    const auto poses = [&](double step) {
-        const VerdictCounts counts = thesis_counts(map, 2, step, {});
-        return std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
-    };
+    const auto poses = [&](double step) { return thesis_counts(map, 2, step, {}).total(); };
     CHECK(poses(4) == 125 * 125);    // of 126 x 126 columns
     CHECK(poses(4.5) == 112 * 112);  // the last column is at 499.5 m
 }

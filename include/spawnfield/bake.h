@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/map.h>
 
 namespace spawnfield {
@@ -20,7 +21,7 @@ struct BakeOptions {
 ///
 /// Throws ArgumentError for bad options, a scene without terrain (unless allowed), and bounds that do not meet the
 /// scene.
-Map make_map(const Scene& scene, const BakeOptions& options = {});
+SPAWNFIELD_API Map make_map(const Scene& scene, const BakeOptions& options = {});
 
 /// What a bake did, for its summary.
 struct BakeReport {
@@ -39,7 +40,7 @@ struct BakeReport {
 /// renamed: an old map stays whole until the new one is complete. Other files that lie in an old map's folder move to
 /// the new one. Throws FileError if the scene has no terrain (unless allowed) or does not meet the bounds,
 /// ArgumentError for bad options, OutputError.
-BakeReport bake(Scene scene, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
-                const BakeOptions& options = {});
+SPAWNFIELD_API BakeReport bake(Scene scene, const std::filesystem::path& scene_file,
+                               const std::filesystem::path& folder, const BakeOptions& options = {});
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/geometry.h>
 #include <spawnfield/robot.h>
 
@@ -22,7 +23,7 @@ struct CollisionHit {
 /// them, so they throw FileError if a tile of a damaged map turns up. FCL decides (Pan, Chitta, Manocha, FCL: A General
 /// Purpose Library for Collision and Proximity Queries, 2012), through its libccd solver. The robot is grown by
 /// touch_margin, so that a touching pair reads as collision whatever that solver's rounding says.
-class CollisionChecker {
+class SPAWNFIELD_API CollisionChecker {
 public:
     /// Checks against the scene's own geometry.
     CollisionChecker(const Geometry& geometry, const Robot& robot);

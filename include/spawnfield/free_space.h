@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/robot.h>
 #include <spawnfield/solid_bounds.h>
 
@@ -17,7 +18,7 @@ enum class Proof : std::uint8_t { Candidate, Free, Blocked };
 /// 1e-5 m from its surface. Each part counts by itself, so a low body and a thin mast do not block each other. Coarse
 /// cells first, finer ones where those cannot decide. This is grey dilation of the scene by the robot (Lozano-Pérez,
 /// Spatial planning: a configuration space approach, 1983), done only where it is asked for.
-class FreeSpace {
+class SPAWNFIELD_API FreeSpace {
 public:
     /// m that proofs stay away from contact: more than FCL's tolerance and touch_margin.
     static constexpr double margin = 1e-5;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/scene.h>
 
 #include <memory>
@@ -13,7 +14,7 @@ namespace spawnfield {
 /// element is in each of the at most 2 x 2 tiles that it overlaps on the first grid whose cells are no smaller than it.
 /// A tile holds its elements with their corners, labels and pieces, and a fine grid of its own that finds them; a tile
 /// that lies in a file is checked when it is first touched. About 90 bytes for each triangle of a closed mesh.
-class Geometry {
+class SPAWNFIELD_API Geometry {
 public:
     Geometry();  ///< of nothing
     explicit Geometry(const Scene& scene, int threads = 0);

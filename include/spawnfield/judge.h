@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/collision.h>
 #include <spawnfield/map.h>
 
@@ -67,7 +68,7 @@ struct RunOptions {
 /// It is built once for a map, a robot and options, and contains what queries prepare: the collision checker and the
 /// free-space mask. Any number of threads may call its const methods at the same time. Those methods read the map's
 /// tiles when they first need them, so they throw FileError if a tile of a damaged map turns up.
-class Judge {
+class SPAWNFIELD_API Judge {
 public:
     /// Throws ArgumentError for options beyond their limits or a robot without parts, FileError if the map's OctoMap is
     /// needed and cannot be read.
@@ -97,12 +98,12 @@ private:
 };
 
 /// Returns the name of the part of the map's scene that was hit, or "occupancy" for voxels.
-std::string name_of(const CollisionHit& hit, const Map& map);
+SPAWNFIELD_API std::string name_of(const CollisionHit& hit, const Map& map);
 
 /// Returns the offset that puts the robot's lowest point 0.1 m above its layer, m.
-double auto_offset(const Robot& robot);
+SPAWNFIELD_API double auto_offset(const Robot& robot);
 
 /// Returns whether a robot with this offset collides with all flat ground: its lowest point is not above its layer.
-bool is_in_flat_ground(const Robot& robot, double offset);
+SPAWNFIELD_API bool is_in_flat_ground(const Robot& robot, double offset);
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/query.h>
 
 #include <filesystem>
@@ -27,11 +28,11 @@ struct VerdictImage {
 /// Returns the verdict at the centre of each cell, as a 2D raster gives it; no pose where the column lacks the chosen
 /// layer. The options' step and bounds are not used. Works in strips of rows: a byte for each cell, and little more.
 /// Throws as raster() does, and ArgumentError for LayerChoice All, because a cell has one verdict.
-VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const RasterOptions& options);
+SPAWNFIELD_API VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const RasterOptions& options);
 
 /// The image that belongs to a map_server's yaml: of the same name, but .pgm. Throws ArgumentError unless that ends in
 /// .yaml or .yml.
-std::filesystem::path nav2_image_of(const std::filesystem::path& yaml);
+SPAWNFIELD_API std::filesystem::path nav2_image_of(const std::filesystem::path& yaml);
 
 /// The feasible area as map_server of ROS and nav2 reads it: `yaml`, and nav2_image_of(yaml) beside it.
 ///
@@ -39,8 +40,8 @@ std::filesystem::path nav2_image_of(const std::filesystem::path& yaml);
 /// cell's centre is outside. Pixels are cells; `origin` is the lower left corner of the lower left one. Each line of
 /// `comment` is one of the yaml. Both files appear, or none. Throws ArgumentError for the name, OutputError. Source:
 /// map_server's documentation of its map format (wiki.ros.org/map_server).
-void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml,
-                    const std::vector<std::string>& comment = {});
+SPAWNFIELD_API void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml,
+                                   const std::vector<std::string>& comment = {});
 
 struct GeoTiffOptions {
     LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< whose clearance and slope are written: one layer
@@ -66,14 +67,14 @@ struct GeoTiffOptions {
 /// predictor 3; BigTIFF where it might pass 4 GB. O(elements + cells), in rows of tiles. Throws ArgumentError for
 /// LayerChoice All, OutputError. Sources: OGC GeoTIFF 1.1 (19-008r4); GDAL's GeoTIFF driver for GDAL_METADATA and
 /// GDAL_NODATA.
-void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* verdicts, const GeoTiffOptions& options,
-                   const std::filesystem::path& file);
+SPAWNFIELD_API void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* verdicts,
+                                  const GeoTiffOptions& options, const std::filesystem::path& file);
 
 /// A raster's poses as points of a binary little-endian PLY, in their order, given to `sink` in pieces: x, y, z as
 /// double (m), red, green, blue of the verdict as in heat maps, and its number as uchar `verdict`. Each line of
 /// `comment` is one of the header, and one explains the numbers. Source: Turk, The PLY Polygon File Format, 1994.
-void write_ply(const RasterResult& raster, const std::vector<std::string>& comment,
-               const std::function<void(std::string_view)>& sink);
+SPAWNFIELD_API void write_ply(const RasterResult& raster, const std::vector<std::string>& comment,
+                              const std::function<void(std::string_view)>& sink);
 
 /// Poses to be drawn into a GLB.
 struct GlbMarkers {
@@ -92,7 +93,8 @@ struct GlbMarkers {
 /// Markers are the children of a node "spawns". About 100 bytes of memory for each triangle. Throws OutputError beyond
 /// the 4 GiB that the format can hold, FileError for a damaged map. Source: Khronos, glTF 2.0 specification (ISO/IEC
 /// 12113:2022).
-void write_glb(const Map& map, const GlbMarkers& markers, const std::function<void(std::string_view)>& sink,
-               int threads = 0, const Progress& progress = {});
+SPAWNFIELD_API void write_glb(const Map& map, const GlbMarkers& markers,
+                              const std::function<void(std::string_view)>& sink, int threads = 0,
+                              const Progress& progress = {});
 
 }  // namespace spawnfield

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -9,7 +11,7 @@ namespace spawnfield {
 
 /// A folder that appears whole or not at all: filled beside its name, takes its place by commit(), removed if that
 /// never comes. Of a link to a folder, what it leads to is replaced.
-class OutputFolder {
+class SPAWNFIELD_API OutputFolder {
 public:
     using Path = std::filesystem::path;
 
@@ -32,7 +34,7 @@ private:
 
 /// Objection to a folder that holds anything but files of these names: so that only what was written by the same
 /// command is replaced. `kind` as "thesis result".
-std::function<std::string(const std::filesystem::path&)> holds_only(std::span<const char* const> names,
-                                                                    const std::string& kind);
+SPAWNFIELD_API std::function<std::string(const std::filesystem::path&)> holds_only(std::span<const char* const> names,
+                                                                                   const std::string& kind);
 
 }  // namespace spawnfield

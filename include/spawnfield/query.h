@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/judge.h>
 #include <spawnfield/region.h>
 
@@ -52,7 +53,7 @@ struct RasterGrid {
     double y_of(int j) const { return y0 + j * step; }
     double z_of(int k) const { return z0 + k * step_z; }
     /// The lowest of the heights at or above this one, to touch_tolerance; `heights` if there is none.
-    int step_above(double height) const;
+    SPAWNFIELD_API int step_above(double height) const;
 };
 
 struct RasterPose {
@@ -77,11 +78,12 @@ struct RasterResult {
 
 /// Returns the verdict on every pose of a raster. Throws ArgumentError for options beyond their limits, bounds the
 /// wrong way round or more than 2^31 columns, FileError for a damaged map.
-RasterResult raster(const Judge& judge, const RasterOptions& options);
+SPAWNFIELD_API RasterResult raster(const Judge& judge, const RasterOptions& options);
 
 /// A raster's poses in their order, with `aerial` also the aerial ones of a 3D raster that it does not list, in their
 /// places.
-void for_each_pose(const RasterResult& raster, bool aerial, const std::function<void(const RasterPose&)>& visit);
+SPAWNFIELD_API void for_each_pose(const RasterResult& raster, bool aerial,
+                                  const std::function<void(const RasterPose&)>& visit);
 
 struct Spawn {
     Vec3 position;
@@ -131,7 +133,7 @@ struct SearchOptions {
 /// Returns spawns from a random search (Ropelato): uniform draws in a box; each must keep min_distance to all positions
 /// judged before; stops after count valid ones or max_failures draws in a row without one. Draws too near to an avoided
 /// point are failures. Throws ArgumentError for options beyond their limits, FileError for a damaged map.
-SpawnList search(const Judge& judge, const SearchOptions& options);
+SPAWNFIELD_API SpawnList search(const Judge& judge, const SearchOptions& options);
 
 struct SampleOptions {
     std::size_t count = 1;    ///< 1 .. max_spawns
@@ -159,6 +161,6 @@ struct SampleOptions {
 /// to go on. Throws ArgumentError for options beyond their limits, FileError for a damaged map. Sources: White, Cline,
 /// Egbert, Poisson disk point sets by hierarchical dart throwing, 2007; Ebeida et al., A simple algorithm for maximal
 /// Poisson-disk sampling in high dimensions, 2012.
-SpawnList sample(const Judge& judge, const SampleOptions& options);
+SPAWNFIELD_API SpawnList sample(const Judge& judge, const SampleOptions& options);
 
 }  // namespace spawnfield

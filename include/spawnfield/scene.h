@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/shape.h>
 
 #include <filesystem>
@@ -83,9 +84,9 @@ struct Scene {
     /// What a map of it covers by default; empty: all of it. Infinite planes reach beyond.
     Bounds map_bounds = {};
 
-    Bounds bounds() const;
-    bool has_terrain() const;
-    LabelCounts count_labels() const;
+    SPAWNFIELD_API Bounds bounds() const;
+    SPAWNFIELD_API bool has_terrain() const;
+    SPAWNFIELD_API LabelCounts count_labels() const;
 };
 
 /// `pattern=label`: faces whose node or material name (meshes), or parts whose name (others), match the glob.
@@ -127,9 +128,9 @@ struct SceneOptions {
 /// the occupied ones. Of SDF and URDF each collision is a part, named model::link::collision; the options' rules match
 /// that name or one of its words between ::. Else planes, heightmaps and what is named as ground is terrain, the rest
 /// obstacle. Throws FileError with file, part, key, value and limit.
-Scene load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
+SPAWNFIELD_API Scene load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 
 /// The file that a scene is read from: of a model's folder the SDF file that its model.config names. Throws FileError.
-std::filesystem::path scene_file_of(const std::filesystem::path& scene);
+SPAWNFIELD_API std::filesystem::path scene_file_of(const std::filesystem::path& scene);
 
 }  // namespace spawnfield

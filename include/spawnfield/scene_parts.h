@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/scene.h>
 
 /// Scenes made in code. The parts go the same way as those of a scene file: equal vertices are welded, and watertight
@@ -16,11 +17,11 @@ enum class Solid : std::uint8_t {
 /// Adds a mesh as a part. Triangles index the vertices, counterclockwise as seen from outside; vertices are in the
 /// scene's frame, m. Triangles with two equal corners are left out.
 /// Throws ArgumentError for an index beyond the vertices, or a coordinate that is not finite or beyond 1e7 m.
-void add_mesh(Scene& scene, const std::string& name, Label label, const std::vector<Vec3>& vertices,
-              const std::vector<Triangle>& triangles, Solid solid = Solid::Auto);
+SPAWNFIELD_API void add_mesh(Scene& scene, const std::string& name, Label label, const std::vector<Vec3>& vertices,
+                             const std::vector<Triangle>& triangles, Solid solid = Solid::Auto);
 
 /// Adds a solid shape as a part. Throws ArgumentError for a hull, for sizes that are not > 0, and for places beyond
 /// 1e7 m.
-void add_shape(Scene& scene, const std::string& name, Label label, const Shape& shape);
+SPAWNFIELD_API void add_shape(Scene& scene, const std::string& name, Label label, const Shape& shape);
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/geometry.h>
 
 namespace spawnfield {
@@ -11,7 +12,7 @@ namespace spawnfield {
 /// Each cell holds how high anything solid in it reaches, rounded up, and where there is a gap below that, the
 /// intervals that hold all of its solids, rounded outwards. 16-bit heights in tiles of 64 x 64 cells, each with a range
 /// of its own: 2.7 bytes a cell of the finest raster, and about 16 more for a cell over which something hangs.
-class SolidBounds {
+class SPAWNFIELD_API SolidBounds {
 public:
     SolidBounds();  ///< of nothing: it proves nothing
     /// Cells of this side (m) over the bounds, seen from above. O(elements + cells).

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/column.h>
 
 #include <limits>
@@ -20,7 +21,7 @@ struct GridFrame {
 
 /// Cells of side `cell` that cover the bounds from their lower limits on. Throws ArgumentError unless cell > 0 and
 /// there are at most max_columns of them.
-GridFrame frame_around(const Bounds& bounds, double cell);
+SPAWNFIELD_API GridFrame frame_around(const Bounds& bounds, double cell);
 inline constexpr double max_columns = 1e8;
 inline constexpr double max_side = 1e6;  ///< rows or columns, as libpng takes them
 
@@ -57,20 +58,20 @@ struct TerrainMap {
 
     int tile_rows() const { return (frame.rows + tile - 1) / tile; }
     int tile_cols() const { return (frame.cols + tile - 1) / tile; }
-    const Page* find(const std::string& name) const;  ///< nullptr if there is no such page
-    int layers() const;                               ///< number of height pages
+    SPAWNFIELD_API const Page* find(const std::string& name) const;  ///< nullptr if there is no such page
+    SPAWNFIELD_API int layers() const;                               ///< number of height pages
 };
 
 /// A whole page, frame.rows x frame.cols; all NaN if there is no such page. Throws std::runtime_error on damaged tiles.
-HeightImage page_image(const TerrainMap& terrain, const std::string& name);
+SPAWNFIELD_API HeightImage page_image(const TerrainMap& terrain, const std::string& name);
 
 /// The highest layer of each cell within a range of heights, frame.rows x frame.cols, m; NaN where there is none.
 /// Throws std::runtime_error on damaged tiles.
-HeightImage highest_within(const TerrainMap& terrain, const ZRange& z);
+SPAWNFIELD_API HeightImage highest_within(const TerrainMap& terrain, const ZRange& z);
 
 /// Vertical rays at the cells' centres. Layers and water beyond the z limits are left out, and so are obstacles that
 /// begin above them or end below them. O(elements + cells covered).
-TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,
-                             const Progress& progress = {}, const ZRange& z_limits = {});
+SPAWNFIELD_API TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,
+                                            const Progress& progress = {}, const ZRange& z_limits = {});
 
 }  // namespace spawnfield

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <Eigen/Core>
 
 #include <array>
@@ -65,7 +67,7 @@ struct Pose {
 };
 
 /// R = Rz(yaw) Ry(pitch) Rx(roll), as URDF's rpy.
-Mat3 rotation_from_rpy(double roll, double pitch, double yaw);
+SPAWNFIELD_API Mat3 rotation_from_rpy(double roll, double pitch, double yaw);
 
 /// outer_from_body where outer_from_inner and inner_from_body are given.
 inline Pose operator*(const Pose& outer, const Pose& inner)
@@ -118,14 +120,14 @@ private:
 };
 
 /// "0, 0, 0 to 1, 2, 3 m", or of the first axes only; rounded to nine digits.
-std::string to_string(const Bounds& bounds, int axes = 3);
-const char* to_string(Label label);      ///< as in scene.yaml: "terrain", …
-const char* to_string(Verdict verdict);  ///< as in CSV files: "off_terrain", …
+SPAWNFIELD_API std::string to_string(const Bounds& bounds, int axes = 3);
+SPAWNFIELD_API const char* to_string(Label label);      ///< as in scene.yaml: "terrain", …
+SPAWNFIELD_API const char* to_string(Verdict verdict);  ///< as in CSV files: "off_terrain", …
 
 /// Called now and then during long work with the share done, 0 .. 1, from any thread, one call at a time.
 /// May throw to stop the work.
 using Progress = std::function<void(double)>;
 
-std::string version();  ///< "0.2.0"
+SPAWNFIELD_API std::string version();  ///< "0.2.0"
 
 }  // namespace spawnfield

@@ -23,7 +23,8 @@ bool is_within_reach(const Vec3& point) { return (point.array().abs() <= farthes
 void add_mesh(Scene& scene, const std::string& name, Label label, const std::vector<Vec3>& vertices,
               const std::vector<Triangle>& triangles, Solid solid)
 {
-    FileMesh mesh{.materials = {""}};
+    FileMesh mesh;
+    mesh.materials = {""};
     FileMesh::Node& node = mesh.nodes.emplace_back();
     node.name = name;
     PointNumbers<double> numbers;
@@ -50,7 +51,9 @@ void add_mesh(Scene& scene, const std::string& name, Label label, const std::vec
         node.triangles.push_back(corners);
         node.materials.push_back(0);
     }
-    append_mesh(scene, add_part(scene, name, "mesh", label), mesh, {.solid = solid});
+    MeshOptions options;
+    options.solid = solid;
+    append_mesh(scene, add_part(scene, name, "mesh", label), mesh, options);
 }
 
 void add_shape(Scene& scene, const std::string& name, Label label, const Shape& shape)
