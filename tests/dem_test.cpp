@@ -168,8 +168,7 @@ TEST_CASE("heights of all kinds of pixels are metres")
         write(folder, {.heights = {7, 6, 5, 40000, 5, 6}, .bits = 16, .format = SAMPLEFORMAT_UINT}));
     CHECK(height(whole, -2, -2.5) == 40000);
     CHECK(tells(whole, "heights are whole numbers, taken as metres"));
-    SceneOptions options;
-    options.heightmap = "z: [0, 65.535]";
+    SceneOptions options{.heightmap = "z: [0, 65.535]"};
     CHECK(height(load_scene(folder / "a.tif", options), -2, -2.5) == Approx(40));
 }
 
@@ -297,8 +296,7 @@ TEST_CASE("EPSG codes that tell no unit are refused with what to do")
             "is in EPSG:" + std::to_string(code) +
                 ", which PROJ does not know as a projection, so that nobody knows its unit; gdal_edit.py -a_srs gives "
                 "it another, or tell its spacing in metres with the key cell");
-    SceneOptions options;
-    options.heightmap = "cell: 3";
+    SceneOptions options{.heightmap = "cell: 3"};
     CHECK(load_scene(folder / "a.tif", options).bounds().max.x() == 3);
 }
 
@@ -354,8 +352,7 @@ TEST_CASE("heights that are no data are no terrain")
             load_scene(write(folder, {.heights = heights, .keys = keys_of({{1024, 1}, {3072, 26910}, {4096, system}})},
                              "b.tif")),
             "the lowest value is -9999, which often means no data; if so: --heightmap 'nodata: -9999'"));
-    SceneOptions options;
-    options.heightmap = "nodata: -9999";
+    SceneOptions options{.heightmap = "nodata: -9999"};
     check_hole(load_scene(plain, options));
     CHECK_THROWS_WITH(load_scene(write(folder, {.heights = {0, 0, 0, 0, 0, 0}, .no_data = "0"})),
                       (folder / "a.tif").string() + ": has no heights: every pixel is NaN or no-data");
@@ -375,8 +372,7 @@ TEST_CASE("values are values where 0 is white, but of a plain picture white is h
     CHECK(scene.bounds().max.z() == 6);
     CHECK(height(scene, -2, 2.5) == 1);
     CHECK(scene.triangles.size() == 3);
-    SceneOptions options;
-    options.heightmap = "z: [0, 655.35]";
+    SceneOptions options{.heightmap = "z: [0, 655.35]"};
     CHECK(load_scene(folder / "a.tif", options).bounds().max.z() == Approx(0.06));
     GeoFile picture = survey;
     picture.scale = picture.tie = {};
@@ -446,8 +442,7 @@ TEST_CASE("a spacing that is told is used, and nobody asks where the file lies")
 {
     const TempFolder folder;
     write(folder, {.keys = keys_of({{1024, 2}})});
-    SceneOptions options;
-    options.heightmap = "cell: [10, 20]";
+    SceneOptions options{.heightmap = "cell: [10, 20]"};
     const Scene scene = load_scene(folder / "a.tif", options);
     CHECK(scene.bounds().max == Vec3(10, 10, 6));
     CHECK_FALSE(scene.origin);
@@ -566,8 +561,7 @@ TEST_CASE("a .prj of degrees is refused, and one that nobody reads is told")
         file.string() +
             ": is in degrees (geographic, WGS 84), needs metres; reproject it: gdalwarp -t_srs EPSG:CODE, where CODE "
             "is a projection in metres such as the UTM zone's");
-    SceneOptions options;
-    options.heightmap = "cell: 3";
+    SceneOptions options{.heightmap = "cell: 3"};
     CHECK(load_scene(file, options).bounds().max.x() == 3);
     for (const std::string text : {"Projection UTM\nZone 33\nUnits METERS\n", "", "PROJCS[\"Plan\""}) {
         folder.write("a.prj", text);
@@ -639,8 +633,7 @@ TEST_CASE("images and raw numbers need to be told what they are")
 {
     const TempFolder folder;
     const auto load = [&](const std::string& name, const std::string& keys) {
-        SceneOptions options;
-        options.heightmap = keys;
+        SceneOptions options{.heightmap = keys};
         return load_scene(folder / name, options);
     };
     const auto raw = [&](const std::string& name, auto... values) {
@@ -699,8 +692,7 @@ TEST_CASE("an elevation model by itself takes labels, but nothing that is for me
 {
     const TempFolder folder;
     const std::filesystem::path file = folder.write("Ground.asc", grid_head + "1 2 3\n4 5 6\n");
-    SceneOptions options;
-    options.labels = {{"ground", Label::Obstacle}};
+    SceneOptions options{.labels = {{"ground", Label::Obstacle}}};
     CHECK(load_scene(file, options).parts[0].label == Label::Obstacle);
     options.labels = {{"road", Label::Obstacle}};
     const Scene idle = load_scene(file, options);

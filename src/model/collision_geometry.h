@@ -37,7 +37,7 @@ struct CollisionBody {
 };
 
 /// "house::link::collision" (SDFormat's scoped names).
-std::string scoped_name(const CollisionBody& body);
+SPAWNFIELD_MODULE_API std::string scoped_name(const CollisionBody& body);
 
 /// Of a box, sphere, cylinder or capsule, and of an ellipsoid that is a sphere.
 std::optional<Shape> shape_of(const CollisionGeometry& geometry, const Pose& pose);

@@ -27,11 +27,12 @@ struct Joint {
 /// Where every joint that can move stands: as given, as those that it mimics, or at 0. What is out of its limits
 /// without being given gets a notice. Throws ArgumentError (joints) for given ones that are no joints of the file,
 /// fixed, mimics or out of limits, FileError for mimics of nothing or of themselves.
-std::map<std::string, double> joint_positions(const std::string& file, const std::vector<Joint>& joints,
-                                              const std::vector<JointPosition>& given,
-                                              std::vector<std::string>& notices);
+SPAWNFIELD_MODULE_API std::map<std::string, double> joint_positions(const std::string& file,
+                                                                    const std::vector<Joint>& joints,
+                                                                    const std::vector<JointPosition>& given,
+                                                                    std::vector<std::string>& notices);
 
 /// The joint's frame moved along or about its axis (of length 1, in that frame) by value.
-Pose joint_motion(Joint::Motion motion, const Vec3& axis, double value);
+SPAWNFIELD_MODULE_API Pose joint_motion(Joint::Motion motion, const Vec3& axis, double value);
 
 }  // namespace spawnfield

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <filesystem>
 #include <set>
 #include <string>
@@ -15,10 +17,10 @@ public:
     /// Looks into the given folders first, then into those of GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and
     /// GAZEBO_MODEL_PATH, then into the folders above `file` and the `models` folders in them, at last at the
     /// built-in models (built_in_models.h).
-    ModelPaths(const std::vector<Path>& given, const Path& file);
+    SPAWNFIELD_MODULE_API ModelPaths(const std::vector<Path>& given, const Path& file);
 
     /// What the URI names, seen from a file in `folder`: a file or a folder that exists, or nothing.
-    Path find(const std::string& uri, const Path& folder);
+    SPAWNFIELD_MODULE_API Path find(const std::string& uri, const Path& folder);
 
     /// URIs for which a built-in model was taken, as nothing on disk has the name.
     const std::set<std::string>& built_in() const { return built_in_; }

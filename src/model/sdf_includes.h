@@ -8,7 +8,7 @@
 namespace spawnfield {
 
 /// A file that is XML and says that it is SDF. Throws FileError with the line.
-std::unique_ptr<tinyxml2::XMLDocument> read_sdf_xml(const std::filesystem::path& file);
+SPAWNFIELD_MODULE_API std::unique_ptr<tinyxml2::XMLDocument> read_sdf_xml(const std::filesystem::path& file);
 
 /// The file that an <include> of this <uri> in a file of `folder` means; nothing if it is nowhere. Throws FileError for
 /// a folder that is no model's.
@@ -26,7 +26,7 @@ std::string words_of(const MissingIncludes::value_type& missing);
 /// Looks at `document`, which is what the file holds, and at each file that it includes at any depth, once. Throws
 /// FileError for numbers that are none, and with the circle for a file that includes itself: libsdformat would go on
 /// until memory ends.
-MissingIncludes check_includes(const std::filesystem::path& file, const tinyxml2::XMLDocument& document,
-                               ModelPaths& paths);
+SPAWNFIELD_MODULE_API MissingIncludes check_includes(const std::filesystem::path& file,
+                                                     const tinyxml2::XMLDocument& document, ModelPaths& paths);
 
 }  // namespace spawnfield

@@ -4,6 +4,10 @@
 
 namespace spawnfield {
 
+/// A robot's farthest point from its origin, m: the largest machines that drive are 200 m long, and far beyond that
+/// distances have no 1e-6 m left.
+inline constexpr double farthest_robot_point = 1000;
+
 /// Convex hull of the points, as a robot part in their frame. Throws std::domain_error if it has no volume.
 /// Source: Barber, Dobkin, Huhdanpaa, The Quickhull algorithm for convex hulls, 1996 (libqhull).
 RobotPart convex_hull(const std::vector<Vec3>& points);

@@ -5,6 +5,8 @@
 
 #include <spawnfield/scene.h>
 
+#include <spawnfield/scene_parts.h>
+
 #include <optional>
 #include <span>
 
@@ -25,7 +27,6 @@ struct FaceRule {
 };
 
 struct MeshOptions {
-    enum class Solid { Auto, Yes, No };
     Pose pose;                  ///< scene_from_part
     Vec3 scale = Vec3::Ones();  ///< on the file's own axes, after the file's own unit
     char up = 0;                ///< 'x', 'y', 'z'; 0: what the format says, else z

@@ -20,7 +20,7 @@ void write_verdicts(const CheckArgs& args, const VerdictReport& report)
         else if (args.format == "junit")
             write_verdicts_junit(report, sink);
         else
-            sink(verdicts_csv(report.table, report.judgements, report.map.geometry.parts()));
+            sink(verdicts_csv(report.table, report.judgements, report.judge.map()));
     });
 }
 
@@ -33,7 +33,7 @@ void tell_not_valid(const VerdictReport& report)
     std::size_t count = 0;
     for (std::size_t i = 0; i < names.size(); ++i)
         if (report.judgements[i].verdict != Verdict::Valid && ++count <= shown)
-            first += "\n  " + names[i] + ": " + described(report, i);
+            first += "\n  " + names[i] + ": " + report.judge.describe(report.table.poses[i], report.judgements[i]);
     if (count > shown) first += "\n  and " + std::to_string(count - shown) + " more";
     std::cerr << "spawnfield: --require-valid: " << count << " of " << counted(names.size(), "pose")
               << (count == 1 ? " is" : " are") << " not valid:" << first << "\n";
@@ -42,28 +42,26 @@ void tell_not_valid(const VerdictReport& report)
 int run_check(const CheckArgs& args)
 {
     Summary summary("check", args);
-    QueryOptions options;
-    fill(options, args, "check");
-    options.exact_time = &summary.exact_time;
     const PoseTable table = open_poses(args, args.poses);
     for (const std::string& name : replaced_columns(table))
         notice(args, args.poses + ": column " + name + " is replaced by a new one");
-    const auto session = open_session(args);
+    const Session session = open_session(args, summary);
     summary.lap("load");
-    const std::vector<Judgement> judgements = check_poses(session->map, *session->checker, table.poses, options);
+    const std::vector<Judgement> judgements = session.judge->check(
+        table.poses, {.threads = args.threads, .progress = progress_bar(args, "check")});
     summary.lap("query");
-    VerdictCounts counts{};
+    VerdictCounts counts;
     for (const Judgement& judged : judgements) {
-        ++counts[std::size_t(judged.verdict)];
+        ++counts[judged.verdict];
         summary.exact_checks += judged.exact_check;
     }
-    const VerdictReport report{table, judgements, session->map, session->robot, options, args.collision == "octree"};
+    const VerdictReport report{table, judgements, *session.judge};
     write_verdicts(args, report);
     summary.lap("write");
     summary.set_counts(counts);
-    summary.map_hash = session->map.hash;
+    summary.map_hash = session.map.hash;
     summary.finish();
-    if (!args.require_valid || counts[std::size_t(Verdict::Valid)] == judgements.size()) return done;
+    if (!args.require_valid || counts[Verdict::Valid] == judgements.size()) return done;
     tell_not_valid(report);
     return not_valid;
 }

@@ -45,7 +45,7 @@ bool was_interrupted() { return interrupt_seen; }
 void add_common(CLI::App& command, CommonArgs& args)
 {
     command.add_option("--threads", args.threads, "Threads; 0: all cores. The result is the same at any number")
-        ->check(CLI::Range(0, 1024));
+        ->check(CLI::Range(0, most_threads));
     command.add_flag("--quiet,-q", args.quiet, "No notices, no progress, no summary line");
     command.add_option("--summary", args.summary, "Write the summary to this file as JSON (- for standard output)");
 }
@@ -242,40 +242,37 @@ void tell_if_larger_than_map(const CommonArgs& args, const Robot& robot, const M
     notice(args, text);
 }
 
-}  // namespace
-
-std::unique_ptr<Session> open_session(const QueryArgs& args)
+/// Throws ArgumentError for limits out of range.
+JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time)
 {
-    auto session = std::make_unique<Session>();
-    if (args.robot.empty()) {
-        session->map = read_map(args.map);
-        return session;
-    }
-    session->robot = load_robot(args.robot, robot_options(args));
-    notices(args, session->robot.notices);
-    session->map = read_map(args.map);
-    tell_if_larger_than_map(args, session->robot, session->map);
-    if (args.collision == "octree") {
-        auto tree = std::make_shared<const OccupancyTree>(read_occupancy(session->map));
-        session->checker = std::make_unique<CollisionChecker>(std::move(tree), session->robot);
-    } else {
-        session->checker = std::make_unique<CollisionChecker>(session->map.geometry, session->robot);
-    }
-    return session;
-}
-
-void fill(QueryOptions& options, const QueryArgs& args, const std::string& label)
-{
-    options.max_height = args.max_height;
-    options.max_water_depth = args.max_water_depth;
-    options.exhaustive = args.exhaustive;
-    options.threads = args.threads;
-    options.progress = progress_bar(args, label);
     if (args.max_slope && !(*args.max_slope > 0 && *args.max_slope < 90))
         throw bad_value("--max-slope", *args.max_slope, "> 0 and < 90 degrees");
-    if (args.max_slope) options.max_slope = *args.max_slope * std::numbers::pi / 180;
-    if (!(options.max_height >= 0)) throw bad_value("--max-height", options.max_height, ">= 0 m");
-    if (!(options.max_water_depth >= 0)) throw bad_value("--max-water-depth", options.max_water_depth, ">= 0 m");
+    if (!(args.max_height >= 0)) throw bad_value("--max-height", args.max_height, ">= 0 m");
+    if (!(args.max_water_depth >= 0)) throw bad_value("--max-water-depth", args.max_water_depth, ">= 0 m");
+    JudgeOptions out{.max_height = args.max_height,
+                     .max_water_depth = args.max_water_depth,
+                     .obstacles = args.collision == "octree" ? Obstacles::Voxels : Obstacles::Geometry,
+                     .exhaustive = args.exhaustive,
+                     .exact_time = &exact_time};
+    if (args.max_slope) out.max_slope = *args.max_slope * std::numbers::pi / 180;
+    return out;
+}
+
+}  // namespace
+
+Session open_session(const QueryArgs& args, Summary& summary)
+{
+    const JudgeOptions options = judge_options(args, summary.exact_time);
+    Session session;
+    if (!args.robot.empty()) {
+        session.robot = load_robot(args.robot, robot_options(args));
+        notices(args, session.robot.notices);
+    }
+    session.map = read_map(args.map);
+    if (args.robot.empty()) return session;
+    tell_if_larger_than_map(args, session.robot, session.map);
+    session.judge.emplace(session.map, session.robot, options);
+    return session;
 }
 
 void tell_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds)

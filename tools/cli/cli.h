@@ -35,6 +35,9 @@ struct NothingFits {
     std::string why;
 };
 
+/// Greatest value of --threads.
+inline constexpr int most_threads = 1024;
+
 /// Options that every command has.
 struct CommonArgs {
     int threads = 0;
@@ -109,7 +112,7 @@ public:
 
     std::uint64_t poses = 0, exact_checks = 0, seed = 0;
     std::string map_hash;
-    ExactTime exact_time;                                     ///< for a query's options
+    ExactTime exact_time;                                     ///< for JudgeOptions
     std::vector<std::string> extra;                           ///< further words for the line, in front
     std::optional<double> offset;                             ///< m, of poses on layers
     std::vector<std::pair<std::string, double>> more_stages;  ///< a bake's own
@@ -131,23 +134,22 @@ private:
     const CommonArgs& args_;
     std::optional<OutputFile> file_;
     bool has_counts_ = false;
-    VerdictCounts counts_{};
+    VerdictCounts counts_;
     std::vector<std::pair<std::string, double>> seconds_;
     double start_, last_;
 };
 
-/// A map and a robot, ready to be asked.
-struct Session {
-    Map map;
-    Robot robot;
-    std::unique_ptr<CollisionChecker> checker;
-};
 /// Poses of a CSV file, or of standard input if it is `-`. Prints the file's notices.
 PoseTable open_poses(const CommonArgs& args, const std::string& file);
 
-/// Heap-held: the checker keeps references into it. Without --robot, where a command allows that, the map alone.
-std::unique_ptr<Session> open_session(const QueryArgs& args);
-void fill(QueryOptions& options, const QueryArgs& args, const std::string& label);
+/// The map and the robot of a command.
+struct Session {
+    Map map;
+    Robot robot;
+    std::optional<Judge> judge;  ///< none without --robot, where a command allows that
+};
+/// Throws ArgumentError for limits out of range, before anything is read. The time of exact checks goes to the summary.
+Session open_session(const QueryArgs& args, Summary& summary);
 
 /// A notice where an answer is plain before it is asked for: the region lies off the map, no column has that layer.
 void tell_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds);

@@ -72,11 +72,11 @@ int run_export(const ExportArgs& args, const CLI::App& command)
 {
     check_options(args, command);
     Summary summary("export", args);
-    const auto session = open_session(args);
+    const Session session = open_session(args, summary);
     summary.lap("load");
-    format_of(args.format).write({args, command, *session, summary});
+    format_of(args.format).write({args, command, session, summary});
     summary.lap("write");
-    summary.map_hash = session->map.hash;
+    summary.map_hash = session.map.hash;
     if (!args.out.empty() && args.out != "-") summary.extra.push_back(args.out);
     summary.finish();
     return done;

@@ -21,7 +21,7 @@ struct ExportJob {
     const Session& session;  ///< the map alone if no --robot was given
     Summary& summary;        ///< lap("load") is done; what comes after the last lap goes to "write"
 
-    bool has_robot() const { return session.checker != nullptr; }
+    bool has_robot() const { return session.judge.has_value(); }
     bool was_given(const std::string& option) const { return command.count(option) > 0; }
 };
 

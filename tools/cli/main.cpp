@@ -4,6 +4,8 @@
 
 #include <spawnfield/error.h>
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstring>
@@ -107,5 +109,7 @@ int main(int argc, char** argv)
         return app.exit(error) == 0 ? done : wrong_usage;
     }
     catch_interrupts();
+    // The process is the program's alone: --threads may ask for more threads than there are cores.
+    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, most_threads);
     return guarded(app, run);
 }

@@ -17,7 +17,7 @@ struct PictureFile {
 PictureFile picture_file(const std::string& file, const std::string& format = "");
 
 /// Second line of a heat map: what its verdicts hold for. `options` are complete; `yaw` in words, empty: the raster's.
-std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Map& map,
+std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Judge& judge,
                             const std::string& yaw = "");
 
 }  // namespace spawnfield::cli

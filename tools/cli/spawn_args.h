@@ -13,8 +13,8 @@ struct DrawArgs {
 void add_draws(CLI::App& command, DrawArgs& args);
 void add_max_failures(CLI::App& command, DrawArgs& args);
 
-/// What search and sample share, but bounds and yaw. Throws ArgumentError.
-void fill(SpawnOptions& options, const QueryArgs& args, const DrawArgs& draws, const std::string& label);
+/// Throws ArgumentError for counts and distances out of range.
+void check_draws(const DrawArgs& args);
 
 /// Everything but the yaw; `bounds` as --bounds has it, or empty; flat_allowed: heights come from elsewhere. Throws
 /// ArgumentError.

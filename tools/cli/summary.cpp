@@ -45,8 +45,7 @@ void Summary::set_counts(const VerdictCounts& counts)
 {
     counts_ = counts;
     has_counts_ = true;
-    poses = 0;
-    for (const std::uint64_t count : counts) poses += count;
+    poses = counts.total();
 }
 
 unsigned Summary::threads() const
@@ -70,9 +69,9 @@ std::string Summary::line(double total) const
     if (has_counts_) {
         text += counted(poses, "pose");
         std::string verdicts;
-        for (std::size_t v = verdict_count; v-- > 0;)  // valid first
-            if (counts_[v] > 0)
-                verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(counts_[v]) + " " + to_string(Verdict(v));
+        for (auto verdict = all_verdicts.rbegin(); verdict != all_verdicts.rend(); ++verdict)  // valid first
+            if (const std::uint64_t count = counts_[*verdict]; count > 0)
+                verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(count) + " " + to_string(*verdict);
         text += verdicts + "; " + counted(exact_checks, "exact check") + "; ";
     }
     char seconds[32];
@@ -87,7 +86,7 @@ std::string Summary::json(double total) const
     out["poses"] = poses;
     out["counts"] = nlohmann::ordered_json::object();
     if (has_counts_)
-        for (std::size_t v = 0; v < verdict_count; ++v) out["counts"][to_string(Verdict(v))] = counts_[v];
+        for (const Verdict verdict : all_verdicts) out["counts"][to_string(verdict)] = counts_[verdict];
     out["exact_checks"] = exact_checks;
     if (fullness) {
         out["full"] = fullness->is_full;
