@@ -7,9 +7,9 @@
 namespace compare {
 
 struct Tally {
-    std::size_t poses = 0;             ///< or spawns
-    std::size_t asked = 0;             ///< exact checks of the exhaustive run
-    std::size_t exact = 0;             ///< exact checks of the run with the mask
+    std::size_t poses = 0;               ///< or spawns
+    std::size_t asked = 0;               ///< exact checks of the exhaustive run
+    std::size_t exact = 0;               ///< exact checks of the run with the mask
     spawnfield::VerdictCounts verdicts;  ///< of the exhaustive run
     /// Poses that the mask proved, without an exact check; only of_check counts them.
     std::size_t proven_valid = 0, proven_collision = 0;

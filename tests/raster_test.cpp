@@ -228,7 +228,8 @@ TEST_CASE("a floor between two steps is found with snap, but not without")
         CHECK(pose.verdict == Verdict::Valid);
         CHECK(pose.snapped);
     }
-    CHECK((found.counts[Verdict::Aerial] == 9 * 2 && found.counts[Verdict::Valid] == 9));  // the second of the steps 0, 2.5 and 5 is replaced
+    CHECK((found.counts[Verdict::Aerial] == 9 * 2 &&
+           found.counts[Verdict::Valid] == 9));  // the second of the steps 0, 2.5 and 5 is replaced
     CHECK(found.counts.total() == 9 * 3);
     options.snap = false;
     const RasterResult missed = raster(judge, options);

@@ -28,7 +28,7 @@ std::string text_of_missing(const MissingIncludes::value_type& missing);
 /// Checks `document`, which is the content of `file`, and each file that it includes at any depth, once. Returns the
 /// missing includes. Throws FileError for numbers that are malformed (sdf_numbers.h), and for a file that includes
 /// itself, because libsdformat would run until memory ends; the message shows the circle.
-SPAWNFIELD_MODULE_API MissingIncludes check_includes(const std::filesystem::path& file, const tinyxml2::XMLDocument& document,
-                               ModelPaths& paths);
+SPAWNFIELD_MODULE_API MissingIncludes check_includes(const std::filesystem::path& file,
+                                                     const tinyxml2::XMLDocument& document, ModelPaths& paths);
 
 }  // namespace spawnfield

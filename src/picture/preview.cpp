@@ -182,7 +182,6 @@ constexpr double cut_height = 2;         // m above a floor; things that begin h
 constexpr double most_hidden = 0.25;     // largest share of hidden ground for one picture from above
 constexpr std::size_t most_floors = 16;  // with a picture
 
-
 /// Returns a frame of cells for a picture or an estimate, with at most `most` cells along the longer side.
 GridFrame coarse_frame(const Map& map, int most)
 {

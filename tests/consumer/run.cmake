@@ -44,6 +44,8 @@ expect(0 "(-?[0-9.]+ -?[0-9.]+ [0-9.]+, yaw -?[0-9.]+\n)+" ${program}/sample ${W
 expect(0 "-6.5 -5: collision with thin_wall\n7 -7: submerged\n0 3: aerial: 2.55 m above the ground, the limit is 1 m\n"
   ${program}/check ${WORK}/map ${husky} ${WORK}/poses.csv)
 expect(1 "check: ${WORK}/nothing: .*\n" ${program}/check ${WORK}/nothing ${husky} ${WORK}/poses.csv)
-expect(0 "collision: 56\nvalid: 1625\n" ${program}/scene)
+# 49 poses: the robot's box overlaps the crate where |x - 2| < 0.995 and |y| < 0.835, which are 7 x 7 steps of 0.25 m.
+expect(0 "collision: 49\nvalid: 1632\n" ${program}/scene)
 expect(0 "5 spawns, 0 m above the ground\n" ${program}/robot ${WORK}/map)
-expect(0 "valid: [0-9]+ and [0-9]+ of 20000; [0-9.]+ us per pose and thread\n" ${program}/planner ${WORK}/map ${husky} 20000)
+expect(0 "valid: [0-9]+ and [0-9]+ of 20000; [0-9.]+ us per pose and thread\n"
+  ${program}/planner ${WORK}/map ${husky} 20000)

@@ -171,9 +171,9 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
         write(args, *output, session, options, list);
     fill(summary, options, list);
     if (list.spawns.size() == options.count) return {};
-    return {.status = fewer_found,
-            .notice = hopeless.empty() ? shortfall(options, session.judge->options().max_slope, list, command)
-                                       : hopeless};
+    return {
+        .status = fewer_found,
+        .notice = hopeless.empty() ? shortfall(options, session.judge->options().max_slope, list, command) : hopeless};
 }
 
 Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summary)
