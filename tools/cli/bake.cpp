@@ -77,7 +77,7 @@ void add_bake(CLI::App& app, ChosenCommand& chosen)
                        "x0,y0,z0,x1,y1,z1 in m (default: the scene's). z0 and z1 are z limits: layers beyond them are "
                        "not ground, and poses beyond them are outside");
     command.add_option("--z", args->z,
-                       "LOW:HIGH in m: only z limits; x and y are the scene's (5: and :8 are one limit)");
+                       "LOW:HIGH in m: only z limits; x and y are the scene's (5: or :8 for one limit)");
     add_scene_options(command, *args);
     command.add_flag("--allow-no-terrain", args->allow_no_terrain, "Accept a scene without terrain");
     add_common(command, *args);

@@ -41,8 +41,7 @@ void add_ground(CLI::App& command, GroundArgs& args, const std::string& layers_h
         .add_option("--floor", args.floor,
                     "Only layers of this floor, 0 the lowest; `spawnfield info MAP` lists floors")
         ->check(CLI::Range(0, 1000000));
-    command.add_option("--z", args.z,
-                       "LOW:HIGH in m: layers at other heights are not ground (5: or :8 for one limit)");
+    command.add_option("--z", args.z, "LOW:HIGH in m: layers at other heights are not ground (5: or :8 for one limit)");
 }
 
 std::string z_text(const ZRange& z)

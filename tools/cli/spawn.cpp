@@ -265,7 +265,7 @@ void add_search(CLI::App& app, ChosenCommand& chosen)
     command.add_option("--bounds", args->bounds,
                        "Box of the draws: x0,y0,z0,x1,y1,z1 in m, or with --z x0,y0,x1,y1 (default: the map's)");
     command.add_option("--z", args->ground.z,
-                       "LOW:HIGH in m: heights of the draws, in place of those of --bounds (5: and :8 are one limit)");
+                       "LOW:HIGH in m: heights of the draws, in place of those of --bounds (5: or :8 for one limit)");
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 "
