@@ -1,6 +1,7 @@
 #include "spawn_args.h"
 
 #include "common/seed.h"
+#include "messages.h"
 #include "numbers.h"
 
 namespace spawnfield::cli {
