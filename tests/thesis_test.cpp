@@ -60,15 +60,19 @@ TEST_CASE("Unity's frame is left-handed with y up")
 
 TEST_CASE("in the terms of the thesis valid is valid, aerial and off_terrain are aerial, and all others are invalid")
 {
-    for (const Verdict verdict : {Verdict::Outside, Verdict::Submerged, Verdict::Collision})
-        CHECK(thesis_class_of(verdict) == ThesisClass::Invalid);
-    for (const Verdict verdict : {Verdict::Aerial, Verdict::OffTerrain})
-        CHECK(thesis_class_of(verdict) == ThesisClass::Aerial);
-    CHECK(thesis_class_of(Verdict::Valid) == ThesisClass::Valid);
+    const std::map<Verdict, ThesisClass> classes = {
+        {Verdict::Outside, ThesisClass::Invalid},   {Verdict::Aerial, ThesisClass::Aerial},
+        {Verdict::OffTerrain, ThesisClass::Aerial}, {Verdict::Submerged, ThesisClass::Invalid},
+        {Verdict::Collision, ThesisClass::Invalid}, {Verdict::Steep, ThesisClass::Invalid},
+        {Verdict::Unstable, ThesisClass::Invalid},  {Verdict::Valid, ThesisClass::Valid},
+    };
+    CHECK(classes.size() == verdict_count);  // every verdict is there
+    for (const auto& [verdict, expected] : classes) CHECK(thesis_class_of(verdict) == expected);
 }
 
 TEST_CASE("locations of rasters are read back as the same poses, class by class, with and without aerial poses")
 {
+    std::uint64_t steep = 0, unstable = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const TestMap map = seed == 1 ? training_map() : map_of(random_scene(seed));
         const CollisionChecker checker = checker_of(map, husky());
@@ -77,16 +81,21 @@ TEST_CASE("locations of rasters are read back as the same poses, class by class,
             options.dims = dims;
             options.step = 0.7 + 0.01 * double(seed);  // numbers with many digits
             options.snap = dims == 3 && seed % 2 == 0;
+            if (seed % 2 == 1) options.max_slope = 0.1;
             const RasterResult result = raster(map, checker, options);
             const TempFolder folder;
             const ThesisCounts with_air = write_thesis_locations(folder.path(), result, true);
             CHECK(locations(folder / "Valid_Locations.txt") == poses_of(result, true, {Verdict::Valid}));
             CHECK(locations(folder / "Invalid_Locations.txt") ==
-                  poses_of(result, true, {Verdict::Outside, Verdict::Submerged, Verdict::Collision}));
+                  poses_of(
+                      result, true,
+                      {Verdict::Outside, Verdict::Submerged, Verdict::Collision, Verdict::Steep, Verdict::Unstable}));
             CHECK(locations(folder / "Air_Locations.txt") ==
                   poses_of(result, true, {Verdict::Aerial, Verdict::OffTerrain}));
             CHECK(with_air[std::size_t(ThesisClass::Aerial)] ==
                   result.counts[std::size_t(Verdict::Aerial)] + result.counts[std::size_t(Verdict::OffTerrain)]);
+            steep += result.counts[std::size_t(Verdict::Steep)];
+            unstable += result.counts[std::size_t(Verdict::Unstable)];
             const TempFolder other;
             const ThesisCounts without = write_thesis_locations(other.path(), result, false);
             CHECK(without == ThesisCounts{with_air[0], with_air[1], 0});
@@ -95,6 +104,7 @@ TEST_CASE("locations of rasters are read back as the same poses, class by class,
                 CHECK(bytes_of(other / name) == bytes_of(folder / name));
         }
     }
+    CHECK((steep > 0 && unstable > 0));
 }
 
 TEST_CASE("raster --format thesis writes a folder whose counts are those of the summary")
