@@ -201,7 +201,7 @@ TEST_CASE("a folder with other contents is refused, and does not change")
     CHECK(fs::is_symlink(arena / "link"));
     CHECK(names_in(arena / "empty").contains("Valid_Locations.txt"));
     const ProgramRun stopped = interrupt_program(
-        arena, "raster map --dims 3 --step 0.02 --no-height-check --format thesis -o empty" + husky_option, 1.0);
+        arena, "raster map --dims 3 --step 0.02 --no-height-check --format thesis -o empty" + husky_option);
     CHECK(stopped.status == 130);
     CHECK(value_of(bytes_of(arena / "empty/Stats.txt"), "Dimensions") == "2");
     CHECK(arena.names() == std::set<std::string>{"map", "out", "file", "nested", "empty", "link"});
