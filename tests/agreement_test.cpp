@@ -27,8 +27,8 @@ std::string described(const Pose& pose, Verdict fast, Verdict slow)
 /// Judges poses with check and with the independent decision, and counts where the two differ.
 void compare(const TestMap& map, const Robot& robot, const std::vector<Pose>& poses, Tally& tally)
 {
-    const CollisionChecker checker = checker_of(map, robot);
-    const std::vector<Judgement> fast = check_poses(map, checker, poses);
+    const Judge judge(map, robot);
+    const std::vector<Judgement> fast = judge.check(poses);
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const slow::Decision slow = slow::decide(map.scene, map.bounds, robot, poses[i], 1.0, 1e9);
         if (!slow.verdict) {
@@ -132,13 +132,13 @@ TEST_CASE("a mirrored scene mirrors the verdicts")
     for (Vec3& vertex : mirrored.vertices) vertex.y() *= -1;
     const TestMap other = map_of(mirrored);
     const Robot robot = husky();
-    const CollisionChecker checker = checker_of(map, robot), mirror_checker = checker_of(other, robot);
+    const Judge judge(map, robot), mirror_judge(other, robot);
     for (Pose pose : random_poses(map.scene, 3, 3000)) {
         const Vec3 p = pose.position;
-        const Judgement here = judge(map, checker, column_at(map.geometry, p.x(), p.y()), pose);
+        const Judgement here = judge.check(pose);
         const Mat3 flip = Vec3(1, -1, 1).asDiagonal();
         pose = {Vec3(p.x(), -p.y(), p.z()), flip * pose.rotation * flip};
-        const Judgement there = judge(other, mirror_checker, column_at(other.geometry, p.x(), -p.y()), pose);
+        const Judgement there = mirror_judge.check(pose);
         CHECK(here.verdict == there.verdict);
         CHECK(here.hit.has_value() == there.hit.has_value());
         if (here.hit && there.hit) CHECK(here.hit->part == there.hit->part);

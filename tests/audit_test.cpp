@@ -94,20 +94,16 @@ TEST_CASE("200 spawns in each shared world, as its makers publish it, are valid 
         CAPTURE(item.file);
         const Scene scene = load_scene(*folder / item.file, {.labels = item.labels});
         const TestMap map = map_of(scene, item.resolution, scene.map_bounds);
-        const CollisionChecker checker = checker_of(map, robot);
-        SampleOptions options;
-        options.count = 200;
-        options.min_distance = 0.1;
-        options.offset = item.offset;
-        options.random_yaw = true;
-        options.seed = 6;
-        const SpawnList list = sample(map, checker, options);
+        const Judge judge(map, robot);
+        SampleOptions options{.count = 200, .min_distance = 0.1, .random_yaw = true, .seed = 6, .offset = item.offset};
+        const SpawnList list = sample(judge, options);
         CHECK(list.spawns.size() == 200);
         std::size_t decided = 0, wrong = 0;
         for (const Spawn& spawn : list.spawns) {
             const Pose pose{spawn.position, rotation_from_rpy(0, 0, spawn.yaw)};
             const slow::Decision decision = slow::decide(near(map.scene, spawn.position, 3), map.bounds, robot, pose,
-                                                         options.max_height, options.max_water_depth, 1e-6);
+                                                         judge.options().max_height, judge.options().max_water_depth,
+                                                         1e-6);
             decided += decision.verdict.has_value();
             wrong += decision.verdict && *decision.verdict != Verdict::Valid;
         }

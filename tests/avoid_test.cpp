@@ -16,26 +16,12 @@ namespace {
 
 SampleOptions sample_options(std::size_t count, double min_distance)
 {
-    SampleOptions options;
-    options.count = count;
-    options.min_distance = min_distance;
-    options.random_yaw = true;
-    options.seed = 5;
-    return options;
+    return {.count = count, .min_distance = min_distance, .random_yaw = true, .seed = 5};
 }
 
-Verdict judged(const Map& map, const CollisionChecker& checker, const QueryOptions& options, const Spawn& spawn)
+Verdict judged(const Judge& judge, const Spawn& spawn)
 {
-    const Vec3& p = spawn.position;
-    return judge(map, checker, column_at(map.geometry, p.x(), p.y()), {p, rotation_from_rpy(0, 0, spawn.yaw)}, options)
-        .verdict;
-}
-
-QueryOptions without_height(const SpawnOptions& options)
-{
-    QueryOptions out = options;
-    out.max_height = 1e9;
-    return out;
+    return judge.check({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}).verdict;
 }
 
 bool is_clear(const std::vector<AvoidedPoints>& avoid, const Vec3& p)
@@ -75,8 +61,10 @@ struct SlowList {
     bool gave_up = false;  ///< then sample continues with cells, which this list does not cover
 };
 
-SlowList slow_search(const Map& map, const CollisionChecker& checker, const SearchOptions& options)
+SlowList slow_search(const Judge& judge, const SearchOptions& options)
 {
+    const Judge exhaustive = without_mask(judge);
+    const Map& map = judge.map();
     SlowList out;
     std::vector<Vec3> checked;
     for (std::uint64_t index = 0, failures = 0; out.found.size() < options.count && failures < options.max_failures;
@@ -91,7 +79,7 @@ SlowList slow_search(const Map& map, const CollisionChecker& checker, const Sear
         out.too_close += close;
         if (near || close) continue;
         checked.push_back(p);
-        if (judged(map, checker, options, {p, options.yaw}) != Verdict::Valid) continue;
+        if (judged(exhaustive, {p, options.yaw}) != Verdict::Valid) continue;
         out.found.push_back(p);
         failures = 0;
     }
@@ -99,8 +87,10 @@ SlowList slow_search(const Map& map, const CollisionChecker& checker, const Sear
 }
 
 /// Returns the draws before sample starts to use cells. `slots` must be at least the number of layers of any column.
-SlowList slow_sample(const Map& map, const CollisionChecker& checker, const SampleOptions& options, int slots)
+SlowList slow_sample(const Judge& judge, const SampleOptions& options, int slots)
 {
+    const Judge exhaustive = at_any_height(judge);
+    const Map& map = judge.map();
     SlowList out;
     for (std::uint64_t index = 0, failures = 0; out.found.size() < options.count; ++index) {
         out.gave_up = failures++ >= 2000;
@@ -112,11 +102,11 @@ SlowList slow_sample(const Map& map, const CollisionChecker& checker, const Samp
         ++out.draws;
         const std::vector<double> layers = column_at(map.geometry, x, y).layers;
         if (slot >= double(layers.size())) continue;
-        const Vec3 p(x, y, layers[std::size_t(slot)] + options.offset.value_or(auto_offset(checker.robot())));
+        const Vec3 p(x, y, layers[std::size_t(slot)] + options.offset.value_or(auto_offset(judge.robot())));
         const bool near = !is_clear(options.avoid, p), close = !near && !is_clear(out.found, options.min_distance, p);
         out.near_avoided += near;
         out.too_close += close;
-        if (near || close || judged(map, checker, without_height(options), {p, yaw}) != Verdict::Valid) continue;
+        if (near || close || judged(exhaustive, {p, yaw}) != Verdict::Valid) continue;
         out.found.push_back(p);
         failures = 0;
     }
@@ -135,9 +125,10 @@ void check_same(const SpawnList& list, const SlowList& slow)
 }
 
 /// Returns the number of grid positions at which a spawn could still be added.
-std::size_t room_left(const Map& map, const CollisionChecker& checker, const SampleOptions& options,
-                      const SpawnList& list, int cells)
+std::size_t room_left(const Judge& judge, const SampleOptions& options, const SpawnList& list, int cells)
 {
+    const Judge exhaustive = at_any_height(judge);
+    const Map& map = judge.map();
     std::vector<Vec3> taken;
     for (const Spawn& spawn : list.spawns) taken.push_back(spawn.position);
     Random random{1};
@@ -148,10 +139,9 @@ std::size_t room_left(const Map& map, const CollisionChecker& checker, const Sam
                 map.bounds.min +
                 (map.bounds.max - map.bounds.min).cwiseProduct(Vec3(double(i) / cells, double(j) / cells, 0));
             for (const double layer : column_at(map.geometry, p.x(), p.y()).layers) {
-                const Vec3 at(p.x(), p.y(), layer + options.offset.value_or(auto_offset(checker.robot())));
+                const Vec3 at(p.x(), p.y(), layer + options.offset.value_or(auto_offset(judge.robot())));
                 if (!is_clear(options.avoid, at) || !is_clear(taken, options.min_distance, at)) continue;
-                count += judged(map, checker, without_height(options), {at, random.between(-M_PI, M_PI)}) ==
-                         Verdict::Valid;
+                count += judged(exhaustive, {at, random.between(-M_PI, M_PI)}) == Verdict::Valid;
             }
         }
     return count;
@@ -193,20 +183,17 @@ TEST_CASE("no spawn is nearer to an avoided point than its distance, in random s
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         CAPTURE(seed);
         const TestMap map = map_of(random_scene(seed));
-        const CollisionChecker checker = checker_of(map, random_robot(seed));
+        const Judge judge(map, random_robot(seed));
         Random random{seed};
         SampleOptions options = sample_options(60, 0.4);
         options.avoid = random_avoided(map.bounds, random);
-        const SpawnList list = sample(map, checker, options);
+        const SpawnList list = sample(judge, options);
         for (const Spawn& spawn : list.spawns) {
             CHECK(is_clear(options.avoid, spawn.position));
-            CHECK(judged(map, checker, without_height(options), spawn) == Verdict::Valid);
+            CHECK(judged(at_any_height(judge), spawn) == Verdict::Valid);
         }
-        SearchOptions search_options;
-        search_options.count = 20;
-        search_options.max_failures = 3000;
-        search_options.avoid = options.avoid;
-        const SpawnList other = search(map, checker, search_options);
+        SearchOptions search_options{.count = 20, .avoid = options.avoid, .max_failures = 3000};
+        const SpawnList other = search(judge, search_options);
         for (const Spawn& spawn : other.spawns) CHECK(is_clear(options.avoid, spawn.position));
         sampled += list.spawns.size();
         searched += other.spawns.size();
@@ -224,20 +211,17 @@ TEST_CASE("search and sample with avoided points follow their definitions, draw 
         CAPTURE(seed);
         TestMap map = map_of(random_scene(seed));
         map.layers = 16;  // at least as many as in any column, so that sample never starts again
-        const CollisionChecker checker = checker_of(map, random_robot(seed));
+        const Judge judge(map, random_robot(seed));
         Random random{seed + 50};
-        SearchOptions options;
-        options.count = 15;
-        options.min_distance = 0.5;
-        options.max_failures = 1500;
-        options.avoid = random_avoided(map.bounds, random);
-        const SlowList slow = slow_search(map, checker, options);
-        check_same(search(map, checker, options), slow);
+        SearchOptions options{
+            .count = 15, .min_distance = 0.5, .avoid = random_avoided(map.bounds, random), .max_failures = 1500};
+        const SlowList slow = slow_search(judge, options);
+        check_same(search(judge, options), slow);
         SampleOptions sampling = sample_options(8, 0.3);
         sampling.avoid = options.avoid;
         sampling.avoid[1].points.resize(2);
-        const SlowList slow_samples = slow_sample(map, checker, sampling, 16);
-        check_same(sample(map, checker, sampling), slow_samples);
+        const SlowList slow_samples = slow_sample(judge, sampling, 16);
+        check_same(sample(judge, sampling), slow_samples);
         found += slow.found.size() + slow_samples.found.size();
         near += slow.near_avoided + slow_samples.near_avoided;
         close += slow.too_close + slow_samples.too_close;
@@ -253,10 +237,10 @@ TEST_CASE("a room that avoided points cover is proven full at once")
     const double min_distance = GENERATE(0.0, 0.5);
     CAPTURE(kind, min_distance);
     const TestMap map = map_of(room(kind));
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.2,0.2"));
+    const Judge judge(map, load_robot("box:0.3,0.2,0.2"));
     SampleOptions options = sample_options(10, min_distance);
     options.avoid = {{"", grid_points(0.5, nowhere), 0.6}};
-    const SpawnList list = sample(map, checker, options);
+    const SpawnList list = sample(judge, options);
     CHECK(list.spawns.empty());
     CHECK(list.is_full);
     CHECK(list.undecided_area == 0);
@@ -270,75 +254,71 @@ TEST_CASE("the gap between avoided points is filled, and then proven full")
     const double min_distance = GENERATE(0.15, 0.3);
     CAPTURE(kind, min_distance);
     const TestMap map = map_of(room(kind));
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.2,0.2"));
+    const Judge judge(map, load_robot("box:0.3,0.2,0.2"));
     const Vec3 gap(1.3, -0.4, 0.1);
     SampleOptions options = sample_options(1000, min_distance);
     options.avoid = {{"", grid_points(0.25, gap), 0.7}};
-    const SpawnList list = sample(map, checker, options);
+    const SpawnList list = sample(judge, options);
     CHECK(list.spawns.size() >= 3);
     for (const Spawn& spawn : list.spawns)
         CHECK(((spawn.position - gap).norm() < 0.8 && is_clear(options.avoid, spawn.position)));
     CHECK(list.is_full);
     CHECK(list.undecided_area == 0);
-    CHECK(room_left(map, checker, options, list, 400) == 0);
-    options.exhaustive = true;
-    CHECK(spawns_csv(sample(map, checker, options)) == spawns_csv(list));
+    CHECK(room_left(judge, options, list, 400) == 0);
+    CHECK(spawns_csv(sample(without_mask(judge), options)) == spawns_csv(list));
 }
 
 TEST_CASE("a second robot finds no room where the first has filled the map, and some with a smaller distance")
 {
     const TestMap map = map_of(room(1));
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.2,0.2"));
-    const SpawnList first = sample(map, checker, sample_options(1000, 0.8));
+    const Judge judge(map, load_robot("box:0.3,0.2,0.2"));
+    const SpawnList first = sample(judge, sample_options(1000, 0.8));
     REQUIRE(first.is_full);
     SampleOptions options = sample_options(1000, 0);
     options.seed = 6;
     AvoidedPoints& taken = options.avoid.emplace_back();
     for (const Spawn& spawn : first.spawns) taken.points.push_back(spawn.position);
     taken.distance = 0.8;
-    const SpawnList none = sample(map, checker, options);
+    const SpawnList none = sample(judge, options);
     CHECK((none.spawns.empty() && none.is_full && none.undecided_area == 0));
     taken.distance = 0.4;
     options.min_distance = 0.5;
-    const SpawnList second = sample(map, checker, options);
+    const SpawnList second = sample(judge, options);
     CHECK(second.spawns.size() > 20);
     CHECK((second.is_full || second.undecided_area < 0.01));
     for (const Spawn& spawn : second.spawns) CHECK(is_clear(options.avoid, spawn.position));
-    CHECK(room_left(map, checker, options, second, 300) == 0);
+    CHECK(room_left(judge, options, second, 300) == 0);
 }
 
 TEST_CASE("avoided points with distance 0, or far away, change no byte")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky());
     SampleOptions options = sample_options(1000, 1.5);
-    SearchOptions searching;
-    searching.count = 30;
-    searching.min_distance = 1;
-    searching.max_failures = 2000;
-    const SpawnList sampled = sample(map, checker, options), searched = search(map, checker, searching);
+    SearchOptions searching{.count = 30, .min_distance = 1, .max_failures = 2000};
+    const SpawnList sampled = sample(judge, options), searched = search(judge, searching);
     for (const AvoidedPoints& group : {AvoidedPoints{"", {Vec3(0, 0, 0), Vec3(1, 2, 0.1)}, 0}, AvoidedPoints{"", {}, 3},
                                        AvoidedPoints{"", {Vec3(500, 0, 0)}, 2}}) {
         options.avoid = searching.avoid = {group};
-        const SpawnList list = sample(map, checker, options);
+        const SpawnList list = sample(judge, options);
         CHECK(spawns_csv(list) == spawns_csv(sampled));
         CHECK((list.draws == sampled.draws && list.undecided_area == sampled.undecided_area && list.near_avoided == 0));
-        CHECK(spawns_csv(search(map, checker, searching)) == spawns_csv(searched));
+        CHECK(spawns_csv(search(judge, searching)) == spawns_csv(searched));
     }
 }
 
 TEST_CASE("avoided points give the same bytes with any number of threads")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky());
     SampleOptions options = sample_options(100000, 1.1);
     Random random{3};
     options.avoid = random_avoided(map.bounds, random);
     options.threads = 1;
-    const SpawnList one = sample(map, checker, options);
+    const SpawnList one = sample(judge, options);
     CHECK(one.near_avoided > 0);
     options.threads = 7;
-    const SpawnList many = sample(map, checker, options);
+    const SpawnList many = sample(judge, options);
     CHECK(spawns_csv(many) == spawns_csv(one));
     CHECK((many.draws == one.draws && many.near_avoided == one.near_avoided &&
            many.undecided_area == one.undecided_area));
@@ -347,11 +327,10 @@ TEST_CASE("avoided points give the same bytes with any number of threads")
 TEST_CASE("distances and points that are not numbers are refused")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky());
     SampleOptions options = sample_options(1, 0);
     options.avoid = {{"", {}, -1}};
-    CHECK_THROWS_WITH(sample(map, checker, options), "sample: avoid.distance is -1, needs >= 0 m");
-    SearchOptions searching;
-    searching.avoid = {{"", {Vec3(0, std::nan(""), 0)}, 1}};
-    CHECK_THROWS_WITH(search(map, checker, searching), "search: avoid.points is nan, needs finite numbers, m");
+    CHECK_THROWS_WITH(sample(judge, options), "sample: avoid.distance is -1, needs >= 0 m");
+    SearchOptions searching{.avoid = {{"", {Vec3(0, std::nan(""), 0)}, 1}}};
+    CHECK_THROWS_WITH(search(judge, searching), "search: avoid.points is nan, needs finite numbers, m");
 }

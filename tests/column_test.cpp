@@ -155,16 +155,12 @@ TEST_CASE("water surfaces are the crossings of a sheet and the top of a solid, a
     CHECK(column(scene, 1.5, 1.4).water == Heights{0.4});
     const TestMap map = map_of(scene);
     const Robot robot = load_robot("box:0.3,0.3,0.3");
-    const CollisionChecker checker = checker_of(map, robot);
+    const Judge judge(map, robot);
     const Pose pose{{1.5, 1.4, 0.3}, Mat3::Identity()};
-    CHECK(checker.is_free(pose));
-    const Column here = column(scene, 1.5, 1.4);
-    CHECK(judge(map, checker, here, pose).verdict == Verdict::Submerged);
-    QueryOptions shallow;
-    shallow.max_water_depth = 0.3;
-    CHECK(judge(map, checker, here, pose, shallow).verdict == Verdict::Valid);
-    shallow.max_water_depth = 0.4;
-    CHECK(judge(map, checker, here, pose, shallow).verdict == Verdict::Submerged);
+    CHECK(checker_of(map, robot).is_free(pose));
+    CHECK(judge.check(pose).verdict == Verdict::Submerged);
+    CHECK(Judge(map, robot, {.max_water_depth = 0.3}).check(pose).verdict == Verdict::Valid);
+    CHECK(Judge(map, robot, {.max_water_depth = 0.4}).check(pose).verdict == Verdict::Submerged);
 }
 
 TEST_CASE("a mesh that is filled on request is solid below its lowest crossing")

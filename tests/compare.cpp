@@ -15,13 +15,6 @@ std::ostringstream exact_numbers()
     return out;
 }
 
-template <class Options>
-Options exhaustive(Options options)
-{
-    set_exhaustive(options);
-    return options;
-}
-
 void note(Tally& tally, const std::string& what)
 {
     if (tally.differences++ == 0) tally.first = what;
@@ -30,7 +23,7 @@ void note(Tally& tally, const std::string& what)
 void count(Tally& tally, Verdict verdict)
 {
     ++tally.poses;
-    ++tally.verdicts[std::size_t(verdict)];
+    ++tally.verdicts[verdict];
 }
 
 std::string described(const Bounds& bounds)
@@ -40,14 +33,20 @@ std::string described(const Bounds& bounds)
     return out.str();
 }
 
-std::string described(const RasterOptions& options)
+std::string described(const JudgeOptions& limits)
+{
+    std::ostringstream out = exact_numbers();
+    out << " --max-height " << limits.max_height << " max-slope " << limits.max_slope;
+    return out.str();
+}
+
+std::string described(const RasterOptions& options, const JudgeOptions& limits)
 {
     std::ostringstream out = exact_numbers();
     out << "raster --dims " << options.dims << (options.height_check ? "" : " --no-height-check")
         << (options.snap ? " --snap" : "") << " --step " << options.step << " --step-z " << options.step_z
-        << " --offset " << options.offset.value_or(std::nan("")) << " --max-height " << options.max_height
-        << " max-slope " << options.max_slope << " yaw " << options.yaw << " layers " << int(options.layers.kind)
-        << " bounds " << described(options.bounds);
+        << " --offset " << options.offset.value_or(std::nan("")) << described(limits) << " yaw " << options.yaw
+        << " layers " << int(options.layers.kind) << " bounds " << described(options.bounds);
     return out.str();
 }
 
@@ -118,37 +117,36 @@ void Tally::add(const Tally& other)
     poses += other.poses;
     asked += other.asked;
     exact += other.exact;
-    for (std::size_t i = 0; i < verdict_count; ++i) verdicts[i] += other.verdicts[i];
+    verdicts += other.verdicts;
     proven_valid += other.proven_valid;
     proven_collision += other.proven_collision;
     differences += other.differences;
     if (first.empty()) first = other.first;
 }
 
-Tally of_raster(const TestMap& map, const CollisionChecker& checker, const RasterOptions& options)
+Tally of_raster(const TwoJudges& judges, const RasterOptions& options)
 {
-    const RasterResult fast = raster(map, checker, options), slow = raster(map, checker, exhaustive(options));
+    const RasterResult fast = raster(judges.fast, options), slow = raster(judges.exhaustive, options);
+    const std::string query = described(options, judges.fast.options());
     Tally tally;
     tally.asked = slow.exact_checks;
     tally.exact = fast.exact_checks;
     for (std::size_t i = 0; i < std::min(fast.poses.size(), slow.poses.size()); ++i) {
         count(tally, slow.poses[i].verdict);
         if (!same(fast.poses[i], slow.poses[i]))
-            note(tally, two(described(options), described(fast.poses[i]), described(slow.poses[i])));
+            note(tally, two(query, described(fast.poses[i]), described(slow.poses[i])));
     }
     if (fast.poses.size() != slow.poses.size())
-        note(tally,
-             two(described(options) + " poses", std::to_string(fast.poses.size()), std::to_string(slow.poses.size())));
+        note(tally, two(query + " poses", std::to_string(fast.poses.size()), std::to_string(slow.poses.size())));
     else if (fast.counts != slow.counts)
-        note(tally, described(options) + ": counts differ");
+        note(tally, query + ": counts differ");
     return tally;
 }
 
-Tally of_check(const TestMap& map, const CollisionChecker& checker, const std::vector<Pose>& poses,
-               const QueryOptions& options)
+Tally of_check(const TwoJudges& judges, const std::vector<Pose>& poses)
 {
-    const std::vector<Judgement> fast = check_poses(map, checker, poses, options),
-                                 slow = check_poses(map, checker, poses, exhaustive(options));
+    const std::vector<Judgement> fast = judges.fast.check(poses, {.threads = 1}),
+                                 slow = judges.exhaustive.check(poses, {.threads = 1});
     Tally tally;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         count(tally, slow[i].verdict);
@@ -156,34 +154,35 @@ Tally of_check(const TestMap& map, const CollisionChecker& checker, const std::v
         tally.exact += fast[i].exact_check;
         tally.proven_valid += fast[i].verdict == Verdict::Valid && !fast[i].exact_check;
         tally.proven_collision += fast[i].verdict == Verdict::Collision && !fast[i].exact_check;
-        if (same(fast[i], slow[i])) continue;
-        const std::string query = "check --max-height " + std::to_string(options.max_height) + " max-slope " +
-                                  std::to_string(options.max_slope) + " " + described(poses[i]);
-        note(tally, two(query, described(fast[i]), described(slow[i])));
+        const Judgement alone = judges.fast.check(poses[i]);
+        const std::string query = "check" + described(judges.fast.options()) + " " + described(poses[i]);
+        if (!same(fast[i], slow[i])) note(tally, two(query, described(fast[i]), described(slow[i])));
+        if (!same(alone, fast[i]) || judges.fast.is_valid(poses[i]) != (alone.verdict == Verdict::Valid))
+            note(tally, query + ": alone " + described(alone) + ", among others " + described(fast[i]));
     }
     return tally;
 }
 
-Tally of_sample(const TestMap& map, const CollisionChecker& checker, const SampleOptions& options)
+Tally of_sample(const TwoJudges& judges, const SampleOptions& options)
 {
     Tally tally;
     std::ostringstream query = exact_numbers();
     query << "sample -n " << options.count << " --min-distance " << options.min_distance << " --offset "
-          << options.offset.value_or(std::nan("")) << " max-slope " << options.max_slope << " --seed " << options.seed
+          << options.offset.value_or(std::nan("")) << described(judges.fast.options()) << " --seed " << options.seed
           << " yaw " << (options.random_yaw ? "random" : std::to_string(options.yaw)) << " bounds "
           << described(options.bounds);
-    compare_spawns(query.str(), sample(map, checker, options), sample(map, checker, exhaustive(options)), tally);
+    compare_spawns(query.str(), sample(judges.fast, options), sample(judges.exhaustive, options), tally);
     return tally;
 }
 
-Tally of_search(const TestMap& map, const CollisionChecker& checker, const SearchOptions& options)
+Tally of_search(const TwoJudges& judges, const SearchOptions& options)
 {
-    const SpawnList fast = search(map, checker, options), slow = search(map, checker, exhaustive(options));
+    const SpawnList fast = search(judges.fast, options), slow = search(judges.exhaustive, options);
     Tally tally;
     std::ostringstream query = exact_numbers();
     query << "search -n " << options.count << " --min-distance " << options.min_distance << " --max-failures "
-          << options.max_failures << " --max-height " << options.max_height << " max-slope " << options.max_slope
-          << " --seed " << options.seed << " bounds " << described(options.bounds);
+          << options.max_failures << described(judges.fast.options()) << " --seed " << options.seed << " bounds "
+          << described(options.bounds);
     compare_spawns(query.str(), fast, slow, tally);
     if (fast.counts != slow.counts || fast.draws != slow.draws || fast.too_close != slow.too_close)
         note(tally, query.str() + ": counts differ");

@@ -7,10 +7,10 @@
 namespace compare {
 
 struct Tally {
-    std::size_t poses = 0;                 ///< or spawns
-    std::size_t asked = 0;                 ///< exact checks of the exhaustive run
-    std::size_t exact = 0;                 ///< exact checks of the run with the mask
-    spawnfield::VerdictCounts verdicts{};  ///< of the exhaustive run
+    std::size_t poses = 0;               ///< or spawns
+    std::size_t asked = 0;               ///< exact checks of the exhaustive run
+    std::size_t exact = 0;               ///< exact checks of the run with the mask
+    spawnfield::VerdictCounts verdicts;  ///< of the exhaustive run
     /// Poses that the mask proved, without an exact check; only of_check counts them.
     std::size_t proven_valid = 0, proven_collision = 0;
     std::size_t differences = 0;
@@ -19,14 +19,20 @@ struct Tally {
     void add(const Tally& other);
 };
 
-Tally of_raster(const TestMap& map, const spawnfield::CollisionChecker& checker,
-                const spawnfield::RasterOptions& options);
-Tally of_check(const TestMap& map, const spawnfield::CollisionChecker& checker,
-               const std::vector<spawnfield::Pose>& poses, const spawnfield::QueryOptions& options);
-Tally of_sample(const TestMap& map, const spawnfield::CollisionChecker& checker,
-                const spawnfield::SampleOptions& options);
-Tally of_search(const TestMap& map, const spawnfield::CollisionChecker& checker,
-                const spawnfield::SearchOptions& options);
+/// A judge with the mask, and the same one without it.
+struct TwoJudges {
+    spawnfield::Judge fast, exhaustive;
+
+    TwoJudges(const spawnfield::Map& map, const spawnfield::Robot& robot, const spawnfield::JudgeOptions& options = {})
+        : fast(map, robot, options), exhaustive(without_mask(fast))
+    {
+    }
+};
+
+Tally of_raster(const TwoJudges& judges, const spawnfield::RasterOptions& options);
+Tally of_check(const TwoJudges& judges, const std::vector<spawnfield::Pose>& poses);
+Tally of_sample(const TwoJudges& judges, const spawnfield::SampleOptions& options);
+Tally of_search(const TwoJudges& judges, const spawnfield::SearchOptions& options);
 
 /// The results of all queries of a case, with a few hundred poses each.
 struct CaseTally {
@@ -50,8 +56,8 @@ spawnfield::Bounds crop_near(const TestMap& map, Random& random, double step, in
 
 /// Returns poses at which verdicts change: at the offset above layers of the crop, some of them rotated, tilted or
 /// shifted a little.
-std::vector<spawnfield::Pose> standing_poses(const TestMap& map, const spawnfield::CollisionChecker& checker,
-                                             const HardCase& hard, const spawnfield::Bounds& crop, std::size_t count);
+std::vector<spawnfield::Pose> standing_poses(const TestMap& map, const HardCase& hard, const spawnfield::Bounds& crop,
+                                             std::size_t count);
 
 std::string described(const spawnfield::Robot& robot);
 std::string described(const spawnfield::Pose& pose);

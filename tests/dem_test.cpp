@@ -169,8 +169,7 @@ TEST_CASE("heights of all kinds of pixels are metres")
         write(folder, {.heights = {7, 6, 5, 40000, 5, 6}, .bits = 16, .format = SAMPLEFORMAT_UINT}));
     CHECK(height(whole, -2, -2.5) == 40000);
     CHECK(has_notice(whole, "heights are whole numbers, taken as metres"));
-    SceneOptions options;
-    options.heightmap = "z: [0, 65.535]";
+    SceneOptions options{.heightmap = "z: [0, 65.535]"};
     CHECK(height(load_scene(folder / "a.tif", options), -2, -2.5) == Approx(40));
 }
 
@@ -295,11 +294,12 @@ TEST_CASE("EPSG codes without a unit are refused, with advice")
     CHECK_THROWS_WITH(load_scene(write(folder, {.keys = keys_of({{1024, 1}, {3072, 4978}})})),
                       Contains("(geocentric, EPSG:4978)"));
     for (const int code : {30000, 5703})  // none, heights alone
-        check_refused(code, "is in EPSG:" + std::to_string(code) +
-                                ", which PROJ does not know as a projection, so its unit is unknown; give it another "
-                                "with gdal_edit.py -a_srs, or give the spacing in metres with the key cell");
-    SceneOptions options;
-    options.heightmap = "cell: 3";
+        check_refused(
+            code,
+            "is in EPSG:" + std::to_string(code) +
+                ", which PROJ does not know as a projection, so its unit is unknown; give it another with gdal_edit.py "
+                "-a_srs, or give the spacing in metres with the key cell");
+    SceneOptions options{.heightmap = "cell: 3"};
     CHECK(load_scene(folder / "a.tif", options).bounds().max.x() == 3);
 }
 
@@ -357,8 +357,7 @@ TEST_CASE("no-data heights are not terrain")
             load_scene(write(folder, {.heights = heights, .keys = keys_of({{1024, 1}, {3072, 26910}, {4096, system}})},
                              "b.tif")),
             "the lowest value is -9999, which often means no data; if it does here, give --heightmap 'nodata: -9999'"));
-    SceneOptions options;
-    options.heightmap = "nodata: -9999";
+    SceneOptions options{.heightmap = "nodata: -9999"};
     check_hole(load_scene(plain, options));
     CHECK_THROWS_WITH(load_scene(write(folder, {.heights = {0, 0, 0, 0, 0, 0}, .no_data = "0"})),
                       (folder / "a.tif").string() + ": has no heights: every pixel is NaN or no-data");
@@ -378,8 +377,7 @@ TEST_CASE("where 0 is white a GeoTIFF keeps its values, but in a plain picture w
     CHECK(scene.bounds().max.z() == 6);
     CHECK(height(scene, -2, 2.5) == 1);
     CHECK(scene.triangles.size() == 3);
-    SceneOptions options;
-    options.heightmap = "z: [0, 655.35]";
+    SceneOptions options{.heightmap = "z: [0, 655.35]"};
     CHECK(load_scene(folder / "a.tif", options).bounds().max.z() == Approx(0.06));
     GeoFile picture = survey;
     picture.scale = picture.tie = {};
@@ -450,8 +448,7 @@ TEST_CASE("a given spacing is used, and the position of the file is ignored")
 {
     const TempFolder folder;
     write(folder, {.keys = keys_of({{1024, 2}})});
-    SceneOptions options;
-    options.heightmap = "cell: [10, 20]";
+    SceneOptions options{.heightmap = "cell: [10, 20]"};
     const Scene scene = load_scene(folder / "a.tif", options);
     CHECK(scene.bounds().max == Vec3(10, 10, 6));
     CHECK_FALSE(scene.origin);
@@ -566,12 +563,12 @@ TEST_CASE("a .prj file with degrees is refused, and one that cannot be understoo
     const TempFolder folder;
     const std::filesystem::path file = folder.write("a.asc", grid_head + "1 2 3\n4 5 6\n");
     folder.write("a.prj", gcs_of_prj);
-    CHECK_THROWS_WITH(load_scene(file), file.string() +
-                                            ": has coordinates in degrees (geographic, WGS 84), needs metres; "
-                                            "reproject it: gdalwarp -t_srs EPSG:CODE, where CODE "
-                                            "is a projection in metres, such as that of the UTM zone");
-    SceneOptions options;
-    options.heightmap = "cell: 3";
+    CHECK_THROWS_WITH(
+        load_scene(file),
+        file.string() +
+            ": has coordinates in degrees (geographic, WGS 84), needs metres; reproject it: gdalwarp -t_srs "
+            "EPSG:CODE, where CODE is a projection in metres, such as that of the UTM zone");
+    SceneOptions options{.heightmap = "cell: 3"};
     CHECK(load_scene(file, options).bounds().max.x() == 3);
     for (const std::string text : {"Projection UTM\nZone 33\nUnits METERS\n", "", "PROJCS[\"Plan\""}) {
         folder.write("a.prj", text);
@@ -644,8 +641,7 @@ TEST_CASE("images and raw numbers need options that describe them")
 {
     const TempFolder folder;
     const auto load = [&](const std::string& name, const std::string& keys) {
-        SceneOptions options;
-        options.heightmap = keys;
+        SceneOptions options{.heightmap = keys};
         return load_scene(folder / name, options);
     };
     const auto raw = [&](const std::string& name, auto... values) {
@@ -706,8 +702,7 @@ TEST_CASE("an elevation model as a scene takes labels, but no options for meshes
 {
     const TempFolder folder;
     const std::filesystem::path file = folder.write("Ground.asc", grid_head + "1 2 3\n4 5 6\n");
-    SceneOptions options;
-    options.labels = {{"ground", Label::Obstacle}};
+    SceneOptions options{.labels = {{"ground", Label::Obstacle}}};
     CHECK(load_scene(file, options).parts[0].label == Label::Obstacle);
     options.labels = {{"road", Label::Obstacle}};
     const Scene idle = load_scene(file, options);

@@ -9,6 +9,3 @@ inline TestMap map_at(spawnfield::Scene scene, double resolution, const spawnfie
 {
     return map_of(std::move(scene), resolution, bounds);
 }
-
-/// Makes the collision checker decide every pose, without the mask.
-inline void set_exhaustive(spawnfield::QueryOptions& options) { options.exhaustive = true; }

@@ -39,15 +39,15 @@ void check_verdicts(const compare::Tally& tally, const std::vector<Verdict>& exp
     if (!all_scenes) return;
     for (const Verdict verdict : expected) {
         INFO(to_string(verdict));
-        CHECK(tally.verdicts[std::size_t(verdict)] >= least);
+        CHECK(tally.verdicts[verdict] >= least);
     }
 }
 
 void print(const char* what, const compare::Tally& tally)
 {
     std::cout << what << ": " << tally.poses << " poses,";
-    for (std::size_t i = 0; i < verdict_count; ++i)
-        std::cout << " " << tally.verdicts[i] << " " << to_string(Verdict(i)) << ",";
+    for (const Verdict verdict : all_verdicts)
+        std::cout << " " << tally.verdicts[verdict] << " " << to_string(verdict) << ",";
     std::cout << " " << tally.exact << " of " << tally.asked << " checked exactly\n";
 }
 
@@ -80,11 +80,8 @@ Change change(const std::vector<RasterPose>& before, const std::vector<RasterPos
 RasterOptions dyadic_raster(const TestMap& map, const HardCase& hard)
 {
     Random random{hard.seed + 3};
-    RasterOptions options;
-    options.offset = hard.offset;
-    options.yaw = hard.yaws[0];
-    options.threads = 1;
-    options.step = (1 + random.below(16)) / 64.0;
+    RasterOptions options{
+        .step = (1 + random.below(16)) / 64.0, .offset = hard.offset, .yaw = hard.yaws[0], .threads = 1};
     const Bounds crop = compare::crop_near(map, random, options.step, 20);
     options.bounds = crop;
     for (int axis = 0; axis < 2; ++axis) {
@@ -130,14 +127,13 @@ std::vector<std::filesystem::path> scene_files(const std::filesystem::path& fold
 }
 
 /// Compares a 2D raster across the map, and 3D rasters around every hundredth pose.
-compare::Tally real_rasters(const TestMap& map, const CollisionChecker& checker, const std::vector<Pose>& poses)
+compare::Tally real_rasters(const TestMap& map, const compare::TwoJudges& judges, const std::vector<Pose>& poses)
 {
     compare::Tally tally;
-    RasterOptions options;
-    options.step = (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 70.3;
+    RasterOptions options{.step = (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 70.3};
     for (const double offset : {0.05, 0.3}) {
         options.offset = offset;
-        tally.add(compare::of_raster(map, checker, options));
+        tally.add(compare::of_raster(judges, options));
     }
     options.dims = 3;
     options.step = 0.13;
@@ -146,7 +142,7 @@ compare::Tally real_rasters(const TestMap& map, const CollisionChecker& checker,
         const Vec3& near = poses[i].position;
         options.bounds = {near - Vec3(1, 1, 1), near + Vec3(1, 1, 2)};
         options.height_check = i % 200 == 0;
-        tally.add(compare::of_raster(map, checker, options));
+        tally.add(compare::of_raster(judges, options));
     }
     return tally;
 }
@@ -248,9 +244,9 @@ TEST_CASE("with the mask a larger robot never gains a valid pose")
         Robot longer = hard.robot;
         longer.parts.push_back(random_robot(seed + 9).parts[0]);
         const RasterOptions options = dyadic_raster(map, hard);
-        const RasterResult small = raster(map, checker_of(map, hard.robot), options);
+        const RasterResult small = raster(Judge(map, hard.robot), options);
         for (const Robot& robot : {enlarged(hard.robot, 1.05), enlarged(hard.robot, 1.4), longer}) {
-            const Change becomes = change(small.poses, raster(map, checker_of(map, robot), options).poses);
+            const Change becomes = change(small.poses, raster(Judge(map, robot), options).poses);
             CAPTURE(seed, hard.resolution);
             CHECK(becomes.gained == 0);
             kept += becomes.valid - becomes.lost;
@@ -271,12 +267,12 @@ TEST_CASE("a finer mask changes no verdict, only the number of exact checks")
         for (const int dims : {2, 3}) {
             options.dims = dims;
             options.step_z = 0.17;
-            const RasterResult expected = raster(coarse, checker_of(coarse, hard.robot), options);
+            const RasterResult expected = raster(Judge(coarse, hard.robot), options);
             valid += valid_count(expected.poses);
             coarse_checks += expected.exact_checks;
             for (const double resolution : {1.37 * hard.resolution, std::max(0.02, hard.resolution / 1.5)}) {
                 const TestMap fine = map_at(hard.scene, resolution, hard.map_bounds);
-                const RasterResult result = raster(fine, checker_of(fine, hard.robot), options);
+                const RasterResult result = raster(Judge(fine, hard.robot), options);
                 CAPTURE(seed, hard.resolution, resolution, dims);
                 CHECK(csv(result) == csv(expected));
                 if (resolution < hard.resolution) fine_checks += result.exact_checks;
@@ -294,12 +290,12 @@ TEST_CASE("with the mask a mirrored scene mirrors the verdicts")
         const HardCase hard = hard_case(seed, {.razor = false});
         const TestMap map = map_at(hard.scene, hard.resolution), mirror = map_at(mirrored(hard.scene), hard.resolution);
         RasterOptions options = dyadic_raster(map, hard);
-        const RasterResult here = raster(map, checker_of(map, hard.robot), options);
+        const RasterResult here = raster(Judge(map, hard.robot), options);
         options.yaw *= -1;
         std::swap(options.bounds.min.y(), options.bounds.max.y());
         options.bounds.min.y() *= -1;
         options.bounds.max.y() *= -1;
-        std::vector<RasterPose> there = raster(mirror, checker_of(mirror, mirrored(hard.robot)), options).poses;
+        std::vector<RasterPose> there = raster(Judge(mirror, mirrored(hard.robot)), options).poses;
         for (RasterPose& pose : there) pose.y *= -1;
         std::sort(there.begin(), there.end(), earlier);
         CAPTURE(seed, hard.resolution);
@@ -319,10 +315,10 @@ TEST_CASE("with the mask a scene moved by whole metres keeps its verdicts")
         const Vec3 by = {double(seed % 7) * 157 - 300, 1000 - double(seed % 5) * 321, double(seed % 3) * 64};
         const TestMap map = map_at(scene, hard.resolution), moved = map_at(shifted(scene, by), hard.resolution);
         RasterOptions options = dyadic_raster(map, hard);
-        const RasterResult here = raster(map, checker_of(map, hard.robot), options);
+        const RasterResult here = raster(Judge(map, hard.robot), options);
         options.bounds.min += by;
         options.bounds.max += by;
-        const RasterResult there = raster(moved, checker_of(moved, hard.robot), options);
+        const RasterResult there = raster(Judge(moved, hard.robot), options);
         CAPTURE(seed, hard.resolution);
         CHECK(same_verdicts(here.poses, there.poses));
         valid += valid_count(here.poses);
@@ -339,26 +335,25 @@ TEST_CASE("the mask never proves a pose free if a yaw of the set collides, nor b
     for (std::uint64_t seed = 1; seed <= scene_count / 2; ++seed) {
         const HardCase hard = hard_case(seed);
         const TestMap map = compare::map_of_case(hard);
+        const compare::TwoJudges judges(map, hard.robot);
         const CollisionChecker checker = checker_of(map, hard.robot);
         Random random{seed};
         const Bounds crop = compare::crop_near(map, random, 2 * hard.resolution, 15);
         std::vector<Pose> poses;
-        for (const Pose& pose : compare::standing_poses(map, checker, hard, crop, 40))
+        for (const Pose& pose : compare::standing_poses(map, hard, crop, 40))
             for (int i = 0; i < 24; ++i) {
                 const double yaw = i < 8 ? M_PI / 4 * i : random.between(-M_PI, M_PI);
                 poses.push_back({pose.position, rotation_from_rpy(0, 0, yaw)});
             }
-        QueryOptions options;
-        options.threads = 1;
-        const compare::Tally tally = compare::of_check(map, checker, poses, options);
+        const compare::Tally tally = compare::of_check(judges, poses);
         INFO("scene " << seed << ": " << tally.first);
         CHECK(tally.differences == 0);
         all.add(tally);
         const FreeSpace space(map.solid_bounds, hard.robot);
         std::optional<Proof> every_yaw;
         for (std::size_t i = 0; i < poses.size(); ++i) {
-            if (i % 24 == 0) every_yaw = space.at_every_yaw(poses[i].position);
-            const Proof proof = space.at(poses[i]);
+            if (i % 24 == 0) every_yaw = space.proof_at_every_yaw(poses[i].position);
+            const Proof proof = space.proof_of(poses[i]);
             if (proof == Proof::Candidate && *every_yaw == Proof::Candidate) continue;
             const Proof truth = checker.is_free(poses[i]) ? Proof::Free : Proof::Blocked;
             lies += (proof != Proof::Candidate && proof != truth) ||
@@ -381,7 +376,7 @@ TEST_CASE("with a mask that is made on first use, rasters are the same bytes wit
         std::string expected;
         for (const int threads : {1, 2, 8}) {
             const TestMap map = compare::map_of_case(hard);
-            const CollisionChecker checker = checker_of(map, hard.robot);
+            const Judge judge(map, hard.robot);
             RasterOptions options = dyadic_raster(map, hard);
             options.bounds = {};
             options.step = std::max(0.1, (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 60);
@@ -391,8 +386,8 @@ TEST_CASE("with a mask that is made on first use, rasters are the same bytes wit
                 options.dims = dims;
                 options.snap = dims == 3;
                 options.step_z = 1.7;
-                options.offset = std::clamp(*options.offset, 0.0, options.max_height);
-                const RasterResult result = raster(map, checker, options);
+                options.offset = std::clamp(*options.offset, 0.0, judge.options().max_height);
+                const RasterResult result = raster(judge, options);
                 text += csv(result) + std::to_string(result.exact_checks);
             }
             if (threads == 1) expected = text;
@@ -420,17 +415,14 @@ TEST_CASE("every query gives the exhaustive verdicts in real scenes", "[real]")
     for (const std::filesystem::path& file : files) {
         const HardCase real = real_case(file);
         const TestMap map = compare::map_of_case(real);
-        const CollisionChecker checker = checker_of(map, real.robot);
-        const std::vector<Pose> standing = compare::standing_poses(map, checker, real, map.bounds, 300);
+        const compare::TwoJudges judges(map, real.robot);
+        const std::vector<Pose> standing = compare::standing_poses(map, real, map.bounds, 300);
         std::vector<Pose> poses = random_poses(real.scene, 5, 200);
         poses.insert(poses.end(), standing.begin(), standing.end());
-        compare::Tally tally = compare::of_check(map, checker, poses, {});
-        tally.add(real_rasters(map, checker, poses));
-        SampleOptions sampling;
-        sampling.count = 100;
-        sampling.min_distance = 0.5;
-        sampling.random_yaw = true;
-        tally.add(compare::of_sample(map, checker, sampling));
+        compare::Tally tally = compare::of_check(judges, poses);
+        tally.add(real_rasters(map, judges, poses));
+        SampleOptions sampling{.count = 100, .min_distance = 0.5, .random_yaw = true};
+        tally.add(compare::of_sample(judges, sampling));
         INFO(file.string() << ": " << tally.first);
         CHECK(tally.differences == 0);
         CHECK(tally.poses > 5000);

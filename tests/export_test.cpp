@@ -141,14 +141,15 @@ GeoTiff read_geotiff(const fs::path& file)
                 tag_values<std::uint16_t>(tiff.get(), 34735),
                 tag_text(tiff.get(), 42112),
                 tag_text(tiff.get(), 42113)};
-    HeightImage tile(side, side);
+    HeightImage tile{int(side), int(side)};
     for (std::uint16_t band = 0; band < bands; ++band) {
-        HeightImage& image = out.bands.emplace_back(rows, cols);
+        HeightImage& image = out.bands.emplace_back(int(rows), int(cols));
         for (std::uint32_t top = 0; top < rows; top += side)
             for (std::uint32_t left = 0; left < cols; left += side) {
-                REQUIRE(TIFFReadTile(tiff.get(), tile.data(), left, top, 0, band) > 0);
-                const auto height = std::min(side, rows - top), width = std::min(side, cols - left);
-                image.block(top, left, height, width) = tile.block(0, 0, height, width);
+                REQUIRE(TIFFReadTile(tiff.get(), tile.values.data(), left, top, 0, band) > 0);
+                const int height = int(std::min(side, rows - top)), width = int(std::min(side, cols - left));
+                for (int row = 0; row < height; ++row)
+                    std::copy_n(&tile(row, 0), width, &image(int(top) + row, int(left)));
             }
     }
     return out;
@@ -157,8 +158,8 @@ GeoTiff read_geotiff(const fs::path& file)
 bool same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 bool same(const HeightImage& a, const HeightImage& b)
 {
-    return a.rows() == b.rows() && a.cols() == b.cols() &&
-           std::equal(a.data(), a.data() + a.size(), b.data(), [](float x, float y) { return same(x, y); });
+    return a.rows == b.rows && a.cols == b.cols &&
+           std::equal(a.values.begin(), a.values.end(), b.values.begin(), [](float x, float y) { return same(x, y); });
 }
 
 /// Returns a Python that reads our files back with this package. If the package is not installed, the running test is
@@ -205,9 +206,10 @@ nlohmann::json glb_json(const std::string& bytes)
 /// Loads a GLB with the project's own reader.
 Scene load_glb(const TempFolder& folder, const std::string& bytes)
 {
-    SceneOptions options;
-    options.labels = {
-        {"terrain", Label::Terrain}, {"water", Label::Water}, {"obstacle", Label::Obstacle}, {"spawn*", Label::Ignore}};
+    SceneOptions options{.labels = {{"terrain", Label::Terrain},
+                                    {"water", Label::Water},
+                                    {"obstacle", Label::Obstacle},
+                                    {"spawn*", Label::Ignore}}};
     return load_scene(folder.write("a.glb", bytes), options);
 }
 
@@ -232,23 +234,18 @@ std::multiset<std::array<double, 10>> triangles_of(const Scene& scene)
 
 RasterOptions on_layer(LayerChoice layers, double offset = 0.1, double yaw = 0)
 {
-    RasterOptions options;
-    options.layers = layers;
-    options.offset = offset;
-    options.yaw = yaw;
-    return options;
+    return {.offset = offset, .yaw = yaw, .layers = layers};
 }
 
 /// Returns the verdict at a point, computed by the test itself from the column; nothing if there is no such layer.
-std::optional<Verdict> verdict_at(const Map& map, const CollisionChecker& checker, const RasterOptions& options,
-                                  double x, double y)
+std::optional<Verdict> verdict_at(const Judge& judge, const RasterOptions& options, double x, double y)
 {
-    const Column column = column_at(map.geometry, x, y);
+    const Column column = column_at(judge.map().geometry, x, y);
     const int count = int(column.layers.size());
     for (int layer = 0; layer < count; ++layer)
         if (options.layers.includes(layer, count)) {
             const Vec3 position(x, y, column.layers[std::size_t(layer)] + *options.offset);
-            return judge(map, checker, column, {position, rotation_from_rpy(0, 0, options.yaw)}, options).verdict;
+            return judge.check({position, rotation_from_rpy(0, 0, options.yaw)}).verdict;
         }
     return std::nullopt;
 }
@@ -258,26 +255,26 @@ std::optional<Verdict> verdict_at(const Map& map, const CollisionChecker& checke
 TEST_CASE("an image of verdicts has the verdict at the centre of each cell, on the chosen layer")
 {
     const TestMap map = deck_map();
-    const CollisionChecker checker = checker_of(map, small_box);
+    const Judge judge(map, small_box);
     const LayerChoice layers = GENERATE(LayerChoice{LayerChoice::Kind::Top, 0},
                                         LayerChoice{LayerChoice::Kind::Bottom, 0},
                                         LayerChoice{LayerChoice::Kind::Index, 1});
     const double cell = GENERATE(0.1, 0.23, 20.0);
     const RasterOptions options = on_layer(layers, 0.15, 0.7);
     const GridFrame frame = frame_around(map.bounds, cell);
-    const VerdictImage image = verdict_image(map, checker, frame, options);
+    const VerdictImage image = verdict_image(judge, frame, options);
     REQUIRE(image.verdicts.size() == std::size_t(frame.rows) * std::size_t(frame.cols));
-    VerdictCounts counts{};
+    VerdictCounts counts;
     for (int row = 0; row < frame.rows; ++row)
         for (int col = 0; col < frame.cols; ++col) {
-            const std::optional<Verdict> expected = verdict_at(map, checker, options, frame.x_of(col), frame.y_of(row));
+            const std::optional<Verdict> expected = verdict_at(judge, options, frame.x_of(col), frame.y_of(row));
             CHECK(image.at(row, col) == (expected ? std::uint8_t(*expected) : VerdictImage::no_pose));
-            if (expected) ++counts[std::size_t(*expected)];
+            if (expected) ++counts[*expected];
         }
     CHECK(image.counts == counts);
     if (cell < 1 && layers.kind != LayerChoice::Kind::Index) {
         for (const Verdict verdict : {Verdict::Valid, Verdict::Collision, Verdict::Submerged})
-            CHECK(counts[std::size_t(verdict)] > 0);
+            CHECK(counts[verdict] > 0);
     }
 }
 
@@ -289,14 +286,14 @@ TEST_CASE("an image of verdicts is the same in strips far from the origin, and w
                                 "format: spawnfield-scene/1\nparts:\n"
                                 "- {name: floor, label: terrain, box: [1, 7, 1], xyz: [500000.3, 4500000.1, 0]}\n"
                                 "- {name: ball, sphere: 0.3, xyz: [500000.2, 4499999.7, 0.6]}\n")));
-    const CollisionChecker checker = checker_of(map, small_box);
+    const Judge judge(map, small_box);
     RasterOptions options = on_layer({LayerChoice::Kind::Top, 0});
     const GridFrame frame = frame_around(map.bounds, 0.01);
     REQUIRE(frame.rows == 700);
     options.threads = 1;
-    const VerdictImage one = verdict_image(map, checker, frame, options);
+    const VerdictImage one = verdict_image(judge, frame, options);
     options.threads = 7;
-    CHECK(verdict_image(map, checker, frame, options).verdicts == one.verdicts);
+    CHECK(verdict_image(judge, frame, options).verdicts == one.verdicts);
     CHECK(std::count(one.verdicts.begin(), one.verdicts.end(), VerdictImage::no_pose) ==
           0);  // rounding loses no row or column
 }
@@ -304,11 +301,11 @@ TEST_CASE("an image of verdicts is the same in strips far from the origin, and w
 TEST_CASE("a nav2 map has at each point the value of the verdict at the centre of the cell")
 {
     const TestMap map = deck_map();
-    const CollisionChecker checker = checker_of(map, small_box);
+    const Judge judge(map, small_box);
     const RasterOptions options = on_layer({LayerChoice::Kind::Top, 0});
     const GridFrame frame = frame_around(map.bounds, 0.23);  // the last cells reach beyond the bounds
     const TempFolder folder;
-    write_nav2_map(verdict_image(map, checker, frame, options), folder / "deck.yaml", {"a deck\nimage: wrong.pgm"});
+    write_nav2_map(verdict_image(judge, frame, options), folder / "deck.yaml", {"a deck\nimage: wrong.pgm"});
     const Nav2Map read = read_nav2(folder / "deck.yaml");
     CHECK(read.image == "deck.pgm");
     CHECK(read.mode == "trinary");
@@ -318,7 +315,7 @@ TEST_CASE("a nav2 map has at each point the value of the verdict at the centre o
     for (int row = 0; row < frame.rows; ++row)
         for (int col = 0; col < frame.cols; ++col) {
             const double x = frame.x_of(col), y = frame.y_of(row);
-            const std::optional<Verdict> verdict = verdict_at(map, checker, options, x, y);
+            const std::optional<Verdict> verdict = verdict_at(judge, options, x, y);
             const int expected = !verdict || *verdict == Verdict::Outside ? -1 : *verdict == Verdict::Valid ? 0 : 100;
             CHECK(read.occupancy_at(x, y) == expected);
         }
@@ -387,14 +384,13 @@ TEST_CASE("export --format nav2 writes both files, the same bytes with any numbe
 TEST_CASE("the bands of a GeoTIFF have the values of the column at the centre of each cell, as libtiff reads them")
 {
     const TestMap map = deck_map();
-    const CollisionChecker checker = checker_of(map, small_box);
+    const Judge judge(map, small_box);
     const RasterOptions options = on_layer({LayerChoice::Kind::Bottom, 0});
     const GridFrame frame = frame_around(map.bounds, 0.031);  // more than a tile along x
     REQUIRE((frame.cols > 256 && frame.rows < 256));
-    const VerdictImage verdicts = verdict_image(map, checker, frame, options);
+    const VerdictImage verdicts = verdict_image(judge, frame, options);
     const TempFolder folder;
-    GeoTiffOptions choice;
-    choice.layers = options.layers;
+    GeoTiffOptions choice{.layers = options.layers};
     write_geotiff(map, frame, &verdicts, choice, folder / "deck.tif");
     const GeoTiff read = read_geotiff(folder / "deck.tif");
     CHECK(read.bands.size() == 8);
@@ -447,7 +443,7 @@ TEST_CASE("a GeoTIFF has the slope of a ramp, also at the rim")
     write_geotiff(map, frame_around({Vec3(-1, -1, 0), Vec3(1, 1, 0)}, 0.1), nullptr, {}, folder / "ramp.tif");
     const GeoTiff read = read_geotiff(folder / "ramp.tif");
     const double expected = std::acos(rotation_from_rpy(0.2, -0.3, 0)(2, 2)) * 180 / std::numbers::pi;
-    for (const float slope : read.band("slope").reshaped()) CHECK(slope == Approx(expected).epsilon(1e-4));
+    for (const float slope : read.band("slope").values) CHECK(slope == Approx(expected).epsilon(1e-4));
 }
 
 TEST_CASE("the slopes of a GeoTIFF use neighbours beyond the edge of a tile")
@@ -489,8 +485,7 @@ TEST_CASE("a GeoTIFF is at its survey coordinates, if the survey has an EPSG cod
     write_geotiff(map, frame, nullptr, {}, folder / "feet.tif");
     const GeoTiff feet = read_geotiff(folder / "feet.tif");
     CHECK(feet.at("elevation", 500000.25 - 3 / 0.3048, 4100000.5 - 1 / 0.3048) == float(2.1));
-    GeoTiffOptions local;
-    local.survey = false;
+    GeoTiffOptions local{.survey = false};
     write_geotiff(map, frame, nullptr, local, folder / "local.tif");
     map.origin->crs = "EPSG:4326000";
     write_geotiff(map, frame, nullptr, {}, folder / "words.tif");
@@ -545,10 +540,10 @@ TEST_CASE("a PLY has the poses of the raster as points, bit by bit, with the col
                                 "format: spawnfield-scene/1\nparts:\n"
                                 "- {name: floor, label: terrain, box: [5, 3, 1], xyz: [500000.3, 4500000.1, 0.001]}\n"
                                 "- {name: ball, sphere: 0.6, xyz: [500000.2, 4499999.7, 0.6]}\n")));
-    const CollisionChecker checker = checker_of(map, small_box);
+    const Judge judge(map, small_box);
     RasterOptions options = on_layer({});
     options.step = 0.1;
-    const RasterResult result = raster(map, checker, options);
+    const RasterResult result = raster(judge, options);
     std::string bytes;
     write_ply(result, {"two\nlines"}, [&](std::string_view piece) { bytes += piece; });
     const std::size_t body = bytes.find("end_header\n") + 11;
@@ -562,7 +557,7 @@ TEST_CASE("a PLY has the poses of the raster as points, bit by bit, with the col
             "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar verdict\nend_header\n");
     constexpr std::size_t point = 3 * sizeof(double) + 4;
     REQUIRE(bytes.size() == body + point * result.poses.size());
-    REQUIRE((result.counts[std::size_t(Verdict::Valid)] > 100 && result.counts[std::size_t(Verdict::Collision)] > 100));
+    REQUIRE((result.counts[Verdict::Valid] > 100 && result.counts[Verdict::Collision] > 100));
     const std::map<Verdict, std::string> colours{{Verdict::Valid, "\xbd\xd5\xa7"},
                                                  {Verdict::Collision, "\xa5\x4c\x31"},
                                                  {Verdict::OffTerrain, "\x91\x82\xff"},
@@ -716,8 +711,8 @@ TEST_CASE("a map that is baked from a GLB gives nearly the same verdicts everywh
     const TestMap again = map_of(load_glb(folder, glb_bytes(map)));
     const RasterOptions options = on_layer({LayerChoice::Kind::Top, 0}, 0.15);
     const GridFrame frame = frame_around(map.bounds, 0.2);
-    const VerdictImage before = verdict_image(map, checker_of(map, husky()), frame, options),
-                       after = verdict_image(again, checker_of(again, husky()), frame, options);
+    const VerdictImage before = verdict_image(Judge(map, husky()), frame, options),
+                       after = verdict_image(Judge(again, husky()), frame, options);
     std::size_t other = 0;
     for (std::size_t c = 0; c < before.verdicts.size(); ++c) other += before.verdicts[c] != after.verdicts[c];
     CHECK(other < before.verdicts.size() / 200);  // round solids became polyhedra, and numbers float32

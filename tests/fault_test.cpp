@@ -57,8 +57,7 @@ void bake_small(const TempFolder& folder)
         folder,
         "  - {name: floor, label: terrain, box: [6, 4, 0.1]}\n  - {name: ball, sphere: 1, xyz: [2, 0, 0]}\n"
         "  - {name: house, mesh: house.obj, xyz: [-2, 0, 0.5]}\n");
-    BakeOptions options;
-    options.resolution = 0.5;
+    BakeOptions options{.resolution = 0.5};
     bake(scene, folder / "scene.yaml", folder / "map", options);
 }
 
@@ -242,11 +241,11 @@ TEST_CASE("options beyond their limits are refused with function, argument, valu
 {
     const TempFolder folder;
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky());
     const auto raster_complaint = [&](auto change) {
         RasterOptions options;
         change(options);
-        return complaint(folder, [&] { raster(map, checker, options); });
+        return complaint(folder, [&] { raster(judge, options); });
     };
     CHECK(raster_complaint([](auto& o) { o.step = 0; }) == "raster: step is 0, needs > 0 m");
     CHECK(raster_complaint([](auto& o) { o.step = nan_value; }) == "raster: step is nan, needs > 0 m");
@@ -254,8 +253,15 @@ TEST_CASE("options beyond their limits are refused with function, argument, valu
     CHECK(raster_complaint([](auto& o) { o.dims = 4; }) == "raster: dims is 4, needs 2 or 3");
     CHECK(raster_complaint([](auto& o) { o.yaw = nan_value; }) == "raster: yaw is nan, needs a finite number, rad");
     CHECK(raster_complaint([](auto& o) { o.offset = nan_value; }) == "raster: offset is nan, needs a finite number, m");
-    CHECK(raster_complaint([](auto& o) { o.max_height = -1; }) == "raster: max_height is -1, needs >= 0 m");
-    CHECK(raster_complaint([](auto& o) { o.max_water_depth = -1; }) == "raster: max_water_depth is -1, needs >= 0 m");
+    const auto judge_complaint = [&](const JudgeOptions& limits) {
+        return complaint(folder, [&] { Judge(map, husky(), limits); });
+    };
+    for (const auto& [value, text] : {std::pair{-1.0, "-1"}, std::pair{nan_value, "nan"}}) {
+        const std::string is_bad = std::string(" is ") + text + ", needs >= 0 m";
+        CHECK(judge_complaint({.max_height = value}) == "Judge: max_height" + is_bad);
+        CHECK(judge_complaint({.max_water_depth = value}) == "Judge: max_water_depth" + is_bad);
+    }
+    CHECK_THROWS_WITH(Judge(map, Robot{}), "Judge: the robot has no parts, needs at least one");
     CHECK(raster_complaint([](auto& o) {
               o.bounds = {{0, 5, 0}, {1, 4, 0}};
           }) == "raster: bounds.max.y is 4, needs at least bounds.min.y");
@@ -273,7 +279,7 @@ TEST_CASE("options beyond their limits are refused with function, argument, valu
     const auto spawn_complaint = [&](auto change) {
         SampleOptions options;
         change(options);
-        return complaint(folder, [&] { sample(map, checker, options); });
+        return complaint(folder, [&] { sample(judge, options); });
     };
     CHECK(spawn_complaint([](auto& o) { o.count = 0; }) == "sample: count is 0, needs >= 1");
     CHECK(spawn_complaint([](auto& o) { o.min_distance = -1; }) == "sample: min_distance is -1, needs >= 0 m");
@@ -281,13 +287,12 @@ TEST_CASE("options beyond their limits are refused with function, argument, valu
     CHECK(spawn_complaint([](auto& o) {
               o.bounds = {{3, 0, 0}, {1, 4, 0}};
           }) == "sample: bounds.max.x is 1, needs at least bounds.min.x");
-    SearchOptions search_options;
-    search_options.bounds = {{0, 0, 5}, {1, 1, 1}};
-    CHECK(complaint(folder, [&] { search(map, checker, search_options); }) ==
+    SearchOptions search_options{.bounds = {{0, 0, 5}, {1, 1, 1}}};
+    CHECK(complaint(folder, [&] { search(judge, search_options); }) ==
           "search: bounds.max.z is 1, needs at least bounds.min.z");
     search_options.bounds = {};
     search_options.max_failures = 0;
-    CHECK(complaint(folder, [&] { search(map, checker, search_options); }) == "search: max_failures is 0, needs >= 1");
+    CHECK(complaint(folder, [&] { search(judge, search_options); }) == "search: max_failures is 0, needs >= 1");
 }
 
 TEST_CASE("an error about an argument can be printed without the function")

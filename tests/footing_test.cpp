@@ -59,15 +59,11 @@ Scene slope_scene(double degrees)
 Verdict verdict_of(const Scene& scene, const Robot& robot, const Pose& pose, double max_slope)
 {
     const TestMap map = map_of(scene);
-    const CollisionChecker checker = checker_of(map, robot);
-    QueryOptions options;
-    options.max_slope = max_slope == off ? off : rad(max_slope);
-    options.threads = 1;
-    const Verdict verdict = check_poses(map, checker, {pose}, options)[0].verdict;
-    CHECK(judge(map, checker, column_at(map.geometry, pose.position.x(), pose.position.y()), pose, options).verdict ==
-          verdict);
-    set_exhaustive(options);
-    CHECK(check_poses(map, checker, {pose}, options)[0].verdict == verdict);
+    const Judge judge(map, robot, {.max_slope = max_slope == off ? off : rad(max_slope)});
+    const Verdict verdict = judge.check(pose).verdict;
+    CHECK(judge.is_valid(pose) == (verdict == Valid));
+    CHECK(judge.check(std::span(&pose, 1), {.threads = 1})[0].verdict == verdict);
+    CHECK(without_mask(judge).check(pose).verdict == verdict);
     return verdict;
 }
 
@@ -110,13 +106,10 @@ HardCase case_with_limit(std::uint64_t seed, const HardOptions& hard_options = {
 
 RasterOptions raster_options(const TestMap& map, const HardCase& hard, int columns)
 {
-    RasterOptions options;
-    options.offset = hard.offset;
-    options.yaw = hard.yaws[0];
-    options.max_slope = hard.max_slope;
-    options.threads = 1;
-    options.step = (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / (columns - 0.37);
-    return options;
+    return {.step = (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / (columns - 0.37),
+            .offset = hard.offset,
+            .yaw = hard.yaws[0],
+            .threads = 1};
 }
 
 bool is_footing(Verdict verdict) { return verdict == Steep || verdict == Unstable; }
@@ -301,13 +294,9 @@ TEST_CASE("on a bridge that is terrain as a whole, frames, rails and pillars are
         }
     }
     const TestMap map = map_of(scene);
-    const CollisionChecker checker = checker_of(map, husky());
-    RasterOptions options;
-    options.step = 0.11;
-    options.offset = 0.1;
-    const RasterResult without = raster(map, checker, options);
-    options.max_slope = rad(25);
-    const RasterResult with = raster(map, checker, options);
+    const RasterOptions options{.step = 0.11, .offset = 0.1};
+    const RasterResult without = raster(Judge(map, husky()), options);
+    const RasterResult with = raster(Judge(map, husky(), {.max_slope = rad(25)}), options);
     std::size_t frames = 0, deck = 0, ground = 0;
     REQUIRE(with.poses.size() == without.poses.size());
     for (std::size_t i = 0; i < with.poses.size(); ++i) {
@@ -321,27 +310,18 @@ TEST_CASE("on a bridge that is terrain as a whole, frames, rails and pillars are
     CHECK(frames > 100);
     CHECK(deck > 2000);
     CHECK(ground > 10000);
-    CHECK(with.counts[std::size_t(Steep)] == 0);
-    CHECK(with.counts[std::size_t(Unstable)] + with.counts[std::size_t(Valid)] == without.counts[std::size_t(Valid)]);
+    CHECK(with.counts[Steep] == 0);
+    CHECK(with.counts[Unstable] + with.counts[Valid] == without.counts[Valid]);
 }
 
-TEST_CASE("a limit out of its range is wrong usage, and the message names function, value and limits")
+TEST_CASE("a limit out of its range is wrong usage, named with its value and limits")
 {
     const TestMap map = map_of(floor_scene());
-    const CollisionChecker checker = checker_of(map, husky());
     const std::pair<double, std::string> bad[] = {{0, "0"}, {-0.1, "-0.1"},        {M_PI / 2, "1.5707963267948966"},
                                                   {2, "2"}, {std::nan(""), "nan"}, {-off, "-inf"}};
     for (const auto& [limit, text] : bad) {
-        const std::string message = ": max_slope is " + text + ", needs > 0 and < pi/2 rad, or infinite";
-        QueryOptions options;
-        RasterOptions rasters;
-        SampleOptions samples;
-        SearchOptions searches;
-        options.max_slope = rasters.max_slope = samples.max_slope = searches.max_slope = limit;
-        CHECK_THROWS_WITH(check_poses(map, checker, {}, options), "check_poses" + message);
-        CHECK_THROWS_WITH(raster(map, checker, rasters), "raster" + message);
-        CHECK_THROWS_WITH(sample(map, checker, samples), "sample" + message);
-        CHECK_THROWS_WITH(search(map, checker, searches), "search" + message);
+        CHECK_THROWS_WITH(Judge(map, husky(), {.max_slope = limit}),
+                          "Judge: max_slope is " + text + ", needs > 0 and < pi/2 rad, or infinite");
     }
 }
 
@@ -351,12 +331,10 @@ TEST_CASE("footings only remove valid poses, fewer with a larger limit, and need
     for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
         const HardCase hard = case_with_limit(seed);
         const TestMap map = compare::map_of_case(hard);
-        const CollisionChecker checker = checker_of(map, hard.robot);
-        RasterOptions options = raster_options(map, hard, 40);
+        const RasterOptions options = raster_options(map, hard, 40);
         std::vector<RasterResult> results;  // from no limit to smaller and smaller limits
         for (const double limit : {off, 1.5, 1.0, 0.6, 0.35, 0.2, 0.1, 0.01}) {
-            options.max_slope = limit;
-            results.push_back(raster(map, checker, options));
+            results.push_back(raster(Judge(map, hard.robot, {.max_slope = limit}), options));
         }
         for (std::size_t r = 1; r < results.size(); ++r) {
             CHECK(results[r].exact_checks == results[0].exact_checks);
@@ -382,19 +360,15 @@ TEST_CASE("a mirrored scene mirrors the footings")
     for (std::uint64_t seed = 1; seed <= scene_count; ++seed) {
         const HardCase hard = case_with_limit(seed, {.razor = false});
         const TestMap map = map_at(hard.scene, hard.resolution), mirror = map_at(mirrored(hard.scene), hard.resolution);
-        const CollisionChecker checker = checker_of(map, hard.robot),
-                               mirror_checker = checker_of(mirror, mirrored(hard.robot));
-        std::vector<Pose> poses = compare::standing_poses(map, checker, hard, map.bounds, 200), mirrored_poses = poses;
+        const JudgeOptions limits{.max_height = std::max(hard.max_height, hard.offset), .max_slope = hard.max_slope};
+        const Judge judge(map, hard.robot, limits), mirror_judge(mirror, mirrored(hard.robot), limits);
+        std::vector<Pose> poses = compare::standing_poses(map, hard, map.bounds, 200), mirrored_poses = poses;
         for (Pose& pose : mirrored_poses) {
             const Eigen::DiagonalMatrix<double, 3> flip(1, -1, 1);
             pose = {flip * pose.position, flip * pose.rotation * flip};
         }
-        QueryOptions options;
-        options.max_slope = hard.max_slope;
-        options.max_height = std::max(hard.max_height, hard.offset);
-        options.threads = 1;
-        const auto here = check_poses(map, checker, poses, options),
-                   there = check_poses(mirror, mirror_checker, mirrored_poses, options);
+        const auto here = judge.check(poses, {.threads = 1}),
+                   there = mirror_judge.check(mirrored_poses, {.threads = 1});
         for (std::size_t i = 0; i < poses.size(); ++i) {
             if (!is_footing(here[i].verdict) && here[i].verdict != Valid) continue;
             differences += here[i].verdict != there[i].verdict;
@@ -413,17 +387,14 @@ TEST_CASE("footings agree with their definition in random scenes")
         const TestMap map = map_of(random_scene(seed));
         Robot robot = random_robot(seed);
         if (seed % 2 == 0) robot.contacts = {{0.3, 0.2, -0.05}, {0.3, -0.2, 0.1}, {-0.4, 0, 0}};
-        const CollisionChecker checker = checker_of(map, robot);
+        const Judge judge(map, robot, {.max_slope = rad(4 + 5 * double(seed % 7))});
         const std::vector<Pose> poses = random_poses(map.scene, seed, 120);
-        QueryOptions options;
-        options.max_slope = rad(4 + 5 * double(seed % 7));
-        options.threads = 1;
-        const std::vector<Judgement> judged = check_poses(map, checker, poses, options);
+        const std::vector<Judgement> judged = judge.check(poses, {.threads = 1});
         for (std::size_t i = 0; i < poses.size(); ++i) {
             const Verdict verdict = judged[i].verdict;
             if (verdict != Valid && !is_footing(verdict)) continue;
             const auto slow = slow::footing(map.scene, robot, contacts_of(robot), poses[i], judged[i].ground->height,
-                                            options.max_slope);
+                                            judge.options().max_slope);
             if (!slow)
                 ++undecided;
             else
@@ -451,11 +422,11 @@ TEST_CASE("with footings every query gives the exhaustive verdicts in random har
     for (const compare::Tally& tally : {all.raster_2d, all.raster_3d, all.check})
         for (const Verdict verdict : {Steep, Unstable, Valid}) {
             INFO(to_string(verdict));
-            CHECK(tally.verdicts[std::size_t(verdict)] > 100);
+            CHECK(tally.verdicts[verdict] > 100);
         }
     CHECK(all.sample.poses > 200);
     CHECK(all.search.poses > 100);
-    CHECK(all.collisions.verdicts[std::size_t(Unstable)] + all.collisions.verdicts[std::size_t(Steep)] == 0);
+    CHECK(all.collisions.verdicts[Unstable] + all.collisions.verdicts[Steep] == 0);
 }
 
 TEST_CASE("samples have a footing, and footings are the same bytes with any number of threads")
@@ -463,26 +434,19 @@ TEST_CASE("samples have a footing, and footings are the same bytes with any numb
     for (std::uint64_t seed = 1; seed <= scene_count / 10; ++seed) {
         const HardCase hard = case_with_limit(seed);
         const TestMap map = compare::map_of_case(hard);
-        const CollisionChecker checker = checker_of(map, hard.robot);
+        const Judge judge(map, hard.robot, {.max_height = std::max(1.0, hard.offset), .max_slope = hard.max_slope});
+        const Judge exhaustive = at_any_height(judge);
         RasterOptions options = raster_options(map, hard, 60);
-        SampleOptions samples;
-        samples.count = 60;
-        samples.random_yaw = true;
-        samples.offset = hard.offset;
-        samples.max_height = std::max(1.0, hard.offset);
-        samples.max_slope = hard.max_slope;
+        SampleOptions samples{.count = 60, .random_yaw = true, .offset = hard.offset};
         std::vector<std::string> texts;
         for (const int threads : {1, 2, 8}) {
             options.threads = samples.threads = threads;
             std::string text;
-            write_raster_csv(raster(map, checker, options), false, [&](std::string_view piece) { text += piece; });
-            const SpawnList list = sample(map, checker, samples);
+            write_raster_csv(raster(judge, options), false, [&](std::string_view piece) { text += piece; });
+            const SpawnList list = sample(judge, samples);
             texts.push_back(text + spawns_csv(list));
-            QueryOptions asked = samples;
-            asked.max_height = off;
             for (const Spawn& spawn : list.spawns)
-                CHECK(check_poses(map, checker, {{spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}}, asked)[0]
-                          .verdict == Valid);
+                CHECK(exhaustive.is_valid({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}));
         }
         CAPTURE(seed);
         CHECK(texts[0] == texts[1]);
@@ -493,17 +457,12 @@ TEST_CASE("samples have a footing, and footings are the same bytes with any numb
 TEST_CASE("where everything is too steep, sample finds nothing, and reports nothing as full without a proof")
 {
     const TestMap map = map_of(slope_scene(20));
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.4,0.4,0.3"));
-    SampleOptions options;
-    options.count = 5;
-    options.max_slope = rad(15);
-    options.bounds = {Vec3(-1, -1, 0), Vec3(1, 1, 0)};
-    options.offset = 0.3;
-    const SpawnList list = sample(map, checker, options);
+    const Robot robot = load_robot("box:0.4,0.4,0.3");
+    const SampleOptions options{.count = 5, .offset = 0.3, .bounds = {Vec3(-1, -1, 0), Vec3(1, 1, 0)}};
+    const SpawnList list = sample(Judge(map, robot, {.max_slope = rad(15)}), options);
     CHECK(list.spawns.empty());
-    CHECK(list.counts[std::size_t(Steep)] > 0);
+    CHECK(list.counts[Steep] > 0);
     CHECK_FALSE(list.is_full);
     CHECK(list.undecided_area == Approx(4).epsilon(0.01));
-    options.max_slope = rad(25);
-    CHECK(sample(map, checker, options).spawns.size() == 5);
+    CHECK(sample(Judge(map, robot, {.max_slope = rad(25)}), options).spawns.size() == 5);
 }

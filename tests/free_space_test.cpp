@@ -113,16 +113,16 @@ TEST_CASE("a robot above a floor is free, inside it blocked, and exactly on it a
     const TestMap map = map_of(floor_scene(), 0.05);
     const FreeSpace space(map.solid_bounds, load_robot("box:0.6,0.4,0.3"));
     for (const double yaw : {0.0, 0.3, 2.0}) {
-        CHECK(space.at({0.123, -0.4, 0.01}, yaw) == Proof::Free);
-        CHECK(space.at({0.123, -0.4, 5}, yaw) == Proof::Free);
-        CHECK(space.at({0.123, -0.4, -0.1}, yaw) == Proof::Blocked);
-        CHECK(space.at({0.123, -0.4, 0}, yaw) == Proof::Candidate);
-        CHECK(space.at({20, 0, 0}, yaw) == Proof::Free);  // the scene has nothing beyond the map
+        CHECK(space.proof_of({0.123, -0.4, 0.01}, yaw) == Proof::Free);
+        CHECK(space.proof_of({0.123, -0.4, 5}, yaw) == Proof::Free);
+        CHECK(space.proof_of({0.123, -0.4, -0.1}, yaw) == Proof::Blocked);
+        CHECK(space.proof_of({0.123, -0.4, 0}, yaw) == Proof::Candidate);
+        CHECK(space.proof_of({20, 0, 0}, yaw) == Proof::Free);  // the scene has nothing beyond the map
     }
-    CHECK(space.at_every_yaw({0.1, 0.1, 0.01}) == Proof::Free);
-    CHECK(space.at_every_yaw({0.1, 0.1, -0.1}) == Proof::Blocked);
-    CHECK(space.at(Pose{{0, 0, 0.4}, rotation_from_rpy(0.3, 0.2, 1)}) == Proof::Free);
-    CHECK(space.at(Pose{{0, 0, 0.05}, rotation_from_rpy(0.3, 0.2, 1)}) == Proof::Candidate);
+    CHECK(space.proof_at_every_yaw({0.1, 0.1, 0.01}) == Proof::Free);
+    CHECK(space.proof_at_every_yaw({0.1, 0.1, -0.1}) == Proof::Blocked);
+    CHECK(space.proof_of(Pose{{0, 0, 0.4}, rotation_from_rpy(0.3, 0.2, 1)}) == Proof::Free);
+    CHECK(space.proof_of(Pose{{0, 0, 0.05}, rotation_from_rpy(0.3, 0.2, 1)}) == Proof::Candidate);
 }
 
 TEST_CASE("each part of a robot counts by itself, and so does what hangs above it")
@@ -131,17 +131,17 @@ TEST_CASE("each part of a robot counts by itself, and so does what hangs above i
     hand::add_shape(scene, Label::Obstacle, box_at({2, 2, 0.2}, {0, 0, 1}));  // a roof from 0.9 to 1.1
     const TestMap map = map_of(scene, 0.05);
     const FreeSpace low(map.solid_bounds, load_robot("box:0.6,0.4,0.3"));
-    CHECK(low.at({0, 0, 0.1}, 0) == Proof::Free);
-    CHECK(low.at({0, 0, 0.7}, 0) == Proof::Blocked);  // its upper face is in the roof
-    CHECK(low.at({0, 0, 0.85}, 0) == Proof::Blocked);
-    CHECK(low.at({0, 0, 1.2}, 0) == Proof::Free);
+    CHECK(low.proof_of({0, 0, 0.1}, 0) == Proof::Free);
+    CHECK(low.proof_of({0, 0, 0.7}, 0) == Proof::Blocked);  // its upper face is in the roof
+    CHECK(low.proof_of({0, 0, 0.85}, 0) == Proof::Blocked);
+    CHECK(low.proof_of({0, 0, 1.2}, 0) == Proof::Free);
     Robot masted = load_robot("box:0.6,0.4,0.3");
     masted.parts.push_back(load_robot("box:0.17,0.17,1.2@-0.2,0,0.6").parts[0]);
     const FreeSpace space(map.solid_bounds, masted);
-    CHECK(space.at({0, 0, 0.05}, 0) == Proof::Blocked);
-    CHECK(space.at({1.1, 0, 0.05}, 0) == Proof::Blocked);  // the mast reaches below the edge of the roof at x = 1
-    CHECK(space.at({1.4, 0, 0.05}, 0) == Proof::Free);     // body and mast are clear
-    CHECK(space.at({-1.15, 0, 0.05}, 0) == Proof::Free);   // the body is under the roof, the mast beside it
+    CHECK(space.proof_of({0, 0, 0.05}, 0) == Proof::Blocked);
+    CHECK(space.proof_of({1.1, 0, 0.05}, 0) == Proof::Blocked);  // the mast reaches below the edge of the roof at x = 1
+    CHECK(space.proof_of({1.4, 0, 0.05}, 0) == Proof::Free);     // body and mast are clear
+    CHECK(space.proof_of({-1.15, 0, 0.05}, 0) == Proof::Free);   // the body is under the roof, the mast beside it
 }
 
 TEST_CASE("a map that is smaller than its scene proves nothing beyond its edge")
@@ -150,9 +150,9 @@ TEST_CASE("a map that is smaller than its scene proves nothing beyond its edge")
     hand::add_shape(scene, Label::Obstacle, box_at({1, 1, 1}, {3, 0, 0.5}));
     const TestMap map = map_of(scene, 0.1, {Vec3(-2, -2, -1), Vec3(2.3, 2, 2)});
     const FreeSpace space(map.solid_bounds, load_robot("box:0.6,0.4,0.3"));
-    CHECK(space.at({1.5, 0, 0.1}, 0) == Proof::Free);
-    CHECK(space.at({2.25, 0, 0.1}, 0) == Proof::Candidate);
-    CHECK(space.at({8, 0, 0.1}, 0) == Proof::Candidate);
+    CHECK(space.proof_of({1.5, 0, 0.1}, 0) == Proof::Free);
+    CHECK(space.proof_of({2.25, 0, 0.1}, 0) == Proof::Candidate);
+    CHECK(space.proof_of({8, 0, 0.1}, 0) == Proof::Candidate);
 }
 
 TEST_CASE("footprints bound a part from outside and from inside")

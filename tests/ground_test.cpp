@@ -71,24 +71,23 @@ TEST_CASE("a 2D raster with a z range has exactly the poses whose layers are in 
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
         const HardCase hard = hard_case(seed);
         const TestMap map = compare::map_of_case(hard);
-        const CollisionChecker checker = checker_of(map, hard.robot);
+        const Judge judge(map, hard.robot);
         Random random{seed + 77};
-        RasterOptions options;
-        options.threads = 1;
-        options.offset = hard.offset;
-        options.yaw = hard.yaws[0];
-        options.step = std::max(1e-3, (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 23.7);
-        const RasterResult all = raster(map, checker, options);
+        RasterOptions options{.step = std::max(1e-3, (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 23.7),
+                              .offset = hard.offset,
+                              .yaw = hard.yaws[0],
+                              .threads = 1};
+        const RasterResult all = raster(judge, options);
         const double low = map.bounds.min.z(), high = map.bounds.max.z();
         options.z.low = random.between(low, high);
         options.z.high = random.between(options.z.low, high);
-        const RasterResult some = raster(map, checker, options);
+        const RasterResult some = raster(judge, options);
         CAPTURE(seed, options.z.low, options.z.high);
         CHECK(same_poses(some.poses, filtered(all, options.z)));
         for (const RasterPose& pose : some.poses) CHECK(pose.layer >= 0);
 
         options.layers = {LayerChoice::Kind::Top, 0};
-        for (const RasterPose& pose : raster(map, checker, options).poses) CHECK(pose.layer == 0);
+        for (const RasterPose& pose : raster(judge, options).poses) CHECK(pose.layer == 0);
     }
 }
 
@@ -98,21 +97,19 @@ TEST_CASE("z limits of a map make poses beyond them outside, and change no other
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
         const HardCase hard = hard_case(seed);
         TestMap map = compare::map_of_case(hard);
-        const CollisionChecker checker = checker_of(map, hard.robot);
+        JudgeOptions limits{.max_height = hard.max_height};
+        const Judge judge(map, hard.robot, limits);
         Random random{seed + 3};
         std::vector<Pose> poses = random_poses(hard.scene, seed, 100);
-        const std::vector<Pose> standing = compare::standing_poses(map, checker, hard,
-                                                                   compare::crop_near(map, random, 0.3, 14), 100);
+        const std::vector<Pose> standing = compare::standing_poses(map, hard, compare::crop_near(map, random, 0.3, 14),
+                                                                   100);
         poses.insert(poses.end(), standing.begin(), standing.end());
-        QueryOptions options;
-        options.max_height = hard.max_height;
-        options.threads = 1;
-        const std::vector<Judgement> before = check_poses(map, checker, poses, options);
+        const std::vector<Judgement> before = judge.check(poses, {.threads = 1});
         map.z_limits.low = random.between(map.bounds.min.z(), map.bounds.max.z());
         map.z_limits.high = map.z_limits.low + random.between(0, 2);
         for (const bool exhaustive : {false, true}) {
-            options.exhaustive = exhaustive;
-            const std::vector<Judgement> after = check_poses(map, checker, poses, options);
+            limits.exhaustive = exhaustive;
+            const std::vector<Judgement> after = Judge(map, hard.robot, limits).check(poses, {.threads = 1});
             for (std::size_t i = 0; i < poses.size(); ++i) {
                 const bool is_out = !map.z_limits.contains(poses[i].position.z(), 1e-9);
                 ++(is_out ? outside : inside);
@@ -130,38 +127,28 @@ TEST_CASE("in a map with z limits a 3D raster and a search give the verdicts of 
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         const HardCase hard = hard_case(seed);
         TestMap map = compare::map_of_case(hard);
-        const CollisionChecker checker = checker_of(map, hard.robot);
         Random random{seed + 5};
-        RasterOptions options;
-        options.threads = 1;
-        options.dims = 3;
-        options.max_height = hard.max_height;
-        options.step = (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 6.3;
-        options.step_z = std::max(0.01, (map.bounds.max.z() - map.bounds.min.z()) / 11.7);
+        RasterOptions options{.dims = 3,
+                              .step = (map.bounds.max - map.bounds.min).head<2>().maxCoeff() / 6.3,
+                              .step_z = std::max(0.01, (map.bounds.max.z() - map.bounds.min.z()) / 11.7),
+                              .threads = 1};
         const double middle = random.between(map.bounds.min.z(), map.bounds.max.z());
         map.z_limits = {middle, middle + 4 * options.step_z};
-        const RasterResult result = raster(map, checker, options);
-        VerdictCounts counts{};
+        const Judge judge(map, hard.robot, {.max_height = hard.max_height}), exhaustive = without_mask(judge);
+        const RasterResult result = raster(judge, options);
+        VerdictCounts counts;
         for_each_pose(result, true, [&](const RasterPose& pose) {
-            const Column column = column_at(map.geometry, pose.x, pose.y);
-            const Verdict wanted =
-                judge(map, checker, column, {{pose.x, pose.y, pose.z}, Mat3::Identity()}, options).verdict;
+            const Verdict wanted = exhaustive.check({{pose.x, pose.y, pose.z}, Mat3::Identity()}).verdict;
             CAPTURE(seed, pose.x, pose.y, pose.z);
             CHECK(pose.verdict == wanted);
-            ++counts[std::size_t(pose.verdict)];
+            ++counts[pose.verdict];
         });
         CHECK(counts == result.counts);
 
-        SearchOptions drawn;
-        drawn.threads = 1;
-        drawn.count = 10;
-        drawn.max_failures = 2000;
-        drawn.bounds = map.bounds;
-        for (const Spawn& spawn : search(map, checker, drawn).spawns)
-            CHECK(map.z_limits.contains(spawn.position.z(), 1e-9));
-        const SpawnList quick = search(map, checker, drawn);
-        drawn.exhaustive = true;
-        CHECK(search(map, checker, drawn).counts == quick.counts);
+        const SearchOptions drawn{.count = 10, .bounds = map.bounds, .max_failures = 2000, .threads = 1};
+        for (const Spawn& spawn : search(judge, drawn).spawns) CHECK(map.z_limits.contains(spawn.position.z(), 1e-9));
+        const SpawnList quick = search(judge, drawn);
+        CHECK(search(exhaustive, drawn).counts == quick.counts);
     }
 }
 
@@ -169,13 +156,11 @@ TEST_CASE("spawns stand on layers within the z limits of the map, the query and 
 {
     const TempFolder folder;
     TestMap map = map_of(tower_scene(folder));
-    const CollisionChecker checker = checker_of(map, small_box());
-    SampleOptions options;
-    options.count = 400;
-    options.random_yaw = true;
+    const Judge judge(map, small_box());
+    SampleOptions options{.count = 400, .random_yaw = true};
     const auto heights = [&] {
         std::map<double, int> out;
-        for (const Spawn& spawn : sample(map, checker, options).spawns)
+        for (const Spawn& spawn : sample(judge, options).spawns)
             ++out[std::round(10 * (spawn.position.z() - 0.1)) / 10];
         return out;
     };
@@ -189,15 +174,15 @@ TEST_CASE("spawns stand on layers within the z limits of the map, the query and 
     options.z = {};
     options.layers = {};
     options.area.within = {box_region(-10, -5, 0, 5, {2.9, 3.1}), box_region(0, -5, 10, 5, {-0.5, 0.5})};
-    for (const Spawn& spawn : sample(map, checker, options).spawns)
+    for (const Spawn& spawn : sample(judge, options).spawns)
         CHECK(std::abs(spawn.position.z() - 0.1 - (spawn.position.x() < 0 ? 3 : 0)) < 0.5);
     options.area = {};
     options.area.keep_out = {box_region(-10, -5, 10, 5, {-1, 5})};
-    for (const Spawn& spawn : sample(map, checker, options).spawns) CHECK(spawn.position.z() > 5);
+    for (const Spawn& spawn : sample(judge, options).spawns) CHECK(spawn.position.z() > 5);
 
     options.area = {};
     map.z_limits = {2.5, 3.2};
-    const SpawnList limited = sample(map, checker, options);
+    const SpawnList limited = sample(Judge(map, small_box()), options);
     REQUIRE(limited.spawns.size() == 400);
     for (const Spawn& spawn : limited.spawns) {
         CHECK(map.z_limits.contains(spawn.position.z(), 1e-9));
@@ -209,12 +194,9 @@ TEST_CASE("a sample with a z range is proven full, and dense probing finds no ro
 {
     const TempFolder folder;
     TestMap map = map_of(tower_scene(folder));
-    const CollisionChecker checker = checker_of(map, small_box());
-    SampleOptions options;
-    options.count = 10000;
-    options.min_distance = 1.5;
-    options.z = {2.5, 3.5};
-    const SpawnList list = sample(map, checker, options);
+    const Judge judge(map, small_box()), exhaustive = without_mask(judge);
+    SampleOptions options{.count = 10000, .min_distance = 1.5, .z = {2.5, 3.5}};
+    const SpawnList list = sample(judge, options);
     CHECK(list.is_full);
     CHECK(list.undecided_area == 0);
     CHECK(list.spawns.size() > 20);
@@ -226,18 +208,18 @@ TEST_CASE("a sample with a z range is proven full, and dense probing finds no ro
                 const Vec3 p(x, y, layer + 0.1);
                 const bool far = std::none_of(list.spawns.begin(), list.spawns.end(),
                                               [&](const Spawn& s) { return (s.position - p).norm() < 1.5; });
-                if (far) CHECK(judge(map, checker, column, {p, Mat3::Identity()}, options).verdict != Verdict::Valid);
+                if (far) CHECK_FALSE(exhaustive.is_valid({p, Mat3::Identity()}));
             }
         }
     options.z = {3.2, 5};  // contains only a crate and no ground
-    const SpawnList none = sample(map, checker, options);
+    const SpawnList none = sample(judge, options);
     CHECK(none.spawns.empty());
     CHECK(none.is_full);
 
     // Origins above the map's z limits are outside: no pose of the upper slab is valid.
     options.z = {};
     map.z_limits = {5, 6.05};
-    const SpawnList outside = sample(map, checker, options);
+    const SpawnList outside = sample(Judge(map, small_box()), options);
     CHECK(outside.spawns.empty());
     CHECK(outside.is_full);
 }
@@ -249,10 +231,9 @@ TEST_CASE("solid space beyond z limits still collides")
                                     "  - {name: floor, label: terrain, box: [10, 10, 0.2], xyz: [0, 0, -0.1]}\n"
                                     "  - {name: beam, label: obstacle, box: [10, 1, 0.2], xyz: [0, 0, 1]}\n"));
     map.z_limits = {-0.5, 0.5};
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.5,0.5,1"));
-    const auto verdicts = check_poses(map, checker, {{{0, 0, 0.1}, Mat3::Identity()}, {{0, 3, 0.1}, Mat3::Identity()}});
-    CHECK(verdicts[0].verdict == Verdict::Collision);
-    CHECK(verdicts[1].verdict == Verdict::Valid);
+    const Judge judge(map, load_robot("box:0.5,0.5,1"));
+    CHECK(judge.check({{0, 0, 0.1}, Mat3::Identity()}).verdict == Verdict::Collision);
+    CHECK(judge.check({{0, 3, 0.1}, Mat3::Identity()}).verdict == Verdict::Valid);
 }
 
 TEST_CASE("floors are the heights of the slabs of a tower, and a ramp belongs to the lower floor up to half its height")
@@ -314,14 +295,12 @@ TEST_CASE("the automatic offset puts the lowest point 0.1 m above the layer")
     CHECK_FALSE(is_in_flat_ground(load_robot("box:1,1,1@0,0,0.2"), 0.31));
 
     const TestMap map = training_map();
-    const CollisionChecker sunk = checker_of(map, load_robot("box:0.99,0.67,0.39@0,0,0.095"));
-    SampleOptions options;
-    options.count = 50;
-    for (const Spawn& spawn : sample(map, sunk, options).spawns) CHECK(spawn.position.z() > 0.1);
-    RasterOptions grid;
-    CHECK(raster(map, sunk, grid).offset == auto_offset(sunk.robot()));
+    const Judge sunk(map, load_robot("box:0.99,0.67,0.39@0,0,0.095"));
+    SampleOptions options{.count = 50};
+    for (const Spawn& spawn : sample(sunk, options).spawns) CHECK(spawn.position.z() > 0.1);
+    CHECK(raster(sunk, {}).offset == auto_offset(sunk.robot()));
     options.offset = 1.1;
-    CHECK_THROWS_WITH(sample(map, sunk, options),
+    CHECK_THROWS_WITH(sample(sunk, options),
                       "sample: offset is 1.1, needs at most max_height, 1 m: such poses are aerial");
 }
 

@@ -12,12 +12,8 @@ namespace {
 
 RasterOptions raster_options(const HardCase& hard, Random& random)
 {
-    RasterOptions options;
-    options.offset = hard.offset;
-    options.max_height = hard.max_height;
-    options.max_slope = hard.max_slope;
-    options.yaw = hard.yaws[std::size_t(random.below(int(hard.yaws.size())))];
-    options.threads = 1;
+    RasterOptions options{
+        .offset = hard.offset, .yaw = hard.yaws[std::size_t(random.below(int(hard.yaws.size())))], .threads = 1};
     constexpr std::array kinds = {LayerChoice::Kind::Top, LayerChoice::Kind::Bottom, LayerChoice::Kind::Index};
     if (random.chance(0.2)) options.layers = {kinds[std::size_t(random.below(3))], 1};
     return options;
@@ -36,18 +32,18 @@ void shift_columns(Bounds& bounds, double by)
 }
 
 /// Compares rasters across the whole map, at corners of cells, at centres of cells, and with steps of several cells.
-Tally rasters_2d(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+Tally rasters_2d(const TestMap& map, const TwoJudges& judges, const HardCase& hard, Random& random)
 {
     Tally tally;
     RasterOptions options = raster_options(hard, random);
     options.step = wide_step(map, 26);
-    tally.add(of_raster(map, checker, options));
+    tally.add(of_raster(judges, options));
     for (const double shift : {0.0, 0.5}) {
         options = raster_options(hard, random);
         options.step = hard.resolution * (random.chance(0.6) ? 1 : 1 + random.below(5));
         options.bounds = crop_near(map, random, options.step, 22);
         shift_columns(options.bounds, shift * hard.resolution);
-        tally.add(of_raster(map, checker, options));
+        tally.add(of_raster(judges, options));
     }
     return tally;
 }
@@ -63,8 +59,7 @@ void limit_heights(RasterOptions& options, const HardCase& hard, Random& random,
     options.bounds.max.z() = options.bounds.min.z() + tall;
 }
 
-Tally rasters_3d(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random,
-                 bool height_check)
+Tally rasters_3d(const TestMap& map, const TwoJudges& judges, const HardCase& hard, Random& random, bool height_check)
 {
     RasterOptions options = raster_options(hard, random);
     options.step = random.chance(0.5) ? hard.resolution : wide_step(map, 31);
@@ -73,11 +68,11 @@ Tally rasters_3d(const TestMap& map, const CollisionChecker& checker, const Hard
     options.height_check = height_check;
     if (!height_check) options.layers = {};
     limit_heights(options, hard, random, height_check ? 40 : 8);
-    return of_raster(map, checker, options);
+    return of_raster(judges, options);
 }
 
 /// Compares snapped rasters with fine steps, and with steps so wide that most layers have no step near them.
-Tally rasters_snapped(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+Tally rasters_snapped(const TestMap& map, const HardCase& hard, Random& random)
 {
     Tally tally;
     for (const bool wide : {false, true}) {
@@ -86,24 +81,25 @@ Tally rasters_snapped(const TestMap& map, const CollisionChecker& checker, const
         options.bounds = crop_near(map, random, options.step, 14);
         options.snap = true;
         options.offset = std::max(0.0, *options.offset);
-        options.max_height = std::max(options.max_height, *options.offset);
         limit_heights(options, hard, random, 40);
         if (wide) options.step_z = random.between(0.5, 3);
-        tally.add(of_raster(map, checker, options));
+        const JudgeOptions limits{.max_height = std::max(hard.max_height, *options.offset),
+                                  .max_slope = hard.max_slope};
+        tally.add(of_raster({map, hard.robot, limits}, options));
     }
     return tally;
 }
 
-Tally checks(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+Tally checks(const TestMap& map, const HardCase& hard, Random& random)
 {
-    QueryOptions options;
-    options.max_height = std::max(hard.max_height, hard.offset);
-    options.max_slope = hard.max_slope;
-    options.max_water_depth = random.chance(0.8) ? std::numeric_limits<double>::infinity() : random.between(0, 0.5);
-    options.threads = 1;
-    Tally tally = of_check(map, checker, random_poses(hard.scene, random.next(), 250), options);
+    const JudgeOptions limits{
+        .max_height = std::max(hard.max_height, hard.offset),
+        .max_water_depth = random.chance(0.8) ? std::numeric_limits<double>::infinity() : random.between(0, 0.5),
+        .max_slope = hard.max_slope};
+    const TwoJudges judges(map, hard.robot, limits);
+    Tally tally = of_check(judges, random_poses(hard.scene, random.next(), 250));
     const Bounds crop = crop_near(map, random, wide_step(map, 25), 9);
-    tally.add(of_check(map, checker, standing_poses(map, checker, hard, crop, 500), options));
+    tally.add(of_check(judges, standing_poses(map, hard, crop, 500)));
     return tally;
 }
 
@@ -116,8 +112,6 @@ Options spawn_options(const HardCase& hard, Random& random)
     options.random_yaw = random.chance(0.5);
     options.yaw = hard.yaws[0];
     options.seed = hard.seed;
-    options.max_height = hard.max_height;
-    options.max_slope = hard.max_slope;
     options.threads = 1;
     return options;
 }
@@ -134,40 +128,38 @@ std::vector<AvoidedPoints> some_points(const TestMap& map, Random& random)
     return {out};
 }
 
-Tally samples(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+Tally samples(const TestMap& map, const HardCase& hard, Random& random)
 {
     SampleOptions options = spawn_options<SampleOptions>(hard, random);
     options.offset = hard.offset;
-    options.max_height = std::max(1.0, hard.offset);
     if (Random more{hard.seed + 991}; more.chance(0.3)) options.avoid = some_points(map, more);
-    return of_sample(map, checker, options);
+    const JudgeOptions limits{.max_height = std::max(1.0, hard.offset), .max_slope = hard.max_slope};
+    return of_sample({map, hard.robot, limits}, options);
 }
 
 /// Compares searches in the lowest 2.5 m of the map. Otherwise nearly all draws would be aerial.
-Tally searches(const TestMap& map, const CollisionChecker& checker, const HardCase& hard, Random& random)
+Tally searches(const TestMap& map, const TwoJudges& judges, const HardCase& hard, Random& random)
 {
     SearchOptions options = spawn_options<SearchOptions>(hard, random);
     options.max_failures = 150;
     options.bounds = map.bounds;
     options.bounds.max.z() = std::min(map.bounds.max.z(), map.bounds.min.z() + 2) + 0.5;
-    return of_search(map, checker, options);
+    return of_search(judges, options);
 }
 
 /// Returns whether a few hundred draws are likely to give a spawn. A sampler that finds none tries for a long time.
-bool has_room(const Tally& rasters) { return 20 * rasters.verdicts[std::size_t(Verdict::Valid)] > rasters.poses; }
+bool has_room(const Tally& rasters) { return 20 * rasters.verdicts[Verdict::Valid] > rasters.poses; }
 
 }  // namespace
 
-std::vector<Pose> standing_poses(const TestMap& map, const CollisionChecker& checker, const HardCase& hard,
-                                 const Bounds& crop, std::size_t count)
+std::vector<Pose> standing_poses(const TestMap& map, const HardCase& hard, const Bounds& crop, std::size_t count)
 {
     Random random{hard.seed + 77};
     RasterOptions options = raster_options(hard, random);
     options.layers = {};
     options.bounds = crop;
     options.step = std::max(1e-3, (crop.max.x() - crop.min.x()) / 9);
-    set_exhaustive(options);
-    const std::vector<RasterPose> raster_poses = raster(map, checker, options).poses;
+    const std::vector<RasterPose> raster_poses = raster(Judge(map, hard.robot), options).poses;
     std::vector<Pose> poses;
     for (std::size_t i = 0; i < count && !raster_poses.empty(); ++i) {
         const RasterPose& pose = raster_poses[std::size_t(random.below(int(raster_poses.size())))];
@@ -185,16 +177,16 @@ std::vector<Pose> standing_poses(const TestMap& map, const CollisionChecker& che
 CaseTally of_case(const HardCase& hard)
 {
     const TestMap map = map_of_case(hard);
-    const CollisionChecker checker = checker_of(map, hard.robot);
+    const TwoJudges judges(map, hard.robot, {.max_height = hard.max_height, .max_slope = hard.max_slope});
     Random random{hard.seed + 13};
     CaseTally tally;
-    tally.raster_2d = rasters_2d(map, checker, hard, random);
-    tally.raster_3d = rasters_3d(map, checker, hard, random, true);
-    tally.collisions = rasters_3d(map, checker, hard, random, false);
-    tally.check = checks(map, checker, hard, random);
-    if (has_room(tally.raster_2d)) tally.sample = samples(map, checker, hard, random);
-    tally.search = searches(map, checker, hard, random);
-    tally.snap = rasters_snapped(map, checker, hard, random);
+    tally.raster_2d = rasters_2d(map, judges, hard, random);
+    tally.raster_3d = rasters_3d(map, judges, hard, random, true);
+    tally.collisions = rasters_3d(map, judges, hard, random, false);
+    tally.check = checks(map, hard, random);
+    if (has_room(tally.raster_2d)) tally.sample = samples(map, hard, random);
+    tally.search = searches(map, judges, hard, random);
+    tally.snap = rasters_snapped(map, hard, random);
     return tally;
 }
 
@@ -208,12 +200,12 @@ bool is_filled_open(const Scene& scene)
 
 /// Returns poses at random distances from the lattice, because on borders of faces the independent decision may take
 /// either side.
-std::vector<Pose> unaligned_poses(const TestMap& map, const CollisionChecker& checker, const HardCase& hard)
+std::vector<Pose> unaligned_poses(const TestMap& map, const HardCase& hard)
 {
     Random random{hard.seed + 31};
     std::vector<Pose> poses = random_poses(hard.scene, hard.seed, 60);
     const Bounds crop = crop_near(map, random, 3 * map.resolution, 20);
-    for (Pose pose : standing_poses(map, checker, hard, crop, 100)) {
+    for (Pose pose : standing_poses(map, hard, crop, 100)) {
         for (int axis = 0; axis < 2; ++axis) pose.position[axis] += random.between(-0.003, 0.003);
         poses.push_back(pose);
     }
@@ -227,16 +219,15 @@ Tally independently(const HardCase& hard)
     Tally tally;
     if (is_filled_open(hard.scene)) return tally;
     const TestMap map = map_of_case(hard);
-    const CollisionChecker checker = checker_of(map, hard.robot);
-    const std::vector<Pose> poses = unaligned_poses(map, checker, hard);
-    QueryOptions options;
-    set_exhaustive(options);
-    const std::vector<Judgement> judged = check_poses(map, checker, poses, options);
+    const Judge judge(map, hard.robot, {.exhaustive = true});
+    const std::vector<Pose> poses = unaligned_poses(map, hard);
+    const std::vector<Judgement> judged = judge.check(poses);
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        const slow::Decision slow = slow::decide(hard.scene, map.bounds, hard.robot, poses[i], options.max_height, 1e9);
+        const slow::Decision slow = slow::decide(hard.scene, map.bounds, hard.robot, poses[i],
+                                                 judge.options().max_height, 1e9);
         if (!slow.verdict) continue;
         ++tally.poses;
-        ++tally.verdicts[std::size_t(*slow.verdict)];
+        ++tally.verdicts[*slow.verdict];
         if (*slow.verdict == judged[i].verdict || tally.differences++ > 0) continue;
         tally.first = "check " + described(poses[i]) + "\n  by FCL " + to_string(judged[i].verdict) + "\n  slowly " +
                       to_string(*slow.verdict);

@@ -10,20 +10,15 @@ using namespace spawnfield;
 
 namespace {
 
-RasterOptions half_metres()
-{
-    RasterOptions options;
-    options.step = 0.5;
-    return options;
-}
+RasterOptions half_metres() { return {.step = 0.5}; }
 
 }  // namespace
 
 TEST_CASE("a raster at 16 headings counts valid headings; if none is valid, the most frequent verdict counts")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
-    const HeadingRaster result = raster_at_headings(map, checker, half_metres());
+    const Judge judge(map, husky());
+    const HeadingRaster result = raster_at_headings(judge, half_metres());
     const std::size_t count = result.raster.poses.size();
     REQUIRE(result.headings == 16);
     REQUIRE(result.valid_headings.size() == count);
@@ -32,12 +27,12 @@ TEST_CASE("a raster at 16 headings counts valid headings; if none is valid, the 
     for (int k = 0; k < 16; ++k) {
         RasterOptions options = half_metres();
         options.yaw = 2 * std::numbers::pi * k / 16;
-        const RasterResult one = raster(map, checker, options);
+        const RasterResult one = raster(judge, options);
         REQUIRE(one.poses.size() == count);
         for (std::size_t p = 0; p < count; ++p) ++tallies[p][std::size_t(one.poses[p].verdict)];
     }
     std::size_t wrong = 0, some = 0;
-    VerdictCounts counts{};
+    VerdictCounts counts;
     for (std::size_t p = 0; p < count; ++p) {
         const auto& tally = tallies[p];
         const int fitting = tally[std::size_t(Verdict::Valid)],
@@ -46,7 +41,7 @@ TEST_CASE("a raster at 16 headings counts valid headings; if none is valid, the 
         wrong += result.valid_headings[p] != fitting;
         wrong += fitting > 0 ? result.raster.poses[p].verdict != Verdict::Valid : seen != most;
         some += fitting > 0 && fitting < 16;
-        ++counts[std::size_t(result.raster.poses[p].verdict)];
+        ++counts[result.raster.poses[p].verdict];
     }
     CHECK(wrong == 0);
     CHECK(some > 20);
@@ -56,11 +51,10 @@ TEST_CASE("a raster at 16 headings counts valid headings; if none is valid, the 
 TEST_CASE("a raster at headings refuses counts out of range and 3D rasters")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
-    CHECK_THROWS_WITH(raster_at_headings(map, checker, half_metres(), 0),
-                      "raster_at_headings: headings is 0, needs 1 .. 255");
-    CHECK_THROWS_AS(raster_at_headings(map, checker, half_metres(), 256), ArgumentError);
+    const Judge judge(map, husky());
+    CHECK_THROWS_WITH(raster_at_headings(judge, half_metres(), 0), "raster_at_headings: headings is 0, needs 1 .. 255");
+    CHECK_THROWS_AS(raster_at_headings(judge, half_metres(), 256), ArgumentError);
     RasterOptions options = half_metres();
     options.dims = 3;
-    CHECK_THROWS_WITH(raster_at_headings(map, checker, options), "raster_at_headings: dims is 3, needs 2");
+    CHECK_THROWS_WITH(raster_at_headings(judge, options), "raster_at_headings: dims is 3, needs 2");
 }

@@ -81,7 +81,7 @@ Verdict verdict_of(char letter)
 void add_pose(RasterResult& raster, int i, int j, double z, Verdict verdict)
 {
     raster.poses.push_back({raster.grid.x_of(i), raster.grid.y_of(j), z, 0, verdict});
-    ++raster.counts[std::size_t(verdict)];
+    ++raster.counts[verdict];
 }
 
 /// Returns a raster with a column for each letter; the first line has the largest y, and '.' has no pose. Columns are 2
@@ -241,7 +241,7 @@ TEST_CASE("the longer side of a picture has the requested length, and nothing is
     const int pixels = GENERATE(200, 1000, 2000);
     const auto quantity = GENERATE(HeatmapQuantity::Verdict, HeatmapQuantity::Height);
     RasterResult raster = raster_of(Drawing(std::size_t(rows), std::string(std::size_t(cols), 'V')));
-    raster.counts[0] = 1234567;
+    raster.counts[Verdict::Outside] = 1234567;
     const std::string title = "a title that is so long that a narrow picture has to make room for it";
     const Picture picture = draw(raster, {.quantity = quantity, .pixels = pixels, .title = title});
 
@@ -291,7 +291,7 @@ TEST_CASE("a column of a three-dimensional raster without a listed pose is aeria
 {
     RasterResult raster = raster_of({"V."});
     raster.dims = 3;
-    raster.counts[std::size_t(Verdict::Aerial)] = 12;
+    raster.counts[Verdict::Aerial] = 12;
     const Picture picture = draw(raster);
     CHECK(picture.at(1, 1) == valid);
     CHECK(picture.at(3, 1) == aerial);
@@ -395,9 +395,9 @@ TEST_CASE("under a level roof slope is that of the ramp below, where the shown p
 TEST_CASE("a gradient is one-sided beside a hole, and there is none in the hole")
 {
     HeightImage heights(3, 3);
-    heights << 4, 5, 6,  //
-        2, 3, nothing,   //
-        0, 1, 2;
+    heights.values = {4, 5, 6,        //
+                      2, 3, nothing,  //
+                      0, 1, 2};
     CHECK(gradient(heights, 1, 1, 0.5).isApprox(Eigen::Vector2d(2, 4)));
     CHECK(gradient(heights, 0, 0, 0.5).isApprox(Eigen::Vector2d(2, 4)));
     CHECK(gradient(heights, 1, 2, 0.5).hasNaN());
@@ -555,9 +555,8 @@ parts:
 )")));
     const Robot low = load_robot("box:2,1,0.3"), high = load_robot("box:2,1,0.6");
     const auto verdicts = [&](const Robot& robot) {
-        RasterOptions options;
-        options.step = 0.25;
-        return raster(map, checker_of(map, robot), options);
+        RasterOptions options{.step = 0.25};
+        return raster(Judge(map, robot), options);
     };
     const TerrainMap terrain = rasterize_terrain(map.geometry, frame_around(map.bounds, 0.1));
     const RasterResult result = verdicts(low);
@@ -594,10 +593,9 @@ parts:
   - {name: pole, cylinder: {radius: 0.2, length: 0.4}, xyz: [6.9, 2, 7.1]}
 )")));
     const Robot robot = load_robot("box:0.2,0.2,0.3@0,0,0.3");
-    RasterOptions options;
-    options.step = 2;
+    RasterOptions options{.step = 2};
     const TerrainMap terrain = rasterize_terrain(map.geometry, frame_around(map.bounds, 0.1));
-    const Picture picture = draw(raster(map, checker_of(map, robot), options), {.robot = &robot}, terrain, map);
+    const Picture picture = draw(raster(Judge(map, robot), options), {.robot = &robot}, terrain, map);
     CHECK(picture.at(6.9, 2) == obstacle);
     CHECK(picture.at(5.1, 2) != obstacle);
 }

@@ -4,6 +4,8 @@
 
 #include <iostream>
 
+#include <tbb/global_control.h>
+
 #ifdef __SANITIZE_ADDRESS__
 // assimp leaks memory when it rejects a damaged file.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
@@ -31,6 +33,8 @@ void skip_test(const std::string& why)
 
 int main(int argc, char** argv)
 {
+    // Tests ask for up to 8 threads, on a machine with fewer cores too.
+    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, 8);
     Catch::Session session;
     session.configData().warnings = static_cast<Catch::WarnAbout::What>(strict);
     // Catch's own status is the number of failures, which could be 77 too.

@@ -19,9 +19,7 @@ const fs::path training = source_folder() + "/maps/training/scene.yaml";
 
 BakeReport bake_training(const fs::path& folder, int threads = 0)
 {
-    BakeOptions options;
-    options.resolution = 0.2;
-    options.threads = threads;
+    BakeOptions options{.resolution = 0.2, .threads = threads};
     return bake(load_scene(training), training, folder, options);
 }
 
@@ -41,8 +39,7 @@ TEST_CASE("a map that is read back has the geometry and the answers of the one t
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         const Scene scene = random_scene(seed);
         const fs::path file = temp.write("scene.txt", "stands for the scene's file");
-        BakeOptions options;
-        options.resolution = 0.5;
+        BakeOptions options{.resolution = 0.5};
         const BakeReport report = bake(scene, file, temp / "map", options);
         const Map map = read_map(temp / "map");
         CHECK(map.hash == report.hash);
@@ -54,9 +51,9 @@ TEST_CASE("a map that is read back has the geometry and the answers of the one t
         for (std::size_t part = 0; part < map.geometry.parts().size(); ++part)
             CHECK(map.geometry.parts()[part].name == scene.parts[part].name);
         const Robot robot = random_robot(seed);
-        const CollisionChecker checker = checker_of(map, robot), fresh_checker = checker_of(fresh, robot);
+        const Judge judge(map, robot), fresh_judge(fresh, robot);
         const auto poses = random_poses(scene, seed, 500);
-        const auto here = check_poses(map, checker, poses), there = check_poses(fresh, fresh_checker, poses);
+        const auto here = judge.check(poses), there = fresh_judge.check(poses);
         for (std::size_t i = 0; i < poses.size(); ++i) {
             CHECK(here[i].verdict == there[i].verdict);
             CHECK(here[i].ground.has_value() == there[i].ground.has_value());
@@ -81,9 +78,9 @@ TEST_CASE("a map folder has its files, and other programs can open them")
     for (std::size_t p = 0; p < pages.size(); ++p) {
         REQUIRE(pages[p].type() == CV_32F);
         const HeightImage image = page_image(terrain, terrain.pages[p].name);
-        REQUIRE(pages[p].rows == image.rows());
-        for (int row = 0; row < image.rows(); row += 7)
-            for (int col = 0; col < image.cols(); col += 3) {
+        REQUIRE(pages[p].rows == image.rows);
+        for (int row = 0; row < image.rows; row += 7)
+            for (int col = 0; col < image.cols; col += 3) {
                 const float theirs = pages[p].at<float>(row, col);
                 CHECK((theirs == image(row, col) || (std::isnan(theirs) && std::isnan(image(row, col)))));
             }
@@ -97,9 +94,7 @@ TEST_CASE("heightmap.png has the top layer, with the range that map.yaml states"
     hand::add_mesh(scene, Label::Terrain,
                    hand::moved(hand::rectangle(4, 4), {{0, 0, 3}, rotation_from_rpy(0, 0.4, 0)}));
     const fs::path file = temp.write("scene.txt", "");
-    BakeOptions options;
-    options.resolution = 0.1;
-    options.bounds = {Vec3(-3, -2, 0), Vec3(3, 2, 5)};
+    BakeOptions options{.resolution = 0.1, .bounds = {Vec3(-3, -2, 0), Vec3(3, 2, 5)}};
     bake(scene, file, temp / "map", options);
     const cv::Mat image = cv::imread((temp / "map/heightmap.png").string(), cv::IMREAD_UNCHANGED);
     REQUIRE(image.type() == CV_16U);
@@ -134,11 +129,9 @@ TEST_CASE("a bake that fails or is stopped leaves the old map as it was and noth
     const TempFolder temp;
     bake_training(temp / "map");
     const std::string before = bytes_of(temp / "map/map.yaml");
-    BakeOptions options;
-    options.resolution = 0.2;
-    options.progress = [](double share) {
-        if (share > 0.3) throw std::runtime_error("stopped");
-    };
+    const BakeOptions options{.resolution = 0.2, .progress = [](double share) {
+                                  if (share > 0.3) throw std::runtime_error("stopped");
+                              }};
     CHECK_THROWS_WITH(bake(load_scene(training), training, temp / "map", options), "stopped");
     Scene no_terrain;
     hand::add_mesh(no_terrain, Label::Obstacle, hand::rectangle(1, 1));

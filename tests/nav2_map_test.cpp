@@ -148,8 +148,7 @@ TEST_CASE("a 2D map becomes a floor with walls at its occupied cells, at any yaw
     const std::filesystem::path file = write_yaml(folder, "a.pgm",
                                                   "resolution: 0.25\norigin: [-3.5, 40, " + std::to_string(yaw) +
                                                       "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
-    SceneOptions options;
-    options.wall_height = 1.5;
+    SceneOptions options{.wall_height = 1.5};
     const Scene scene = load_scene(file, options);
     REQUIRE(scene.parts.size() == 2);
     CHECK((scene.parts[0].name == "floor" && scene.parts[0].label == Label::Terrain));
@@ -249,8 +248,7 @@ TEST_CASE("invalid maps are refused by file, key and line")
                   "free_thresh is 7, needs 0 .. 1 (line 4)");
     check_refused("a.pgm", "resolution: 1\norigin: [0, 0, 0]\nfree_thresh: 0.7\noccupied_thresh: 0.6\n",
                   "free_thresh is 0.7, needs at most occupied_thresh (0.6) (line 4)");
-    SceneOptions options;
-    options.wall_height = -1;
+    SceneOptions options{.wall_height = -1};
     CHECK_THROWS_WITH(load_scene(write_yaml(folder, "a.pgm"), options), "load_scene: wall_height is -1, needs > 0 m");
     options.wall_height = 1;
     CHECK_THROWS_WITH(load_scene(source_folder() + "/maps/training/scene.yaml", options),
@@ -276,10 +274,9 @@ TEST_CASE("a nav2 map can be baked directly, and robots stand where it is free")
     CHECK_THAT(run_program(folder, "info map.yaml").out, Contains("floor: map, terrain"));
     const Map map = read_map(folder / "map");
     CHECK(map.bounds.max == Vec3(2, 2, 1));
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.2,0.2,0.2"));
-    SampleOptions options;
-    options.count = 300;
-    const SpawnList list = sample(map, checker, options);
+    const Judge judge(map, load_robot("box:0.2,0.2,0.2"));
+    SampleOptions options{.count = 300};
+    const SpawnList list = sample(judge, options);
     CHECK(list.spawns.size() == 300);
     for (const Spawn& spawn : list.spawns) {
         const int row = int((2 - spawn.position.y()) / 0.1), col = int((spawn.position.x() + 2) / 0.1);

@@ -185,10 +185,7 @@ TEST_CASE("a robot that is partly in unknown space collides if that is blocked")
         {{-1, 0, 1.9}, Mat3::Identity()}};    // reaches beyond the top, where nothing is blocked
     const auto verdicts = [&](const std::string& more) {
         const TestMap map = map_of(load(folder, more));
-        const CollisionChecker checker = checker_of(map, robot);
-        QueryOptions options;
-        options.max_height = 5;
-        return check_poses(map, checker, poses, options);
+        return Judge(map, robot, {.max_height = 5}).check(poses);
     };
     for (const Judgement& judged : verdicts("")) CHECK(judged.verdict == Verdict::Valid);
     const auto blocked = verdicts(", unknown: blocked");
@@ -202,8 +199,8 @@ TEST_CASE("a robot that is partly in unknown space collides if that is blocked")
     CHECK(blocked[1].hit->part == 1);
     // Above unknown space the ground is unknown space, which is not terrain.
     const TestMap map = map_of(load(folder, ", unknown: blocked"));
-    const CollisionChecker checker = checker_of(map, robot);
-    CHECK(check_poses(map, checker, {{{1, 1, 2.1}, Mat3::Identity()}}, {})[0].verdict == Verdict::OffTerrain);
+    const Judge judge(map, robot);
+    CHECK(judge.check({{1, 1, 2.1}, Mat3::Identity()}).verdict == Verdict::OffTerrain);
 }
 
 TEST_CASE("with unknown space blocked the mask and the independent decision still agree")
@@ -216,18 +213,14 @@ TEST_CASE("with unknown space blocked the mask and the independent decision stil
         "xyz: [3, 1, 0], rpy: [0, 0, 0.3]}\n");
     const TestMap map = map_of(load_scene(file), 0.05);
     const Robot robot = load_robot("box:0.12,0.08,0.1");
-    const CollisionChecker checker = checker_of(map, robot);
-    RasterOptions options;
-    options.step = 0.07;
-    options.offset = 0.03;
-    options.yaw = 0.2;
-    const compare::Tally tally = compare::of_raster(map, checker, options);
+    const RasterOptions options{.step = 0.07, .offset = 0.03, .yaw = 0.2};
+    const compare::Tally tally = compare::of_raster({map, robot}, options);
     INFO(tally.first);
     CHECK(tally.differences == 0);
-    CHECK(tally.verdicts[std::size_t(Verdict::Collision)] > 100);
-    CHECK(tally.verdicts[std::size_t(Verdict::Valid)] > 10);
+    CHECK(tally.verdicts[Verdict::Collision] > 100);
+    CHECK(tally.verdicts[Verdict::Valid] > 10);
     const std::vector<Pose> poses = random_poses(map.scene, 5, 400);
-    const auto fast = check_poses(map, checker, poses);
+    const auto fast = Judge(map, robot).check(poses);
     std::size_t decided = 0;
     for (std::size_t k = 0; k < poses.size(); ++k) {
         const slow::Decision slow = slow::decide(map.scene, map.bounds, robot, poses[k], 1.0, 1e9);

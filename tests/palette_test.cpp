@@ -98,7 +98,7 @@ Lab seen(std::uint32_t colour, const Vision& vision)
 }
 
 /// Returns all ten verdicts of the design, also those that no query gives yet.
-std::vector<std::pair<std::string, std::uint32_t>> all_verdicts()
+std::vector<std::pair<std::string, std::uint32_t>> coloured_verdicts()
 {
     std::vector<std::pair<std::string, std::uint32_t>> out;
     for (std::size_t v = 0; v < verdict_count; ++v) out.emplace_back(to_string(Verdict(v)), verdict_palette[v]);
@@ -134,7 +134,7 @@ TEST_CASE("valid and collision differ in lightness by 25 or more, in every kind 
 
 TEST_CASE("no two of the ten verdicts are closer than 20 (CIEDE2000 and CIE76), in every kind of vision")
 {
-    const auto verdicts = all_verdicts();
+    const auto verdicts = coloured_verdicts();
     REQUIRE(verdicts.size() == 10);
     for (const Vision& vision : visions())
         for (std::size_t i = 0; i < verdicts.size(); ++i)
@@ -148,7 +148,7 @@ TEST_CASE("no two of the ten verdicts are closer than 20 (CIEDE2000 and CIE76), 
 
 TEST_CASE("the other colours of a heat map differ from verdicts and from each other, in every kind of vision")
 {
-    auto colours = all_verdicts();
+    auto colours = coloured_verdicts();
     const std::size_t verdicts = colours.size();
     colours.insert(
         colours.end(),

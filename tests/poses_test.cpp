@@ -195,7 +195,9 @@ TEST_CASE("verdicts follow the columns of the poses")
     judgements[3].verdict = Verdict::Collision;
     judgements[3].ground = Ground{0, true, 0};
     judgements[3].hit = CollisionHit{};
-    CHECK(verdicts_csv(table, judgements, scene.parts) ==
+    Map map;
+    map.geometry = Geometry(scene);
+    CHECK(verdicts_csv(table, judgements, map) ==
           "id,x,y,z,verdict,ground,height_above,hit\n"
           "7,0,0,0.1,valid,-0.05,0.15000000000000002,\n"
           "8,0,0,5,outside,,,\n"
@@ -256,24 +258,23 @@ TEST_CASE("spawns as JSON have unit quaternions, names, their settings and their
 {
     SpawnList list;
     list.spawns = {{{1, 2, 3}, 0.5}};
-    list.counts[std::size_t(Verdict::Valid)] = 1;
+    list.counts[Verdict::Valid] = 1;
     list.undecided_area = 2.5;
     Map map;
     map.name = "arena";
     map.hash = "0123456789abcdef";
     map.bounds = {Vec3(-1, -2, -3), Vec3(4, 5, 6)};
-    Robot robot;
+    Robot robot = load_robot("box:1,1,1");
     robot.name = "rover";
     robot.joints = {{"arm", 0.5}};
-    SampleOptions options;
-    options.count = 4;
-    options.min_distance = 0.25;
-    options.seed = 42;
-    options.random_yaw = true;
-    options.offset = 0.2;
-    options.layers = {LayerChoice::Kind::Index, 1};
+    const SampleOptions options{.count = 4,
+                                .min_distance = 0.25,
+                                .random_yaw = true,
+                                .seed = 42,
+                                .offset = 0.2,
+                                .layers = {LayerChoice::Kind::Index, 1}};
     const std::vector<RobotStart> robots = robot_starts(list, {"rover_1"}, {"fleet/rover_1"});
-    const auto json = nlohmann::json::parse(spawns_json(robots, list, map, robot, options));
+    const auto json = nlohmann::json::parse(spawns_json(robots, list, Judge(map, robot), options));
     CHECK(json["map"]["hash"] == "0123456789abcdef");
     CHECK(json["robot"] == "rover");
     CHECK(json["joints"] == nlohmann::json{{"arm", 0.5}});
@@ -302,11 +303,9 @@ TEST_CASE("spawns as JSON have unit quaternions, names, their settings and their
     const auto q = pose["quaternion"].get<std::vector<double>>();
     CHECK(Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix().isApprox(rotation_from_rpy(0, 0, 0.5), 1e-14));
 
-    SearchOptions search;
-    search.max_height = 0.5;
-    search.max_slope = 0.3;
-    search.bounds = {Vec3(0, 0, 0), Vec3(1, 1, 1)};
-    const auto searched = nlohmann::json::parse(spawns_json(robots, list, map, robot, search));
+    const Judge strict(map, robot, {.max_height = 0.5, .max_slope = 0.3});
+    const SearchOptions search{.bounds = {Vec3(0, 0, 0), Vec3(1, 1, 1)}};
+    const auto searched = nlohmann::json::parse(spawns_json(robots, list, strict, search));
     CHECK(searched["command"] == "search");
     CHECK(searched["settings"]["max_height"] == 0.5);
     CHECK(searched["settings"]["max_slope"] == 0.3);

@@ -80,26 +80,20 @@ TEST_CASE("real scenes bake, and real robots' samples in them are valid by check
     const TempFolder temp;
     for (const RealScene& real : real_scenes()) {
         CAPTURE(real.file);
-        BakeOptions options;
-        options.resolution = 0.5;
-        options.occupancy_resolution = 1;
+        BakeOptions options{.resolution = 0.5, .occupancy_resolution = 1};
         bake(load_scene(*folder / real.file), *folder / real.file, temp / "map", options);
         verify_map(temp / "map");
         const Map map = read_map(temp / "map");
         for (const RealRobot& robot : real_robots()) {
             CAPTURE(robot.file);
-            const CollisionChecker checker = checker_of(map, load_robot((*folder / robot.file).string()));
-            SampleOptions sampling;
-            sampling.count = 60;
-            sampling.min_distance = 0.3;
-            sampling.offset = robot.offset;
-            sampling.random_yaw = true;
-            const SpawnList list = sample(map, checker, sampling);
+            const Judge judge(map, load_robot((*folder / robot.file).string()));
+            SampleOptions sampling{.count = 60, .min_distance = 0.3, .random_yaw = true, .offset = robot.offset};
+            const SpawnList list = sample(judge, sampling);
             CHECK(list.spawns.size() == 60);
             std::vector<Pose> poses;
             for (const Spawn& spawn : list.spawns)
                 poses.push_back({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)});
-            for (const Judgement& judged : check_poses(map, checker, poses)) CHECK(judged.verdict == Verdict::Valid);
+            for (const Judgement& judged : judge.check(poses)) CHECK(judged.verdict == Verdict::Valid);
         }
     }
 }
@@ -114,15 +108,12 @@ TEST_CASE("check in real scenes agrees with the independent decision")
         if (map.scene.triangles.size() > 50000)
             continue;  // the independent decision visits each triangle for each pose
         const Robot robot = load_robot((*folder / real_robots()[1].file).string());
-        const CollisionChecker checker = checker_of(map, robot);
-        // Uses random poses and poses of a sample, because half of the random ones miss the ground.
+        const Judge judge(map, robot);
         std::vector<Pose> poses = random_poses(map.scene, 17, 20);
-        SampleOptions sampling;
-        sampling.count = 15;
-        sampling.offset = 0.15;
-        for (const Spawn& spawn : sample(map, checker, sampling).spawns)
+        SampleOptions sampling{.count = 15, .offset = 0.15};
+        for (const Spawn& spawn : sample(judge, sampling).spawns)
             poses.push_back({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)});
-        const std::vector<Judgement> fast = check_poses(map, checker, poses);
+        const std::vector<Judgement> fast = judge.check(poses);
         for (std::size_t i = 0; i < poses.size(); ++i) {
             const slow::Decision slow = slow::decide(map.scene, map.bounds, robot, poses[i], 1.0, 1e9);
             if (!slow.verdict) continue;
@@ -145,12 +136,9 @@ TEST_CASE("a map of a mesh with doubled faces has layers, but no inside")
     const Scene scene = load_scene(*folder / "mine/scene.yaml");
     CHECK(scene.parts[0].solid_pieces == 0);
     const TestMap map = map_of(scene);
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.3,0.3"));
-    SampleOptions sampling;
-    sampling.count = 100;
-    sampling.offset = 0.2;
-    sampling.layers = {LayerChoice::Kind::Bottom, 0};
-    const SpawnList list = sample(map, checker, sampling);
+    const Judge judge(map, load_robot("box:0.3,0.3,0.3"));
+    SampleOptions sampling{.count = 100, .offset = 0.2, .layers = {LayerChoice::Kind::Bottom, 0}};
+    const SpawnList list = sample(judge, sampling);
     CHECK(list.spawns.size() == 100);
     const auto on_floor = std::count_if(list.spawns.begin(), list.spawns.end(),
                                         [](const Spawn& spawn) { return spawn.position.z() < 0.5; });
@@ -163,13 +151,11 @@ TEST_CASE("the garage has spawns on every deck and none in the slabs")
     const auto folder = shared_scenes();
     if (!folder) return;
     const TestMap map = map_of(load_scene(*folder / "parking_garage/scene.yaml"));
-    const CollisionChecker checker = checker_of(map, husky());
-    SampleOptions sampling;
-    sampling.count = 3000;
-    sampling.bounds = {Vec3(-20, -10, 0), Vec3(20, 10, 0)};
+    const Judge judge(map, husky());
+    SampleOptions sampling{.count = 3000, .bounds = {Vec3(-20, -10, 0), Vec3(20, 10, 0)}};
     const std::vector<double> decks = {0.23, 5.79, 11.35, 16.92, 22.48, 28.03, 33.59, 39.14};
     std::vector<int> on_deck(decks.size(), 0);
-    for (const Spawn& spawn : sample(map, checker, sampling).spawns) {
+    for (const Spawn& spawn : sample(judge, sampling).spawns) {
         const double ground = spawn.position.z() - 0.1;
         for (std::size_t deck = 0; deck < decks.size(); ++deck) on_deck[deck] += std::abs(ground - decks[deck]) < 0.02;
         for (const double layer : column_at(map.geometry, spawn.position.x(), spawn.position.y()).layers)

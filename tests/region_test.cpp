@@ -91,13 +91,7 @@ TestMap floor_map(double side)
 
 SampleOptions options_in(const Area& area, std::size_t count, double min_distance = 0)
 {
-    SampleOptions options;
-    options.count = count;
-    options.min_distance = min_distance;
-    options.seed = 4;
-    options.area = area;
-    options.offset = 0.1;
-    return options;
+    return {.count = count, .min_distance = min_distance, .seed = 4, .offset = 0.1, .area = area};
 }
 
 Region region_of(const std::vector<Region::Polygon>& polygons)
@@ -209,11 +203,11 @@ TEST_CASE("regions are united, keep-outs are removed, and edges belong to both")
 TEST_CASE("samples are uniform by area over the region, and nowhere else")
 {
     const TestMap map = floor_map(10);
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.001,0.001,0.001@0,0,0"));
+    const Judge judge(map, load_robot("box:0.001,0.001,0.001@0,0,0"));
     Area area;
     area.within = {triangle};
     area.keep_out = {box_region(-0.5, -1, 0.5, 0)};
-    const SpawnList list = sample(map, checker, options_in(area, 20000));
+    const SpawnList list = sample(judge, options_in(area, 20000));
     REQUIRE(list.spawns.size() == 20000);
     CHECK(list.off_area > 0);
     const AreaIndex index(area);
@@ -253,19 +247,19 @@ TEST_CASE("samples are uniform by area over the region, and nowhere else")
 TEST_CASE("a full region is proven full, with the same bytes with any number of threads")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky()), exhaustive = without_mask(judge);
     Area area;
     area.within = {triangle, region_of({{{{5, 5}, {9, 5}, {9, 9}, {5, 9}}, {{6, 6}, {8, 6}, {8, 8}, {6, 8}}}})};
     area.keep_out = {region_of({{{{-2, -2}, {0, -1}, {-1, 1}}}})};
     SampleOptions options = options_in(area, 10000, 1.0);
     options.threads = 1;
-    const SpawnList one = sample(map, checker, options);
+    const SpawnList one = sample(judge, options);
     CHECK(one.is_full);
     CHECK(one.undecided_area == 0);
     CHECK(one.spawns.size() > 10);
     for (const int threads : {2, 8}) {
         options.threads = threads;
-        const SpawnList many = sample(map, checker, options);
+        const SpawnList many = sample(judge, options);
         CHECK(spawns_csv(many) == spawns_csv(one));
         CHECK((many.draws == one.draws && many.off_area == one.off_area && many.counts == one.counts));
     }
@@ -281,7 +275,7 @@ TEST_CASE("a full region is proven full, with the same bytes with any number of 
                 ++probes;
                 const bool far = std::none_of(one.spawns.begin(), one.spawns.end(),
                                               [&](const Spawn& spawn) { return (spawn.position - p).norm() < 1.0; });
-                if (far) CHECK(judge(map, checker, column, {p, Mat3::Identity()}, options).verdict != Verdict::Valid);
+                if (far) CHECK_FALSE(exhaustive.is_valid({p, Mat3::Identity()}));
             }
         }
     CHECK(probes > 5000);
@@ -290,19 +284,19 @@ TEST_CASE("a full region is proven full, with the same bytes with any number of 
 TEST_CASE("a sliver of a ten-thousandth of the map is sampled, too, and an empty region is proven empty")
 {
     const TestMap map = floor_map(200);
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.2,0.2"));
+    const Judge judge(map, load_robot("box:0.3,0.2,0.2"));
     Area area;
     area.within = {region_of({{{{-90, -90}, {90, 89.98}, {90, 90.01}}}})};  // 2.7 m2 of a box of 32,400
-    const SpawnList sliver = sample(map, checker, options_in(area, 400));
+    const SpawnList sliver = sample(judge, options_in(area, 400));
     CHECK(sliver.spawns.size() == 400);
     for (const Spawn& spawn : sliver.spawns) CHECK(AreaIndex(area).contains(spawn.position.head<2>()));
     area.within = {box_region(300, 300, 310, 310)};
-    const SpawnList off_map = sample(map, checker, options_in(area, 5, 1));
+    const SpawnList off_map = sample(judge, options_in(area, 5, 1));
     CHECK(off_map.spawns.empty());
     CHECK(off_map.is_full);
     area.within = {box_region(0, 0, 10, 10)};
     area.keep_out = {box_region(-1, -1, 11, 11)};
-    const SpawnList nothing = sample(map, checker, options_in(area, 5, 1));
+    const SpawnList nothing = sample(judge, options_in(area, 5, 1));
     CHECK(nothing.spawns.empty());
     CHECK(nothing.is_full);
 }
@@ -310,22 +304,19 @@ TEST_CASE("a sliver of a ten-thousandth of the map is sampled, too, and an empty
 TEST_CASE("a raster in a region has the columns of the whole raster that are in the region")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky());
     const int dims = GENERATE(2, 3);
-    RasterOptions options;
-    options.dims = dims;
-    options.step = 0.5;
-    options.step_z = 1;
-    const RasterResult whole = raster(map, checker, options);
+    RasterOptions options{.dims = dims, .step = 0.5, .step_z = 1};
+    const RasterResult whole = raster(judge, options);
     options.area.within = {triangle, box_region(5, 5, 9, 9)};
     options.area.keep_out = {box_region(6, 6, 7, 7)};
-    const RasterResult part = raster(map, checker, options);
+    const RasterResult part = raster(judge, options);
     const AreaIndex index(options.area);
-    VerdictCounts counts{};
+    VerdictCounts counts;
     std::vector<RasterPose> wanted, got;
     for_each_pose(whole, true, [&](const RasterPose& pose) {
         if (!index.contains({pose.x, pose.y})) return;
-        ++counts[std::size_t(pose.verdict)];
+        ++counts[pose.verdict];
         wanted.push_back(pose);
     });
     for_each_pose(part, true, [&](const RasterPose& pose) { got.push_back(pose); });
@@ -342,18 +333,15 @@ TEST_CASE("a raster in a region has the columns of the whole raster that are in 
 TEST_CASE("a search in a region finds spawns only there, and ends")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
-    SearchOptions options;
-    options.count = 20;
-    options.min_distance = 0.5;
-    options.max_failures = 20000;
+    const Judge judge(map, husky());
+    SearchOptions options{.count = 20, .min_distance = 0.5, .max_failures = 20000};
     options.area.within = {triangle};
-    const SpawnList list = search(map, checker, options);
+    const SpawnList list = search(judge, options);
     CHECK(list.spawns.size() == 20);
     CHECK(list.off_area > 0);
     for (const Spawn& spawn : list.spawns) CHECK(AreaIndex(options.area).contains(spawn.position.head<2>()));
     options.area.within = {box_region(100, 100, 101, 101)};
-    const SpawnList none = search(map, checker, options);
+    const SpawnList none = search(judge, options);
     CHECK(none.spawns.empty());
     CHECK(none.off_area == 20000);
 }

@@ -342,8 +342,7 @@ TEST_CASE("a label rule that matches nothing gets a notice")
         "scene.yaml",
         "format: spawnfield-scene/1\nparts:\n  - name: town\n    mesh: cube.obj\n    labels:\n"
         "      - {node: \"road*\", label: terrain}\n      - {node: \"raod*\", label: terrain}\n");
-    SceneOptions options;
-    options.labels = {{"ROAD*", Label::Terrain}, {"lake*", Label::Water}};
+    SceneOptions options{.labels = {{"ROAD*", Label::Terrain}, {"lake*", Label::Water}}};
     const std::vector<std::string> notices = load_scene(file, options).notices;
     REQUIRE(notices.size() == 2);
     CHECK(notices[0] == file.string() + ": part \"town\": labels: node \"raod*\" matches nothing");

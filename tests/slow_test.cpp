@@ -408,7 +408,7 @@ TEST_CASE("a grown robot collides everywhere the shrunk one does")
 
 TEST_CASE("random poses give every verdict except footings, and few are too close to a limit")
 {
-    std::array<int, verdict_count> counts{};
+    VerdictCounts counts;
     int unclear = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const Scene scene = random_scene(seed);
@@ -416,15 +416,15 @@ TEST_CASE("random poses give every verdict except footings, and few are too clos
         for (const Pose& pose : random_poses(scene, seed, 30)) {
             const auto decision = slow::decide(scene, rough_bounds(scene), robot, pose, 1.0, unlimited);
             if (decision.verdict)
-                ++counts[std::size_t(*decision.verdict)];
+                ++counts[*decision.verdict];
             else
                 ++unclear;
         }
     }
-    for (std::size_t i = 0; i < verdict_count; ++i) {
-        const bool of_footing = Verdict(i) == Verdict::Steep || Verdict(i) == Verdict::Unstable;
-        INFO(to_string(Verdict(i)));
-        CHECK((of_footing ? counts[i] == 0 : counts[i] > 5));
+    for (const Verdict verdict : all_verdicts) {
+        const bool of_footing = verdict == Verdict::Steep || verdict == Verdict::Unstable;
+        INFO(to_string(verdict));
+        CHECK((of_footing ? counts[verdict] == 0 : counts[verdict] > 5));
     }
     CHECK(unclear < 60);
 }

@@ -15,13 +15,9 @@ using namespace spawnfield;
 
 namespace {
 
-Verdict judged(const Map& map, const CollisionChecker& checker, const Spawn& spawn, double max_height)
+Verdict judged(const Judge& judge, const Spawn& spawn)
 {
-    QueryOptions options;
-    options.max_height = max_height;
-    const Vec3& p = spawn.position;
-    return judge(map, checker, column_at(map.geometry, p.x(), p.y()), {p, rotation_from_rpy(0, 0, spawn.yaw)}, options)
-        .verdict;
+    return judge.check({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}).verdict;
 }
 
 double smallest_distance(const std::vector<Spawn>& spawns)
@@ -35,18 +31,14 @@ double smallest_distance(const std::vector<Spawn>& spawns)
 
 SampleOptions sample_options(std::size_t count, double min_distance)
 {
-    SampleOptions options;
-    options.count = count;
-    options.min_distance = min_distance;
-    options.random_yaw = true;
-    options.offset = 0.1;
-    options.seed = 11;
-    return options;
+    return {.count = count, .min_distance = min_distance, .random_yaw = true, .seed = 11, .offset = 0.1};
 }
 
 /// Returns the result of search by its definition: one draw after the other, with all distances.
-std::vector<Vec3> slow_search(const Map& map, const CollisionChecker& checker, const SearchOptions& options)
+std::vector<Vec3> slow_search(const Judge& judge, const SearchOptions& options)
 {
+    const Judge exhaustive = without_mask(judge);
+    const Map& map = judge.map();
     std::vector<Vec3> checked, found;
     std::uint64_t failures = 0;
     for (std::uint64_t index = 0; found.size() < options.count && failures < options.max_failures; ++index) {
@@ -58,7 +50,7 @@ std::vector<Vec3> slow_search(const Map& map, const CollisionChecker& checker, c
         for (const Vec3& other : checked) clear = clear && (other - p).norm() >= options.min_distance;
         if (!clear) continue;
         checked.push_back(p);
-        if (judged(map, checker, {p, 0}, options.max_height) != Verdict::Valid) continue;
+        if (judged(exhaustive, {p, 0}) != Verdict::Valid) continue;
         found.push_back(p);
         failures = 0;
     }
@@ -66,28 +58,24 @@ std::vector<Vec3> slow_search(const Map& map, const CollisionChecker& checker, c
 }
 
 /// Returns a valid pose in one of the chosen layers at (x, y); NaN if there is none.
-Spawn valid_at(const Map& map, const CollisionChecker& checker, const SampleOptions& options, double x, double y,
-               Random& random)
+Spawn valid_at(const Judge& judge, const SampleOptions& options, double x, double y, Random& random)
 {
-    const Column column = column_at(map.geometry, x, y);
+    const Column column = column_at(judge.map().geometry, x, y);
     const int count = int(column.layers.size());
     for (int layer = 0; layer < count; ++layer) {
         if (!options.layers.includes(layer, count)) continue;
         const Spawn spawn{{x, y, column.layers[std::size_t(layer)] + *options.offset},
                           options.random_yaw ? random.between(-M_PI, M_PI) : options.yaw};
-        QueryOptions query = options;
-        query.max_height = 1e9;
-        if (judge(map, checker, column, {spawn.position, rotation_from_rpy(0, 0, spawn.yaw)}, query).verdict ==
-            Verdict::Valid)
-            return spawn;
+        if (judged(judge, spawn) == Verdict::Valid) return spawn;
     }
     return {Vec3::Constant(std::nan("")), 0};
 }
 
 /// Returns how many points of a grid could still be added.
-std::size_t room_left(const Map& map, const CollisionChecker& checker, const SampleOptions& options,
-                      const SpawnList& list, int cells)
+std::size_t room_left(const Judge& judge, const SampleOptions& options, const SpawnList& list, int cells)
 {
+    const Judge exhaustive = at_any_height(judge);
+    const Map& map = judge.map();
     Random random{1};
     std::size_t count = 0;
     for (int i = 0; i <= cells; ++i)
@@ -100,18 +88,17 @@ std::size_t room_left(const Map& map, const CollisionChecker& checker, const Sam
                 const bool clear = std::all_of(list.spawns.begin(), list.spawns.end(), [&](const Spawn& s) {
                     return (s.position - at).norm() >= options.min_distance;
                 });
-                if (clear && judged(map, checker, {at, random.between(-M_PI, M_PI)}, 1e9) == Verdict::Valid) ++count;
+                if (clear && judged(exhaustive, {at, random.between(-M_PI, M_PI)}) == Verdict::Valid) ++count;
             }
         }
     return count;
 }
 
 /// Returns a raster with a pose on each layer and columns `step` m apart.
-RasterResult raster_of_tops(const Map& map, const CollisionChecker& checker, double step)
+RasterResult raster_of_tops(const Judge& judge, double step)
 {
-    RasterOptions options;
-    options.step = step;
-    return raster(map, checker, options);
+    RasterOptions options{.step = step};
+    return raster(judge, options);
 }
 
 /// Returns a floor of 10 x 10 m (a sheet, a box or a closed mesh) with a ramp that has things on it and inside it.
@@ -139,12 +126,13 @@ TEST_CASE("every sample is valid by check and keeps its distance")
     std::size_t found = 0;
     for (std::uint64_t seed = 0; seed <= 8; ++seed) {
         const Map map = seed == 0 ? training_map() : map_of(random_scene(seed));
-        const CollisionChecker checker = checker_of(map, seed == 0 ? husky() : random_robot(seed));
-        const SpawnList list = sample(map, checker, sample_options(60, 0.8));
+        const Judge judge(map, seed == 0 ? husky() : random_robot(seed));
+        const SpawnList list = sample(judge, sample_options(60, 0.8));
         CAPTURE(seed);
         found += list.spawns.size();
         CHECK(smallest_distance(list.spawns) >= 0.8);
-        for (const Spawn& spawn : list.spawns) CHECK(judged(map, checker, spawn, 1e9) == Verdict::Valid);
+        const Judge exhaustive = at_any_height(judge);
+        for (const Spawn& spawn : list.spawns) CHECK(judged(exhaustive, spawn) == Verdict::Valid);
     }
     CHECK(found > 300);
 }
@@ -152,30 +140,24 @@ TEST_CASE("every sample is valid by check and keeps its distance")
 TEST_CASE("search follows its definition, draw by draw")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky());
     for (const double distance : {0.0, 1.5}) {
-        SearchOptions options;
-        options.count = 40;
-        options.min_distance = distance;
-        options.seed = 3;
-        options.max_failures = 500;
-        const SpawnList list = search(map, checker, options);
-        const std::vector<Vec3> slow = slow_search(map, checker, options);
+        SearchOptions options{.count = 40, .min_distance = distance, .seed = 3, .max_failures = 500};
+        const SpawnList list = search(judge, options);
+        const std::vector<Vec3> slow = slow_search(judge, options);
         REQUIRE(list.spawns.size() == slow.size());
         for (std::size_t i = 0; i < slow.size(); ++i) CHECK(list.spawns[i].position == slow[i]);
         if (distance > 0) CHECK(smallest_distance(list.spawns) >= distance);
-        CHECK(list.counts[std::size_t(Verdict::Valid)] == slow.size());
+        CHECK(list.counts[Verdict::Valid] == slow.size());
     }
 }
 
 TEST_CASE("search stops after the given number of failures in a row")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, load_robot("box:30,30,30"));
-    SearchOptions options;
-    options.count = 3;
-    options.max_failures = 777;
-    const SpawnList list = search(map, checker, options);
+    const Judge judge(map, load_robot("box:30,30,30"));
+    SearchOptions options{.count = 3, .max_failures = 777};
+    const SpawnList list = search(judge, options);
     CHECK(list.spawns.empty());
     CHECK(list.draws == 777);
 }
@@ -183,19 +165,16 @@ TEST_CASE("search stops after the given number of failures in a row")
 TEST_CASE("the same seed gives the same bytes with any number of threads, another seed gives others")
 {
     const TestMap map = map_of(random_scene(6));
-    const CollisionChecker checker = checker_of(map, random_robot(6));
+    const Judge judge(map, random_robot(6));
     const auto sampled = [&](int threads, std::uint64_t seed) {
         SampleOptions options = sample_options(200, 0.2);
         options.threads = threads;
         options.seed = seed;
-        return spawns_csv(sample(map, checker, options));
+        return spawns_csv(sample(judge, options));
     };
     const auto searched = [&](int threads) {
-        SearchOptions options;
-        options.count = 50;
-        options.min_distance = 0.5;
-        options.threads = threads;
-        return spawns_csv(search(map, checker, options));
+        SearchOptions options{.count = 50, .min_distance = 0.5, .threads = threads};
+        return spawns_csv(search(judge, options));
     };
     const std::string sample_1 = sampled(1, 5), search_1 = searched(1);
     for (const int threads : {2, 8}) {
@@ -215,9 +194,9 @@ TEST_CASE("20,000 samples are uniform by area over the feasible region")
     hand::add_mesh(scene, Label::Terrain,
                    hand::moved(hand::rectangle(6, 6), {{8, 0, 4}, rotation_from_rpy(0, 1.0471975511965976, 0)}));
     const TestMap map = map_of(scene);
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.001,0.001,0.001@0,0,0"));
+    const Judge judge(map, load_robot("box:0.001,0.001,0.001@0,0,0"));
     SampleOptions options = sample_options(20000, 0);
-    const SpawnList list = sample(map, checker, options);
+    const SpawnList list = sample(judge, options);
     REQUIRE(list.spawns.size() == 20000);
     std::vector<double> observed(63, 0);  // cells of 1 x 1 m; those of the slope are 0.5 m wide and 2 m deep
     for (const Spawn& spawn : list.spawns) {
@@ -242,25 +221,25 @@ TEST_CASE("20,000 samples are uniform by area over the feasible region")
 TEST_CASE("random yaw is uniform and a fixed yaw is kept")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.1,0.1,0.1"));
+    const Judge judge(map, load_robot("box:0.1,0.1,0.1"));
     SampleOptions options = sample_options(4000, 0);
     std::vector<int> bins(8, 0);
-    for (const Spawn& spawn : sample(map, checker, options).spawns)
+    for (const Spawn& spawn : sample(judge, options).spawns)
         ++bins[std::size_t((spawn.yaw + std::numbers::pi) / (std::numbers::pi / 4))];
     for (const int n : bins) CHECK(std::abs(n - 500) < 100);
     options.random_yaw = false;
     options.yaw = 0.7;
-    for (const Spawn& spawn : sample(map, checker, options).spawns) CHECK(spawn.yaw == 0.7);
+    for (const Spawn& spawn : sample(judge, options).spawns) CHECK(spawn.yaw == 0.7);
 }
 
 TEST_CASE("a region restricts a sample, and layers select a storey")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky());
     SampleOptions options = sample_options(100, 0);
     options.bounds = {Vec3(-3, 5, 0), Vec3(0, 9, 0)};
     options.layers = {LayerChoice::Kind::Top, 0};
-    for (const Spawn& spawn : sample(map, checker, options).spawns) {
+    for (const Spawn& spawn : sample(judge, options).spawns) {
         CHECK(spawn.position.z() == Approx(0.93 + 0.1));  // on the platform
         CHECK((spawn.position.x() >= -3 && spawn.position.x() <= 0 && spawn.position.y() >= 5 &&
                spawn.position.y() <= 9));
@@ -270,8 +249,8 @@ TEST_CASE("a region restricts a sample, and layers select a storey")
 TEST_CASE("if not all spawns fit, sample returns those it found")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
-    const SpawnList list = sample(map, checker, sample_options(100, 6));
+    const Judge judge(map, husky());
+    const SpawnList list = sample(judge, sample_options(100, 6));
     CHECK(list.spawns.size() >= 4);
     CHECK(list.spawns.size() < 20);
     CHECK(smallest_distance(list.spawns) >= 6);
@@ -282,49 +261,48 @@ TEST_CASE("a full region is proven full, and dense probing shows that nothing ca
     const int kind = GENERATE(0, 1, 2, 3);
     CAPTURE(kind);
     const TestMap map = map_of(floor_scene(kind));
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.2,0.2"));
+    const Judge judge(map, load_robot("box:0.3,0.2,0.2"));
     const SampleOptions options = sample_options(10000, 1);
-    const SpawnList list = sample(map, checker, options);
+    const SpawnList list = sample(judge, options);
     CHECK(list.is_full);
     CHECK(list.undecided_area == 0);
     CHECK(list.spawns.size() > 60);
     CHECK(list.spawns.size() < 130);
     CHECK(smallest_distance(list.spawns) >= 1);
-    CHECK(room_left(map, checker, options, list, 250) == 0);
+    CHECK(room_left(judge, options, list, 250) == 0);
 }
 
 TEST_CASE("as many spawns as fit are found on request; one more is too many")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky());
     SampleOptions options = sample_options(100000, 1.2);
     options.random_yaw = false;
-    const SpawnList all = sample(map, checker, options);
+    const SpawnList all = sample(judge, options);
     CHECK(all.undecided_area < 0.01);
     CHECK(all.spawns.size() > 50);
     options.count = all.spawns.size();
-    const SpawnList exact = sample(map, checker, options);
+    const SpawnList exact = sample(judge, options);
     CHECK(spawns_csv(exact) == spawns_csv(all));
     CHECK_FALSE(exact.is_full);
     ++options.count;
-    CHECK(spawns_csv(sample(map, checker, options)) == spawns_csv(all));
+    CHECK(spawns_csv(sample(judge, options)) == spawns_csv(all));
 }
 
 TEST_CASE("filling a region gives the same bytes with any number of threads, and exhaustively")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
+    const Judge judge(map, husky());
     SampleOptions options = sample_options(100000, 1.1);
     options.threads = 1;
-    const SpawnList one = sample(map, checker, options);
+    const SpawnList one = sample(judge, options);
     for (const int threads : {2, 8}) {
         options.threads = threads;
-        const SpawnList many = sample(map, checker, options);
+        const SpawnList many = sample(judge, options);
         CHECK(spawns_csv(many) == spawns_csv(one));
         CHECK((many.draws == one.draws && many.undecided_area == one.undecided_area && many.counts == one.counts));
     }
-    options.exhaustive = true;
-    const SpawnList slow = sample(map, checker, options);
+    const SpawnList slow = sample(without_mask(judge), options);
     CHECK(spawns_csv(slow) == spawns_csv(one));
     CHECK((slow.draws == one.draws && slow.undecided_area == one.undecided_area && slow.counts == one.counts));
 }
@@ -349,16 +327,16 @@ TEST_CASE("a small island in a large map is found")
         add(Label::Obstacle, {2, 250 - place.y() - 1, 3}, {place.x(), (place.y() + 1 + 250) / 2, 1.5});
     }
     const TestMap map = map_of(scene, 1.0, {Vec3(-250, -250, -1), Vec3(250, 250, 4)});
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.3,0.3,0.3"));
+    const Judge judge(map, load_robot("box:0.3,0.3,0.3"));
     for (const double distance : {0.0, 0.3}) {
         const SampleOptions options = sample_options(12, distance);
-        const SpawnList list = sample(map, checker, options);
+        const SpawnList list = sample(judge, options);
         CHECK(list.spawns.size() == 12);
         CAPTURE(distance, list.draws);
         CHECK(list.draws < 400000);
         for (const Spawn& spawn : list.spawns) CHECK((spawn.position - place).cwiseAbs().maxCoeff() <= 1.0);
     }
-    const SpawnList full = sample(map, checker, sample_options(1000, 0.5));
+    const SpawnList full = sample(judge, sample_options(1000, 0.5));
     CAPTURE(full.spawns.size(), full.draws, full.undecided_area);
     CHECK(full.is_full);
     CHECK(full.spawns.size() >= 5);
@@ -370,7 +348,7 @@ TEST_CASE("if no pose is valid, sample proves it")
     hand::add_shape(scene, Label::Terrain, {ShapeKind::Box, {20, 20, 1}, {{0, 0, -0.5}, Mat3::Identity()}});
     hand::add_shape(scene, Label::Obstacle, {ShapeKind::Box, {21, 21, 1}, {{0, 0, 0.5}, Mat3::Identity()}});
     const TestMap map = map_of(scene);
-    const SpawnList list = sample(map, checker_of(map, husky()), sample_options(5, 0));
+    const SpawnList list = sample(Judge(map, husky()), sample_options(5, 0));
     CHECK(list.spawns.empty());
     CHECK(list.is_full);
     CHECK(list.draws < 10000);
@@ -382,14 +360,14 @@ TEST_CASE("two floors above each other are filled equally")
     hand::add_mesh(scene, Label::Terrain, hand::rectangle(12, 12));
     hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(12, 12), {{0, 0, 2.5}, Mat3::Identity()}));
     const TestMap map = map_of(scene);
-    const CollisionChecker checker = checker_of(map, load_robot("box:0.2,0.2,0.2"));
+    const Judge judge(map, load_robot("box:0.2,0.2,0.2"));
     const SampleOptions options = sample_options(10000, 0.6);
-    const SpawnList list = sample(map, checker, options);
+    const SpawnList list = sample(judge, options);
     CHECK(list.is_full);
     const auto upper = double(
         std::count_if(list.spawns.begin(), list.spawns.end(), [](const Spawn& s) { return s.position.z() > 2; }));
     CHECK(upper == Approx(double(list.spawns.size()) / 2).epsilon(0.06));
-    CHECK(room_left(map, checker, options, list, 200) == 0);
+    CHECK(room_left(judge, options, list, 200) == 0);
 }
 
 TEST_CASE("cells that are proven closed contain no valid pose, in hard scenes")
@@ -398,23 +376,23 @@ TEST_CASE("cells that are proven closed contain no valid pose, in hard scenes")
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         const HardCase hard = hard_case(seed);
         const TestMap map = map_at(hard.scene, hard.resolution, hard.map_bounds);
-        const CollisionChecker checker = checker_of(map, hard.robot);
         Random random{seed};
         SampleOptions options = sample_options(1, random.between(0.1, 1));
         options.random_yaw = random.chance(0.5);
         options.yaw = hard.yaws[0];
         options.offset = hard.offset;
-        options.max_height = std::max(1.0, hard.offset);
-        if (random.chance(0.2)) options.max_water_depth = random.between(0, 0.5);
+        JudgeOptions limits{.max_height = std::max(1.0, hard.offset)};
+        if (random.chance(0.2)) limits.max_water_depth = random.between(0, 0.5);
+        const Judge judge(map, hard.robot, limits), exhaustive = at_any_height(judge);
         if (random.chance(0.2)) options.layers.kind = LayerChoice::Kind::Top;
         SpacedPoints taken(options.min_distance);
         AvoidedPoints& group = options.avoid.emplace_back();
         group.distance = random.between(0.1, 2);
-        for (const RasterPose& pose : raster_of_tops(map, checker, 1.5).poses)
+        for (const RasterPose& pose : raster_of_tops(judge, 1.5).poses)
             if (random.chance(0.1)) group.points.emplace_back(pose.x, pose.y, pose.z);
         const AvoidIndex avoided(options.avoid, map.bounds);
         const AreaIndex everywhere{Area{}};
-        CellProofs proofs(map, checker, options, everywhere, taken, avoided);
+        CellProofs proofs(judge.impl(), options, everywhere, taken, avoided);
         for (int n = 0; n < 60; ++n) {
             const double side = 2 * std::pow(0.5, random.below(8));
             const Bounds crop = compare::crop_near(map, random, side, 2);
@@ -424,7 +402,7 @@ TEST_CASE("cells that are proven closed contain no valid pose, in hard scenes")
             ++(is_closed ? closed : open);
             for (int k = 0; k < 12; ++k) {
                 const double x = random.between(cell.low_x, cell.high_x), y = random.between(cell.low_y, cell.high_y);
-                const Spawn spawn = valid_at(map, checker, options, x, y, random);
+                const Spawn spawn = valid_at(exhaustive, options, x, y, random);
                 if (!spawn.position.allFinite() || !taken.is_clear(spawn.position)) continue;
                 if (!std::all_of(group.points.begin(), group.points.end(),
                                  [&](const Vec3& p) { return (p - spawn.position).norm() >= group.distance; }))
@@ -444,12 +422,11 @@ TEST_CASE("cells that are proven closed contain no valid pose, in hard scenes")
 TEST_CASE("counts and distances beyond their limits are refused")
 {
     const TestMap map = training_map();
-    const CollisionChecker checker = checker_of(map, husky());
-    CHECK_THROWS_WITH(sample(map, checker, sample_options(0, 1)), "sample: count is 0, needs >= 1");
-    CHECK_THROWS_WITH(sample(map, checker, sample_options(99999999999, 1)),
+    const Judge judge(map, husky());
+    CHECK_THROWS_WITH(sample(judge, sample_options(0, 1)), "sample: count is 0, needs >= 1");
+    CHECK_THROWS_WITH(sample(judge, sample_options(99999999999, 1)),
                       "sample: count is 99999999999, needs at most 100000000");
-    CHECK_THROWS_WITH(sample(map, checker, sample_options(1, -1)), "sample: min_distance is -1, needs >= 0 m");
-    SearchOptions options;
-    options.max_failures = 0;
-    CHECK_THROWS_WITH(search(map, checker, options), "search: max_failures is 0, needs >= 1");
+    CHECK_THROWS_WITH(sample(judge, sample_options(1, -1)), "sample: min_distance is -1, needs >= 0 m");
+    SearchOptions options{.max_failures = 0};
+    CHECK_THROWS_WITH(search(judge, options), "search: max_failures is 0, needs >= 1");
 }

@@ -32,6 +32,23 @@ inline TestMap training_map() { return map_of(spawnfield::load_scene(source_fold
 
 inline spawnfield::Robot husky() { return spawnfield::load_robot(source_folder() + "/maps/robots/husky.yaml"); }
 
+/// The same judge without the mask: every collision is decided by an exact check.
+inline spawnfield::Judge without_mask(const spawnfield::Judge& judge)
+{
+    spawnfield::JudgeOptions options = judge.options();
+    options.exhaustive = true;
+    return {judge.map(), judge.robot(), options};
+}
+
+/// The same judge without the mask and without a limit of height above the ground.
+inline spawnfield::Judge at_any_height(const spawnfield::Judge& judge)
+{
+    spawnfield::JudgeOptions options = judge.options();
+    options.exhaustive = true;
+    options.max_height = std::numeric_limits<double>::infinity();
+    return {judge.map(), judge.robot(), options};
+}
+
 inline spawnfield::CollisionChecker checker_of(const spawnfield::Map& map, const spawnfield::Robot& robot)
 {
     return {map.geometry, robot};

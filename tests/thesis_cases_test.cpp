@@ -27,13 +27,11 @@ Scene open_ground()
 }
 
 /// Returns the raster with the mask, after a check that --exhaustive gives the same.
-RasterResult raster_of(const Scene& scene, RasterOptions options)
+RasterResult raster_of(const Scene& scene, const RasterOptions& options, const JudgeOptions& limits = {})
 {
-    const TestMap map = map_of(scene);
-    const CollisionChecker checker = checker_of(map, husky());
-    const RasterResult result = raster(map, checker, options);
-    options.exhaustive = true;
-    CHECK(raster(map, checker, options).counts == result.counts);
+    const Judge judge(map_of(scene), husky(), limits);
+    const RasterResult result = raster(judge, options);
+    CHECK(raster(without_mask(judge), options).counts == result.counts);
     return result;
 }
 
@@ -48,11 +46,8 @@ std::optional<Verdict> verdict_at(const RasterResult& result, const Vec3& positi
 std::optional<Verdict> verdict_in_2d(const Scene& scene, double x, double y, double z,
                                      double max_slope = std::numeric_limits<double>::infinity())
 {
-    RasterOptions options;
-    options.bounds = {{x, y, -100}, {x, y, 100}};
-    options.offset = 0.1;
-    options.max_slope = max_slope;
-    return verdict_at(raster_of(scene, options), {x, y, z});
+    const RasterOptions options{.bounds = {{x, y, -100}, {x, y, 100}}, .offset = 0.1};
+    return verdict_at(raster_of(scene, options, {.max_slope = max_slope}), {x, y, z});
 }
 
 }  // namespace
@@ -61,19 +56,15 @@ TEST_CASE("above a fence no step of a 3D raster is valid")
 {
     Scene scene = open_ground();
     add_box(scene, {-5, -0.02, 0}, {5, 0.02, 1}, Label::Obstacle);
-    RasterOptions options;
-    options.dims = 3;
-    options.step = 0.25;
-    options.max_height = 1.0;
-    options.bounds = {{-2, 0, 0}, {2, 0, 3}};
+    RasterOptions options{.dims = 3, .step = 0.25, .bounds = {{-2, 0, 0}, {2, 0, 3}}};
     const RasterResult on_line = raster_of(scene, options);  // directly above the fence, whose top is the ground
-    CHECK(on_line.counts[std::size_t(Verdict::Valid)] == 0);
+    CHECK(on_line.counts[Verdict::Valid] == 0);
     CHECK(verdict_at(on_line, {0, 0, 0.5}) == Verdict::Collision);
     CHECK(verdict_at(on_line, {0, 0, 1.25}) == Verdict::OffTerrain);
     options.bounds = {{-2, 0.25, 0}, {2, 0.25, 0.75}};  // beside the fence, which the robot overlaps
-    CHECK(raster_of(scene, options).counts[std::size_t(Verdict::Valid)] == 0);
+    CHECK(raster_of(scene, options).counts[Verdict::Valid] == 0);
     options.bounds = {{-2, 0.5, 0}, {2, 0.5, 0.75}};
-    CHECK(raster_of(scene, options).counts[std::size_t(Verdict::Valid)] == 17 * 3);  // far enough from the fence
+    CHECK(raster_of(scene, options).counts[Verdict::Valid] == 17 * 3);  // far enough from the fence
 }
 
 TEST_CASE("the path of a bridge is found under its frame, although the bridge is a single object")
@@ -109,14 +100,9 @@ TEST_CASE("on the generated bridge frames and pillars are refused because of the
                                      [](const auto& landmark) { return landmark.name == "bridge"; });
     REQUIRE(bridge != world.landmarks.end());
     const TestMap map = map_of(world.scene, 0.25, bridge->where);
-    const CollisionChecker checker = checker_of(map, husky());
-    RasterOptions options;
-    options.step = 0.25;
-    options.bounds = bridge->where;
-    options.offset = 0.05;
+    const RasterOptions options{.step = 0.25, .bounds = bridge->where, .offset = 0.05};
     const auto valid_ones = [&](double max_slope) {  // counts valid poses under the beams of the frames and on them
-        options.max_slope = max_slope;
-        const RasterResult result = raster(map, checker, options);
+        const RasterResult result = raster(Judge(map, husky(), {.max_slope = max_slope}), options);
         std::size_t paths = 0, tops = 0;
         for (std::size_t i = 0; i + 1 < result.poses.size(); ++i) {
             const RasterPose &upper = result.poses[i], &lower = result.poses[i + 1];
@@ -140,14 +126,10 @@ TEST_CASE("terrain between two steps of a 3D raster is found if steps snap onto 
     Scene scene;
     add_box(scene, {-10, -10, 0}, {10, 10, 1.3},
             Label::Terrain);  // 1.2 m below the next step, 1.3 m above the previous one
-    RasterOptions options;
-    options.dims = 3;
-    options.step = 2.5;
-    options.max_height = 1.0;
-    options.bounds = {{-5, -5, 0}, {5, 5, 10}};
-    CHECK(raster_of(scene, options).counts[std::size_t(Verdict::Valid)] == 0);
+    RasterOptions options{.dims = 3, .step = 2.5, .bounds = {{-5, -5, 0}, {5, 5, 10}}};
+    CHECK(raster_of(scene, options).counts[Verdict::Valid] == 0);
     options.snap = true;
-    CHECK(raster_of(scene, options).counts[std::size_t(Verdict::Valid)] == 25);
+    CHECK(raster_of(scene, options).counts[Verdict::Valid] == 25);
 }
 
 TEST_CASE("a wheel that cuts into a steep slope collides")

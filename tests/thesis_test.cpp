@@ -75,14 +75,14 @@ TEST_CASE("locations of rasters are read back as the same poses, class by class,
     std::uint64_t steep = 0, unstable = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const TestMap map = seed == 1 ? training_map() : map_of(random_scene(seed));
-        const CollisionChecker checker = checker_of(map, husky());
+        JudgeOptions limits;
+        if (seed % 2 == 1) limits.max_slope = 0.1;
+        const Judge judge(map, husky(), limits);
         for (const int dims : {2, 3}) {
-            RasterOptions options;
-            options.dims = dims;
+            RasterOptions options{.dims = dims};
             options.step = 0.7 + 0.01 * double(seed);  // numbers with many digits
             options.snap = dims == 3 && seed % 2 == 0;
-            if (seed % 2 == 1) options.max_slope = 0.1;
-            const RasterResult result = raster(map, checker, options);
+            const RasterResult result = raster(judge, options);
             const TempFolder folder;
             const ThesisCounts with_air = write_thesis_locations(folder.path(), result, true);
             CHECK(locations(folder / "Valid_Locations.txt") == poses_of(result, true, {Verdict::Valid}));
@@ -93,9 +93,9 @@ TEST_CASE("locations of rasters are read back as the same poses, class by class,
             CHECK(locations(folder / "Air_Locations.txt") ==
                   poses_of(result, true, {Verdict::Aerial, Verdict::OffTerrain}));
             CHECK(with_air[std::size_t(ThesisClass::Aerial)] ==
-                  result.counts[std::size_t(Verdict::Aerial)] + result.counts[std::size_t(Verdict::OffTerrain)]);
-            steep += result.counts[std::size_t(Verdict::Steep)];
-            unstable += result.counts[std::size_t(Verdict::Unstable)];
+                  result.counts[Verdict::Aerial] + result.counts[Verdict::OffTerrain]);
+            steep += result.counts[Verdict::Steep];
+            unstable += result.counts[Verdict::Unstable];
             const TempFolder other;
             const ThesisCounts without = write_thesis_locations(other.path(), result, false);
             CHECK(without == ThesisCounts{with_air[0], with_air[1], 0});

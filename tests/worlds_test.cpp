@@ -50,19 +50,14 @@ int count_in(const worlds::World& world, const Bounds& region, const std::string
 /// Returns counts for a box of the size of the Husky, with the offset (2D) and the maximum height (3D) of the thesis.
 VerdictCounts thesis_counts(const Map& map, int dims, double step, const Bounds& bounds)
 {
-    const CollisionChecker checker(map.geometry, load_robot("box:0.99,0.67,0.39"));
-    RasterOptions options;
-    options.dims = dims;
-    options.step = step;
-    options.step_z = 0.5;
-    options.offset = 1.0;
-    options.bounds = bounds;
-    return raster(map, checker, options).counts;
+    const Judge judge(map, load_robot("box:0.99,0.67,0.39"));
+    RasterOptions options{.dims = dims, .step = step, .step_z = 0.5, .bounds = bounds, .offset = 1.0};
+    return raster(judge, options).counts;
 }
 
 double share(const VerdictCounts& counts, Verdict verdict)
 {
-    const auto of = [&](Verdict v) { return double(counts[std::size_t(v)]); };
+    const auto of = [&](Verdict v) { return double(counts[v]); };
     return of(verdict) / (of(Verdict::Valid) + of(Verdict::Collision) + of(Verdict::Submerged));
 }
 
@@ -123,14 +118,11 @@ const ComplexDistrict& complex_district(worlds::Bridge bridge)
 /// Returns a 2D raster of the Husky's box, 1 m above each layer.
 RasterResult husky_raster(const TestMap& map, const Bounds& bounds, double step)
 {
-    RasterOptions options;
-    options.bounds = bounds;
-    options.step = step;
-    options.offset = 1;
-    return raster(map, checker_of(map, load_robot("box:0.99,0.67,0.39")), options);
+    RasterOptions options{.step = step, .bounds = bounds, .offset = 1};
+    return raster(Judge(map, load_robot("box:0.99,0.67,0.39")), options);
 }
 
-double count_of(const RasterResult& result, Verdict verdict) { return double(result.counts[std::size_t(verdict)]); }
+double count_of(const RasterResult& result, Verdict verdict) { return double(result.counts[verdict]); }
 
 /// Returns the bounds of the triangles of each part whose name begins like this.
 std::vector<Bounds> bounds_of(const Scene& scene, const std::string& beginning)
@@ -220,7 +212,7 @@ TEST_CASE("a Husky fits on the deck of the bridge under its frames, which are la
     REQUIRE(frames.size() == 5);
     for (const worlds::Bridge bridge : both_bridges) {
         const TestMap& map = complex_district(bridge).map;
-        const CollisionChecker checker = checker_of(map, husky());
+        const Judge judge(map, husky());
         for (const Bounds& frame : frames) {
             const Vec3 middle = (frame.min + frame.max) / 2;
             const double deck = frame.min.z() + 0.1;  // the feet of the frame reach into the deck
@@ -228,7 +220,7 @@ TEST_CASE("a Husky fits on the deck of the bridge under its frames, which are la
             REQUIRE(layers.size() == (bridge == worlds::Bridge::OneObject ? 3 : 2));
             CHECK(layers[layers.size() - 2] == Approx(deck).margin(1e-4));
             const Pose pose = {{middle.x(), middle.y(), deck + 0.1}, rotation_from_rpy(0, 0, 0.3)};
-            CHECK(check_poses(map, checker, {pose}).front().verdict == Verdict::Valid);
+            CHECK(judge.is_valid(pose));
         }
     }
 }
@@ -296,7 +288,7 @@ TEST_CASE("the valid share of the low-complexity world is that of the thesis, fo
     const VerdictCounts flat = thesis_counts(map, 2, 2.5, {});
     CHECK(share(flat, Verdict::Valid) == Approx(0.896).margin(0.01));
     CHECK(share(flat, Verdict::Submerged) == Approx(0.033).margin(0.01));
-    CHECK(flat[std::size_t(Verdict::OffTerrain)] < 100);
+    CHECK(flat[Verdict::OffTerrain] < 100);
     const VerdictCounts tall = thesis_counts(map, 3, 2.5, {Vec3(0, 0, 31), Vec3(500, 500, 124)});
     CHECK(share(tall, Verdict::Valid) == Approx(0.870).margin(0.015));
 }
@@ -304,10 +296,7 @@ TEST_CASE("the valid share of the low-complexity world is that of the thesis, fo
 TEST_CASE("a raster that reaches 500 m has no ground in its last row and column in the low-complexity world")
 {
     const TestMap map = map_of(worlds::low_complexity().scene, 2.0);
-    const auto poses = [&](double step) {
-        const VerdictCounts counts = thesis_counts(map, 2, step, {});
-        return std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
-    };
+    const auto poses = [&](double step) { return thesis_counts(map, 2, step, {}).total(); };
     CHECK(poses(4) == 125 * 125);    // of 126 x 126 columns
     CHECK(poses(4.5) == 112 * 112);  // the last column is at 499.5 m
 }

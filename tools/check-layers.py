@@ -16,6 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 OWNERS = {  # public headers that have no .cpp file of the same name
     "error": "base",
+    "export": "base",
     "map": "map",
     "map_export": "export",
     "query": "query",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/map.h>
 
 namespace spawnfield {
@@ -14,6 +15,13 @@ struct BakeOptions {
     int threads = 0;
     Progress progress = {};
 };
+
+/// Returns the map of a scene in memory, for scenes without files: geometry, mask, layers and floors are those that
+/// bake() writes, so queries give the same answers. Its hash, scene_file and folder are empty.
+///
+/// Throws ArgumentError for bad options, a scene without terrain (unless allowed), and bounds that do not meet the
+/// scene.
+SPAWNFIELD_API Map make_map(const Scene& scene, const BakeOptions& options = {});
 
 /// What a bake did, for its summary.
 struct BakeReport {
@@ -32,7 +40,7 @@ struct BakeReport {
 /// renamed: an old map stays whole until the new one is complete. Other files that lie in an old map's folder move to
 /// the new one. Throws FileError if the scene has no terrain (unless allowed) or does not meet the bounds,
 /// ArgumentError for bad options, OutputError.
-BakeReport bake(Scene scene, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
-                const BakeOptions& options = {});
+SPAWNFIELD_API BakeReport bake(Scene scene, const std::filesystem::path& scene_file,
+                               const std::filesystem::path& folder, const BakeOptions& options = {});
 
 }  // namespace spawnfield

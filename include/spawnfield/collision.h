@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/geometry.h>
 #include <spawnfield/robot.h>
 
@@ -16,16 +17,17 @@ struct CollisionHit {
     std::uint32_t part = occupancy;
 };
 
-/// A scene and a robot, ready for queries. Const calls may run at the same time.
+/// Decides whether a robot collides with a scene. Judge contains one; by itself it is for collisions alone.
 ///
-/// FCL decides (Pan, Chitta, Manocha, FCL: A General Purpose Library for Collision and Proximity Queries, 2012),
-/// through its libccd solver. The robot is grown by touch_margin, so that a touching pair reads as collision whatever
-/// that solver's rounding says.
-class CollisionChecker {
+/// Any number of threads may call its const methods at the same time. They read the scene's tiles when they first need
+/// them, so they throw FileError if a tile of a damaged map turns up. FCL decides (Pan, Chitta, Manocha, FCL: A General
+/// Purpose Library for Collision and Proximity Queries, 2012), through its libccd solver. The robot is grown by
+/// touch_margin, so that a touching pair reads as collision whatever that solver's rounding says.
+class SPAWNFIELD_API CollisionChecker {
 public:
-    /// Against the scene's own geometry.
+    /// Checks against the scene's own geometry.
     CollisionChecker(const Geometry& geometry, const Robot& robot);
-    /// Against the occupied voxels of a baked tree instead.
+    /// Checks against the occupied voxels of a baked tree instead.
     CollisionChecker(std::shared_ptr<const OccupancyTree> tree, const Robot& robot);
     CollisionChecker(CollisionChecker&&) noexcept;
     ~CollisionChecker();
@@ -33,14 +35,15 @@ public:
     const Robot& robot() const;
     bool uses_occupancy() const;  ///< rather than the scene's own geometry
 
-    /// Neither touching nor overlapping any solid, nor inside one. Obstacles and terrain count, water does not.
+    /// Returns whether the robot neither touches nor overlaps any solid, nor is inside one. Obstacles and terrain
+    /// count, water does not.
     bool is_free(const Pose& scene_from_robot) const;
 
-    /// The first part, in the scene's order, that the robot collides with; nothing if it is free.
+    /// Returns the first part, in the scene's order, that the robot collides with; nothing if it is free.
     std::optional<CollisionHit> find_hit(const Pose& scene_from_robot) const;
 
 private:
-    struct Impl;  // FCL is seen in src/collision/collision.cpp only
+    struct Impl;
     std::unique_ptr<const Impl> impl_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/geometry.h>
 
 namespace spawnfield {
@@ -12,7 +13,7 @@ struct Span {
     bool sealed = true;    ///< false: of a mesh with holes that is solid by wish, so its inside is a guess
 };
 
-/// What stands on the vertical line through (x, y). DESIGN.md, Definitions.
+/// What stands on the vertical line through (x, y).
 struct Column {
     std::vector<Span> spans;     ///< every single piece's, terrain and obstacle, highest top first; not joined
     std::vector<double> layers;  ///< upper ends of joined terrain, from the top down
@@ -27,7 +28,7 @@ inline constexpr double layer_tolerance = 1e-6;
 /// A filled mesh counts as inside between odd and even crossings (crossing number with one decision per edge, so a line
 /// through an edge or corner is counted once); lines along its surface count too. Sheets: triangles seen edge-on give
 /// nothing. Source: Haines, Point in Polygon Strategies, Graphics Gems IV, 1994 (crossings test).
-Column column_at(const Geometry& geometry, double x, double y);
+SPAWNFIELD_API Column column_at(const Geometry& geometry, double x, double y);
 
 struct Ground {
     double height = 0;
@@ -36,6 +37,6 @@ struct Ground {
 };
 
 /// The highest upper end of a single span at or below z; within touch_tolerance terrain wins.
-std::optional<Ground> ground_below(const Column& column, double z);
+SPAWNFIELD_API std::optional<Ground> ground_below(const Column& column, double z);
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/terrain.h>
 
 #include <vector>
@@ -26,6 +27,6 @@ struct Floor {
 /// and large (2 % of the ground or more, and 1 m2). Ground without such a peak, hills for example, is one floor at the
 /// median height. O(cells x layers). Source: persistence of peaks (Edelsbrunner, Letscher, Zomorodian, Topological
 /// persistence and simplification, 2002).
-std::vector<Floor> find_floors(const TerrainMap& terrain, int threads = 0);
+SPAWNFIELD_API std::vector<Floor> find_floors(const TerrainMap& terrain, int threads = 0);
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/types.h>
 
 #include <Eigen/Geometry>
@@ -14,17 +15,17 @@ struct Rpy {
     double roll = 0, pitch = 0, yaw = 0;
 };
 
-Mat3 rotation_from(const Rpy& rpy);
+SPAWNFIELD_API Mat3 rotation_from(const Rpy& rpy);
 
 /// Pitch is in [-pi/2, pi/2], the others in [-pi, pi]. rotation_from() of it gives the rotation back to 1e-15, with the
 /// nose straight up or down too, where yaw and roll turn about the same line: yaw is what rounding leaves of it, roll
 /// the rest.
-Rpy rpy_from(const Mat3& rotation);
+SPAWNFIELD_API Rpy rpy_from(const Mat3& rotation);
 
 /// Of the two quaternions of a rotation the one with w >= 0; exact sines and cosines of the half angles.
-Eigen::Quaterniond quaternion_from(const Rpy& rpy);
+SPAWNFIELD_API Eigen::Quaterniond quaternion_from(const Rpy& rpy);
 
-/// The frames that files are written in. Each is told by where its axes point for a robot that stands at yaw 0.
+/// The frames that files are written in. Each is described by where its axes point for a robot that stands at yaw 0.
 enum class Frame {
     Ros,        ///< REP-103, as inside: right-handed, x forward, y left, z up. ROS, Gazebo (SDF), MuJoCo, Isaac Lab
     Carla,      ///< left-handed, x forward, y right, z up, m
@@ -44,21 +45,21 @@ struct FrameRule {
     double unit;      ///< the target's units of length in one metre
 };
 
-const FrameRule& rule_of(Frame frame);
+SPAWNFIELD_API const FrameRule& rule_of(Frame frame);
 
 /// Where the world's point is in the target's frame and unit.
-Vec3 point_in(Frame frame, const Vec3& point);
+SPAWNFIELD_API Vec3 point_in(Frame frame, const Vec3& point);
 
 /// The robot's rotation in the target: what a body's vector v is turned to, R v, is in both the same arrow of the
 /// world: world_axes (R v) = rotation_in(R) (body_axes v). Always proper, of determinant 1.
-Mat3 rotation_in(Frame frame, const Mat3& rotation);
+SPAWNFIELD_API Mat3 rotation_in(Frame frame, const Mat3& rotation);
 
 /// Of the two quaternions of a rotation the one with w >= 0.
-Eigen::Quaterniond quaternion_in(Frame frame, const Rpy& rpy);
+SPAWNFIELD_API Eigen::Quaterniond quaternion_in(Frame frame, const Rpy& rpy);
 
 /// Back again.
-Vec3 point_from(Frame frame, const Vec3& point);
-Mat3 rotation_out_of(Frame frame, const Mat3& rotation);
+SPAWNFIELD_API Vec3 point_from(Frame frame, const Vec3& point);
+SPAWNFIELD_API Mat3 rotation_out_of(Frame frame, const Mat3& rotation);
 
 /// Unreal's and CARLA's angles, in degrees: yaw turns x towards y (clockwise seen from above), pitch lifts the nose,
 /// roll lowers the right side. So roll is ours, pitch and yaw are ours with the sign turned over.
@@ -66,7 +67,7 @@ struct Rotator {
     double roll = 0, pitch = 0, yaw = 0;
 };
 
-Rotator rotator_from(const Rpy& rpy);
-Rpy rpy_from(const Rotator& rotator);
+SPAWNFIELD_API Rotator rotator_from(const Rpy& rpy);
+SPAWNFIELD_API Rpy rpy_from(const Rotator& rotator);
 
 }  // namespace spawnfield

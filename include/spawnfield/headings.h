@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/query.h>
 
 namespace spawnfield {
@@ -12,9 +13,8 @@ struct HeadingRaster {
     std::vector<std::uint8_t> valid_headings;  ///< of each pose: at how many headings it is valid
 };
 
-/// The raster at yaws 2 pi k / headings. options.yaw is not used. Takes as long as `headings` rasters.
+/// Returns the raster at yaws 2 pi k / headings. options.yaw is not used. Takes as long as `headings` rasters.
 /// Throws ArgumentError unless headings is in 1 .. 255 and options.dims is 2, and what raster() throws.
-HeadingRaster raster_at_headings(const Map& map, const CollisionChecker& checker, const RasterOptions& options,
-                                 int headings = 16);
+SPAWNFIELD_API HeadingRaster raster_at_headings(const Judge& judge, const RasterOptions& options, int headings = 16);
 
 }  // namespace spawnfield

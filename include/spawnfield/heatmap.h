@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/picture_format.h>
 #include <spawnfield/query.h>
 
@@ -40,12 +41,11 @@ struct HeatmapOptions {
 ///
 /// Spawns are footprints where those are at least 6 pixels long, otherwise arrows, or dots where arrows would be
 /// crowded. Names that would cover each other are left out, and the legend says how many are shown.
-/// Colours: src/picture/palette.h for verdicts; viridis (Smith, van der Walt, 2015) for quantities.
-/// O(pixels + columns + poses + terrain cells * layers).
-/// Throws ArgumentError unless options are within their limits, the raster has columns and its poses stand on them;
-/// OutputError.
-void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult& raster, const HeatmapOptions& options,
-                   const std::filesystem::path& file);
+/// Colours of verdicts are for all kinds of colour vision; of quantities: viridis (Smith, van der Walt, 2015) for
+/// quantities. O(pixels + columns + poses + terrain cells * layers). Throws ArgumentError unless options are within
+/// their limits, the raster has columns and its poses stand on them; OutputError.
+SPAWNFIELD_API void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult& raster,
+                                  const HeatmapOptions& options, const std::filesystem::path& file);
 
 /// Hill-shaded top view of a map with title, legend, scale bar, north arrow and axes, 1000 pixels on its longer side.
 ///
@@ -53,6 +53,6 @@ void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult
 /// lighter, water is blue where nothing stands out of it. If more than a quarter of the ground lies under something (a
 /// roof, another floor), there is one small picture for each floor of the map instead, at most 16: its highest layers,
 /// and what begins less than 2 m above them. Throws ArgumentError for a map without cells, OutputError.
-void write_preview(const Map& map, const TerrainMap& terrain, const std::filesystem::path& file);
+SPAWNFIELD_API void write_preview(const Map& map, const TerrainMap& terrain, const std::filesystem::path& file);
 
 }  // namespace spawnfield

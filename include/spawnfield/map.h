@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/floors.h>
 #include <spawnfield/occupancy.h>
 #include <spawnfield/solid_bounds.h>
@@ -33,19 +34,19 @@ inline constexpr std::array map_files{"bounds.bin",   "geometry.bin", "heightmap
 
 /// What queries need: map.yaml and geometry.bin, sizes and checksums verified.
 /// Throws FileError, which names the file, for a map that is missing, damaged, cut short or newer.
-Map read_map(const std::filesystem::path& folder);
+SPAWNFIELD_API Map read_map(const std::filesystem::path& folder);
 
-/// The pages of terrain.tiff. Throws FileError.
-TerrainMap read_terrain(const Map& map);
+/// Returns the pages of terrain.tiff, or makes them for a map without a folder. Throws FileError.
+SPAWNFIELD_API TerrainMap read_terrain(const Map& map);
 
 /// Map::floors, or where there are none find_floors of the terrain. Throws FileError.
-std::vector<Floor> floors_of(const Map& map);
+SPAWNFIELD_API std::vector<Floor> floors_of(const Map& map);
 
-/// occupancy.bt. Throws FileError.
-OccupancyTree read_occupancy(const Map& map);
+/// Returns the tree of occupancy.bt, or makes it for a map without a folder. Throws FileError.
+SPAWNFIELD_API OccupancyTree read_occupancy(const Map& map);
 
 /// Sizes and checksums of all files of the folder. Throws FileError at the first that differs.
-void verify_map(const std::filesystem::path& folder);
+SPAWNFIELD_API void verify_map(const std::filesystem::path& folder);
 
 /// Version 3 added z_limits and floors. Version 2 is read: without z limits, floors found anew from terrain.tiff.
 inline constexpr int map_format_version = 3;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/column.h>
 
 #include <filesystem>
@@ -9,9 +10,9 @@ namespace spawnfield {
 
 /// Occupied, free and unknown space as an OctoMap (Hornung et al., OctoMap: An Efficient Probabilistic 3D Mapping
 /// Framework Based on Octrees, 2013).
-class OccupancyTree {
+class SPAWNFIELD_API OccupancyTree {
 public:
-    struct Impl;  // octomap is seen in src/ only
+    struct Impl;
     explicit OccupancyTree(std::unique_ptr<Impl> impl);
     OccupancyTree(OccupancyTree&&) noexcept;
     ~OccupancyTree();
@@ -33,15 +34,16 @@ private:
 /// of their radius too wide.
 /// Throws ArgumentError unless resolution > 0 and the bounds lie within 32768 voxels of the scene's origin (OctoMap's
 /// 16-bit keys).
-OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution, int threads = 0,
-                              const Progress& progress = {});
+SPAWNFIELD_API OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution,
+                                             int threads = 0, const Progress& progress = {});
 
 /// Writes the same tree to a binary .bt, without making its nodes: a hundredth of the memory. Returns the number of its
 /// leaves. Throws OutputError too.
-std::size_t write_occupancy(const std::filesystem::path& file, const Geometry& geometry, const Bounds& bounds,
-                            double resolution, int threads = 0, const Progress& progress = {});
+SPAWNFIELD_API std::size_t write_occupancy(const std::filesystem::path& file, const Geometry& geometry,
+                                           const Bounds& bounds, double resolution, int threads = 0,
+                                           const Progress& progress = {});
 
 /// Throws FileError.
-OccupancyTree read_occupancy(const std::filesystem::path& file);
+SPAWNFIELD_API OccupancyTree read_occupancy(const std::filesystem::path& file);
 
 }  // namespace spawnfield

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <filesystem>
 #include <fstream>
 #include <span>
@@ -10,7 +12,7 @@ namespace spawnfield {
 /// A file that appears whole or not at all: written beside its name, renamed by commit(), removed if that never comes.
 /// What is no regular file (a pipe, /dev/null, /dev/stdout) is written directly; of a link, what it leads to is
 /// written.
-class OutputFile {
+class SPAWNFIELD_API OutputFile {
 public:
     explicit OutputFile(std::filesystem::path file);  ///< throws OutputError
     OutputFile(const OutputFile&) = delete;
@@ -41,6 +43,6 @@ private:
 };
 
 /// All bytes of a file at once. Throws OutputError.
-void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
+SPAWNFIELD_API void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace spawnfield

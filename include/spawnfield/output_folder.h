@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -9,12 +11,12 @@ namespace spawnfield {
 
 /// A folder that appears whole or not at all: filled beside its name, takes its place by commit(), removed if that
 /// never comes. Of a link to a folder, what it leads to is replaced.
-class OutputFolder {
+class SPAWNFIELD_API OutputFolder {
 public:
     using Path = std::filesystem::path;
 
-    /// An empty folder may be replaced; one that holds something only if `objection` to it is empty, else it is told.
-    /// Throws OutputError, before anything is made.
+    /// An empty folder may be replaced; one that holds something only if `objection` to it is empty, else the error
+    /// names it. Throws OutputError, before anything is made.
     OutputFolder(const Path& target, const std::function<std::string(const Path&)>& objection);
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;
@@ -32,7 +34,7 @@ private:
 
 /// Objection to a folder that holds anything but files of these names: so that only what was written by the same
 /// command is replaced. `kind` as "thesis result".
-std::function<std::string(const std::filesystem::path&)> holds_only(std::span<const char* const> names,
-                                                                    const std::string& kind);
+SPAWNFIELD_API std::function<std::string(const std::filesystem::path&)> holds_only(std::span<const char* const> names,
+                                                                                   const std::string& kind);
 
 }  // namespace spawnfield

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <filesystem>
 #include <string>
 
@@ -10,9 +12,9 @@ enum class PictureFormat { Png, Svg, Pdf };
 
 /// The format that a file's ending names: .png, .svg or .pdf, in any case. A name without an ending is a PNG file.
 /// Throws ArgumentError for any other ending, because no program would open the file.
-PictureFormat picture_format(const std::filesystem::path& file);
+SPAWNFIELD_API PictureFormat picture_format(const std::filesystem::path& file);
 
 /// "png", "svg" or "pdf".
-const char* to_string(PictureFormat format);
+SPAWNFIELD_API const char* to_string(PictureFormat format);
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/query.h>
 #include <spawnfield/simulators.h>
 
@@ -21,52 +22,54 @@ struct PoseTable {
 /// Reads a header x,y,z,roll,pitch,yaw in any order, and a pose in each further line. Metres and radians; columns
 /// roll_deg, pitch_deg, yaw_deg are degrees. Angles default to 0; qx,qy,qz,qw may stand for them; other columns are
 /// carried through. Throws FileError that names line and column; without `allow_empty` also for a file without a pose.
-PoseTable read_poses(const std::filesystem::path& file, bool allow_empty = false);
+SPAWNFIELD_API PoseTable read_poses(const std::filesystem::path& file, bool allow_empty = false);
 
 /// The same for a file's text; `name` stands for the file in messages.
-PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty = false);
+SPAWNFIELD_API PoseTable parse_poses(std::string_view text, const std::string& name, bool allow_empty = false);
 
 /// Poses as sample and search write them (x, y, z, yaw; roll and pitch are left aside).
-std::vector<Spawn> spawns_of(const PoseTable& table);
+SPAWNFIELD_API std::vector<Spawn> spawns_of(const PoseTable& table);
 
 /// Fields of the column of this name, row by row, without quotes; none if the table has no such column.
-std::vector<std::string> column_of(const PoseTable& table, const std::string& name);
+SPAWNFIELD_API std::vector<std::string> column_of(const PoseTable& table, const std::string& name);
 
 /// Robots at the poses of a list or table, with names and namespaces of the same number, or without.
-std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names = {},
-                                     const std::vector<std::string>& name_spaces = {});
-std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names = {},
-                                     const std::vector<std::string>& name_spaces = {});
+SPAWNFIELD_API std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names = {},
+                                                    const std::vector<std::string>& name_spaces = {});
+SPAWNFIELD_API std::vector<RobotStart> robot_starts(const PoseTable& table, const std::vector<std::string>& names = {},
+                                                    const std::vector<std::string>& name_spaces = {});
 
 /// What a column `verdict` says of each pose, as `check` and `raster` write it; empty if there is none. Throws
 /// FileError, with the name of the file that the table was read from.
-std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::path& file);
+SPAWNFIELD_API std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::path& file);
 
 /// The table's columns that are named as some that verdicts_csv adds: those take their place.
-std::vector<std::string> replaced_columns(const PoseTable& table);
+SPAWNFIELD_API std::vector<std::string> replaced_columns(const PoseTable& table);
 
-/// Table's columns but the replaced ones, then verdict,ground,height_above,hit. Numbers read back to the same double.
-std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements,
-                         const std::vector<Part>& parts);
+/// Returns the table's columns but the replaced ones, then verdict,ground,height_above,hit. Numbers read back to the
+/// same double.
+SPAWNFIELD_API std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements,
+                                        const Map& map);
 
-/// x,y,z,yaw,layer,verdict, told to `sink` in pieces; layer is empty where the ground is no layer. With `aerial` also
-/// the aerial poses of a 3D raster that `raster` leaves out, in their places.
-void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink);
+/// Writes x,y,z,yaw,layer,verdict, given to `sink` in pieces; layer is empty where the ground is no layer. With
+/// `aerial` also the aerial poses of a 3D raster that `raster` leaves out, in their places.
+SPAWNFIELD_API void write_raster_csv(const RasterResult& raster, bool aerial,
+                                     const std::function<void(std::string_view)>& sink);
 
 /// x,y,z,roll,pitch,yaw.
-std::string spawns_csv(const SpawnList& list);
+SPAWNFIELD_API std::string spawns_csv(const SpawnList& list);
 
 /// The same, after a column `name` if the robots have names.
-std::string robots_csv(std::span<const RobotStart> robots);
+SPAWNFIELD_API std::string robots_csv(std::span<const RobotStart> robots);
 
-/// Poses with names and quaternions (x, y, z, w), and what they were made from and with: settings, counts; of a sample
-/// also whether it is full. `robots` are the list's spawns.
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
-                        const SampleOptions& options);
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
-                        const SearchOptions& options);
+/// Returns poses with names and quaternions (x, y, z, w), and what they were made from and with: settings, counts; for
+/// a sample also whether it is full. `robots` are the list's spawns.
+SPAWNFIELD_API std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
+                                       const SampleOptions& options);
+SPAWNFIELD_API std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
+                                       const SearchOptions& options);
 
 /// The same of poses that come from somewhere else: without settings and counts.
-std::string poses_json(std::span<const RobotStart> robots, const Map& map, const Robot& robot);
+SPAWNFIELD_API std::string poses_json(std::span<const RobotStart> robots, const Map& map, const Robot& robot);
 
 }  // namespace spawnfield

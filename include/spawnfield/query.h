@@ -1,64 +1,10 @@
 #pragma once
 
-#include <spawnfield/collision.h>
-#include <spawnfield/map.h>
+#include <spawnfield/export.h>
+#include <spawnfield/judge.h>
 #include <spawnfield/region.h>
 
-#include <atomic>
-#include <optional>
-
 namespace spawnfield {
-
-/// Seconds that threads spend in exact checks, all together.
-struct ExactTime {
-    std::atomic<std::int64_t> nanoseconds{0};
-};
-
-/// What all queries share.
-struct QueryOptions {
-    double max_height = 1.0;  ///< m of the origin above its ground, inclusive, >= 0
-    double max_water_depth = std::numeric_limits<double>::infinity();  ///< m of water above the ground that count, >= 0
-    /// rad from level, inclusive, 0 .. pi/2 without the ends: a pose that would be valid is asked how it would stand on
-    /// the ground, and may be `steep` or `unstable`. Infinite: it is not asked.
-    ///
-    /// Contacts are the robot's own if it has three or more that are not on one line; else the corners of the convex
-    /// hull, seen from above, of all that lies within 2 cm of its lowest point. They are moved to the pose, its roll
-    /// and pitch too; on one line then (a robot on its side), it is unstable. Below each contact lies a surface: the
-    /// top of the highest solid, terrain or obstacle, that begins no higher than the contact or the robot's lowest
-    /// point; what touches is one solid. A surface is in reach if it is at most r tan(max_slope) + 2 cm above or below
-    /// the pose's ground, r being the contact's horizontal distance from the origin. All in reach: steep if the plane
-    /// through the surfaces under the contacts (least squares) is inclined by more than max_slope, else valid.
-    /// Otherwise it hangs over an edge or against a wall: unstable; but steep where that plane is too inclined and an
-    /// even slope, off which no surface, nor the ground, lies by more than 2 cm + 10 % of their range. So no pose that
-    /// is valid becomes another with a larger max_slope. What is between the contacts is not looked at.
-    double max_slope = std::numeric_limits<double>::infinity();
-    bool exhaustive = false;  ///< ask the CollisionChecker at every pose, never the FreeSpace: the same answers, slowly
-    int threads = 0;          ///< 0: all cores; results are the same at any number
-    ExactTime* exact_time = nullptr;  ///< adds to it, if anybody wants to know
-    Progress progress = {};
-};
-
-/// The verdict on one pose with its reasons.
-struct Judgement {
-    Verdict verdict = Verdict::Outside;
-    std::optional<Ground> ground;     ///< also of poses outside the bounds
-    std::optional<CollisionHit> hit;  ///< collision only
-    bool exact_check = false;         ///< whether the CollisionChecker was asked
-};
-
-/// The verdict table of DESIGN.md, in its order, without the mask. `column` is the one at the pose's x and y.
-Judgement judge(const Map& map, const CollisionChecker& checker, const Column& column, const Pose& pose,
-                const QueryOptions& options = {});
-
-/// Judges every pose by itself. Throws ArgumentError for a max_slope out of its range.
-std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& checker, const std::vector<Pose>& poses,
-                                   const QueryOptions& options = {});
-
-/// The offset that puts the robot's lowest point 0.1 m above its layer, m.
-double auto_offset(const Robot& robot);
-
-/// Whether a robot with this offset collides with all flat ground: its lowest point is not above its layer.
-bool is_in_flat_ground(const Robot& robot, double offset);
 
 /// Which layers of a column count. The index counts from the top, 0 first.
 struct LayerChoice {
@@ -77,23 +23,25 @@ struct LayerChoice {
     }
 };
 
-struct RasterOptions : QueryOptions {
+struct RasterOptions {
     int dims = 2;        ///< 2: a pose per column and layer; 3: a pose per column and height
-    Bounds bounds = {};  ///< empty: the map's; two-dimensional rasters leave z aside
+    double step = 1.0;   ///< m between columns, > 0
+    double step_z = 0;   ///< m between heights, > 0; 0: as step
+    Bounds bounds = {};  ///< empty: the map's; two-dimensional rasters do not use z
     ZRange z = {};       ///< 2D: layers beyond these heights, m, or beyond the map's z limits are no ground
     /// Columns and layers elsewhere are left out: they give no pose and count nowhere. 3D: of regions without z limits.
     Area area = {};
-    double step = 1.0;  ///< m between columns, > 0
-    double step_z = 0;  ///< m between heights, > 0; 0: as step
-    /// m of the origin above its layer (2D, snap); with snap 0 .. max_height. Nothing: auto_offset().
+    /// m of the origin above its layer (2D, snap); with snap 0 .. max_height. Without a value: auto_offset().
     std::optional<double> offset = {};
     double yaw = 0;            ///< rad
     LayerChoice layers = {};   ///< 3D: of the ground; poses over other ground, and the aerial ones, are left out
-    bool height_check = true;  ///< false (3D only): collisions alone, at every pose; max_slope is not asked for
-    /// 3D with height check: each chosen layer within the bounds' z has its pose of the 2D raster, in place of the
-    /// lowest step at or above it (RasterGrid::step_above) if there is one, and of a step at its very place (to 1e-9
-    /// m). So no terrain between two steps is lost.
+    bool height_check = true;  ///< false (3D only): collisions alone, at every pose; max_slope is not used
+    /// 3D with height check: each chosen layer within the bounds' z has its pose of the 2D raster, which replaces the
+    /// lowest step at or above it (RasterGrid::step_above) if there is one, and a step at its very place (to 1e-9 m).
+    /// So no terrain between two steps is lost.
     bool snap = false;
+    int threads = 0;  ///< 0: all cores; results are the same at any number
+    Progress progress = {};
 };
 
 /// Columns x0 + i * step, y0 + j * step; heights z0 + k * step_z.
@@ -105,7 +53,7 @@ struct RasterGrid {
     double y_of(int j) const { return y0 + j * step; }
     double z_of(int k) const { return z0 + k * step_z; }
     /// The lowest of the heights at or above this one, to touch_tolerance; `heights` if there is none.
-    int step_above(double height) const;
+    SPAWNFIELD_API int step_above(double height) const;
 };
 
 struct RasterPose {
@@ -124,16 +72,18 @@ struct RasterResult {
     double yaw = 0, offset = 0;
     ZRange z = {};                  ///< 2D: heights of the layers that are ground
     std::vector<RasterPose> poses;  ///< y after y, x fastest, from the top down; of 3D rasters without the aerial ones
-    VerdictCounts counts{};         ///< of all poses, the aerial ones too
+    VerdictCounts counts;           ///< of all poses, the aerial ones too
     std::uint64_t exact_checks = 0;
 };
 
-/// Every pose of a raster. Throws ArgumentError for a step of 0, bounds the wrong way round, more than 2^31 columns.
-RasterResult raster(const Map& map, const CollisionChecker& checker, const RasterOptions& options);
+/// Returns the verdict on every pose of a raster. Throws ArgumentError for options beyond their limits, bounds the
+/// wrong way round or more than 2^31 columns, FileError for a damaged map.
+SPAWNFIELD_API RasterResult raster(const Judge& judge, const RasterOptions& options);
 
 /// A raster's poses in their order, with `aerial` also the aerial ones of a 3D raster that it does not list, in their
 /// places.
-void for_each_pose(const RasterResult& raster, bool aerial, const std::function<void(const RasterPose&)>& visit);
+SPAWNFIELD_API void for_each_pose(const RasterResult& raster, bool aerial,
+                                  const std::function<void(const RasterPose&)>& visit);
 
 struct Spawn {
     Vec3 position;
@@ -142,17 +92,17 @@ struct Spawn {
 
 struct SpawnList {
     std::vector<Spawn> spawns;       ///< in the order in which they were found
-    VerdictCounts counts{};          ///< of the positions that were judged
+    VerdictCounts counts;            ///< of the positions that were judged
     std::uint64_t draws = 0;         ///< all of them
-    std::uint64_t off_area = 0;      ///< draws that did not lie in SpawnOptions::area
-    std::uint64_t near_avoided = 0;  ///< draws too near to a point of SpawnOptions::avoid
+    std::uint64_t off_area = 0;      ///< draws outside the options' area
+    std::uint64_t near_avoided = 0;  ///< draws too near to a point of the options' `avoid`
     std::uint64_t too_close = 0;     ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
     bool is_full = false;  ///< sample: fewer than count, and proven that none fits beside them and the avoided points
     double undecided_area = 0;  ///< sample, if fewer and not proven: horizontal m2 in which one may still fit
 };
 
-/// More than anybody starts, and what still fits into memory.
+/// Greatest number of spawns: more than anybody starts, and what still fits into memory.
 inline constexpr std::size_t max_spawns = 100000000;
 
 /// Points that positions keep a distance from, for example robots that are placed already.
@@ -162,43 +112,55 @@ struct AvoidedPoints {
     double distance = 0;  ///< m between a point and a position (in 3D), >= 0; exactly this distance is allowed
 };
 
-struct SpawnOptions : QueryOptions {
+struct SearchOptions {
     std::size_t count = 1;    ///< 1 .. max_spawns
     double min_distance = 0;  ///< m between positions, >= 0
-    Bounds bounds = {};       ///< empty: the map's; sample leaves z aside
-    /// Positions lie in it. Draws elsewhere are failures that nobody judges (SpawnList::off_area); draws are made from
-    /// its bounds only.
+    bool random_yaw = false;  ///< uniform in [-pi, pi), else yaw
+    double yaw = 0;           ///< rad
+    std::uint64_t seed = 0;
+    Bounds bounds = {};  ///< box of the draws; empty: the map's
+    /// Positions lie in this area. Draws elsewhere are failures that are not judged (SpawnList::off_area); draws are
+    /// made from its bounds only.
     Area area = {};
     /// Draws nearer to one of these points than its distance are failures that are not judged
     /// (SpawnList::near_avoided).
     std::vector<AvoidedPoints> avoid = {};
+    std::uint64_t max_failures = 100000;  ///< draws in a row that gave nothing, >= 1
+    int threads = 0;                      ///< 0: all cores; results are the same at any number
+    Progress progress = {};
+};
+
+/// Returns spawns from a random search (Ropelato): uniform draws in a box; each must keep min_distance to all positions
+/// judged before; stops after count valid ones or max_failures draws in a row without one. Draws too near to an avoided
+/// point are failures. Throws ArgumentError for options beyond their limits, FileError for a damaged map.
+SPAWNFIELD_API SpawnList search(const Judge& judge, const SearchOptions& options);
+
+struct SampleOptions {
+    std::size_t count = 1;    ///< 1 .. max_spawns
+    double min_distance = 0;  ///< m between positions, >= 0
     bool random_yaw = false;  ///< uniform in [-pi, pi), else yaw
     double yaw = 0;           ///< rad
     std::uint64_t seed = 0;
-};
-
-struct SearchOptions : SpawnOptions {
-    std::uint64_t max_failures = 100000;  ///< draws in a row that gave nothing, >= 1
-};
-
-/// Random search (Ropelato): uniform draws in a box; each must keep min_distance to all positions checked before; stops
-/// after count valid ones or max_failures draws in a row without one. Draws too near to an avoided point are failures.
-SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOptions& options);
-
-struct SampleOptions : SpawnOptions {
-    std::optional<double> offset = {};  ///< m of the origin above its layer, at most max_height; nothing: auto_offset()
+    std::optional<double> offset =
+        {};  ///< m of the origin above its layer, at most max_height; no value: auto_offset()
     LayerChoice layers = {};
-    ZRange z = {};  ///< layers beyond these heights, m, or beyond the map's z limits are no ground
+    ZRange z = {};       ///< layers beyond these heights, m, or beyond the map's z limits are no ground
+    Bounds bounds = {};  ///< in x and y; empty: the map's
+    Area area = {};      ///< as SearchOptions::area
+    std::vector<AvoidedPoints> avoid = {};  ///< as SearchOptions::avoid
+    int threads = 0;                        ///< 0: all cores; results are the same at any number
+    Progress progress = {};
 };
 
-/// Valid poses distributed uniformly by horizontal area over the feasible region of all chosen layers, each confirmed
-/// exactly, at least min_distance apart, none nearer to a point of `avoid` than its distance.
+/// Returns valid poses distributed uniformly by horizontal area over the feasible region of all chosen layers, each
+/// confirmed exactly, at least min_distance apart, none nearer to a point of `avoid` than its distance.
 ///
-/// When draws keep failing, it goes over to cells that cover the region: those in which no further spawn can stand are
-/// proven so from the scene's geometry and left out, the others are drawn from, uniformly by area as before, and split.
-/// It ends with fewer than count when no cell is left (is_full), or when the cells are too small (0.1 mm) or too many
-/// to go on. Sources: White, Cline, Egbert, Poisson disk point sets by hierarchical dart throwing, 2007; Ebeida et al.,
-/// A simple algorithm for maximal Poisson-disk sampling in high dimensions, 2012.
-SpawnList sample(const Map& map, const CollisionChecker& checker, const SampleOptions& options);
+/// When draws keep failing, it goes over to cells that cover the region. Cells in which no further spawn can stand are
+/// proven so from the scene's geometry and left out; the others are drawn from, uniformly by area as before, and split.
+/// It ends with fewer than count when no cell remains (is_full), or when the cells are too small (0.1 mm) or too many
+/// to go on. Throws ArgumentError for options beyond their limits, FileError for a damaged map. Sources: White, Cline,
+/// Egbert, Poisson disk point sets by hierarchical dart throwing, 2007; Ebeida et al., A simple algorithm for maximal
+/// Poisson-disk sampling in high dimensions, 2012.
+SPAWNFIELD_API SpawnList sample(const Judge& judge, const SampleOptions& options);
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/types.h>
 
 #include <string>
@@ -21,7 +22,7 @@ struct Region {
     ZRange z = {};
     std::vector<std::string> notices = {};  ///< what was assumed while reading
 
-    Bounds bounds() const;  ///< of the rings, and of z
+    SPAWNFIELD_API Bounds bounds() const;  ///< of the rings, and of z
 };
 
 /// Where poses are wanted.
@@ -30,9 +31,9 @@ struct Area {
     std::vector<Region> keep_out = {};  ///< in none of these
 
     bool is_everywhere() const { return within.empty() && keep_out.empty(); }
-    Bounds bounds() const;  ///< of `within`; infinite if that is everywhere
+    SPAWNFIELD_API Bounds bounds() const;  ///< of `within`; infinite if that is everywhere
 };
 
-Region box_region(double x0, double y0, double x1, double y1, const ZRange& z = {});
+SPAWNFIELD_API Region box_region(double x0, double y0, double x1, double y1, const ZRange& z = {});
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/region.h>
 
 #include <filesystem>
@@ -15,10 +16,10 @@ enum class MapCells { Free, Occupied };
 ///
 /// Throws FileError with line or element: rings that are not closed (GeoJSON), of fewer than 3 corners, numbers that
 /// are not finite, geometries without area.
-Region read_region(const std::filesystem::path& file, MapCells cells = MapCells::Free);
+SPAWNFIELD_API Region read_region(const std::filesystem::path& file, MapCells cells = MapCells::Free);
 
 /// The same for the text of a GeoJSON or CSV file; it is GeoJSON if it starts with a brace. `name` stands for the file
 /// in messages.
-Region parse_region(const std::string& text, const std::string& name);
+SPAWNFIELD_API Region parse_region(const std::string& text, const std::string& name);
 
 }  // namespace spawnfield

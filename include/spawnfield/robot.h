@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/joints.h>
 #include <spawnfield/shape.h>
 
@@ -16,8 +17,8 @@ struct RobotPart {
     std::vector<std::array<int, 3>> hull_faces;  ///< Hull only: triangles, counterclockwise from outside
     std::string name;                            ///< the link it belongs to, or its name in robot.yaml; may be empty
 
-    Vec3 centre() const;  ///< a point inside, robot frame
-    Bounds bounds() const;
+    SPAWNFIELD_API Vec3 centre() const;  ///< a point inside, robot frame
+    SPAWNFIELD_API Bounds bounds() const;
 };
 
 /// What stands for a mesh collision: one convex hull or several, which hold all of it.
@@ -45,7 +46,7 @@ struct Robot {
     std::vector<JointPosition> joints = {};  ///< RobotOptions::joints, as it was read
     int mesh_parts = 1;                      ///< RobotOptions::mesh_parts, as it was read
 
-    Bounds bounds() const;
+    SPAWNFIELD_API Bounds bounds() const;
 };
 
 struct RobotOptions {
@@ -64,14 +65,14 @@ struct RobotOptions {
 /// several of them, of what planes cut them into: nothing of the mesh is outside of their union. Throws FileError for
 /// files, ArgumentError for a bad `box:`, for joints that the file has not, that cannot be moved or whose limits do not
 /// hold the value, and for mesh_parts out of range.
-Robot load_robot(const std::string& robot, const RobotOptions& options = {});
+SPAWNFIELD_API Robot load_robot(const std::string& robot, const RobotOptions& options = {});
 
 /// Where the robot touches the ground, in its own frame, and whether its file says so. Otherwise they are what
-/// QueryOptions::max_slope takes: the corners of what lies within 2 cm of its lowest point.
+/// JudgeOptions::max_slope uses: the corners of what lies within 2 cm of its lowest point.
 struct RobotContacts {
     std::vector<Vec3> points;
     bool given = false;
 };
-RobotContacts robot_contacts(const Robot& robot);
+SPAWNFIELD_API RobotContacts robot_contacts(const Robot& robot);
 
 }  // namespace spawnfield

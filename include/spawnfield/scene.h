@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/shape.h>
 
 #include <filesystem>
@@ -24,7 +25,7 @@ struct Piece {
     std::uint32_t part = 0;
     std::uint32_t first_triangle = 0, triangle_count = 0;
     bool solid = false;
-    bool open = false;      ///< solid by wish, though it has holes: must be told, or the mask claims too much
+    bool open = false;      ///< solid by wish, though it has holes: the mask must know it, or it claims too much
     bool sides_up = false;  ///< a terrain sheet on which robots stand only where the winding looks up
     double bottom = 0;      ///< lowest z of its vertices, m
 };
@@ -76,16 +77,16 @@ struct Scene {
     std::vector<std::uint32_t> triangle_pieces;  ///< one for each triangle
     std::vector<Piece> pieces;
     std::vector<Primitive> primitives;
-    std::optional<GeoOrigin> origin;     ///< from the first elevation model that tells where it lies
+    std::optional<GeoOrigin> origin;     ///< from the first elevation model that knows where it lies
     std::vector<std::string> notices;    ///< defaults that mattered while reading; for the user to see
     std::vector<NameRule> rules;         ///< by which an SDF or URDF world was labelled, in their order
     std::vector<FaceGroup> face_groups;  ///< of all meshes, part after part, in the order of their files
-    /// What a map of it covers unless it is told otherwise; empty: all of it. Infinite planes reach beyond.
+    /// What a map of it covers by default; empty: all of it. Infinite planes reach beyond.
     Bounds map_bounds = {};
 
-    Bounds bounds() const;
-    bool has_terrain() const;
-    LabelCounts count_labels() const;
+    SPAWNFIELD_API Bounds bounds() const;
+    SPAWNFIELD_API bool has_terrain() const;
+    SPAWNFIELD_API LabelCounts count_labels() const;
 };
 
 /// `pattern=label`: faces whose node or material name (meshes), or parts whose name (others), match the glob.
@@ -100,7 +101,7 @@ enum class Unknown : std::uint8_t { Free, Blocked };
 struct SceneOptions {
     std::vector<LabelRule> labels = {};  ///< come before the file's own rules; the first match wins
     /// Labels by slope what no rule matches in meshes, OctoMaps and worlds: what looks up and is less steep than this
-    /// is terrain, the rest obstacle (docs/input-files.md). rad, 0 .. pi/2, both excluded; nothing: not asked for.
+    /// is terrain, the rest obstacle. rad, 0 .. pi/2, both excluded; nothing: not asked for.
     std::optional<double> auto_slope = {};
     char up = 0;             ///< 'y' or 'z' for a bare mesh; 0: what the format says, else z
     double scale = 1.0;      ///< m per unit of a bare mesh, > 0
@@ -126,11 +127,10 @@ struct SceneOptions {
 /// that is. A 2D map is part "floor", terrain at z = 0 under all cells that are not unknown, and part "walls", boxes on
 /// the occupied ones. Of SDF and URDF each collision is a part, named model::link::collision; the options' rules match
 /// that name or one of its words between ::. Else planes, heightmaps and what is named as ground is terrain, the rest
-/// obstacle (docs/input-files.md). Throws FileError with file, part, key, value and limit. Format: DESIGN.md,
-/// formats/scene.md.
-Scene load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
+/// obstacle. Throws FileError with file, part, key, value and limit.
+SPAWNFIELD_API Scene load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 
 /// The file that a scene is read from: of a model's folder the SDF file that its model.config names. Throws FileError.
-std::filesystem::path scene_file_of(const std::filesystem::path& scene);
+SPAWNFIELD_API std::filesystem::path scene_file_of(const std::filesystem::path& scene);
 
 }  // namespace spawnfield

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/column.h>
 
-#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
 
 namespace spawnfield {
 
@@ -18,11 +21,23 @@ struct GridFrame {
 
 /// Cells of side `cell` that cover the bounds from their lower limits on. Throws ArgumentError unless cell > 0 and
 /// there are at most max_columns of them.
-GridFrame frame_around(const Bounds& bounds, double cell);
+SPAWNFIELD_API GridFrame frame_around(const Bounds& bounds, double cell);
 inline constexpr double max_columns = 1e8;
 inline constexpr double max_side = 1e6;  ///< rows or columns, as libpng takes them
 
-using HeightImage = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+/// A value for each cell of a raster, row after row; row 0 is the largest y. NaN where there is nothing.
+struct HeightImage {
+    int rows = 0, cols = 0;
+    std::vector<float> values = {};  ///< rows * cols; heights in m
+
+    HeightImage() = default;
+    HeightImage(int rows_, int cols_, float value = std::numeric_limits<float>::quiet_NaN())
+        : rows(rows_), cols(cols_), values(std::size_t(rows_) * std::size_t(cols_), value)
+    {
+    }
+    float operator()(int row, int col) const { return values[std::size_t(row) * std::size_t(cols) + std::size_t(col)]; }
+    float& operator()(int row, int col) { return values[std::size_t(row) * std::size_t(cols) + std::size_t(col)]; }
+};
 
 /// What stands in each column of a raster, as pages of float32 metres; NaN where there is nothing.
 ///
@@ -43,20 +58,20 @@ struct TerrainMap {
 
     int tile_rows() const { return (frame.rows + tile - 1) / tile; }
     int tile_cols() const { return (frame.cols + tile - 1) / tile; }
-    const Page* find(const std::string& name) const;  ///< nullptr if there is no such page
-    int layers() const;                               ///< number of height pages
+    SPAWNFIELD_API const Page* find(const std::string& name) const;  ///< nullptr if there is no such page
+    SPAWNFIELD_API int layers() const;                               ///< number of height pages
 };
 
 /// A whole page, frame.rows x frame.cols; all NaN if there is no such page. Throws std::runtime_error on damaged tiles.
-HeightImage page_image(const TerrainMap& terrain, const std::string& name);
+SPAWNFIELD_API HeightImage page_image(const TerrainMap& terrain, const std::string& name);
 
 /// The highest layer of each cell within a range of heights, frame.rows x frame.cols, m; NaN where there is none.
 /// Throws std::runtime_error on damaged tiles.
-HeightImage highest_within(const TerrainMap& terrain, const ZRange& z);
+SPAWNFIELD_API HeightImage highest_within(const TerrainMap& terrain, const ZRange& z);
 
 /// Vertical rays at the cells' centres. Layers and water beyond the z limits are left out, and so are obstacles that
 /// begin above them or end below them. O(elements + cells covered).
-TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,
-                             const Progress& progress = {}, const ZRange& z_limits = {});
+SPAWNFIELD_API TerrainMap rasterize_terrain(const Geometry& geometry, const GridFrame& frame, int threads = 0,
+                                            const Progress& progress = {}, const ZRange& z_limits = {});
 
 }  // namespace spawnfield

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/query.h>
 
 #include <filesystem>
@@ -18,7 +19,7 @@ enum class ThesisClass : std::uint8_t { Valid, Invalid, Aerial };
 inline constexpr std::size_t thesis_class_count = 3;
 
 /// valid is valid, aerial and off_terrain are aerial, the rest is invalid.
-ThesisClass thesis_class_of(Verdict verdict);
+SPAWNFIELD_API ThesisClass thesis_class_of(Verdict verdict);
 
 /// All files of a thesis folder; Air_Locations.txt is there only if it was asked for.
 inline constexpr std::array thesis_files{"Valid_Locations.txt", "Invalid_Locations.txt", "Air_Locations.txt",
@@ -30,16 +31,15 @@ using ThesisCounts = std::array<std::uint64_t, thesis_class_count>;
 /// Writes the locations' files into a folder: a line "x, y, z" per pose in Unity's frame, numbers that read back to the
 /// same double. With `air` also Air_Locations.txt, of 3D rasters with the aerial poses that `raster` leaves out. Throws
 /// OutputError.
-ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster, bool air,
-                                    const Progress& progress = {});
+SPAWNFIELD_API ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const RasterResult& raster,
+                                                   bool air, const Progress& progress = {});
 
-/// Spawns are valid locations. No others are kept, so Invalid_Locations.txt is empty: thesis_stats tells how many there
-/// were.
-ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const SpawnList& list);
+/// Spawns are valid locations. No others are kept, so Invalid_Locations.txt is empty: thesis_stats counts them.
+SPAWNFIELD_API ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const SpawnList& list);
 
 /// Stats.txt: "Name: value" per line: the settings, what was judged by class and by verdict, and the lines of each
 /// file.
-std::string thesis_stats(const std::vector<std::pair<std::string, std::string>>& settings, const VerdictCounts& counts,
-                         const ThesisCounts& written);
+SPAWNFIELD_API std::string thesis_stats(const std::vector<std::pair<std::string, std::string>>& settings,
+                                        const VerdictCounts& counts, const ThesisCounts& written);
 
 }  // namespace spawnfield

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <Eigen/Core>
 
 #include <array>
@@ -65,7 +67,7 @@ struct Pose {
 };
 
 /// R = Rz(yaw) Ry(pitch) Rx(roll), as URDF's rpy.
-Mat3 rotation_from_rpy(double roll, double pitch, double yaw);
+SPAWNFIELD_API Mat3 rotation_from_rpy(double roll, double pitch, double yaw);
 
 /// outer_from_body where outer_from_inner and inner_from_body are given.
 inline Pose operator*(const Pose& outer, const Pose& inner)
@@ -76,23 +78,56 @@ inline Pose operator*(const Pose& outer, const Pose& inner)
 /// What a part of a scene is for a robot.
 enum class Label : std::uint8_t { Terrain, Obstacle, Water, Ignore };
 
-/// Verdict on a pose; the first that applies (DESIGN.md, Definitions). Steep and Unstable are given only where
-/// QueryOptions::max_slope asks for them.
-enum class Verdict : std::uint8_t { Outside, Aerial, OffTerrain, Submerged, Collision, Steep, Unstable, Valid };
+/// Verdict on a pose: the first of these that applies.
+enum class Verdict : std::uint8_t {
+    Outside,     ///< beyond the map's bounds in x and y, or beyond its z limits
+    Aerial,      ///< no ground below the origin, or more than JudgeOptions::max_height below it
+    OffTerrain,  ///< the ground is an obstacle
+    Submerged,   ///< water stands above the ground, at most JudgeOptions::max_water_depth deep
+    Collision,   ///< the robot touches or overlaps something solid, or is inside it
+    Steep,       ///< only with JudgeOptions::max_slope: the ground under the contacts is too inclined
+    Unstable,    ///< only with JudgeOptions::max_slope: a contact hangs over an edge, or stands against a wall
+    Valid        ///< none of these
+};
 inline constexpr std::size_t verdict_count = 8;
 
-/// Poses per verdict, indexed by Verdict.
-using VerdictCounts = std::array<std::uint64_t, verdict_count>;
+/// All verdicts in their order.
+inline constexpr std::array<Verdict, verdict_count> all_verdicts{
+    Verdict::Outside,   Verdict::Aerial, Verdict::OffTerrain, Verdict::Submerged,
+    Verdict::Collision, Verdict::Steep,  Verdict::Unstable,   Verdict::Valid};
+
+/// Number of poses for each verdict.
+class VerdictCounts {
+public:
+    std::uint64_t operator[](Verdict verdict) const { return counts_[std::size_t(verdict)]; }
+    std::uint64_t& operator[](Verdict verdict) { return counts_[std::size_t(verdict)]; }
+
+    std::uint64_t total() const
+    {
+        std::uint64_t sum = 0;
+        for (const std::uint64_t count : counts_) sum += count;
+        return sum;
+    }
+    VerdictCounts& operator+=(const VerdictCounts& other)
+    {
+        for (const Verdict verdict : all_verdicts) (*this)[verdict] += other[verdict];
+        return *this;
+    }
+    bool operator==(const VerdictCounts&) const = default;
+
+private:
+    std::array<std::uint64_t, verdict_count> counts_{};
+};
 
 /// "0, 0, 0 to 1, 2, 3 m", or of the first axes only; rounded to nine digits.
-std::string to_string(const Bounds& bounds, int axes = 3);
-const char* to_string(Label label);      ///< as in scene.yaml: "terrain", …
-const char* to_string(Verdict verdict);  ///< as in CSV files: "off_terrain", …
+SPAWNFIELD_API std::string to_string(const Bounds& bounds, int axes = 3);
+SPAWNFIELD_API const char* to_string(Label label);      ///< as in scene.yaml: "terrain", …
+SPAWNFIELD_API const char* to_string(Verdict verdict);  ///< as in CSV files: "off_terrain", …
 
 /// Called now and then during long work with the share done, 0 .. 1, from any thread, one call at a time.
 /// May throw to stop the work.
 using Progress = std::function<void(double)>;
 
-std::string version();  ///< "0.2.0"
+SPAWNFIELD_API std::string version();  ///< "0.2.0"
 
 }  // namespace spawnfield

@@ -1,32 +1,28 @@
 #pragma once
 
+#include <spawnfield/export.h>
 #include <spawnfield/poses.h>
 
 namespace spawnfield {
 
-/// Poses of a table with their verdicts, and what they were judged against. Refers to all of it.
+/// Poses of a table with their judgements, and who judged them. Refers to all of it.
 struct VerdictReport {
     const PoseTable& table;
     const std::vector<Judgement>& judgements;  ///< one for each pose of the table
-    const Map& map;
-    const Robot& robot;
-    const QueryOptions& options;
-    bool octree = false;  ///< the robot was checked against the map's voxels
+    const Judge& judge;
 };
 
 /// Returns a name for each pose: the table's column `name`, or "pose N" (N from 1) where it has none. " (pose N)" is
 /// added to names that occur more than once.
-std::vector<std::string> pose_names(const PoseTable& table);
-
-/// Returns the verdict and its cause, for people: "collision with thin_wall". `index` is below the number of poses.
-std::string described(const VerdictReport& report, std::size_t index);
+SPAWNFIELD_API std::vector<std::string> pose_names(const PoseTable& table);
 
 /// Writes JSON, format spawnfield-verdicts/1: what the poses were judged against, counts, and for each pose its row,
 /// name, pose, verdict, ground, hit and the fields of its row as text, on one line. `sink` gets the text in pieces.
-void write_verdicts_json(const VerdictReport& report, const std::function<void(std::string_view)>& sink);
+SPAWNFIELD_API void write_verdicts_json(const VerdictReport& report, const std::function<void(std::string_view)>& sink);
 
 /// Writes JUnit XML, as Jenkins and GitLab read it: one test case for each pose, which fails if the pose is not valid.
 /// Characters that XML cannot hold are replaced. All times are 0, so that the same report gives the same bytes.
-void write_verdicts_junit(const VerdictReport& report, const std::function<void(std::string_view)>& sink);
+SPAWNFIELD_API void write_verdicts_junit(const VerdictReport& report,
+                                         const std::function<void(std::string_view)>& sink);
 
 }  // namespace spawnfield

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace spawnfield {
 namespace {
@@ -77,20 +78,27 @@ double default_occupancy_resolution(const Bounds& bounds, double resolution, Bak
 std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::path& file)
 {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const float z : top.reshaped())
+    for (const float z : top.values)
         if (!std::isnan(z)) {
             low = std::min(low, double(z));
             high = std::max(high, double(z));
         }
     if (!(low <= high)) low = high = 0;
     const double step = high > low ? (high - low) / 65534 : 1e-3;
-    std::vector<std::uint16_t> pixels(std::size_t(top.size()));
+    std::vector<std::uint16_t> pixels(top.values.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const float z = top.data()[i];
+        const float z = top.values[i];
         pixels[i] = std::isnan(z) ? std::uint16_t(0) : std::uint16_t((z - low) / step + 1.5);
     }
-    write_grey_png(file, int(top.rows()), int(top.cols()), pixels.data());
+    write_grey_png(file, top.rows, top.cols, pixels.data());
     return {low - step, low + 65534 * step};
+}
+
+/// Returns the largest number of terrain layers above one cell's centre.
+int count_layers(const TerrainMap& terrain, const HeightImage& top)
+{
+    const bool is_empty = std::all_of(top.values.begin(), top.values.end(), [](float z) { return std::isnan(z); });
+    return is_empty ? 0 : terrain.layers();
 }
 
 /// Writes terrain.tiff, heightmap.png and preview.png at the same time. Sets map.layers. Returns the range of
@@ -101,7 +109,7 @@ std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path
     parallel_for(3, threads, {}, [&](std::size_t file) {
         if (file == 0) {
             const HeightImage top = page_image(terrain, "height.0");
-            map.layers = top.isNaN().all() ? 0 : terrain.layers();
+            map.layers = count_layers(terrain, top);
             z_range = write_heightmap_png(top, folder / "heightmap.png");
         }
         if (file == 1) write_preview(map, terrain, folder / "preview.png");
@@ -118,27 +126,28 @@ Progress part_of(const Progress& progress, double from, double to)
 }
 
 /// Checks the options. Returns a map with its names, bounds and resolutions, but without geometry, layers and floors.
-Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& options, BakeReport& report)
+/// `refuse` throws an error with a reason to refuse the scene.
+Map plan_map(const char* function, const Scene& scene, const BakeOptions& options, BakeReport& report,
+             const std::function<void(const std::string&)>& refuse)
 {
     if (!options.allow_no_terrain && !scene.has_terrain())
-        throw FileError(
-            scene_file.string(),
+        refuse(
             "has no terrain, so no robot can stand anywhere; label a part `terrain` (--label 'GLOB=terrain') "
             "or pass --allow-no-terrain");
-    if (!(options.resolution >= 0)) throw ArgumentError("bake", "resolution", options.resolution, "> 0 m (0: chosen)");
-    if (!(options.z.low <= options.z.high)) throw ArgumentError("bake", "z.high", options.z.high, "at least z.low");
+    if (!(options.resolution >= 0))
+        throw ArgumentError(function, "resolution", options.resolution, "> 0 m (0: chosen)");
+    if (!(options.z.low <= options.z.high)) throw ArgumentError(function, "z.high", options.z.high, "at least z.low");
     if (!(options.occupancy_resolution >= 0))
-        throw ArgumentError("bake", "occupancy_resolution", options.occupancy_resolution, "> 0 m (0: chosen)");
+        throw ArgumentError(function, "occupancy_resolution", options.occupancy_resolution, "> 0 m (0: chosen)");
     Map map;
-    map.name = scene.name.empty() ? scene_file.stem().string() : scene.name;
+    map.name = scene.name;
     const Bounds extent = scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds;
-    map.bounds = chosen_bounds("bake", options.bounds, extent);
+    map.bounds = chosen_bounds(function, options.bounds, extent);
     map.z_limits = !options.z.is_unlimited() ? options.z : options.bounds.is_empty() ? ZRange{} : map.bounds.z();
     if (std::isfinite(map.z_limits.low)) map.bounds.min.z() = map.z_limits.low;
     if (std::isfinite(map.z_limits.high)) map.bounds.max.z() = map.z_limits.high;
     if (!map.bounds.meets(extent))
-        throw FileError(scene_file.string(),
-                        "bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
+        refuse("bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
     const Vec3 size = map.bounds.max - map.bounds.min;
     constexpr double tiny = 1 + 1e-9;  // m; a smaller map is likely only the remainder of a scene
     if (options.bounds.is_empty() && size.x() <= tiny && size.y() <= tiny)
@@ -149,19 +158,36 @@ Map plan_map(const Scene& scene, const fs::path& scene_file, const BakeOptions& 
     map.occupancy_resolution = options.occupancy_resolution > 0
                                    ? options.occupancy_resolution
                                    : default_occupancy_resolution(map.bounds, map.resolution, report);
-    map.scene_file = scene_file.filename().string();
-    map.scene_hash = checksum(read_file(scene_file));
     return map;
 }
 
 }  // namespace
+
+Map make_map(const Scene& scene, const BakeOptions& options)
+{
+    BakeReport report;
+    Map map = plan_map("make_map", scene, options, report,
+                       [](const std::string& what) { throw ArgumentError("make_map", "the scene " + what); });
+    map.geometry = Geometry(scene, options.threads);
+    const TerrainMap terrain = rasterize_terrain(map.geometry, frame_around(map.bounds, map.resolution),
+                                                 options.threads, part_of(options.progress, 0, 0.5), map.z_limits);
+    map.floors = find_floors(terrain, options.threads);
+    map.layers = count_layers(terrain, page_image(terrain, "height.0"));
+    map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads,
+                                   part_of(options.progress, 0.5, 1));
+    return map;
+}
 
 BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder, const BakeOptions& options)
 {
     BakeReport report;
     Stopwatch watch;
     const auto lap = [&](const char* stage) { report.seconds.emplace_back(stage, watch.lap()); };
-    Map map = plan_map(scene, scene_file, options, report);
+    Map map = plan_map("bake", scene, options, report,
+                       [&](const std::string& what) { throw FileError(scene_file.string(), what); });
+    if (map.name.empty()) map.name = scene_file.stem().string();
+    map.scene_file = scene_file.filename().string();
+    map.scene_hash = checksum(read_file(scene_file));
     const GridFrame frame = frame_around(map.bounds, map.resolution);
     OutputFolder target(folder, objection_to);
     map.geometry = Geometry(scene, options.threads);

@@ -3,30 +3,37 @@
 #include <spawnfield/types.h>
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <mutex>
 
 namespace spawnfield {
 
-/// How many threads are meant; 0: all cores.
+/// Returns how many threads are meant; 0: all cores.
 inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
 
-/// Calls body(i) for each i < count on `threads` threads (0: all cores). Each i must write to its own slot only.
-/// `progress` hears of it after each item; an exception from there or from body ends the loop and is thrown on.
+/// A value for each thread that asks for one, made when the thread asks first. Any thread may call local().
+template <class T>
+using PerThread = tbb::enumerable_thread_specific<T>;
+
+/// Calls body(i) for each i < count on at most `threads` threads (0: all cores), and no more than the process allows
+/// TBB, in an arena of their own: nothing changes for the rest of the process. Each i must write to its own slot only.
+/// `progress` is called after items; an exception from there or from body ends the loop and is thrown on.
 template <class Body>
 void parallel_for(std::size_t count, int threads, const Progress& progress, const Body& body)
 {
     std::atomic<std::size_t> done{0};
-    std::mutex telling;
-    // What TBB's own hand-over already orders, in words that a thread sanitizer reads, as the library is not
-    // instrumented: what came before the loop comes before its parts, and what they did before what comes after, be it
-    // an exception.
+    std::mutex reporting;
+    // TBB's own synchronisation already orders these, but the library is not instrumented: the flags show a thread
+    // sanitizer that what came before the loop comes before its parts, and that these come before what follows the
+    // loop, be it an exception.
     std::atomic<bool> started{false}, finished{false};
     struct AtEnd {
         std::atomic<bool>& flag;
@@ -41,11 +48,11 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
             body(i);
             if (!progress) continue;
             const std::size_t now = ++done;
-            if (const std::unique_lock lock(telling, std::try_to_lock); lock) progress(double(now) / double(count));
+            if (const std::unique_lock lock(reporting, std::try_to_lock); lock) progress(double(now) / double(count));
         }
     };
-    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, std::size_t(thread_count(threads)));
-    tbb::task_arena arena(thread_count(threads));
+    const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    tbb::task_arena arena(std::min(thread_count(threads), int(allowed)));
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), run); });
 }
 

@@ -106,6 +106,25 @@ std::optional<Interval> local_interval(const Shape& shape, double x, double y)
 
 }  // namespace
 
+bool has_extent(const Shape& shape)
+{
+    if (!shape.pose.position.allFinite() || !shape.pose.rotation.allFinite()) return false;
+    const int sizes = shape.kind == ShapeKind::Box ? 3 : shape.kind == ShapeKind::Sphere ? 1 : 2;
+    return shape.size.allFinite() && (shape.size.head(sizes).array() > 0).all();
+}
+
+const char* to_string(ShapeKind kind)
+{
+    switch (kind) {
+    case ShapeKind::Box: return "box";
+    case ShapeKind::Sphere: return "sphere";
+    case ShapeKind::Cylinder: return "cylinder";
+    case ShapeKind::Capsule: return "capsule";
+    case ShapeKind::Hull: break;
+    }
+    return "hull";
+}
+
 std::optional<Interval> vertical_interval(const Shape& shape, double x, double y)
 {
     auto interval = local_interval(shape, x, y);

@@ -165,12 +165,20 @@ void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, 
 
 }  // namespace
 
-Column column_at(const Geometry& geometry, double x, double y)
+void read_column(const Geometry& geometry, double x, double y, Column& out)
 {
     thread_local std::vector<SurfaceHit> hits;
     find_hits(geometry, x, y, Surfaces::All, hits);
-    Column out;
+    out.spans.clear();
+    out.layers.clear();
+    out.water.clear();
     builder().build(hits, out);
+}
+
+Column column_at(const Geometry& geometry, double x, double y)
+{
+    Column out;
+    read_column(geometry, x, y, out);
     return out;
 }
 

@@ -23,6 +23,9 @@ struct ColumnView {
 /// Does the same as ground_below for a Column.
 std::optional<Ground> ground_below(const ColumnView& column, double z);
 
+/// Writes column_at(geometry, x, y) to `out`, and uses the memory of `out` again.
+void read_column(const Geometry& geometry, double x, double y, Column& out);
+
 /// Returns the part of `heights` (a column's layers or water surfaces, from the top down) that lies in the range, to
 /// touch_tolerance.
 inline std::span<const double> heights_within(std::span<const double> heights, const ZRange& z)

@@ -105,7 +105,7 @@ public:
     std::vector<std::string> streams(std::size_t tile) const
     {
         constexpr int border = 1;
-        HeightImage chosen = HeightImage::Constant(side + 2 * border, side + 2 * border, no_data);
+        HeightImage chosen(side + 2 * border, side + 2 * border, no_data);
         std::vector<std::vector<float>> bands(layer_bands_ + 5 + (verdicts_ != nullptr),
                                               std::vector<float>(tile_cells, no_data));
         tiles_.visit_cells(map_.geometry, tile, border, [&](int row, int col, const ColumnView& column) {

@@ -34,14 +34,13 @@ void add_strip(VerdictImage& image, int last, const RasterResult& strip)
         image.verdicts[std::size_t(row) * std::size_t(image.frame.cols) + std::size_t(col)] = std::uint8_t(
             pose.verdict);
     }
-    for (std::size_t verdict = 0; verdict < verdict_count; ++verdict) image.counts[verdict] += strip.counts[verdict];
+    image.counts += strip.counts;
     image.exact_checks += strip.exact_checks;
 }
 
 }  // namespace
 
-VerdictImage verdict_image(const Map& map, const CollisionChecker& checker, const GridFrame& frame,
-                           const RasterOptions& options)
+VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const RasterOptions& options)
 {
     if (options.layers.kind == LayerChoice::Kind::All)
         throw ArgumentError("verdict_image",
@@ -50,7 +49,7 @@ VerdictImage verdict_image(const Map& map, const CollisionChecker& checker, cons
     image.verdicts.assign(std::size_t(frame.rows) * std::size_t(frame.cols), VerdictImage::no_pose);
     for (int first = 0; first < frame.rows; first += strip_rows) {
         const int last = std::min(first + strip_rows, frame.rows) - 1;
-        add_strip(image, last, raster(map, checker, strip_options(frame, first, last, options)));
+        add_strip(image, last, raster(judge, strip_options(frame, first, last, options)));
     }
     return image;
 }

@@ -18,9 +18,9 @@ int floor_of(double value)
 int ceil_of(double value) { return -floor_of(-value); }
 
 /// The largest value of a tile that stays below a height.
-int values_below(const BoundsHead& head, double a_quantum, double z)
+int values_below(const BoundsHead& head, double inverse_quantum, double z)
 {
-    return std::max(0, ceil_of(std::clamp((z - head.base) * a_quantum, 0.0, 65536.0)) - 1);
+    return std::max(0, ceil_of(std::clamp((z - head.base) * inverse_quantum, 0.0, 65536.0)) - 1);
 }
 
 /// The lowest interval of a cell for which the test holds, as it then does for all above it; nullptr: there is none.
@@ -62,9 +62,15 @@ void Mask::set_footprints(const std::vector<Footprint>& footprints, double cosin
     }
 }
 
-void Mask::face(double yaw) { set_footprints(space_.ahead, std::cos(yaw), std::sin(yaw)); }
-void Mask::face_every_yaw() { set_footprints(space_.every_yaw, 1, 0); }
-void Mask::face(const Mat3& rotation) { set_footprints(footprints(space_.robot, rotation, false), 1, 0); }
+void Mask::set_rotation(double yaw) { set_footprints(space_.ahead, std::cos(yaw), std::sin(yaw)); }
+void Mask::set_every_yaw() { set_footprints(space_.every_yaw, 1, 0); }
+void Mask::set_rotation(const Mat3& rotation)
+{
+    if (rotation(2, 2) == 1)
+        set_rotation(std::atan2(rotation(1, 0), rotation(0, 0)));
+    else
+        set_footprints(footprints(space_.robot, rotation, false), 1, 0);
+}
 
 /// The coarsest cells of which some number lies along the part, for each pass; never the same twice.
 void Mask::choose_passes(Part& part) const
@@ -121,7 +127,7 @@ void Mask::cover(const Part& part, Pass& pass) const
     }
     const int first = int(std::floor(v + low / cell)), last = int(std::floor(v + high / cell));
     pass.rows.assign(std::size_t(last - first + 1), {0, inf, -inf, inf, -inf});
-    pass.left.resize(pass.rows.size());
+    pass.undecided.resize(pass.rows.size());
     for (int row = first; row <= last; ++row) pass.rows[std::size_t(row - first)].row = row;
     const auto extend = [&](double x, int row) {
         if (row < first || row > last) return;
@@ -164,10 +170,11 @@ const Mask::OpenTile& Mask::tile_of(Pass& pass, int col, int row) const
 {
     OpenTile& open = pass.tiles[std::size_t(row % 2 * 2 + col % 2)];
     if (col == open.col && row == open.row) return open;
+    open.col = open.row = -1;  // stays so if the tile is damaged
+    open.tile = raster_.open(pass.level, std::uint32_t(col), std::uint32_t(row));
+    if (open.tile.head != nullptr) open.inverse_quantum = 1 / open.tile.head->quantum;
     open.col = col;
     open.row = row;
-    open.tile = raster_.open(pass.level, std::uint32_t(col), std::uint32_t(row));
-    if (open.tile.head != nullptr) open.a_quantum = 1 / open.tile.head->quantum;
     return open;
 }
 
@@ -189,7 +196,7 @@ bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
             int highest = 0;
             for (int j = std::max(first - tile_row * side, 0); j <= std::min(last - tile_row * side, side - 1); ++j)
                 for (int i = from; i <= to; ++i) highest = std::max<int>(highest, open.tile.tops[j * side + i]);
-            if (highest > values_below(*open.tile.head, open.a_quantum, bottom)) return false;
+            if (highest > values_below(*open.tile.head, open.inverse_quantum, bottom)) return false;
         }
     return true;
 }
@@ -200,10 +207,10 @@ struct Mask::Heights {
     std::uint32_t below = 0;                      ///< cells that reach up to this value are under the part
     std::uint32_t hit_low = 1, hit_high = 0;      ///< upper ends from the one to the other are inside it
 
-    void set_tile(const BoundsHead& head, double a_quantum)
+    void set_tile(const BoundsHead& head, double inverse_quantum)
     {
-        const auto value = [&](double z) { return std::clamp((z - head.base) * a_quantum, 0.0, 65536.0); };
-        below = std::uint32_t(values_below(head, a_quantum, bottom));
+        const auto value = [&](double z) { return std::clamp((z - head.base) * inverse_quantum, 0.0, 65536.0); };
+        below = std::uint32_t(values_below(head, inverse_quantum, bottom));
         hit_low = std::uint32_t(std::max(1, ceil_of(value(inner_bottom + head.slack))));
         hit_high = std::uint32_t(floor_of(value(inner_top)));
     }
@@ -243,14 +250,14 @@ Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const 
     const std::size_t finer = coarser->level - pass.level;
     const int row = (cover.row >> finer) - coarser->rows.front().row;
     if (row < 0 || row >= int(coarser->rows.size())) return no_cells;  // on the rim to rounding, so of the margin alone
-    const CellRange& range = coarser->left[std::size_t(row)];
+    const CellRange& range = coarser->undecided[std::size_t(row)];
     if (range.first > range.last) return no_cells;
     return {std::max(out.first, range.first << finer), std::min(out.last, (range.last << finer) + (1 << finer) - 1)};
 }
 
 /// Looks at each cell that is open: free, blocked if some cell within the part is hit, or what is left for a finer
 /// pass.
-Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const
+Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const
 {
     const BoundsLevel& level = raster_.levels[pass.level];
     const Footprint& footprint = part.footprint;
@@ -268,13 +275,13 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
         const std::size_t middle = pass.rows.size() / 2,
                           k = n % 2 == 0 ? middle + n / 2 : middle - (n + 1) / 2;  // outwards: hits are found soon
         const CoverRow& cover = pass.rows[k];
-        CellRange& left = pass.left[k];
-        left = no_cells;
+        CellRange& undecided = pass.undecided[k];
+        undecided = no_cells;
         const auto [low, high] = open_cells(pass, cover, coarser, u);
         if (low > high) continue;
         const auto leave = [&](int from, int to) {
             nothing_near = false;
-            left = {std::min(left.first, from), std::max(left.last, to)};
+            undecided = {std::min(undecided.first, from), std::max(undecided.last, to)};
         };
         if (low < 0 || high >= known_cols || cover.row < 0 || cover.row >= known_rows) {
             if (!raster_.is_whole) leave(low, high);
@@ -288,7 +295,7 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
             const int end = std::min(last, col / side * side + side - 1);
             if (open == nullptr || col / side != open->col || cover.row / side != open->row) {
                 open = &tile_of(pass, col / side, cover.row / side);
-                if (open->tile.head != nullptr) heights.set_tile(*open->tile.head, open->a_quantum);
+                if (open->tile.head != nullptr) heights.set_tile(*open->tile.head, open->inverse_quantum);
             }
             const BoundsTile& tile = open->tile;
             for (; col <= end && tile.head != nullptr; ++col) {
@@ -303,19 +310,22 @@ Proof Mask::at(const Part& part, Pass& pass, const Pass* coarser, double x, doub
     return nothing_near ? Proof::Free : Proof::Candidate;
 }
 
-Proof Mask::at(double x, double z)
+Proof Mask::proof_of(const Vec3& position)
 {
+    const double x = position.x(), y = position.y(), z = position.z();
     constexpr double farthest = 1e8;  // cells; beyond it their numbers would not fit
     if (raster_.levels.empty() || !(std::abs(x - raster_.x0) < farthest * raster_.levels[0].cell) ||
-        !(std::abs(y_ - raster_.y0) < farthest * raster_.levels[0].cell))
+        !(std::abs(y - raster_.y0) < farthest * raster_.levels[0].cell))
         return Proof::Candidate;
+    if (y != y_) set_y(y);
     bool is_free = true;
     for (Part& part : parts_) {
         Proof proof = Proof::Candidate;
         const Pass* coarser = nullptr;
         for (Pass& pass : part.passes) {
             if (!pass.is_ready) cover(part, pass);
-            proof = coarser == nullptr && is_clear(part, pass, x, z) ? Proof::Free : at(part, pass, coarser, x, z);
+            proof = coarser == nullptr && is_clear(part, pass, x, z) ? Proof::Free
+                                                                     : proof_of(part, pass, coarser, x, z);
             coarser = &pass;
             if (proof != Proof::Candidate) break;
         }
@@ -344,32 +354,20 @@ FreeSpace::FreeSpace(const SolidBounds& bounds, const Robot& robot)
 FreeSpace::FreeSpace(FreeSpace&&) noexcept = default;
 FreeSpace::~FreeSpace() = default;
 
-Proof FreeSpace::at(const Pose& scene_from_robot) const
+Proof FreeSpace::proof_of(const Pose& scene_from_robot) const
 {
     Mask mask(*impl_);
-    const Mat3& turn = scene_from_robot.rotation;
-    if (turn(2, 2) == 1)
-        mask.face(std::atan2(turn(1, 0), turn(0, 0)));
-    else
-        mask.face(turn);
-    mask.set_y(scene_from_robot.position.y());
-    return mask.at(scene_from_robot.position.x(), scene_from_robot.position.z());
+    mask.set_rotation(scene_from_robot.rotation);
+    return mask.proof_of(scene_from_robot.position);
 }
 
-Proof FreeSpace::at(const Vec3& position, double yaw) const
-{
-    Mask mask(*impl_);
-    mask.face(yaw);
-    mask.set_y(position.y());
-    return mask.at(position.x(), position.z());
-}
+Proof FreeSpace::proof_of(const Vec3& position, double yaw) const { return Mask(*impl_, yaw).proof_of(position); }
 
-Proof FreeSpace::at_every_yaw(const Vec3& position) const
+Proof FreeSpace::proof_at_every_yaw(const Vec3& position) const
 {
     Mask mask(*impl_);
-    mask.face_every_yaw();
-    mask.set_y(position.y());
-    return mask.at(position.x(), position.z());
+    mask.set_every_yaw();
+    return mask.proof_of(position);
 }
 
 }  // namespace spawnfield

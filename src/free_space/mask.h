@@ -18,19 +18,22 @@ struct FreeSpace::Impl {
     std::vector<Footprint> every_yaw;
 };
 
-/// Asks the mask, and keeps what neighbouring poses share: the footprints at one rotation, and the cells that they
-/// cover from one row of poses. One for each thread.
+/// Proves poses free or blocked for one thread. Keeps what neighbouring poses share: the footprints at one rotation,
+/// and the cells that they cover from one row of poses (equal y).
 class Mask {
 public:
-    explicit Mask(const FreeSpace::Impl& space) : space_(space), raster_(space.bounds.impl()) {}
+    /// Upright at this yaw until another rotation is set.
+    explicit Mask(const FreeSpace::Impl& space, double yaw = 0) : space_(space), raster_(space.bounds.impl())
+    {
+        set_rotation(yaw);
+    }
 
-    void face(double yaw);  ///< upright
-    void face_every_yaw();
-    void face(const Mat3& rotation);  ///< any; if tilted, nothing is Blocked
-    void set_y(double y);             ///< of the poses to come, m
-    Proof at(double x, double z);
-    /// Whether something solid on the vertical line through the origin, whose spans these are, is inside a part for
-    /// certain.
+    void set_rotation(double yaw);            ///< upright
+    void set_rotation(const Mat3& rotation);  ///< any; poses of a tilted robot are never Blocked
+    void set_every_yaw();                     ///< upright: proofs hold for every yaw
+    Proof proof_of(const Vec3& position);
+    /// Returns whether something solid on the vertical line through the origin, whose spans these are, is certainly
+    /// inside a part.
     bool is_pierced(std::span<const Span> spans, double z) const;
 
 private:
@@ -42,7 +45,7 @@ private:
     struct OpenTile {
         BoundsTile tile;
         int col = -1, row = -1;
-        double a_quantum = 0;  ///< 1 / quantum of the tile
+        double inverse_quantum = 0;  ///< of the tile
     };
     struct CellRange {
         int first, last;  ///< columns, inclusive
@@ -51,11 +54,10 @@ private:
     struct Pass {
         std::size_t level;
         bool is_ready = false;
-        std::vector<CoverRow> rows;  ///< one after the other
-        double low = 0, high = 0;    ///< of all rows
-        std::vector<CellRange>
-            left;  ///< of each row: outside of it, all is proven free at the last pose that was asked for
-        std::array<OpenTile, 4> tiles;  ///< the last ones that were looked at: all that a part straddles
+        std::vector<CoverRow> rows;        ///< one after the other
+        double low = 0, high = 0;          ///< of all rows
+        std::vector<CellRange> undecided;  ///< of each row: cells outside of this are proven free at the last pose
+        std::array<OpenTile, 4> tiles;     ///< the last ones that were looked at: all that a part straddles
     };
     struct Part {
         Footprint footprint;
@@ -66,18 +68,19 @@ private:
 
     void set_footprints(const std::vector<Footprint>& footprints, double cosine, double sine);
     void choose_passes(Part& part) const;
+    void set_y(double y);
     void cover(const Part& part, Pass& pass) const;
     const OpenTile& tile_of(Pass& pass, int col, int row) const;
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
     bool is_clear(const Part& part, Pass& pass, double x, double z) const;
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
-    Proof at(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const;
+    Proof proof_of(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const;
 
     const FreeSpace::Impl& space_;
     const SolidBounds::Impl& raster_;
     std::vector<Part> parts_;
-    double y_ = 0;
+    double y_ = std::numeric_limits<double>::quiet_NaN();  ///< of the last pose, for which rows of cells are ready
 };
 
 }  // namespace spawnfield

@@ -57,6 +57,8 @@ Map read_map(const fs::path& folder)
 
 TerrainMap read_terrain(const Map& map)
 {
+    if (map.folder.empty())
+        return rasterize_terrain(map.geometry, frame_around(map.bounds, map.resolution), 0, {}, map.z_limits);
     const MapYaml yaml = read_map_yaml(map.folder);
     const fs::path file = map.folder / "terrain.tiff";
     check_size(map.folder, listed(yaml, "terrain.tiff"));
@@ -73,6 +75,7 @@ std::vector<Floor> floors_of(const Map& map) { return map.floors ? *map.floors :
 
 OccupancyTree read_occupancy(const Map& map)
 {
+    if (map.folder.empty()) return build_occupancy(map.geometry, map.bounds, map.occupancy_resolution);
     const MapYaml yaml = read_map_yaml(map.folder);
     check_size(map.folder, listed(yaml, "occupancy.bt"));
     check_sum(map.folder, listed(yaml, "occupancy.bt"));

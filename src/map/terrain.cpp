@@ -131,18 +131,18 @@ int TerrainMap::layers() const
 
 HeightImage page_image(const TerrainMap& terrain, const std::string& name)
 {
-    HeightImage image = HeightImage::Constant(terrain.frame.rows, terrain.frame.cols, nothing);
+    HeightImage image(terrain.frame.rows, terrain.frame.cols);
     const TerrainMap::Page* page = terrain.find(name);
     if (page == nullptr) return image;
     HeightImage tile(TerrainMap::tile, TerrainMap::tile);
     for (std::size_t t = 0; t < page->tiles.size(); ++t) {
         if (page->tiles[t] == empty_tile()) continue;
-        inflate_floats(page->tiles[t], TerrainMap::tile, {tile.data(), page_tile_cells});
+        inflate_floats(page->tiles[t], TerrainMap::tile, tile.values);
         const int row = int(t) / terrain.tile_cols() * TerrainMap::tile,
                   col = int(t) % terrain.tile_cols() * TerrainMap::tile;
         const int rows = std::min(TerrainMap::tile, terrain.frame.rows - row),
                   cols = std::min(TerrainMap::tile, terrain.frame.cols - col);
-        image.block(row, col, rows, cols) = tile.topLeftCorner(rows, cols);
+        for (int r = 0; r < rows; ++r) std::copy_n(&tile(r, 0), cols, &image(row + r, col));
     }
     return image;
 }
@@ -153,11 +153,12 @@ HeightImage highest_within(const TerrainMap& terrain, const ZRange& z)
     if (z.is_unlimited()) return out;
     constexpr double float_step = 1e-6;  // share of a height by which rounding to float32 may change it
     const auto is_within = [&](float height) { return z.contains(height, std::abs(double(height)) * float_step); };
-    out = out.unaryExpr([&](float height) { return is_within(height) ? height : nothing; });
+    for (float& height : out.values)
+        if (!is_within(height)) height = nothing;
     for (int k = 1; k < terrain.layers(); ++k) {  // from the top down: the first layer within z is kept
         const HeightImage page = page_image(terrain, "height." + std::to_string(k));
-        for (Eigen::Index i = 0; i < out.size(); ++i)
-            if (std::isnan(out.data()[i]) && is_within(page.data()[i])) out.data()[i] = page.data()[i];
+        for (std::size_t i = 0; i < out.values.size(); ++i)
+            if (std::isnan(out.values[i]) && is_within(page.values[i])) out.values[i] = page.values[i];
     }
     return out;
 }

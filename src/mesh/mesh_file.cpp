@@ -5,6 +5,7 @@
 #include "mesh/mesh_checks.h"
 #include "mesh/mesh_file.h"
 #include "mesh/obj_text.h"
+#include "mesh/point_numbers.h"
 #include "mesh/printing_units.h"
 
 #include <spawnfield/error.h>
@@ -23,21 +24,11 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <unordered_map>
 
 namespace spawnfield {
 namespace {
 
 using Mat4 = Eigen::Matrix4d;
-
-struct PointHash {
-    std::size_t operator()(const std::array<float, 3>& p) const
-    {
-        std::size_t hash = 0;
-        for (const float x : p) hash = hash * 1000003 + std::hash<float>{}(x);
-        return hash;
-    }
-};
 
 Mat4 matrix_of(const aiMatrix4x4& m)
 {
@@ -155,8 +146,7 @@ public:
 private:
     std::uint32_t vertex(const aiVector3D& v)
     {
-        const std::array<float, 3> key{v.x + 0.0f, v.y + 0.0f, v.z + 0.0f};  // -0 becomes 0
-        const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(node_.vertices.size()));
+        const auto [index, is_new] = numbers_.add(v.x, v.y, v.z);
         if (is_new) {
             const Eigen::Vector4d point = transform_ * Eigen::Vector4d(v.x, v.y, v.z, 1);
             if (!point.allFinite())
@@ -164,14 +154,14 @@ private:
                                            ", " + number(v.z) + "), needs finite coordinates");
             node_.vertices.push_back(point.head<3>());
         }
-        return entry->second;
+        return index;
     }
 
     FileMesh::Node& node_;
     const Mat4 transform_;
     const bool mirrored_;
     const std::string file_;
-    std::unordered_map<std::array<float, 3>, std::uint32_t, PointHash> index_;
+    PointNumbers<float> numbers_;
 };
 
 /// Returns the vertices, moved by the morph targets with their default weights; empty if all weights are 0. Source:

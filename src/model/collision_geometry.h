@@ -38,7 +38,7 @@ struct CollisionBody {
 };
 
 /// Returns the names joined as in "house::link::collision" (SDFormat's scoped names).
-std::string scoped_name(const CollisionBody& body);
+SPAWNFIELD_MODULE_API std::string scoped_name(const CollisionBody& body);
 
 /// Returns the shape of a box, sphere, cylinder or capsule, and of an ellipsoid that is a sphere; empty for other
 /// geometry.

@@ -28,11 +28,12 @@ struct Joint {
 /// 0. Adds a notice for a joint that is out of its limits without being given. Throws ArgumentError for a given joint
 /// that is not in the file, is fixed, mimics another or is out of its limits; FileError for a joint that mimics itself
 /// or a joint that does not exist.
-std::map<std::string, double> joint_positions(const std::string& file, const std::vector<Joint>& joints,
-                                              const std::vector<JointPosition>& given,
-                                              std::vector<std::string>& notices);
+SPAWNFIELD_MODULE_API std::map<std::string, double> joint_positions(const std::string& file,
+                                                                    const std::vector<Joint>& joints,
+                                                                    const std::vector<JointPosition>& given,
+                                                                    std::vector<std::string>& notices);
 
 /// Returns the motion of a joint by `value` along or about its axis. The axis has length 1 and is in the joint's frame.
-Pose joint_motion(Joint::Motion motion, const Vec3& axis, double value);
+SPAWNFIELD_MODULE_API Pose joint_motion(Joint::Motion motion, const Vec3& axis, double value);
 
 }  // namespace spawnfield

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <filesystem>
 #include <set>
 #include <string>
@@ -16,11 +18,11 @@ public:
     /// Sets the order of the search: first the given folders, then those of GZ_SIM_RESOURCE_PATH,
     /// IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH, then the folders above `file` and the `models` folders in them,
     /// and last the built-in models (built_in_models.h).
-    ModelPaths(const std::vector<Path>& given, const Path& file);
+    SPAWNFIELD_MODULE_API ModelPaths(const std::vector<Path>& given, const Path& file);
 
     /// Returns the existing file or folder that the URI names, or an empty path. `folder` is that of the file that
     /// contains the URI.
-    Path find(const std::string& uri, const Path& folder);
+    SPAWNFIELD_MODULE_API Path find(const std::string& uri, const Path& folder);
 
     /// Returns the URIs for which find() returned a built-in model, because nothing on disk has that name.
     const std::set<std::string>& built_in() const { return built_in_; }

@@ -9,7 +9,7 @@ namespace spawnfield {
 
 /// Reads an SDF file as XML. Throws FileError with the line unless it is XML with an <sdf> root element and a known
 /// version.
-std::unique_ptr<tinyxml2::XMLDocument> read_sdf_xml(const std::filesystem::path& file);
+SPAWNFIELD_MODULE_API std::unique_ptr<tinyxml2::XMLDocument> read_sdf_xml(const std::filesystem::path& file);
 
 /// Returns the file that an <include> with this <uri> means in a file of `folder`; empty if it is not found. Throws
 /// FileError for a folder that is not a model's.
@@ -28,7 +28,7 @@ std::string text_of_missing(const MissingIncludes::value_type& missing);
 /// Checks `document`, which is the content of `file`, and each file that it includes at any depth, once. Returns the
 /// missing includes. Throws FileError for numbers that are malformed (sdf_numbers.h), and for a file that includes
 /// itself, because libsdformat would run until memory ends; the message shows the circle.
-MissingIncludes check_includes(const std::filesystem::path& file, const tinyxml2::XMLDocument& document,
-                               ModelPaths& paths);
+SPAWNFIELD_MODULE_API MissingIncludes check_includes(const std::filesystem::path& file,
+                                                     const tinyxml2::XMLDocument& document, ModelPaths& paths);
 
 }  // namespace spawnfield

@@ -53,14 +53,15 @@ void add_obstacles(const TerrainMap& terrain, HeightImage& ground)
 {
     if (!terrain.find("obstacle")) return;
     const HeightImage obstacle = page_image(terrain, "obstacle");
-    ground = obstacle.isNaN().select(ground, obstacle);
+    for (std::size_t i = 0; i < obstacle.values.size(); ++i)
+        if (!std::isnan(obstacle.values[i])) ground.values[i] = obstacle.values[i];
 }
 
 /// Returns the heights of the cells at the pixels' centres; NaN beyond the frame.
 cv::Mat_<float> samples(const GridFrame& frame, const HeightImage& page, const View& view, cv::Size pixels)
 {
     cv::Mat_<float> result(pixels, std::numeric_limits<float>::quiet_NaN());
-    if (page.size() == 0) return result;
+    if (page.values.empty()) return result;
     for (int row = 0; row < pixels.height; ++row) {
         const double y = view.y0 + view.height - (row + 0.5) / pixels.height * view.height;
         const int from_below = cell_index((y - frame.y0) / frame.cell, frame.rows);
@@ -180,7 +181,6 @@ Image picture_of(const Scenery& scenery, const std::string& title, int pixels)
 constexpr double cut_height = 2;         // m above a floor; things that begin higher are not drawn, as in a floor plan
 constexpr double most_hidden = 0.25;     // largest share of hidden ground for one picture from above
 constexpr std::size_t most_floors = 16;  // with a picture
-constexpr float no_height = std::numeric_limits<float>::quiet_NaN();
 
 /// Returns a frame of cells for a picture or an estimate, with at most `most` cells along the longer side.
 GridFrame coarse_frame(const Map& map, int most)
@@ -232,7 +232,7 @@ double hidden_share(const Map& map, const std::vector<Floor>& floors)
 Scenery floor_plan(const Map& map, const Floor& floor, int pixels)
 {
     const GridFrame grid = coarse_frame(map, 2 * pixels);
-    HeightImage terrain = HeightImage::Constant(grid.rows, grid.cols, no_height), solid = terrain, water = terrain;
+    HeightImage terrain(grid.rows, grid.cols), solid = terrain, water = terrain;
     visit_columns(map.geometry, grid, [&](int row, int col, const ColumnView& column) {
         const double ground = ground_of(column, floor, map), level = std::isnan(ground) ? floor.height : ground;
         terrain(row, col) = solid(row, col) = float(ground);

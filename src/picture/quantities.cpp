@@ -60,8 +60,7 @@ std::vector<Place> valid_places(const ShownPoses& shown, const RasterResult& ras
             const int from_below = cell_index((grid.y_of(grid.rows - 1 - row) - frame.y0) / frame.cell, frame.rows);
             if (cell_col < 0 || from_below < 0) continue;
             const double layer = shown.at(row, col)->z - (raster.dims == 2 ? raster.offset : 0);
-            out.push_back(
-                {row, col, frame.rows - 1 - from_below, cell_col, layer, HeightImage::Constant(3, 3, no_value)});
+            out.push_back({row, col, frame.rows - 1 - from_below, cell_col, layer, HeightImage(3, 3, no_value)});
         }
     return out;
 }
@@ -72,8 +71,7 @@ void take_nearer(Place& place, const HeightImage& heights)
     for (int dr = -1; dr <= 1; ++dr)
         for (int dc = -1; dc <= 1; ++dc) {
             const int row = place.cell_row + dr, col = place.cell_col + dc;
-            if (row < 0 || col < 0 || row >= heights.rows() || col >= heights.cols() ||
-                !std::isfinite(heights(row, col)))
+            if (row < 0 || col < 0 || row >= heights.rows || col >= heights.cols || !std::isfinite(heights(row, col)))
                 continue;
             float& nearest = place.around(dr + 1, dc + 1);
             if (!(std::abs(heights(row, col) - place.layer) >= std::abs(nearest - place.layer)))

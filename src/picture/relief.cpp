@@ -18,8 +18,8 @@ struct Blocks {
 
 float mean_height(const HeightImage& heights, int row, int col, int cells)
 {
-    const int last_row = std::min<int>(row + cells, static_cast<int>(heights.rows()));
-    const int last_col = std::min<int>(col + cells, static_cast<int>(heights.cols()));
+    const int last_row = std::min(row + cells, heights.rows);
+    const int last_col = std::min(col + cells, heights.cols);
     double sum = 0;
     int count = 0;
     for (int r = row; r < last_row; ++r)
@@ -49,9 +49,9 @@ Blocks blocks_in(const GridFrame& frame, const HeightImage& heights, const View&
     blocks.left = col0;
     blocks.top = row0;
     const auto count = [&](int first, int last) { return (last - first + blocks.cells - 1) / blocks.cells; };
-    blocks.heights.resize(count(row0, row1), count(col0, col1));
-    for (int row = 0; row < blocks.heights.rows(); ++row)
-        for (int col = 0; col < blocks.heights.cols(); ++col)
+    blocks.heights = HeightImage(count(row0, row1), count(col0, col1));
+    for (int row = 0; row < blocks.heights.rows; ++row)
+        for (int col = 0; col < blocks.heights.cols; ++col)
             blocks.heights(row, col) = mean_height(heights, row0 + row * blocks.cells, col0 + col * blocks.cells,
                                                    blocks.cells);
     return blocks;
@@ -62,8 +62,8 @@ double exaggeration(const HeightImage& heights, double cell)
 {
     constexpr double level = 0.01, cliff = 1, wanted = 0.35, largest = 6;
     double sum = 0, count = 0;
-    for (int row = 0; row < heights.rows(); ++row)
-        for (int col = 0; col < heights.cols(); ++col) {
+    for (int row = 0; row < heights.rows; ++row)
+        for (int col = 0; col < heights.cols; ++col) {
             const double slope = gradient(heights, row, col, cell).norm();
             if (!(slope > level)) continue;
             sum += std::min(slope, cliff);
@@ -112,7 +112,7 @@ Eigen::Vector2d gradient(const HeightImage& heights, int row, int col, double ce
     if (!std::isfinite(here)) return {nan, nan};
     const auto change = [&](int row_step, int col_step) {
         const auto height = [&](int r, int c) {
-            const bool inside = r >= 0 && r < heights.rows() && c >= 0 && c < heights.cols();
+            const bool inside = r >= 0 && r < heights.rows && c >= 0 && c < heights.cols;
             return inside && std::isfinite(heights(r, c)) ? static_cast<double>(heights(r, c)) : nan;
         };
         double after = height(row + row_step, col + col_step), before = height(row - row_step, col - col_step);
@@ -127,9 +127,9 @@ Eigen::Vector2d gradient(const HeightImage& heights, int row, int col, double ce
 cv::Mat_<float> relief(const GridFrame& frame, const HeightImage& heights, const View& view, cv::Size pixels)
 {
     cv::Mat_<float> light(pixels, 0.0f);
-    if (heights.size() == 0) return light;
+    if (heights.values.empty()) return light;
     const Blocks blocks = blocks_in(frame, heights, view, view.width / pixels.width);
-    const int rows = static_cast<int>(blocks.heights.rows()), cols = static_cast<int>(blocks.heights.cols());
+    const int rows = blocks.heights.rows, cols = blocks.heights.cols;
     if (rows == 0 || cols == 0) return light;
 
     const double cell = frame.cell * blocks.cells, steeper = exaggeration(blocks.heights, cell);

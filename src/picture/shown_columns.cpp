@@ -52,8 +52,7 @@ ShownPoses shown_poses(const RasterResult& raster, const HeatmapOptions& options
 
 bool is_aerial_without_pose(const RasterResult& raster)
 {
-    return raster.dims == 3 && raster.counts[static_cast<std::size_t>(Verdict::Aerial)] > 0 &&
-           raster.area.is_everywhere();
+    return raster.dims == 3 && raster.counts[Verdict::Aerial] > 0 && raster.area.is_everywhere();
 }
 
 Kinds column_kinds(const ShownPoses& shown, const RasterResult& raster, const HeatmapOptions& options)

@@ -80,13 +80,15 @@ Json z_json(const ZRange& z)
 }
 
 /// Returns the settings that `sample` and `search` share. Limits that are infinite are left out.
-Json settings_json(const SpawnOptions& options, const Map& map, int axes)
+template <class Options>
+Json settings_json(const Options& options, const Judge& judge, int axes)
 {
     Json out = {{"count", options.count}, {"min_distance", options.min_distance}, {"seed", options.seed}};
     out["yaw"] = options.random_yaw ? Json("random") : Json(options.yaw);
-    out["bounds"] = bounds_json(options.bounds.is_empty() ? map.bounds : options.bounds, axes);
-    if (std::isfinite(options.max_water_depth)) out["max_water_depth"] = options.max_water_depth;
-    if (std::isfinite(options.max_slope)) out["max_slope"] = options.max_slope;
+    out["bounds"] = bounds_json(options.bounds.is_empty() ? judge.map().bounds : options.bounds, axes);
+    const JudgeOptions& limits = judge.options();
+    if (std::isfinite(limits.max_water_depth)) out["max_water_depth"] = limits.max_water_depth;
+    if (std::isfinite(limits.max_slope)) out["max_slope"] = limits.max_slope;
     for (const Region& region : options.area.within) out["region"].push_back(region.name);
     for (const Region& region : options.area.keep_out) out["keep_out"].push_back(region.name);
     for (const AvoidedPoints& group : options.avoid)
@@ -96,8 +98,8 @@ Json settings_json(const SpawnOptions& options, const Map& map, int axes)
 
 std::string finished(Json out, const std::optional<VerdictCounts>& counts, std::span<const RobotStart> robots)
 {
-    for (std::size_t verdict = 0; counts && verdict < verdict_count; ++verdict)
-        out["counts"][to_string(Verdict(verdict))] = (*counts)[verdict];
+    if (counts)
+        for (const Verdict verdict : all_verdicts) out["counts"][to_string(verdict)] = (*counts)[verdict];
     out["poses"] = Json::array();
     for (const RobotStart& robot : robots) out["poses"].push_back(pose_json(robot));
     return json_text(out, 2) + "\n";
@@ -151,8 +153,7 @@ std::vector<std::string> replaced_columns(const PoseTable& table)
     return names;
 }
 
-std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements,
-                         const std::vector<Part>& parts)
+std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Map& map)
 {
     std::vector<std::uint8_t> replaced;
     for (const std::string& name : csv_fields(table.header)) replaced.push_back(is_verdict_column(name));
@@ -169,9 +170,7 @@ std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& j
         else
             text += ',';
         text += ',';
-        if (judged.hit)
-            text += judged.hit->part == CollisionHit::occupancy ? "occupancy"
-                                                                : csv_quoted(parts[judged.hit->part].name);
+        if (judged.hit) text += csv_quoted(name_of(*judged.hit, map));
         text += '\n';
     }
     return text;
@@ -231,26 +230,26 @@ std::string spawns_csv(const SpawnList& list)
     return text;
 }
 
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
                         const SampleOptions& options)
 {
-    Json settings = settings_json(options, map, 2);
-    settings["offset"] = options.offset.value_or(auto_offset(robot));
+    Json settings = settings_json(options, judge, 2);
+    settings["offset"] = options.offset.value_or(auto_offset(judge.robot()));
     if (!options.z.is_unlimited()) settings["z"] = z_json(options.z);
     settings["layers"] = layers_json(options.layers);
-    Json out = json_head("sample", map, robot, std::move(settings));
+    Json out = json_head("sample", judge.map(), judge.robot(), std::move(settings));
     out["full"] = list.is_full;
     out["undecided_area"] = list.undecided_area;
     return finished(std::move(out), list.counts, robots);
 }
 
-std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Map& map, const Robot& robot,
+std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
                         const SearchOptions& options)
 {
-    Json settings = settings_json(options, map, 3);
-    settings["max_height"] = options.max_height;
+    Json settings = settings_json(options, judge, 3);
+    settings["max_height"] = judge.options().max_height;
     settings["max_failures"] = options.max_failures;
-    return finished(json_head("search", map, robot, std::move(settings)), list.counts, robots);
+    return finished(json_head("search", judge.map(), judge.robot(), std::move(settings)), list.counts, robots);
 }
 
 std::string poses_json(std::span<const RobotStart> robots, const Map& map, const Robot& robot)

@@ -4,7 +4,6 @@
 #include <spawnfield/thesis.h>
 
 #include <array>
-#include <numeric>
 #include <optional>
 
 namespace spawnfield {
@@ -68,8 +67,7 @@ ThesisCounts write_thesis_locations(const std::filesystem::path& folder, const R
     for (std::size_t i = 0; i < thesis_class_count; ++i)
         if (air || ThesisClass(i) != ThesisClass::Aerial) files[i].emplace(folder / thesis_files[i]);
     constexpr std::uint64_t often = 1 << 16;  // poses
-    const std::uint64_t all = air ? std::accumulate(raster.counts.begin(), raster.counts.end(), std::uint64_t{0})
-                                  : raster.poses.size();
+    const std::uint64_t all = air ? raster.counts.total() : raster.poses.size();
     std::uint64_t done = 0;
     for_each_pose(raster, air, [&](const RasterPose& pose) {
         if (++done % often == 0 && progress) progress(double(done) / double(all));
@@ -97,18 +95,14 @@ std::string thesis_stats(const std::vector<std::pair<std::string, std::string>>&
                          const ThesisCounts& written)
 {
     ThesisCounts classes{};
-    std::uint64_t poses = 0;
-    for (std::size_t v = 0; v < verdict_count; ++v) {
-        classes[std::size_t(thesis_class_of(Verdict(v)))] += counts[v];
-        poses += counts[v];
-    }
+    for (const Verdict verdict : all_verdicts) classes[std::size_t(thesis_class_of(verdict))] += counts[verdict];
     std::string text;
     const auto line = [&](const std::string& name, const std::string& value) { text += name + ": " + value + "\n"; };
     for (const auto& [name, value] : settings) line(name, value);
-    line("Judged", std::to_string(poses));
+    line("Judged", std::to_string(counts.total()));
     for (std::size_t i = 0; i < thesis_class_count; ++i) line(class_names[i], std::to_string(classes[i]));
-    for (std::size_t v = verdict_count; v-- > 0;)
-        line(std::string("Verdict ") + to_string(Verdict(v)), std::to_string(counts[v]));
+    for (auto verdict = all_verdicts.rbegin(); verdict != all_verdicts.rend(); ++verdict)
+        line(std::string("Verdict ") + to_string(*verdict), std::to_string(counts[*verdict]));
     for (std::size_t i = 0; i < thesis_class_count; ++i)
         line(std::string("Lines of ") + thesis_files[i], std::to_string(written[i]));
     return text;

@@ -31,11 +31,6 @@ std::string listed(const Vec3& values)
     return rounded(values.x()) + ", " + rounded(values.y()) + ", " + rounded(values.z());
 }
 
-std::string hit_name(const VerdictReport& report, const CollisionHit& hit)
-{
-    return hit.part == CollisionHit::occupancy ? "occupancy" : report.map.geometry.parts()[hit.part].name;
-}
-
 double height_above(const VerdictReport& report, std::size_t index)
 {
     return report.table.poses[index].position.z() - report.judgements[index].ground->height;
@@ -43,17 +38,18 @@ double height_above(const VerdictReport& report, std::size_t index)
 
 VerdictCounts counts_of(const VerdictReport& report)
 {
-    VerdictCounts counts{};
-    for (const Judgement& judged : report.judgements) ++counts[std::size_t(judged.verdict)];
+    VerdictCounts counts;
+    for (const Judgement& judged : report.judgements) ++counts[judged.verdict];
     return counts;
 }
 
 Json settings_json(const VerdictReport& report)
 {
-    Json out = {{"max_height", report.options.max_height}};
-    if (std::isfinite(report.options.max_water_depth)) out["max_water_depth"] = report.options.max_water_depth;
-    if (std::isfinite(report.options.max_slope)) out["max_slope"] = report.options.max_slope;
-    out["collision"] = report.octree ? "octree" : "geometry";
+    const JudgeOptions& options = report.judge.options();
+    Json out = {{"max_height", options.max_height}};
+    if (std::isfinite(options.max_water_depth)) out["max_water_depth"] = options.max_water_depth;
+    if (std::isfinite(options.max_slope)) out["max_slope"] = options.max_slope;
+    out["collision"] = options.obstacles == Obstacles::Voxels ? "octree" : "geometry";
     return out;
 }
 
@@ -78,7 +74,7 @@ Json verdict_json(const VerdictReport& report, std::size_t index, const std::str
     out["verdict"] = to_string(judged.verdict);
     out["ground"] = judged.ground ? Json(judged.ground->height) : Json();
     out["height_above"] = judged.ground ? Json(height_above(report, index)) : Json();
-    out["hit"] = judged.hit ? Json(hit_name(report, *judged.hit)) : Json();
+    out["hit"] = judged.hit ? Json(name_of(*judged.hit, report.judge.map())) : Json();
     out["columns"] = fields_json(report, index, columns);
     return out;
 }
@@ -104,7 +100,7 @@ public:
         printer_.OpenElement("testsuites");
         push_counts("spawnfield check");
         printer_.OpenElement("testsuite");
-        push_counts("spawnfield check " + report_.map.name);
+        push_counts("spawnfield check " + report_.judge.map().name);
         push("skipped", "0");
         push_properties();
         const std::vector<std::string> names = pose_names(report_.table);
@@ -124,7 +120,7 @@ private:
     /// to run.
     void push_counts(const std::string& name)
     {
-        const std::uint64_t valid = counts_of(report_)[std::size_t(Verdict::Valid)], all = report_.judgements.size();
+        const std::uint64_t valid = counts_of(report_)[Verdict::Valid], all = report_.judgements.size();
         push("name", name);
         push("tests", std::to_string(all));
         push("failures", std::to_string(all - valid));
@@ -144,8 +140,8 @@ private:
     {
         printer_.OpenElement("properties");
         push_property("version", version());
-        push_property("map", report_.map.name);
-        push_property("map_hash", report_.map.hash);
+        push_property("map", report_.judge.map().name);
+        push_property("map_hash", report_.judge.map().hash);
         push_property("robot", robot_name());
         const Json settings = settings_json(report_);
         for (const auto& [name, value] : settings.items())
@@ -157,13 +153,13 @@ private:
     {
         const Verdict verdict = report_.judgements[index].verdict;
         printer_.OpenElement("testcase");
-        push("classname", report_.map.name + "." + robot_name());
+        push("classname", report_.judge.map().name + "." + robot_name());
         push("name", name);
         push("time", "0");
         if (verdict != Verdict::Valid) {
             printer_.OpenElement("failure");
             push("type", to_string(verdict));
-            push("message", described(report_, index));
+            push("message", report_.judge.describe(report_.table.poses[index], report_.judgements[index]));
             printer_.PushText(details(index).c_str());
             printer_.CloseElement();
         }
@@ -184,12 +180,16 @@ private:
                     " m below the origin\n";
         else
             text += "no ground below the origin\n";
-        if (judged.hit) text += "hit " + xml_text(hit_name(report_, *judged.hit)) + "\n";
+        if (judged.hit) text += "hit " + xml_text(name_of(*judged.hit, report_.judge.map())) + "\n";
         return text;
     }
 
     /// Returns the robot's name, or "robot" if it has none.
-    std::string robot_name() const { return report_.robot.name.empty() ? "robot" : report_.robot.name; }
+    std::string robot_name() const
+    {
+        const std::string& name = report_.judge.robot().name;
+        return name.empty() ? "robot" : name;
+    }
 
     void flush()
     {
@@ -218,28 +218,12 @@ std::vector<std::string> pose_names(const PoseTable& table)
     return names;
 }
 
-std::string described(const VerdictReport& report, std::size_t index)
-{
-    const Judgement& judged = report.judgements[index];
-    const std::string verdict = to_string(judged.verdict);
-    switch (judged.verdict) {
-    case Verdict::Outside: return verdict + " the map's bounds";
-    case Verdict::Aerial:
-        if (!judged.ground) return verdict + ": no ground below the origin";
-        return verdict + ": " + rounded(height_above(report, index)) + " m above the ground, the limit is " +
-               rounded(report.options.max_height) + " m";
-    case Verdict::OffTerrain:
-        return verdict + ": the ground is " + report.map.geometry.parts()[judged.ground->part].name;
-    case Verdict::Collision: return judged.hit ? verdict + " with " + hit_name(report, *judged.hit) : verdict;
-    default: return verdict;
-    }
-}
-
 void write_verdicts_json(const VerdictReport& report, const Sink& sink)
 {
-    Json head = json_head("check", report.map, report.robot, settings_json(report), "spawnfield-verdicts/1");
+    Json head = json_head("check", report.judge.map(), report.judge.robot(), settings_json(report),
+                          "spawnfield-verdicts/1");
     const VerdictCounts counts = counts_of(report);
-    for (std::size_t v = 0; v < verdict_count; ++v) head["counts"][to_string(Verdict(v))] = counts[v];
+    for (const Verdict verdict : all_verdicts) head["counts"][to_string(verdict)] = counts[verdict];
     std::string text = json_text(head, 2);
     text.erase(text.rfind("\n}"));
     text += ",\n  \"poses\": [";

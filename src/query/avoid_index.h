@@ -6,7 +6,7 @@
 
 namespace spawnfield {
 
-/// The points of SpawnOptions::avoid, ready for look-ups: a hash grid for each distance.
+/// The points of SearchOptions::avoid, ready for look-ups: a hash grid for each distance.
 class AvoidIndex {
 public:
     /// Keeps only the points that are near enough to matter within the x and y of `box`.

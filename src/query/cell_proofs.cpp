@@ -23,7 +23,8 @@ struct CellProofs::Prism {
 /// One cell under proof.
 class CellProofs::Cell {
 public:
-    Cell(const CellProofs& proofs, const Rect& rect) : proofs_(proofs), rect_(rect), facets_(proofs.map_.geometry, rect)
+    Cell(const CellProofs& proofs, const Rect& rect)
+        : proofs_(proofs), rect_(rect), facets_(proofs.shared_.map.geometry, rect)
     {
     }
 
@@ -162,9 +163,9 @@ private:
 
     bool is_submerged(std::size_t b) const
     {
-        const SampleOptions& options = proofs_.options_;
         const Interval& band = bands_[b];
-        const bool any_depth = std::isinf(options.max_water_depth);
+        const double max_water_depth = proofs_.shared_.options.max_water_depth;
+        const bool any_depth = std::isinf(max_water_depth);
         // Whatever terrain is the ground of a pose must lie under the water: the layer, or one between that and the
         // origin.
         double highest = band.top;
@@ -174,7 +175,7 @@ private:
         if (facets_.has_too_many || (!any_depth && proofs_.offset_ < 0)) return false;
         return covers(facets_.all, rect_, [&](const Facet& facet) {
             if (!facet.water || facet.z.bottom < highest) return false;
-            return any_depth || (!facet.filled && facet.z.top <= band.bottom + options.max_water_depth);
+            return any_depth || (!facet.filled && facet.z.top <= band.bottom + max_water_depth);
         });
     }
 
@@ -182,8 +183,8 @@ private:
     {
         const Pose pose{{rect_.centre_x(), rect_.centre_y(), (band.bottom + band.top) / 2 + proofs_.offset_},
                         Mat3::Identity()};
-        for (const DrawnIn& drawn_in : proofs_.drawn_in_)  // from the largest robot on
-            if ((band.top - band.bottom) / 2 <= drawn_in.half_height) return !drawn_in.checker.is_free(pose);
+        for (const Eroded& eroded : proofs_.eroded_)  // from the largest robot on
+            if ((band.top - band.bottom) / 2 <= eroded.half_height) return !eroded.checker.is_free(pose);
         return false;
     }
 
@@ -205,7 +206,7 @@ private:
     {
         const auto holds = [&](const Interval& span) { return span.bottom <= z.bottom && span.top >= z.top; };
         bool in_primitive = false, meets_other = false;
-        proofs_.map_.geometry.impl().visit_in(
+        proofs_.shared_.map.geometry.impl().visit_in(
             rect.low_x, rect.low_y, rect.high_x, rect.high_y, [&](const Tile& tile, std::uint32_t element) {
                 const ElementBox& box = tile.boxes[element];
                 const Label label = tile.label(element);
@@ -220,7 +221,7 @@ private:
                 });
             });
         if (in_primitive || meets_other) return in_primitive;
-        const Column column = column_at(proofs_.map_.geometry, rect.centre_x(), rect.centre_y());
+        const Column column = column_at(proofs_.shared_.map.geometry, rect.centre_x(), rect.centre_y());
         return std::any_of(column.spans.begin(), column.spans.end(), [&](const Span& span) {
             return span.sealed && holds({span.bottom, span.top});
         });
@@ -248,7 +249,7 @@ private:
     {
         const Rect there{rect_.low_x + shift.x(), rect_.low_y + shift.y(), rect_.high_x + shift.x(),
                          rect_.high_y + shift.y()};
-        const CellFacets ground(proofs_.map_.geometry, there);
+        const CellFacets ground(proofs_.shared_.map.geometry, there);
         if (ground.has_too_many) return false;
         const double low = proofs_.offset_ + prism.bottom + slack, high = proofs_.offset_ + prism.top - slack;
         return covers(ground.all, there, [&](const Facet& facet) {
@@ -288,17 +289,17 @@ private:
     std::vector<Interval> bands_;
 };
 
-CellProofs::CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options,
-                       const AreaIndex& area, const SpacedPoints& taken, const AvoidIndex& avoided)
-    : map_(map), options_(options), offset_(*options.offset),
-      ground_z_(
-          overlap(overlap(map.z_limits, options.z), ZRange{map.z_limits.low - offset_, map.z_limits.high - offset_})),
-      layer_z_(overlap(map.z_limits, options.z)), area_(area), taken_(taken), avoided_(avoided)
+CellProofs::CellProofs(const Judge::Impl& shared, const SampleOptions& options, const AreaIndex& area,
+                       const SpacedPoints& taken, const AvoidIndex& avoided)
+    : shared_(shared), options_(options), offset_(*options.offset),
+      ground_z_(overlap(overlap(shared.map.z_limits, options.z),
+                        ZRange{shared.map.z_limits.low - offset_, shared.map.z_limits.high - offset_})),
+      layer_z_(overlap(shared.map.z_limits, options.z)), area_(area), taken_(taken), avoided_(avoided)
 {
-    if (checker.uses_occupancy()) return;  // not what the proofs see
+    if (shared.options.obstacles != Obstacles::Geometry) return;  // not what the proofs see
     const std::vector<Footprint> prints = options.random_yaw
-                                              ? yaw_free_footprints(checker.robot())
-                                              : footprints(checker.robot(), rotation_from_rpy(0, 0, options.yaw), true);
+                                              ? yaw_free_footprints(shared.robot)
+                                              : footprints(shared.robot, rotation_from_rpy(0, 0, options.yaw), true);
     for (const Footprint& print : prints)
         if (!print.inner.polygon.empty()) prisms_.push_back({print.inner.polygon, print.inner.bottom, print.inner.top});
 }
@@ -307,33 +308,33 @@ CellProofs::~CellProofs() = default;
 
 void CellProofs::set_half_cell(double half_x, double half_y)
 {
-    drawn_in_.clear();
+    eroded_.clear();
     for (const double share : {0.01, 0.1, 0.4, 1.0}) {
         const double half_height = share * std::max(half_x, half_y) + slack;
-        Robot robot = drawn_in(half_x, half_y, half_height);
-        if (!robot.parts.empty()) drawn_in_.push_back({half_height, CollisionChecker(map_.geometry, robot)});
+        Robot robot = eroded(half_x, half_y, half_height);
+        if (!robot.parts.empty()) eroded_.push_back({half_height, CollisionChecker(shared_.map.geometry, robot)});
     }
 }
 
 /// All of it is within the robot wherever that is moved by up to these lengths.
-Robot CellProofs::drawn_in(double half_x, double half_y, double half_height) const
+Robot CellProofs::eroded(double half_x, double half_y, double half_height) const
 {
     Robot robot;
-    robot.name = "drawn in";
+    robot.name = "eroded";
     for (const Prism& prism : prisms_) {
-        Polygon2 left = prism.polygon;
-        for (std::size_t k = 0; k < prism.polygon.size() && !left.empty(); ++k) {
+        Polygon2 rest = prism.polygon;
+        for (std::size_t k = 0; k < prism.polygon.size() && !rest.empty(); ++k) {
             const Vec2 &p = prism.polygon[k], &q = prism.polygon[(k + 1) % prism.polygon.size()];
             const Vec2 normal = outward_normal(p, q);
-            left = cut(left, normal,
+            rest = cut(rest, normal,
                        normal.dot(p) - half_x * std::abs(normal.x()) - half_y * std::abs(normal.y()) - slack);
         }
         const double bottom = prism.bottom + half_height, top = prism.top - half_height;
         constexpr double least = 1e-3;  // m; flatter or thinner bodies are not worth it
-        left = convex_hull(std::move(left));
-        if (left.size() < 3 || area_of(left) < least * least || !(top - bottom > least)) continue;
+        rest = convex_hull(std::move(rest));
+        if (rest.size() < 3 || area_of(rest) < least * least || !(top - bottom > least)) continue;
         std::vector<Vec3> corners;
-        for (const Vec2& p : left) {
+        for (const Vec2& p : rest) {
             corners.emplace_back(p.x(), p.y(), bottom);
             corners.emplace_back(p.x(), p.y(), top);
         }

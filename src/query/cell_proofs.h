@@ -3,6 +3,7 @@
 #include "query/area_index.h"
 #include "query/cell_facets.h"
 #include "query/avoid_index.h"
+#include "query/pose_judge.h"
 
 #include <spawnfield/query.h>
 
@@ -15,14 +16,14 @@ namespace spawnfield {
 ///
 /// A cell's layers lie between heights that the planes of its terrain give. At each such height, as far as layers are
 /// ground there, all poses must be off the area, outside, too close to one taken or avoided position, under water, or
-/// collide: the robot drawn in by half a cell does at its centre, or some point of the robot is inside the ground at
+/// collide: the robot eroded by half a cell does at its centre, or some point of the robot is inside the ground at
 /// every pose. Lines within 1e-9 m of an upright face are left aside. What is not proven stays open: cells half on an
 /// obstacle as flat as the offset, for one. A footing that is asked for (max_slope) only takes valid poses away, so
 /// what is closed without it is closed with it; cells where all is steep stay open.
 class CellProofs {
 public:
     /// options.offset is given. `taken` may grow between calls of is_closed, never during them.
-    CellProofs(const Map& map, const CollisionChecker& checker, const SampleOptions& options, const AreaIndex& area,
+    CellProofs(const Judge::Impl& shared, const SampleOptions& options, const AreaIndex& area,
                const SpacedPoints& taken, const AvoidIndex& avoided);
     ~CellProofs();
 
@@ -35,13 +36,13 @@ private:
     class Cell;
     /// The robot's inside, smaller by half a cell and by half a range of heights: where it collides, the robot does at
     /// every pose of the cell.
-    struct DrawnIn {
+    struct Eroded {
         double half_height;  ///< m
         CollisionChecker checker;
     };
-    Robot drawn_in(double half_x, double half_y, double half_height) const;
+    Robot eroded(double half_x, double half_y, double half_height) const;
 
-    const Map& map_;
+    const Judge::Impl& shared_;
     const SampleOptions& options_;
     const double offset_;
     const ZRange ground_z_;  ///< layers elsewhere are no ground, or give poses that are outside
@@ -49,8 +50,8 @@ private:
     const AreaIndex& area_;
     const SpacedPoints& taken_;
     const AvoidIndex& avoided_;
-    std::vector<Prism> prisms_;      ///< within the robot at every yaw that is drawn, relative to its origin
-    std::vector<DrawnIn> drawn_in_;  ///< from the lowest range of heights on
+    std::vector<Prism> prisms_;   ///< within the robot at every yaw that is drawn, relative to its origin
+    std::vector<Eroded> eroded_;  ///< from the lowest range of heights on
 };
 
 }  // namespace spawnfield

@@ -3,8 +3,6 @@
 #include "free_space/footprint.h"
 #include "robot/contacts.h"
 
-#include <spawnfield/error.h>
-
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -45,20 +43,14 @@ std::optional<double> surface_below(const std::vector<Interval>& solids, double 
 
 }  // namespace
 
-void check_max_slope(const char* function, const QueryOptions& options)
-{
-    const double slope = options.max_slope;
-    if (slope != std::numeric_limits<double>::infinity() && !(slope > 0 && slope < std::numbers::pi / 2))
-        throw ArgumentError(function, "max_slope", slope, "> 0 and < pi/2 rad, or infinite");
-}
-
 Footing::Footing(const Geometry& geometry, const Robot& robot, double max_slope)
     : geometry_(&geometry), robot_(&robot), points_(contacts_of(robot)), lowest_(robot.bounds().min.z()),
       steepest_(std::tan(max_slope))
 {
+    set_rotation(Mat3::Identity());
 }
 
-void Footing::face(const Mat3& rotation)
+void Footing::set_rotation(const Mat3& rotation)
 {
     double lowest = lowest_;
     if (rotation(2, 2) != 1) {
@@ -68,7 +60,7 @@ void Footing::face(const Mat3& rotation)
     std::vector<Vec3> turned;
     for (const Vec3& point : points_) turned.push_back(rotation * point);
     contacts_.clear();
-    looked_at_.reset();
+    columns_at_.reset();
     if (!span_area(turned)) return;
 
     const Vec3 sum = std::accumulate(turned.begin(), turned.end(), Vec3(Vec3::Zero()));
@@ -83,18 +75,19 @@ void Footing::face(const Mat3& rotation)
     }
 }
 
-void Footing::look_at(double x, double y)
+void Footing::set_columns(double x, double y)
 {
-    if (looked_at_ == Vec2(x, y)) return;
-    looked_at_ = Vec2(x, y);
+    if (columns_at_ == Vec2(x, y)) return;
+    columns_at_.reset();  // stays so if a tile is damaged
     for (Contact& contact : contacts_)
         join_solids(column_at(*geometry_, x + contact.shift.x(), y + contact.shift.y()), contact.solids);
+    columns_at_ = Vec2(x, y);
 }
 
-Verdict Footing::at(const Vec3& position, double ground)
+Verdict Footing::judge(const Vec3& position, double ground)
 {
     if (contacts_.empty()) return Verdict::Unstable;
-    look_at(position.x(), position.y());
+    set_columns(position.x(), position.y());
     rises_.clear();
     bool all_in_reach = true;
     for (const Contact& contact : contacts_) {

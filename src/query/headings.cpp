@@ -24,8 +24,7 @@ Progress part_of(const Progress& progress, int part, int parts)
 
 }  // namespace
 
-HeadingRaster raster_at_headings(const Map& map, const CollisionChecker& checker, const RasterOptions& options,
-                                 int headings)
+HeadingRaster raster_at_headings(const Judge& judge, const RasterOptions& options, int headings)
 {
     if (headings < 1 || headings > 255) throw ArgumentError("raster_at_headings", "headings", headings, "1 .. 255");
     if (options.dims != 2) throw ArgumentError("raster_at_headings", "dims", options.dims, "2");
@@ -37,7 +36,7 @@ HeadingRaster raster_at_headings(const Map& map, const CollisionChecker& checker
         RasterOptions turned = options;
         turned.yaw = 2 * std::numbers::pi * k / headings;
         turned.progress = part_of(options.progress, headings - 1 - k, headings);
-        out.raster = raster(map, checker, turned);
+        out.raster = raster(judge, turned);
         exact_checks += out.raster.exact_checks;
         tallies.resize(out.raster.poses.size());
         for (std::size_t p = 0; p < tallies.size(); ++p) ++tallies[p][std::size_t(out.raster.poses[p].verdict)];
@@ -46,7 +45,7 @@ HeadingRaster raster_at_headings(const Map& map, const CollisionChecker& checker
     out.raster.counts = {};
     for (std::size_t p = 0; p < tallies.size(); ++p) {
         out.raster.poses[p].verdict = merged(tallies[p]);
-        ++out.raster.counts[std::size_t(out.raster.poses[p].verdict)];
+        ++out.raster.counts[out.raster.poses[p].verdict];
         out.valid_headings.push_back(tallies[p][std::size_t(Verdict::Valid)]);
     }
     return out;

@@ -1,11 +1,55 @@
-#include "base/parallel.h"
-#include "query/judging.h"
+#include "query/pose_judge.h"
+
+#include <spawnfield/error.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
 #include <numeric>
 
 namespace spawnfield {
 namespace {
+
+bool has_max_slope(const JudgeOptions& options) { return options.max_slope != std::numeric_limits<double>::infinity(); }
+
+const JudgeOptions& checked(const JudgeOptions& options)
+{
+    const auto require = [](bool is_good, const char* name, double value, const char* limit) {
+        if (!is_good) throw ArgumentError("Judge", name, value, limit);
+    };
+    require(options.max_height >= 0, "max_height", options.max_height, ">= 0 m");
+    require(options.max_water_depth >= 0, "max_water_depth", options.max_water_depth, ">= 0 m");
+    require(!has_max_slope(options) || (options.max_slope > 0 && options.max_slope < std::numbers::pi / 2), "max_slope",
+            options.max_slope, "> 0 and < pi/2 rad, or infinite");
+    return options;
+}
+
+Robot checked(Robot robot)
+{
+    if (robot.parts.empty()) throw ArgumentError("Judge", "the robot has no parts, needs at least one");
+    return robot;
+}
+
+CollisionChecker checker_of(const Map& map, const Robot& robot, Obstacles obstacles)
+{
+    if (obstacles == Obstacles::Geometry) return {map.geometry, robot};
+    return {std::make_shared<const OccupancyTree>(read_occupancy(map)), robot};
+}
+
+std::optional<FreeSpace> mask_of(const Map& map, const Robot& robot, const JudgeOptions& options)
+{
+    const bool is_usable = !options.exhaustive && options.obstacles == Obstacles::Geometry &&
+                           !map.solid_bounds.impl().levels.empty();
+    return is_usable ? std::optional<FreeSpace>(std::in_place, map.solid_bounds, robot) : std::nullopt;
+}
+
+std::optional<Footing> footing_of(const Map& map, const Robot& robot, const JudgeOptions& options)
+{
+    return has_max_slope(options) ? std::optional<Footing>(std::in_place, map.geometry, robot, options.max_slope)
+                                  : std::nullopt;
+}
 
 bool is_submerged(const ColumnView& column, double ground, double max_water_depth)
 {
@@ -14,34 +58,41 @@ bool is_submerged(const ColumnView& column, double ground, double max_water_dept
     });
 }
 
-/// The verdict table up to collisions; true if those are to decide.
-bool judge_ground(const Map& map, const ColumnView& column, const Vec3& position, const QueryOptions& options,
+/// Decides the verdict up to collisions. Returns true if those are to decide.
+bool judge_ground(const Judge::Impl& shared, double max_height, const ColumnView& column, const Vec3& position,
                   Judgement& out)
 {
     out.ground = ground_below(column, position.z());
     out.verdict = Verdict::Outside;
-    if (!is_within(map, position)) return false;
+    if (!is_within(shared.map, position)) return false;
     out.verdict = Verdict::Aerial;
-    if (!out.ground || position.z() - out.ground->height > options.max_height + touch_tolerance) return false;
+    if (!out.ground || position.z() - out.ground->height > max_height + touch_tolerance) return false;
     out.verdict = Verdict::OffTerrain;
     if (!out.ground->terrain) return false;
     out.verdict = Verdict::Submerged;
-    return !is_submerged(column, out.ground->height, options.max_water_depth);
+    return !is_submerged(column, out.ground->height, shared.options.max_water_depth);
 }
 
-void check_exactly(const CollisionChecker& checker, const Pose& pose, bool with_hit, Judgement& out)
-{
-    out.exact_check = true;
-    if (with_hit) out.hit = checker.find_hit(pose);
-    const bool is_free = with_hit ? !out.hit : checker.is_free(pose);
-    out.verdict = is_free ? Verdict::Valid : Verdict::Collision;
-}
+/// Adds the time from its construction to its destruction, if there is something to add it to.
+class TimedPart {
+public:
+    explicit TimedPart(ExactTime* total) : total_(total), start_(total ? Clock::now() : Clock::time_point{}) {}
+    TimedPart(const TimedPart&) = delete;
+    TimedPart& operator=(const TimedPart&) = delete;
+    ~TimedPart()
+    {
+        if (total_) total_->nanoseconds += std::chrono::nanoseconds(Clock::now() - start_).count();
+    }
 
-bool has_limit(const QueryOptions& options) { return options.max_slope != std::numeric_limits<double>::infinity(); }
+private:
+    using Clock = std::chrono::steady_clock;
+    ExactTime* const total_;
+    const Clock::time_point start_;
+};
 
-/// Numbers of poses, neighbours after each other, so that they find each other's tiles in the cache. Counting sort over
-/// a grid around them.
-std::vector<std::uint32_t> in_neighbourhoods(const std::vector<Pose>& poses)
+/// Pose indices, sorted so that neighbours are adjacent and find each other's tiles in the cache. Counting sort over a
+/// grid around them.
+std::vector<std::uint32_t> in_neighbourhoods(std::span<const Pose> poses)
 {
     constexpr std::size_t side = 256;
     Bounds bounds;
@@ -49,7 +100,8 @@ std::vector<std::uint32_t> in_neighbourhoods(const std::vector<Pose>& poses)
     const auto bin_of = [&](const Vec3& p) {
         const auto along = [&](int axis) {
             const double share = (p[axis] - bounds.min[axis]) / (bounds.max[axis] - bounds.min[axis]);
-            return share > 0 ? std::size_t(std::min(share, 1.0) * (side - 1)) : 0;  // also where the share is no number
+            return share > 0 ? std::size_t(std::min(share, 1.0) * (side - 1))
+                             : 0;  // also where the share is not a number
         };
         return along(1) * side + along(0);
     };
@@ -62,118 +114,156 @@ std::vector<std::uint32_t> in_neighbourhoods(const std::vector<Pose>& poses)
 
 }  // namespace
 
-Judgement judge(const Map& map, const CollisionChecker& checker, const Column& column, const Pose& pose,
-                const QueryOptions& options)
+Judge::Impl::Impl(Map map_, Robot robot_, const JudgeOptions& options_)
+    : map(std::move(map_)), robot(checked(std::move(robot_))), options(checked(options_)),
+      checker(checker_of(map, robot, options.obstacles)), space(mask_of(map, robot, options)),
+      footing(footing_of(map, robot, options))
 {
-    check_max_slope("judge", options);
-    Judgement out;
-    if (judge_ground(map, column, pose.position, options, out)) check_exactly(checker, pose, true, out);
-    if (out.verdict != Verdict::Valid || !has_limit(options)) return out;
-    Footing footing(map.geometry, checker.robot(), options.max_slope);
-    footing.face(pose.rotation);
-    out.verdict = footing.at(pose.position, out.ground->height);
-    return out;
 }
 
-Judging::Judging(const Map& map, const CollisionChecker& checker, const QueryOptions& options)
-    : map_(map), checker_(checker), options_(options)
+PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw) : PoseJudge(shared, yaw, shared.options.max_height) {}
+
+PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw, double max_height)
+    : shared_(shared), max_height_(max_height), footing_(shared.footing), rotation_(rotation_from_rpy(0, 0, yaw)),
+      yaw_(yaw)
 {
-    if (!options.exhaustive && !checker.uses_occupancy() && !map.solid_bounds.impl().levels.empty())
-        space_.emplace(map.solid_bounds, checker.robot());
-    if (has_limit(options)) footing_.emplace(map.geometry, checker.robot(), options.max_slope);
+    if (shared.space) mask_.emplace(shared.space->impl(), yaw);
+    if (footing_) footing_->set_rotation(rotation_);
 }
 
-PoseJudge::PoseJudge(const Judging& judging) : judging_(judging), footing_(judging.footing_)
+void PoseJudge::set_rotation(double yaw)
 {
-    if (judging.space_) mask_.emplace(judging.space_->impl());
-}
-
-void PoseJudge::face(double yaw)
-{
+    if (yaw == yaw_) return;
+    yaw_ = yaw;
     rotation_ = rotation_from_rpy(0, 0, yaw);
-    if (mask_) mask_->face(yaw);
-    if (footing_) footing_->face(rotation_);
+    if (mask_) mask_->set_rotation(yaw);
+    if (footing_) footing_->set_rotation(rotation_);
 }
 
-void PoseJudge::face(const Mat3& rotation)
+void PoseJudge::set_rotation(const Mat3& rotation)
 {
+    if (rotation == rotation_ && std::isnan(yaw_)) return;
+    yaw_ = std::numeric_limits<double>::quiet_NaN();
     rotation_ = rotation;
-    if (footing_) footing_->face(rotation_);
-    if (!mask_) return;
-    if (rotation(2, 2) == 1)
-        mask_->face(std::atan2(rotation(1, 0), rotation(0, 0)));
-    else
-        mask_->face(rotation);
+    if (mask_) mask_->set_rotation(rotation_);
+    if (footing_) footing_->set_rotation(rotation_);
 }
 
-void PoseJudge::set_y(double y)
-{
-    y_ = y;
-    if (mask_) mask_->set_y(y);
-}
-
-Judgement PoseJudge::at(const ColumnView& column, double x, double z, bool with_hit)
+Judgement PoseJudge::judge(const ColumnView& column, const Vec3& position, bool with_hit)
 {
     Judgement out;
-    if (judge_ground(judging_.map_, column, {x, y_, z}, judging_.options_, out)) decide(column, x, z, with_hit, out);
-    if (footing_ && out.verdict == Verdict::Valid) out.verdict = footing_->at({x, y_, z}, out.ground->height);
+    if (judge_ground(shared_, max_height_, column, position, out)) decide(column, position, with_hit, out);
+    if (footing_ && out.verdict == Verdict::Valid) out.verdict = footing_->judge(position, out.ground->height);
     return out;
 }
 
-Judgement PoseJudge::collision(double x, double z, bool with_hit)
+Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
+{
+    read_column(shared_.map.geometry, position.x(), position.y(), column_);
+    return judge(column_, position, with_hit);
+}
+
+Judgement PoseJudge::judge_collision(const Vec3& position)
 {
     Judgement out;
-    decide({}, x, z, with_hit, out);
+    decide({}, position, false, out);
     return out;
 }
 
-void PoseJudge::decide(const ColumnView& column, double x, double z, bool with_hit, Judgement& out)
+void PoseJudge::decide(const ColumnView& column, const Vec3& position, bool with_hit, Judgement& out)
 {
     Proof proof = Proof::Candidate;
-    if (mask_ && mask_->is_pierced(column.spans, z))
+    if (mask_ && mask_->is_pierced(column.spans, position.z()))
         proof = Proof::Blocked;
     else if (mask_)
-        proof = mask_->at(x, z);
+        proof = mask_->proof_of(position);
     if (proof == Proof::Free)
         out.verdict = Verdict::Valid;
     else if (proof == Proof::Blocked && !with_hit)
         out.verdict = Verdict::Collision;
     else
-        decide_exactly({{x, y_, z}, rotation_}, with_hit, out);
+        check_exactly(position, with_hit, out);
 }
 
-void PoseJudge::decide_exactly(const Pose& pose, bool with_hit, Judgement& out)
+void PoseJudge::check_exactly(const Vec3& position, bool with_hit, Judgement& out) const
 {
-    using Clock = std::chrono::steady_clock;
-    const bool timed = judging_.options_.exact_time != nullptr;
-    const Clock::time_point start = timed ? Clock::now() : Clock::time_point{};
-    check_exactly(judging_.checker_, pose, with_hit, out);
-    if (timed) exact_time_ += Clock::now() - start;
+    const TimedPart timed(shared_.options.exact_time);
+    const Pose pose{position, rotation_};
+    out.exact_check = true;
+    if (with_hit) out.hit = shared_.checker.find_hit(pose);
+    const bool is_free = with_hit ? !out.hit : shared_.checker.is_free(pose);
+    out.verdict = is_free ? Verdict::Valid : Verdict::Collision;
 }
 
-PoseJudge::~PoseJudge()
+Judge::Judge(Map map, Robot robot, const JudgeOptions& options)
+    : impl_(std::make_shared<const Impl>(std::move(map), std::move(robot), options))
 {
-    if (judging_.options_.exact_time != nullptr) judging_.options_.exact_time->nanoseconds += exact_time_.count();
 }
 
-std::vector<Judgement> check_poses(const Map& map, const CollisionChecker& checker, const std::vector<Pose>& poses,
-                                   const QueryOptions& options)
+const Map& Judge::map() const { return impl_->map; }
+const Robot& Judge::robot() const { return impl_->robot; }
+const JudgeOptions& Judge::options() const { return impl_->options; }
+
+Judgement Judge::check(const Pose& pose) const
 {
-    check_max_slope("check_poses", options);
-    const Judging judging(map, checker, options);
+    PoseJudge& judge = impl_->pose_judges.local();
+    judge.set_rotation(pose.rotation);
+    return judge.judge(pose.position, true);
+}
+
+bool Judge::is_valid(const Pose& pose) const
+{
+    PoseJudge& judge = impl_->pose_judges.local();
+    judge.set_rotation(pose.rotation);
+    return judge.judge(pose.position).verdict == Verdict::Valid;
+}
+
+std::vector<Judgement> Judge::check(std::span<const Pose> poses, const RunOptions& options) const
+{
     std::vector<Judgement> out(poses.size());
     const std::vector<std::uint32_t> order = in_neighbourhoods(poses);
     constexpr std::size_t batch = 256;
     parallel_for((poses.size() + batch - 1) / batch, options.threads, options.progress, [&](std::size_t b) {
-        PoseJudge judge(judging);
+        PoseJudge judge(*impl_, 0);
         for (const std::uint32_t i : std::span(order).subspan(b * batch, std::min(batch, poses.size() - b * batch))) {
-            const Vec3& p = poses[i].position;
-            judge.face(poses[i].rotation);
-            judge.set_y(p.y());
-            out[i] = judge.at(column_at(map.geometry, p.x(), p.y()), p.x(), p.z(), true);
+            judge.set_rotation(poses[i].rotation);
+            out[i] = judge.judge(poses[i].position, true);
         }
     });
     return out;
+}
+
+namespace {
+
+/// Six digits are enough for people.
+std::string rounded(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value + 0.0);  // never -0
+    return text;
+}
+
+}  // namespace
+
+std::string Judge::describe(const Pose& pose, const Judgement& judgement) const
+{
+    const std::string verdict = to_string(judgement.verdict);
+    switch (judgement.verdict) {
+    case Verdict::Outside: return verdict + " the map's bounds";
+    case Verdict::Aerial:
+        if (!judgement.ground) return verdict + ": no ground below the origin";
+        return verdict + ": " + rounded(pose.position.z() - judgement.ground->height) +
+               " m above the ground, the limit is " + rounded(impl_->options.max_height) + " m";
+    case Verdict::OffTerrain:
+        return verdict + ": the ground is " + impl_->map.geometry.parts()[judgement.ground->part].name;
+    case Verdict::Collision: return judgement.hit ? verdict + " with " + name_of(*judgement.hit, impl_->map) : verdict;
+    default: return verdict;
+    }
+}
+
+std::string name_of(const CollisionHit& hit, const Map& map)
+{
+    return hit.part == CollisionHit::occupancy ? "occupancy" : map.geometry.parts()[hit.part].name;
 }
 
 }  // namespace spawnfield

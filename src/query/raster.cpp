@@ -1,7 +1,6 @@
 #include "base/chosen_bounds.h"
-#include "base/parallel.h"
 #include "query/area_index.h"
-#include "query/judging.h"
+#include "query/pose_judge.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/query.h>
@@ -53,10 +52,6 @@ void check(const RasterOptions& options)
         throw ArgumentError("raster", "step", options.step, "> 0 m");
     if (!(options.step_z >= 0) || !std::isfinite(options.step_z))
         throw ArgumentError("raster", "step_z", options.step_z, "> 0 m");
-    if (!(options.max_height >= 0)) throw ArgumentError("raster", "max_height", options.max_height, ">= 0 m");
-    if (!(options.max_water_depth >= 0))
-        throw ArgumentError("raster", "max_water_depth", options.max_water_depth, ">= 0 m");
-    check_max_slope("raster", options);
     check_ground("raster", options.z, options.offset);
     if (!std::isfinite(options.yaw)) throw ArgumentError("raster", "yaw", options.yaw, "a finite number, rad");
     if (!options.height_check && options.dims != 3)
@@ -72,10 +67,10 @@ void check(const RasterOptions& options)
         throw ArgumentError("raster", "snap needs the height check: collisions alone know no layers");
 }
 
-double chosen_offset(const Robot& robot, const RasterOptions& options)
+double chosen_offset(const Judge& judge, const RasterOptions& options)
 {
-    const double offset = options.offset.value_or(auto_offset(robot));
-    if (options.snap && !(offset >= 0 && offset <= options.max_height))
+    const double offset = options.offset.value_or(auto_offset(judge.robot()));
+    if (options.snap && !(offset >= 0 && offset <= judge.options().max_height))
         throw ArgumentError("raster", "offset", offset,
                             "0 .. max_height with snap: poses on their layers would be aerial");
     return offset;
@@ -86,7 +81,7 @@ using Steps = std::vector<int>;
 
 bool contains(const Steps& steps, int k) { return std::find(steps.begin(), steps.end(), k) != steps.end(); }
 
-/// Those in whose place a column's snapped poses stand, and those that stand at their very places.
+/// Steps that a column's snapped poses replace, and steps at their very places.
 Steps replaced_steps(const RasterGrid& grid, double offset, std::span<const RasterPose> column)
 {
     Steps out;
@@ -113,19 +108,17 @@ class RasterJudge {
 public:
     static constexpr int most_rows = 32, block = 128;  ///< of a strip; columns of a block
 
-    RasterJudge(const Map& map, const CollisionChecker& checker, const RasterOptions& options, const RasterGrid& grid,
-                double offset, double top)
-        : options_(options), grid_(grid), offset_(offset), top_(top),
-          ground_z_(overlap(map.z_limits, options.dims == 2 ? options.z : ZRange{})),
-          judging_(map, checker, query_options(options)), area_(options.area)
+    RasterJudge(const Judge::Impl& shared, const RasterOptions& options, const RasterGrid& grid, double offset,
+                double top)
+        : shared_(shared), options_(options), grid_(grid), offset_(offset), top_(top),
+          ground_z_(overlap(shared.map.z_limits, options.dims == 2 ? options.z : ZRange{})), area_(options.area)
     {
     }
 
     /// Rows first, first + 1, … of out.
     void judge_rows(int first, std::span<Row> out) const
     {
-        PoseJudge judge(judging_);
-        judge.face(options_.yaw);
+        PoseJudge judge(shared_, options_.yaw, max_height());
         for (int col = 0; col < grid_.cols; col += block) {
             const int cols = std::min(block, grid_.cols - col);
             if (area_.misses({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
@@ -133,25 +126,21 @@ public:
                 continue;
             Columns columns;
             if (options_.height_check)
-                columns = Columns(judging_.map().geometry,
+                columns = Columns(shared_.map.geometry,
                                   {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
-            for (int j = 0; j < int(out.size()); ++j) {
-                judge.set_y(grid_.y_of(first + j));
+            for (int j = 0; j < int(out.size()); ++j)
                 for (int i = 0; i < cols; ++i) {
                     const double x = grid_.x_of(col + i), y = grid_.y_of(first + j);
                     if (area_.contains({x, y})) judge_column(judge, columns, i, j, x, y, out[std::size_t(j)]);
                 }
-            }
         }
     }
 
 private:
-    static QueryOptions query_options(const RasterOptions& options)
+    /// A pose of a 2D raster is `offset` above its layer by definition.
+    double max_height() const
     {
-        QueryOptions out = options;
-        // A pose of a 2D raster is `offset` above its layer by definition.
-        if (options.dims == 2) out.max_height = std::numeric_limits<double>::infinity();
-        return out;
+        return options_.dims == 2 ? std::numeric_limits<double>::infinity() : shared_.options.max_height;
     }
 
     void judge_column(PoseJudge& judge, const Columns& columns, int i, int j, double x, double y, Row& out) const
@@ -165,7 +154,7 @@ private:
         if (options_.snap) layers(judge, column, x, y, out);
         const std::size_t steps = out.poses.size();
         const Steps replaced = replaced_steps(grid_, offset_, std::span(out.poses).subspan(first));
-        if (options_.height_check && judging_.map().bounds.contains_xy(x, y, touch_tolerance))
+        if (options_.height_check && shared_.map.bounds.contains_xy(x, y, touch_tolerance))
             heights(judge, column, replaced, x, y, out);
         else
             all_heights(judge, replaced, x, y, out);
@@ -190,7 +179,7 @@ private:
             if (options_.dims == 2 && !area_.contains({x, y}, height)) continue;
             if (options_.snap && !(height >= grid_.z0 - touch_tolerance && height <= top_ + touch_tolerance)) continue;
             const double z = height + offset_;
-            const Judgement judged = judge.at(column, x, z);
+            const Judgement judged = judge.judge(column, {x, y, z});
             out.exact_checks += judged.exact_check;
             out.poses.push_back({x, y, z, layer, judged.verdict, options_.snap});
         }
@@ -204,7 +193,7 @@ private:
         near.clear();
         for (const Span& span : column.spans) {
             const double first = std::ceil((span.top - grid_.z0) / grid_.step_z) - 1;
-            const double last = std::floor((span.top + options_.max_height - grid_.z0) / grid_.step_z) + 1;
+            const double last = std::floor((span.top + shared_.options.max_height - grid_.z0) / grid_.step_z) + 1;
             const int from = int(std::clamp(first, 0.0, double(grid_.heights)));
             const int to = int(std::clamp(last, -1.0, double(grid_.heights - 1)));
             for (int k = to; k >= from; --k) near.push_back(k);
@@ -230,7 +219,7 @@ private:
                 const std::int32_t layer = layer_of(column, ground_below(column, z));
                 if (layer < 0 || !options_.layers.includes(layer, int(ground_layers(column).size()))) continue;
             }
-            const Judgement judged = judge.at(column, x, z);
+            const Judgement judged = judge.judge(column, {x, y, z});
             out.exact_checks += judged.exact_check;
             if (judged.verdict == Verdict::Aerial)
                 out.aerial += every_layer;
@@ -246,7 +235,7 @@ private:
             if (contains(replaced, k)) continue;
             const double z = grid_.z_of(k);
             Judgement judged;  // outside
-            if (!options_.height_check) judged = judge.collision(x, z);
+            if (!options_.height_check) judged = judge.judge_collision({x, y, z});
             out.exact_checks += judged.exact_check;
             out.poses.push_back({x, y, z, -1, judged.verdict});
         }
@@ -266,16 +255,16 @@ private:
     {
         Steps out;
         for (int k = 0; k < grid_.heights; ++k)
-            if (!judging_.map().z_limits.contains(grid_.z_of(k), touch_tolerance)) out.push_back(k);
+            if (!shared_.map.z_limits.contains(grid_.z_of(k), touch_tolerance)) out.push_back(k);
         return out;
     }
 
+    const Judge::Impl& shared_;
     const RasterOptions& options_;
     const RasterGrid& grid_;
     const double offset_;
     const double top_;       ///< upper limit of the bounds' z
     const ZRange ground_z_;  ///< layers elsewhere are no ground
-    const Judging judging_;
     const AreaIndex area_;
     const Steps outside_ = steps_outside();
 };
@@ -291,33 +280,34 @@ int RasterGrid::step_above(double height) const
     return k;
 }
 
-RasterResult raster(const Map& map, const CollisionChecker& checker, const RasterOptions& options)
+RasterResult raster(const Judge& judge, const RasterOptions& options)
 {
     check(options);
+    const Map& map = judge.map();
     RasterResult out;
     out.dims = options.dims;
     out.yaw = options.yaw;
-    out.offset = chosen_offset(checker.robot(), options);
+    out.offset = chosen_offset(judge, options);
     out.area = options.area;
     if (options.dims == 2) out.z = overlap(map.z_limits, options.z);
     const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
     out.grid = grid_of(bounds, options);
-    const RasterJudge judge(map, checker, options, out.grid, out.offset, bounds.max.z());
+    const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z());
     std::vector<Row> rows(std::size_t(out.grid.rows));
     // Without heights rows share nothing, and each takes long.
     const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
     const std::size_t strip = std::clamp<std::size_t>(rows.size() / std::size_t(4 * thread_count(options.threads)), 1,
                                                       most_rows);
     parallel_for((rows.size() + strip - 1) / strip, options.threads, options.progress, [&](std::size_t s) {
-        judge.judge_rows(int(s * strip), std::span(rows).subspan(s * strip, std::min(strip, rows.size() - s * strip)));
+        strips.judge_rows(int(s * strip), std::span(rows).subspan(s * strip, std::min(strip, rows.size() - s * strip)));
     });
 
     std::size_t total = 0;
     for (const Row& row : rows) total += row.poses.size();
     out.poses.reserve(total);
     for (Row& row : rows) {
-        for (const RasterPose& pose : row.poses) ++out.counts[std::size_t(pose.verdict)];
-        out.counts[std::size_t(Verdict::Aerial)] += row.aerial;
+        for (const RasterPose& pose : row.poses) ++out.counts[pose.verdict];
+        out.counts[Verdict::Aerial] += row.aerial;
         out.exact_checks += row.exact_checks;
         out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
         row = {};

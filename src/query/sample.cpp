@@ -26,8 +26,8 @@ constexpr std::size_t some_proofs = 1 << 19, proofs_per_point = 12;
 constexpr double next_to_nothing = 2e-5;  // of the region
 constexpr double smallest_cell = 0.0001;  // m
 
-/// A region in equal cells, of which some are left. They are split all at once, so that to draw one of them, and then a
-/// point of it, is to draw by area.
+/// A region in equal cells, of which some remain. They are split all at once, so that drawing one of them, and then a
+/// point in it, draws by area.
 class Cells {
 public:
     Cells(const Bounds& box, double min_distance) : box_(box), size_(box.max.head<2>() - box.min.head<2>())
@@ -38,21 +38,21 @@ public:
                                        std::sqrt(area / first_cells));
         cols_ = count(size_.x(), side);
         rows_ = count(size_.y(), side);
-        left_.reserve(std::size_t{cols_} * rows_);
+        cells_.reserve(std::size_t{cols_} * rows_);
         for (std::uint32_t row = 0; row < rows_; ++row)
-            for (std::uint32_t col = 0; col < cols_; ++col) left_.push_back({col, row});
+            for (std::uint32_t col = 0; col < cols_; ++col) cells_.push_back({col, row});
     }
 
-    std::size_t size() const { return left_.size(); }
+    std::size_t size() const { return cells_.size(); }
     double width() const { return size_.x() / cols_; }
     double height() const { return size_.y() / rows_; }
-    double area() const { return double(left_.size()) * width() * height(); }
+    double area() const { return double(cells_.size()) * width() * height(); }
 
     double region_area() const { return size_.x() * size_.y(); }
 
     Rect at(std::size_t i) const
     {
-        const auto [col, row] = left_[i];
+        const auto [col, row] = cells_[i];
         const auto x = [&](std::uint32_t c) { return std::min(box_.max.x(), box_.min.x() + c * width()); };
         const auto y = [&](std::uint32_t r) { return std::min(box_.max.y(), box_.min.y() + r * height()); };
         return {x(col), y(row), x(col + 1), y(row + 1)};
@@ -65,19 +65,19 @@ public:
         cols_ *= 2;
         rows_ *= 2;
         std::vector<Cell> out;
-        out.reserve(4 * left_.size());
-        for (const auto& [col, row] : left_)
+        out.reserve(4 * cells_.size());
+        for (const auto& [col, row] : cells_)
             for (std::uint32_t k = 0; k < 4; ++k) out.push_back({2 * col + k % 2, 2 * row + k / 2});
-        left_ = std::move(out);
+        cells_ = std::move(out);
     }
 
     /// Keeps those whose flag is 0.
     void drop(const std::vector<std::uint8_t>& flags)
     {
         std::size_t kept = 0;
-        for (std::size_t i = 0; i < left_.size(); ++i)
-            if (flags[i] == 0) left_[kept++] = left_[i];
-        left_.resize(kept);
+        for (std::size_t i = 0; i < cells_.size(); ++i)
+            if (flags[i] == 0) cells_[kept++] = cells_[i];
+        cells_.resize(kept);
     }
 
 private:
@@ -92,7 +92,7 @@ private:
     const Bounds box_;
     const Vec2 size_;
     std::uint32_t cols_ = 1, rows_ = 1;
-    std::vector<Cell> left_;
+    std::vector<Cell> cells_;
 };
 
 Bounds within(const Bounds& box, Bounds limits)
@@ -106,11 +106,11 @@ Bounds within(const Bounds& box, Bounds limits)
 /// nothing. So each layer is drawn with equal density, however many there are above each other.
 class Sampler {
 public:
-    Sampler(const Map& map, const CollisionChecker& checker, const SampleOptions& options, std::size_t slots)
-        : map_(map), checker_(checker), options_(options), offset_(*options.offset),
-          ground_z_(overlap(map.z_limits, options.z)), judging_(map, checker, options), area_(options.area),
-          box_(overlap(chosen_bounds("sample", options.bounds, map.bounds, 2), options.area.bounds())), slots_(slots),
-          avoided_(options.avoid, box_), taken_(options.min_distance)
+    Sampler(const Judge& judge, const SampleOptions& options, std::size_t slots)
+        : shared_(judge.impl()), options_(options), offset_(*options.offset),
+          ground_z_(overlap(shared_.map.z_limits, options.z)), area_(options.area),
+          box_(overlap(chosen_bounds("sample", options.bounds, shared_.map.bounds, 2), options.area.bounds())),
+          slots_(slots), avoided_(options.avoid, box_), taken_(options.min_distance)
     {
     }
 
@@ -144,8 +144,8 @@ private:
             return std::size_t(
                 std::min<std::uint64_t>(most - so_far, batch_for(options_.count, out.spawns.size(), out.draws)));
         };
-        const auto look_at = [&](std::uint64_t index, SpawnJudge& judge) { return look(index, point, judge); };
-        next_ = draw_in_order(next_, judging_, share_found(options_, out), taken_, batch_size, look_at,
+        const auto look_at = [&](std::uint64_t index, PoseJudge& judge) { return look(index, point, judge); };
+        next_ = draw_in_order(next_, shared_, options_, out, taken_, batch_size, look_at,
                               [&](const Candidate& candidate) {
                                   ++out.draws;
                                   ++draws;
@@ -162,8 +162,8 @@ private:
     /// Goes on in the cells that are not proven full, as long as they can be split.
     void fill(SpawnList& out)
     {
-        Cells cells(within(box_, map_.bounds), options_.min_distance);
-        CellProofs proofs(map_, checker_, options_, area_, taken_.before(), avoided_);
+        Cells cells(within(box_, shared_.map.bounds), options_.min_distance);
+        CellProofs proofs(shared_, options_, area_, taken_.before(), avoided_);
         std::size_t proofs_made = 0;
         const auto point = [&](Draw& from) {
             const Rect cell = cells.at(std::min(cells.size() - 1, std::size_t(from.unit() * double(cells.size()))));
@@ -172,7 +172,7 @@ private:
         };
         for (bool is_last = false;;) {
             proofs_made += cells.size();
-            close(cells, proofs, out);
+            drop_closed(cells, proofs, out);
             if (is_last || cells.size() == 0) break;
             const std::size_t round = std::max<std::size_t>(256, cells.size());
             std::size_t found = round;
@@ -194,7 +194,7 @@ private:
 
     bool is_done(const SpawnList& out) const { return overfull_ || out.spawns.size() == options_.count; }
 
-    void close(Cells& cells, CellProofs& proofs, const SpawnList& out) const
+    void drop_closed(Cells& cells, CellProofs& proofs, const SpawnList& out) const
     {
         constexpr std::size_t chunk = 64;
         proofs.set_half_cell(cells.width() / 2, cells.height() / 2);
@@ -222,7 +222,7 @@ private:
     }
 
     template <class Point>
-    Candidate look(std::uint64_t index, const Point& point, SpawnJudge& judge)
+    Candidate look(std::uint64_t index, const Point& point, PoseJudge& judge)
     {
         Draw from(options_.seed, index);
         const Vec2 at = point(from);
@@ -231,7 +231,7 @@ private:
         out.spawn.yaw = draw_yaw(options_, from);
         out.off_area = !area_.contains(at);
         if (out.off_area) return out;
-        const Column column = column_at(map_.geometry, x, y);
+        const Column column = column_at(shared_.map.geometry, x, y);
         const std::vector<double> layers = chosen_layers(column, at);
         if (layers.size() > slots_) overfull_ = true;
         if (slot >= double(layers.size())) return out;
@@ -241,7 +241,8 @@ private:
         if (out.near_avoided) return out;
         out.clear = taken_.before().is_clear(out.spawn.position);
         if (!out.clear) return out;
-        out.set(judge.at(y, out.spawn.yaw).at(column, x, out.spawn.position.z()));
+        judge.set_rotation(out.spawn.yaw);
+        out.set(judge.judge(column, out.spawn.position));
         return out;
     }
 
@@ -255,7 +256,7 @@ private:
             ++out.too_close;
             return false;
         }
-        ++out.counts[std::size_t(candidate.verdict)];
+        ++out.counts[candidate.verdict];
         out.exact_checks += candidate.exact_check;
         if (candidate.verdict != Verdict::Valid) return false;
         taken_.add(candidate.spawn.position);
@@ -263,12 +264,10 @@ private:
         return true;
     }
 
-    const Map& map_;
-    const CollisionChecker& checker_;
+    const Judge::Impl& shared_;
     const SampleOptions& options_;
     const double offset_;
     const ZRange ground_z_;  ///< layers elsewhere are no ground
-    const Judging judging_;
     const AreaIndex area_;
     const Bounds box_;
     const std::size_t slots_;
@@ -280,18 +279,18 @@ private:
 
 }  // namespace
 
-SpawnList sample(const Map& map, const CollisionChecker& checker, const SampleOptions& wanted)
+SpawnList sample(const Judge& judge, const SampleOptions& wanted)
 {
     check_spawn_options("sample", wanted);
     check_ground("sample", wanted.z, wanted.offset);
     SampleOptions options = wanted;
-    options.offset = wanted.offset.value_or(auto_offset(checker.robot()));
-    check_offset("sample", *options.offset, options);
+    options.offset = wanted.offset.value_or(auto_offset(judge.robot()));
+    check_offset("sample", *options.offset, judge.options().max_height);
     const bool one = options.layers.kind != LayerChoice::Kind::All;
     // The map counts layers at cell centres only; where a point between them has more, all starts over with more slots.
-    for (std::size_t slots = one ? 1 : std::size_t(std::max(1, map.layers));; ++slots) {
+    for (std::size_t slots = one ? 1 : std::size_t(std::max(1, judge.map().layers));; ++slots) {
         SpawnList out;
-        if (Sampler(map, checker, options, slots).run(out)) return out;
+        if (Sampler(judge, options, slots).run(out)) return out;
     }
 }
 

@@ -11,8 +11,6 @@
 
 namespace spawnfield {
 
-namespace {
-
 void check_avoided(const char* function, const AvoidedPoints& group)
 {
     if (!(group.distance >= 0) || !std::isfinite(group.distance))
@@ -22,34 +20,17 @@ void check_avoided(const char* function, const AvoidedPoints& group)
             if (!std::isfinite(value)) throw ArgumentError(function, "avoid.points", value, "finite numbers, m");
 }
 
-}  // namespace
-
-void check_spawn_options(const char* function, const SpawnOptions& options)
-{
-    if (options.count < 1) throw ArgumentError(function, "count", double(options.count), ">= 1");
-    if (options.count > max_spawns)
-        throw ArgumentError(function, "count", double(options.count), "at most " + std::to_string(max_spawns));
-    if (!(options.min_distance >= 0) || !std::isfinite(options.min_distance))
-        throw ArgumentError(function, "min_distance", options.min_distance, ">= 0 m");
-    if (!(options.max_height >= 0)) throw ArgumentError(function, "max_height", options.max_height, ">= 0 m");
-    if (!(options.max_water_depth >= 0))
-        throw ArgumentError(function, "max_water_depth", options.max_water_depth, ">= 0 m");
-    for (const AvoidedPoints& group : options.avoid) check_avoided(function, group);
-    check_max_slope(function, options);
-    if (!std::isfinite(options.yaw)) throw ArgumentError(function, "yaw", options.yaw, "a finite number, rad");
-}
-
 void check_ground(const char* function, const ZRange& z, const std::optional<double>& offset)
 {
     if (!(z.low <= z.high)) throw ArgumentError(function, "z.high", z.high, "at least z.low");
     if (offset && !std::isfinite(*offset)) throw ArgumentError(function, "offset", *offset, "a finite number, m");
 }
 
-void check_offset(const char* function, double offset, const QueryOptions& options)
+void check_offset(const char* function, double offset, double max_height)
 {
-    if (offset > options.max_height + touch_tolerance)
+    if (offset > max_height + touch_tolerance)
         throw ArgumentError(function, "offset", offset,
-                            "at most max_height, " + number(options.max_height) + " m: such poses are aerial");
+                            "at most max_height, " + number(max_height) + " m: such poses are aerial");
 }
 
 double auto_offset(const Robot& robot)
@@ -62,7 +43,7 @@ bool is_in_flat_ground(const Robot& robot, double offset) { return offset + robo
 
 namespace {
 
-/// Poses that are so high above all that is solid that they are aerial whatever their column holds, by a coarse image
+/// Recognises poses so high above all that is solid that they are aerial whatever their column holds, by a coarse image
 /// of the highest solids.
 class FarAbove {
 public:
@@ -107,18 +88,18 @@ private:
 
 }  // namespace
 
-SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOptions& options)
+SpawnList search(const Judge& judge, const SearchOptions& options)
 {
     check_spawn_options("search", options);
     if (options.max_failures < 1) throw ArgumentError("search", "max_failures", double(options.max_failures), ">= 1");
     const AreaIndex area(options.area);
+    const Map& map = judge.map();
     const Bounds box = overlap(chosen_bounds("search", options.bounds, map.bounds), options.area.bounds());
-    const Judging judging(map, checker, options);
-    const FarAbove far_above(options.exhaustive ? nullptr : &map, options.max_height);
+    const FarAbove far_above(judge.options().exhaustive ? nullptr : &map, judge.options().max_height);
     const AvoidIndex avoided(options.avoid, box);
     TakenPoints checked(options.min_distance);
 
-    const auto look = [&](std::uint64_t index, SpawnJudge& judge) {
+    const auto look = [&](std::uint64_t index, PoseJudge& pose_judge) {
         Draw draw(options.seed, index);
         Candidate out;
         Vec3& p = out.spawn.position;
@@ -130,16 +111,18 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
         if (out.near_avoided) return out;
         out.clear = checked.before().is_clear(p);
         if (!out.clear) return out;
-        if (far_above.holds(p))
+        if (far_above.holds(p)) {
             out.verdict = Verdict::Aerial;
-        else
-            out.set(judge.at(p.y(), out.spawn.yaw).at(column_at(map.geometry, p.x(), p.y()), p.x(), p.z()));
+            return out;
+        }
+        pose_judge.set_rotation(out.spawn.yaw);
+        out.set(pose_judge.judge(p));
         return out;
     };
     SpawnList out;
     std::uint64_t failures = 0;
     const auto batch_size = [&](std::uint64_t draws) { return batch_for(options.count, out.spawns.size(), draws); };
-    draw_in_order(0, judging, share_found(options, out), checked, batch_size, look, [&](const Candidate& candidate) {
+    draw_in_order(0, judge.impl(), options, out, checked, batch_size, look, [&](const Candidate& candidate) {
         ++out.draws;
         ++failures;
         if (candidate.off_area) {
@@ -150,7 +133,7 @@ SpawnList search(const Map& map, const CollisionChecker& checker, const SearchOp
             ++out.too_close;
         } else {
             checked.add(candidate.spawn.position);
-            ++out.counts[std::size_t(candidate.verdict)];
+            ++out.counts[candidate.verdict];
             out.exact_checks += candidate.exact_check;
             if (candidate.verdict == Verdict::Valid) {
                 out.spawns.push_back(candidate.spawn);

@@ -1,13 +1,14 @@
 #pragma once
 
-#include "base/parallel.h"
 #include "query/draw.h"
-#include "query/judging.h"
+#include "query/pose_judge.h"
 #include "query/spaced_points.h"
 
+#include <spawnfield/error.h>
 #include <spawnfield/query.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace spawnfield {
@@ -21,10 +22,25 @@ inline Bounds overlap(Bounds box, const Bounds& other)
     return box;
 }
 
-/// Throws ArgumentError unless count, distances and bounds are in their limits.
-void check_spawn_options(const char* function, const SpawnOptions& options);
+/// Throws ArgumentError unless the distance and the points are in their limits.
+void check_avoided(const char* function, const AvoidedPoints& group);
 
-inline double draw_yaw(const SpawnOptions& options, Draw& draw)
+/// Throws ArgumentError unless count, distances and yaw are in their limits. `Options`, here and below: SearchOptions
+/// or SampleOptions.
+template <class Options>
+void check_spawn_options(const char* function, const Options& options)
+{
+    if (options.count < 1) throw ArgumentError(function, "count", double(options.count), ">= 1");
+    if (options.count > max_spawns)
+        throw ArgumentError(function, "count", double(options.count), "at most " + std::to_string(max_spawns));
+    if (!(options.min_distance >= 0) || !std::isfinite(options.min_distance))
+        throw ArgumentError(function, "min_distance", options.min_distance, ">= 0 m");
+    for (const AvoidedPoints& group : options.avoid) check_avoided(function, group);
+    if (!std::isfinite(options.yaw)) throw ArgumentError(function, "yaw", options.yaw, "a finite number, rad");
+}
+
+template <class Options>
+double draw_yaw(const Options& options, Draw& draw)
 {
     return options.random_yaw ? draw.uniform(-std::numbers::pi, std::numbers::pi) : options.yaw;
 }
@@ -44,24 +60,6 @@ struct Candidate {
         verdict = judgement.verdict;
         exact_check = judgement.exact_check;
     }
-};
-
-/// A PoseJudge that turns only when the yaw changes.
-class SpawnJudge {
-public:
-    explicit SpawnJudge(const Judging& judging) : judge_(judging) {}
-
-    PoseJudge& at(double y, double yaw)
-    {
-        if (!(yaw == yaw_)) judge_.face(yaw);
-        yaw_ = yaw;
-        judge_.set_y(y);
-        return judge_;
-    }
-
-private:
-    PoseJudge judge_;
-    double yaw_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Positions that others keep their distance from, when draws are looked at in batches: what was added since the batch
@@ -90,28 +88,31 @@ private:
     std::vector<Vec3> news_;
 };
 
-/// The share of the wanted spawns that were found, told to whoever waits: also while none are.
-inline Progress share_found(const SpawnOptions& options, const SpawnList& found)
+/// Returns a progress that reports the share of the wanted spawns that were found, also while none are.
+template <class Options>
+Progress share_found(const Options& options, const SpawnList& found)
 {
     if (!options.progress) return {};
     return [&](double) { options.progress(double(found.spawns.size()) / double(options.count)); };
 }
 
-/// Draws first, first + 1, … in batches that all cores judge ahead: look(index, judge) gives a Candidate. `take` gets
-/// them one by one in their order, and stops the work by returning false. `batch_size(draws)` tells how many to judge
-/// after so many; how far ahead they are judged never shows in the result. `progress` hears of it meanwhile. Returns
-/// the next draw's number.
-template <class BatchSize, class Look, class Take>
-std::uint64_t draw_in_order(std::uint64_t first, const Judging& judging, const Progress& progress, TakenPoints& taken,
-                            const BatchSize& batch_size, const Look& look, const Take& take)
+/// Makes draws first, first + 1, … in batches that several threads judge ahead: look(index, judge) returns a Candidate.
+/// `take` gets them one by one in their order, and ends the work by returning false. `batch_size(draws)` returns how
+/// many to judge after so many; how far ahead they are judged never shows in the result. Returns the number of the next
+/// draw.
+template <class Options, class BatchSize, class Look, class Take>
+std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, const Options& options,
+                            const SpawnList& found, TakenPoints& taken, const BatchSize& batch_size, const Look& look,
+                            const Take& take)
 {
     constexpr std::size_t chunk = 64;
     std::vector<Candidate> batch;
     for (std::uint64_t next = first;;) {
         taken.settle();
         batch.resize(batch_size(next - first));
-        parallel_for((batch.size() + chunk - 1) / chunk, judging.options().threads, progress, [&](std::size_t c) {
-            SpawnJudge judge(judging);
+        const Progress progress = share_found(options, found);
+        parallel_for((batch.size() + chunk - 1) / chunk, options.threads, progress, [&](std::size_t c) {
+            PoseJudge judge(shared, options.yaw);
             for (std::size_t i = c * chunk; i < std::min(batch.size(), (c + 1) * chunk); ++i)
                 batch[i] = look(next + i, judge);
         });
@@ -122,7 +123,7 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judging& judging, const P
     }
 }
 
-/// About as many draws as the spawns that are still wanted will take, by the share that gave one so far.
+/// Returns about as many draws as the spawns that are still wanted will take, by the share that gave one so far.
 inline std::size_t batch_for(std::size_t wanted, std::size_t found, std::uint64_t draws)
 {
     constexpr double smallest = 256, largest = 16384;

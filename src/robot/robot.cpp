@@ -4,6 +4,7 @@
 #include "base/yaml_map.h"
 #include "model/jointed_model.h"
 #include "robot/body_parts.h"
+#include "robot/hull.h"
 #include "robot/mesh_parts.h"
 
 #include <spawnfield/error.h>
@@ -192,16 +193,14 @@ std::vector<std::string> size_notices(const Robot& robot, const std::string& tex
     return {text + words + millimetre_advice(text)};
 }
 
-/// Throws FileError if the robot reaches more than 1000 m from its origin. The largest machines that drive are 200 m
-/// long, and at much larger distances rounding exceeds 1e-6 m.
+/// Throws FileError if the robot reaches more than farthest_robot_point from its origin.
 void check_reach(const Robot& robot, const std::string& text)
 {
-    constexpr double most = 1000;  // m
     const Bounds box = robot.bounds();
     const double reach = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-    if (reach <= most) return;
-    throw FileError(text, "reaches " + number(reach) + " m from its origin, needs at most " + number(most) +
-                              " m; is it in millimetres? " + millimetre_advice(text));
+    if (reach <= farthest_robot_point) return;
+    throw FileError(text, "reaches " + number(reach) + " m from its origin, needs at most " +
+                              number(farthest_robot_point) + " m; is it in millimetres? " + millimetre_advice(text));
 }
 
 }  // namespace

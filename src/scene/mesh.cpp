@@ -24,10 +24,9 @@ std::optional<Label> label_of(const std::string& node, const std::string& materi
 
 /// Returns whether a piece is filled. With Solid::Auto only a watertight piece is. A piece is never filled if one of
 /// its faces is ignored, or if some of them, but not all, are water.
-bool is_filled(const std::vector<Label>& labels, const std::vector<std::uint32_t>& faces, bool watertight,
-               MeshOptions::Solid solid)
+bool is_filled(const std::vector<Label>& labels, const std::vector<std::uint32_t>& faces, bool watertight, Solid solid)
 {
-    if (solid == MeshOptions::Solid::No || (solid == MeshOptions::Solid::Auto && !watertight)) return false;
+    if (solid == Solid::No || (solid == Solid::Auto && !watertight)) return false;
     const auto count = [&](Label label) {
         return std::count_if(faces.begin(), faces.end(), [&](std::uint32_t f) { return labels[f] == label; });
     };

@@ -5,6 +5,8 @@
 
 #include <spawnfield/scene.h>
 
+#include <spawnfield/scene_parts.h>
+
 #include <optional>
 #include <span>
 
@@ -26,7 +28,6 @@ struct FaceRule {
 
 /// How a mesh becomes part of a scene.
 struct MeshOptions {
-    enum class Solid { Auto, Yes, No };
     Pose pose;                  ///< scene_from_part
     Vec3 scale = Vec3::Ones();  ///< along the axes of the file, in addition to its unit
     char up = 0;                ///< 'x', 'y', 'z'; 0: that of the format, else z

@@ -84,9 +84,7 @@ MeshOptions read_mesh_options(const YamlMap& part, const SceneOptions& options)
     mesh.scale = part.scale();
     mesh.up = part.has("up") ? part.one_of("up", {"y", "z"}, "z")[0] : char{0};
     const std::string solid = part.one_of("solid", {"auto", "true", "false"}, "auto");
-    mesh.solid = solid == "auto"   ? MeshOptions::Solid::Auto
-                 : solid == "true" ? MeshOptions::Solid::Yes
-                                   : MeshOptions::Solid::No;
+    mesh.solid = solid == "auto" ? Solid::Auto : solid == "true" ? Solid::Yes : Solid::No;
     mesh.sides_up = part.one_of("sides", {"both", "up"}, "both") == "up";
     mesh.auto_slope = read_auto_slope(part, options);
     mesh.rules = face_rules(options.labels);

@@ -61,7 +61,7 @@ std::uint64_t digest_of(const RasterResult& raster)
     Digest digest;
     for (const RasterPose& pose : raster.poses)
         digest.add(pose.x).add(pose.y).add(pose.z).add(pose.layer).add(pose.verdict);
-    for (const std::uint64_t count : raster.counts) digest.add(count);
+    for (const Verdict verdict : all_verdicts) digest.add(raster.counts[verdict]);
     return digest.value();
 }
 
@@ -69,7 +69,7 @@ std::uint64_t digest_of(const SpawnList& spawns)
 {
     Digest digest;
     for (const Spawn& spawn : spawns.spawns) digest.add(spawn.position).add(spawn.yaw);
-    for (const std::uint64_t count : spawns.counts) digest.add(count);
+    for (const Verdict verdict : all_verdicts) digest.add(spawns.counts[verdict]);
     return digest.add(spawns.draws).add(spawns.too_close).value();
 }
 

@@ -300,15 +300,15 @@ struct PlainFcl::Impl {
 
     VerdictCounts judge_row(const RasterGrid& grid, int row, double max_height, bool height_check) const
     {
-        VerdictCounts counts{};
+        VerdictCounts counts;
         std::vector<Object> own = robot_copy();
         for (int i = 0; i < grid.cols; ++i)
             for (int k = grid.heights - 1; k >= 0; --k) {
                 const Pose pose{{grid.x_of(i), grid.y_of(row), grid.z_of(k)}, Mat3::Identity()};
                 if (height_check)
-                    ++counts[std::size_t(judge(own, pose, max_height))];
+                    ++counts[judge(own, pose, max_height)];
                 else
-                    ++counts[std::size_t(collides(own, pose) ? Verdict::Collision : Verdict::Valid)];
+                    ++counts[collides(own, pose) ? Verdict::Collision : Verdict::Valid];
             }
         return counts;
     }
@@ -352,9 +352,8 @@ VerdictCounts PlainFcl::raster_3d(const RasterGrid& grid, double max_height, boo
     std::vector<VerdictCounts> rows(std::size_t(grid.rows));
     parallel_for(rows.size(), threads, {},
                  [&](std::size_t j) { rows[j] = impl_->judge_row(grid, int(j), max_height, height_check); });
-    VerdictCounts counts{};
-    for (const VerdictCounts& row : rows)
-        for (std::size_t v = 0; v < verdict_count; ++v) counts[v] += row[v];
+    VerdictCounts counts;
+    for (const VerdictCounts& row : rows) counts += row;
     return counts;
 }
 

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
 
 using namespace spawnfield;
@@ -35,19 +34,6 @@ auto timed(const Work& work)
 std::uint64_t elements(const Scene& scene) { return scene.triangles.size() + scene.primitives.size(); }
 
 std::uint64_t cells(const GridFrame& frame) { return std::uint64_t(frame.rows) * std::uint64_t(frame.cols); }
-
-std::uint64_t total(const VerdictCounts& counts)
-{
-    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-}
-
-/// Alternative (a): FCL decides every pose, without the mask.
-template <class Options>
-Options exhaustive(Options options)
-{
-    options.exhaustive = true;
-    return options;
-}
 
 template <class Options>
 Options with_threads(Options options, int threads)
@@ -167,9 +153,11 @@ void Workbench::add_bakes(std::vector<Stage>& out)
 void Workbench::add_rasters(std::vector<Stage>& out)
 {
     const auto stage = [this](const std::string& name, const RasterOptions& options) {
-        Stage made{name, true, [this, options](int threads) { return raster(with_threads(options, threads)); }};
+        Stage made{name, true,
+                   [this, options](int threads) { return raster(judge(), with_threads(options, threads)); }};
         made.rivals.push_back(
-            {"exhaustive", [this, options](int threads) { return raster(exhaustive(with_threads(options, threads))); },
+            {"exhaustive",
+             [this, options](int threads) { return raster(exhaustive_judge(), with_threads(options, threads)); },
              true});
         return made;
     };
@@ -184,18 +172,21 @@ void Workbench::add_rasters(std::vector<Stage>& out)
 
 void Workbench::add_spawns(std::vector<Stage>& out)
 {
-    out.push_back({"check", true, [this](int threads) { return check(with_threads(QueryOptions{}, threads)); }});
+    out.push_back({"check", true, [this](int threads) { return check(judge(), threads); }});
     out.back().rivals.push_back(
-        {"exhaustive", [this](int threads) { return check(exhaustive(with_threads(QueryOptions{}, threads))); }, true});
+        {"exhaustive", [this](int threads) { return check(exhaustive_judge(), threads); }, true});
     if (has_plain_fcl()) out.back().rivals.push_back({"fcl", [this](int threads) { return fcl_check(threads); }});
-    out.push_back({"sample", true, [this](int threads) { return sample(with_threads(sample_options(), threads)); }});
-    out.back().rivals.push_back(
-        {"exhaustive", [this](int threads) { return sample(exhaustive(with_threads(sample_options(), threads))); }});
+    out.push_back(
+        {"sample", true, [this](int threads) { return sample(judge(), with_threads(sample_options(), threads)); }});
+    out.back().rivals.push_back({"exhaustive", [this](int threads) {
+                                     return sample(exhaustive_judge(), with_threads(sample_options(), threads));
+                                 }});
     if (has_nav_mesh()) out.back().rivals.push_back({"recast", [this](int) { return nav_draw(); }});
-    out.push_back({"search", true, [this](int threads) { return search(with_threads(search_options(), threads)); }});
+    out.push_back(
+        {"search", true, [this](int threads) { return search(judge(), with_threads(search_options(), threads)); }});
     out.back().rivals.push_back(
-        {"exhaustive", [this](int threads) { return search(exhaustive(with_threads(search_options(), threads))); },
-         true});
+        {"exhaustive",
+         [this](int threads) { return search(exhaustive_judge(), with_threads(search_options(), threads)); }, true});
 }
 
 /// Adds stages for the time that the alternatives need before their first answer.
@@ -259,12 +250,11 @@ std::vector<Row> run_in_turns(const std::string& scene, const Workbench::Stage& 
 BakeReport Workbench::bake_into(const std::filesystem::path& folder, Scene made, int threads) const
 {
     const std::filesystem::path source = folder_.write("scene.txt", setting_.name + " of spawnfield_bench\n");
-    BakeOptions options;
-    options.resolution = setting_.cell;
-    options.bounds = setting_.bounds;
-    options.allow_no_terrain = !setting_.has_ground;
-    options.threads = threads;
-    return spawnfield::bake(std::move(made), source, folder, options);
+    return spawnfield::bake(std::move(made), source, folder,
+                            {.resolution = setting_.cell,
+                             .bounds = setting_.bounds,
+                             .allow_no_terrain = !setting_.has_ground,
+                             .threads = threads});
 }
 
 const Scene& Workbench::scene()
@@ -279,10 +269,16 @@ const Map& Workbench::map()
     return *map_;
 }
 
-const CollisionChecker& Workbench::checker()
+const Judge& Workbench::judge()
 {
-    if (!checker_) checker_.emplace(map().geometry, setting_.robot());
-    return *checker_;
+    if (!judge_) judge_.emplace(map(), setting_.robot());
+    return *judge_;
+}
+
+const Judge& Workbench::exhaustive_judge()
+{
+    if (!exhaustive_judge_) exhaustive_judge_.emplace(map(), setting_.robot(), JudgeOptions{.exhaustive = true});
+    return *exhaustive_judge_;
 }
 
 const PlainFcl& Workbench::plain_fcl()
@@ -350,68 +346,48 @@ Measurement Workbench::read_map()
 
 RasterOptions Workbench::options_2d(const RasterWork& work) const
 {
-    RasterOptions options;
-    options.step = work.step;
-    options.offset = work.offset;
-    options.layers = work.layers;
-    return options;
+    return {.step = work.step, .offset = work.offset, .layers = work.layers};
 }
 
 RasterOptions Workbench::options_3d() const
 {
-    RasterOptions options;
-    options.dims = 3;
-    options.step = setting_.step_3d;
-    options.height_check = setting_.height_check;
-    return options;
+    return {.dims = 3, .step = setting_.step_3d, .height_check = setting_.height_check};
 }
 
 SampleOptions Workbench::sample_options() const
 {
-    SampleOptions options;
-    options.count = setting_.samples;
-    options.min_distance = setting_.sample_distance;
-    options.random_yaw = true;
-    return options;
+    return {.count = setting_.samples, .min_distance = setting_.sample_distance, .random_yaw = true};
 }
 
 SearchOptions Workbench::search_options() const
 {
-    SearchOptions options;
-    options.count = setting_.finds;
-    options.min_distance = setting_.search_distance;
-    options.random_yaw = true;
-    return options;
+    return {.count = setting_.finds, .min_distance = setting_.search_distance, .random_yaw = true};
 }
 
-Measurement Workbench::raster(const RasterOptions& options)
+Measurement Workbench::raster(const Judge& judge, const RasterOptions& options)
 {
-    const CollisionChecker& ready = checker();
-    const auto result = timed([&] { return spawnfield::raster(map(), ready, options); });
-    return {total(result.result.counts), result.seconds, digest_of(result.result), result.result.exact_checks};
+    const auto result = timed([&] { return spawnfield::raster(judge, options); });
+    return {result.result.counts.total(), result.seconds, digest_of(result.result), result.result.exact_checks};
 }
 
-Measurement Workbench::check(const QueryOptions& options)
+Measurement Workbench::check(const Judge& judge, int threads)
 {
-    const CollisionChecker& ready = checker();
     const std::vector<Pose>& asked = poses();
-    const auto judged = timed([&] { return check_poses(map(), ready, asked, options); });
+    const auto judged = timed([&] { return judge.check(asked, {.threads = threads}); });
     const auto exact = std::count_if(judged.result.begin(), judged.result.end(),
                                      [](const Judgement& j) { return j.exact_check; });
     return {asked.size(), judged.seconds, digest_of(judged.result), std::uint64_t(exact)};
 }
 
-Measurement Workbench::sample(const SampleOptions& options)
+Measurement Workbench::sample(const Judge& judge, const SampleOptions& options)
 {
-    const CollisionChecker& ready = checker();
-    const auto list = timed([&] { return spawnfield::sample(map(), ready, options); });
+    const auto list = timed([&] { return spawnfield::sample(judge, options); });
     return {list.result.draws, list.seconds, digest_of(list.result), list.result.exact_checks};
 }
 
-Measurement Workbench::search(const SearchOptions& options)
+Measurement Workbench::search(const Judge& judge, const SearchOptions& options)
 {
-    const CollisionChecker& ready = checker();
-    const auto list = timed([&] { return spawnfield::search(map(), ready, options); });
+    const auto list = timed([&] { return spawnfield::search(judge, options); });
     return {list.result.draws, list.seconds, digest_of(list.result), list.result.exact_checks};
 }
 
@@ -438,8 +414,8 @@ Measurement Workbench::fcl_raster_3d(int threads)
     const PlainFcl& ready = plain_fcl();
     const auto counts = timed([&] { return ready.raster_3d(grid, 1.0, setting_.height_check, threads); });
     Digest digest;
-    for (const std::uint64_t count : counts.result) digest.add(count);
-    return {total(counts.result), counts.seconds, digest.value()};
+    for (const Verdict verdict : all_verdicts) digest.add(counts.result[verdict]);
+    return {counts.result.total(), counts.seconds, digest.value()};
 }
 
 Measurement Workbench::fcl_check(int threads)
@@ -479,7 +455,7 @@ std::string Workbench::compare_2d(const RasterWork& work)
 {
     RasterOptions options = options_2d(work);
     options.layers = {.kind = LayerChoice::Kind::Top};
-    const RasterResult ours = spawnfield::raster(map(), checker(), options);
+    const RasterResult ours = spawnfield::raster(judge(), options);
     const auto theirs = plain_fcl().raster_top(ours.grid, work.offset, 0);
     const Vec3 centre = setting_.robot().parts.front().centre();
     Differences differences;
@@ -501,21 +477,21 @@ std::string Workbench::compare_2d(const RasterWork& work)
 
 std::string Workbench::compare_3d()
 {
-    const RasterResult ours = spawnfield::raster(map(), checker(), thinned(options_3d(), setting_.thinning));
+    const RasterResult ours = spawnfield::raster(judge(), thinned(options_3d(), setting_.thinning));
     const VerdictCounts theirs = plain_fcl().raster_3d(ours.grid, 1.0, setting_.height_check, 0);
     std::string text = setting_.name +
-                       formatted(" raster3d: of %llu poses", static_cast<unsigned long long>(total(ours.counts)));
-    for (std::size_t v = 0; v < verdict_count; ++v)
-        if (ours.counts[v] + theirs[v] > 0)
-            text += formatted(", %s %llu (plain FCL %llu)", to_string(Verdict(v)),
-                              static_cast<unsigned long long>(ours.counts[v]),
-                              static_cast<unsigned long long>(theirs[v]));
+                       formatted(" raster3d: of %llu poses", static_cast<unsigned long long>(ours.counts.total()));
+    for (const Verdict verdict : all_verdicts)
+        if (ours.counts[verdict] + theirs[verdict] > 0)
+            text += formatted(", %s %llu (plain FCL %llu)", to_string(verdict),
+                              static_cast<unsigned long long>(ours.counts[verdict]),
+                              static_cast<unsigned long long>(theirs[verdict]));
     return text;
 }
 
 std::string Workbench::compare_checks()
 {
-    const std::vector<Judgement> ours = check_poses(map(), checker(), poses());
+    const std::vector<Judgement> ours = judge().check(poses());
     const std::vector<Verdict> theirs = plain_fcl().check(poses(), 1.0, 0);
     const Vec3 centre = setting_.robot().parts.front().centre();
     Differences differences;
@@ -549,7 +525,7 @@ std::string Workbench::compare_nav_mesh()
 /// Returns how many of our samples lie on ground that the mesh of Recast covers.
 std::string Workbench::coverage()
 {
-    const SpawnList ours = spawnfield::sample(map(), checker(), sample_options());
+    const SpawnList ours = spawnfield::sample(judge(), sample_options());
     const auto covered = std::count_if(ours.spawns.begin(), ours.spawns.end(),
                                        [&](const Spawn& s) { return nav_mesh().covers(s.position); });
     return formatted("its mesh covers %.1f %% of our %zu samples", 100.0 * double(covered) / double(ours.spawns.size()),
@@ -559,7 +535,7 @@ std::string Workbench::coverage()
 /// Returns text such as "4.7 % collide (4.0 % with their centre inside closed meshes), 94.8 % valid".
 std::string Workbench::shares(const std::vector<Pose>& asked)
 {
-    const std::vector<Judgement> judged = check_poses(map(), checker(), asked);
+    const std::vector<Judgement> judged = judge().check(asked);
     const Vec3 centre = setting_.robot().parts.front().centre();
     std::size_t collide = 0, inside = 0, valid = 0;
     for (std::size_t i = 0; i < asked.size(); ++i) {

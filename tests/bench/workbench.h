@@ -76,7 +76,8 @@ public:
 private:
     const spawnfield::Scene& scene();
     const spawnfield::Map& map();
-    const spawnfield::CollisionChecker& checker();
+    const spawnfield::Judge& judge();
+    const spawnfield::Judge& exhaustive_judge();  ///< alternative (a): every pose decided by FCL, none by the mask
     const PlainFcl& plain_fcl();
     const NavMesh& nav_mesh();
     const std::vector<spawnfield::Pose>& poses();
@@ -98,10 +99,10 @@ private:
     Measurement occupancy(int threads);
     Measurement bake(int threads);
     Measurement read_map();
-    Measurement raster(const spawnfield::RasterOptions& options);
-    Measurement check(const spawnfield::QueryOptions& options);
-    Measurement sample(const spawnfield::SampleOptions& options);
-    Measurement search(const spawnfield::SearchOptions& options);
+    Measurement raster(const spawnfield::Judge& judge, const spawnfield::RasterOptions& options);
+    Measurement check(const spawnfield::Judge& judge, int threads);
+    Measurement sample(const spawnfield::Judge& judge, const spawnfield::SampleOptions& options);
+    Measurement search(const spawnfield::Judge& judge, const spawnfield::SearchOptions& options);
     Measurement fcl_raster_2d(const RasterWork& work, int threads);
     Measurement fcl_raster_3d(int threads);
     Measurement fcl_check(int threads);
@@ -123,7 +124,7 @@ private:
     TempFolder folder_;
     std::optional<spawnfield::Scene> scene_;
     std::optional<spawnfield::Map> map_;
-    std::optional<spawnfield::CollisionChecker> checker_;
+    std::optional<spawnfield::Judge> judge_, exhaustive_judge_;
     std::unique_ptr<const PlainFcl> plain_fcl_;
     std::unique_ptr<const NavMesh> nav_mesh_;
     std::vector<spawnfield::Pose> poses_;

@@ -24,7 +24,7 @@ void write_verdicts(const CheckArgs& args, const VerdictReport& report)
         else if (args.format == "junit")
             write_verdicts_junit(report, sink);
         else
-            sink(verdicts_csv(report.table, report.judgements, report.map.geometry.parts()));
+            sink(verdicts_csv(report.table, report.judgements, report.judge.map()));
     });
 }
 
@@ -37,7 +37,7 @@ std::string not_valid_words(const VerdictReport& report)
     std::size_t count = 0;
     for (std::size_t i = 0; i < names.size(); ++i)
         if (report.judgements[i].verdict != Verdict::Valid && ++count <= shown)
-            first += "\n  " + names[i] + ": " + described(report, i);
+            first += "\n  " + names[i] + ": " + report.judge.describe(report.table.poses[i], report.judgements[i]);
     if (count > shown) first += "\n  and " + std::to_string(count - shown) + " more";
     return "--require-valid: " + std::to_string(count) + " of " + counted(names.size(), "pose") +
            (count == 1 ? " is" : " are") + " not valid:" + first;
@@ -45,26 +45,24 @@ std::string not_valid_words(const VerdictReport& report)
 
 Ending run_check(const CheckArgs& args, const CLI::App&, Summary& summary)
 {
-    QueryOptions options;
-    fill(options, args, "check");
-    options.exact_time = &summary.exact_time;
     const PoseTable table = open_poses(args, args.poses);
     for (const std::string& name : replaced_columns(table))
         notice(args, input_name(args.poses) + ": the new column " + name + " replaces the old one");
-    const auto session = open_session(args, summary);
+    const Session session = open_session(args, summary);
     summary.lap("load");
-    const std::vector<Judgement> judgements = check_poses(session->map, *session->checker, table.poses, options);
+    const std::vector<Judgement> judgements = session.judge->check(
+        table.poses, {.threads = args.threads, .progress = progress_bar(args, "check")});
     summary.lap("query");
-    VerdictCounts counts{};
+    VerdictCounts counts;
     std::uint64_t exact_checks = 0;
     for (const Judgement& judged : judgements) {
-        ++counts[std::size_t(judged.verdict)];
+        ++counts[judged.verdict];
         exact_checks += judged.exact_check;
     }
     summary.set_verdicts(counts, exact_checks);
-    const VerdictReport report{table, judgements, session->map, session->robot, options, args.collision == "octree"};
+    const VerdictReport report{table, judgements, *session.judge};
     write_verdicts(args, report);
-    if (!args.require_valid || counts[std::size_t(Verdict::Valid)] == judgements.size()) return {};
+    if (!args.require_valid || counts[Verdict::Valid] == judgements.size()) return {};
     return {.status = not_valid, .complaint = not_valid_words(report)};
 }
 

@@ -12,7 +12,7 @@ void add_common(CLI::App& command, CommonArgs& args)
 {
     start_group(command, help_group::run);
     command.add_option("--threads", args.threads, "Number of threads; 0: all cores. It never changes the result")
-        ->check(CLI::Range(0, 1024));
+        ->check(CLI::Range(0, most_threads));
     command.add_flag("--quiet,-q", args.quiet, "Print no notices, no progress and no summary line");
     command.add_option("--summary", args.summary, "JSON file to which the summary is written (- for standard output)");
 }

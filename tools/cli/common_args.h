@@ -7,6 +7,9 @@
 
 namespace spawnfield::cli {
 
+/// Largest value of --threads.
+inline constexpr int most_threads = 1024;
+
 /// Options that every command has.
 struct CommonArgs {
     int threads = 0;

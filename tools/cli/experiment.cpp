@@ -99,11 +99,11 @@ public:
         session_ = open_session(args_, summary_);
         if (args_.search) {
             search_.bounds = with_heights(search_.bounds, heights_of(args_.ground, search_.bounds, "--bounds"),
-                                          session_->map);
-            notice_if_off_map(args_, session_->map, "--bounds", search_.bounds);
-            notice_about_area(args_, session_->map, search_.area);
+                                          session_.map);
+            notice_if_off_map(args_, session_.map, "--bounds", search_.bounds);
+            notice_about_area(args_, session_.map, search_.area);
         } else {
-            complete(raster_, args_, *session_, summary_);
+            complete(raster_, args_, session_, summary_);
         }
         summary_.lap("load");
         std::vector<ExperimentRun> runs = args_.search ? run_searches() : run_rasters();
@@ -116,7 +116,6 @@ private:
     void prepare_rasters(const CLI::App& command)
     {
         raster_ = raster_options(args_, command);
-        raster_.exact_time = &summary_.exact_time;
         steps_ = step_pairs(args_);
     }
 
@@ -125,7 +124,6 @@ private:
         search_ = search_options(args_, args_.draws, args_.bounds, "experiment", !args_.ground.z.empty());
         search_.yaw = parse_yaw(args_, args_.yaw);
         search_.area = read_area(args_, args_.area);
-        search_.exact_time = &summary_.exact_time;
     }
 
     std::vector<ExperimentRun> run_rasters()
@@ -140,7 +138,7 @@ private:
                 options.step_z = step_z;
                 options.progress = share_of_runs(whole, out.size(), all);
                 const double start = summary_.elapsed();
-                const RasterResult result = raster(session_->map, *session_->checker, options);
+                const RasterResult result = raster(*session_.judge, options);
                 const double seconds = summary_.elapsed() - start;
                 const std::optional<double> up = options.dims == 3 ? std::optional(result.grid.step_z) : std::nullopt;
                 out.push_back({number, step, up, std::nullopt, result.counts, result.exact_checks, seconds});
@@ -157,7 +155,7 @@ private:
             options.seed = search_.seed + std::uint64_t(number - 1);
             options.progress = share_of_runs(whole, out.size(), std::size_t(args_.runs));
             const double start = summary_.elapsed();
-            const SpawnList list = search(session_->map, *session_->checker, options);
+            const SpawnList list = search(*session_.judge, options);
             out.push_back({number, {}, {}, options.seed, list.counts, list.exact_checks, summary_.elapsed() - start});
             short_runs_ += list.spawns.size() < options.count;
         }
@@ -167,15 +165,15 @@ private:
     void write(OutputFolder& folder, std::vector<ExperimentRun> runs)
     {
         clear_progress_bar();
-        VerdictCounts counts{};
+        VerdictCounts counts;
         std::uint64_t exact_checks = 0;
         for (const ExperimentRun& run : runs) {
-            for (std::size_t v = 0; v < verdict_count; ++v) counts[v] += run.counts[v];
+            counts += run.counts;
             exact_checks += run.exact_checks;
         }
         summary_.set_verdicts(counts, exact_checks);
-        Experiment experiment{args_.command_line,   session_->map.name, session_->map.hash,
-                              session_->robot.name, summary_.threads(), {},
+        Experiment experiment{args_.command_line,  session_.map.name,  session_.map.hash,
+                              session_.robot.name, summary_.threads(), {},
                               std::move(runs)};
         if (args_.search) experiment.seed = search_.seed;
         write_file_atomically(folder.path() / "experiment.csv", experiment_csv(experiment.runs));
@@ -202,7 +200,7 @@ private:
     RasterOptions raster_;  ///< without the steps
     SearchOptions search_;  ///< of the first run
     std::vector<std::pair<double, double>> steps_;
-    std::unique_ptr<Session> session_;
+    Session session_;
     std::uint64_t short_runs_ = 0;
 };
 

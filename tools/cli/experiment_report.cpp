@@ -5,7 +5,6 @@
 #include "numbers.h"
 
 #include <cstdio>
-#include <numeric>
 #include <span>
 
 namespace spawnfield::cli {
@@ -19,13 +18,10 @@ std::string number_or_nothing(const std::optional<double>& value) { return value
 template <class Visit>
 void for_each_verdict(const Visit& visit)
 {
-    for (std::size_t v = verdict_count; v-- > 0;) visit(Verdict(v));
+    for (auto verdict = all_verdicts.rbegin(); verdict != all_verdicts.rend(); ++verdict) visit(*verdict);
 }
 
-std::uint64_t poses_of(const ExperimentRun& run)
-{
-    return std::accumulate(run.counts.begin(), run.counts.end(), std::uint64_t{0});
-}
+std::uint64_t poses_of(const ExperimentRun& run) { return run.counts.total(); }
 
 /// Returns six digits for the table; the CSV file has all digits.
 std::string six_digits(double value)
@@ -68,7 +64,7 @@ std::string table_row(Runs runs)
     if (runs[0].step_z) cell(number(*runs[0].step_z));
     cell(number(tools::mean(runs, poses_of)));
     for_each_verdict([&](Verdict verdict) {
-        cell(number(tools::mean(runs, [&](const ExperimentRun& run) { return run.counts[std::size_t(verdict)]; })));
+        cell(number(tools::mean(runs, [&](const ExperimentRun& run) { return run.counts[verdict]; })));
     });
     cell(number(tools::mean(runs, &ExperimentRun::exact_checks)));
     cell(six_digits(tools::mean(runs, &ExperimentRun::seconds)));
@@ -86,7 +82,7 @@ std::string experiment_csv(const std::vector<ExperimentRun>& runs)
     for (const ExperimentRun& run : runs) {
         text += std::to_string(run.number) + "," + number_or_nothing(run.step) + "," + number_or_nothing(run.step_z) +
                 "," + std::to_string(poses_of(run));
-        for_each_verdict([&](Verdict verdict) { text += "," + std::to_string(run.counts[std::size_t(verdict)]); });
+        for_each_verdict([&](Verdict verdict) { text += "," + std::to_string(run.counts[verdict]); });
         text += "," + std::to_string(run.exact_checks) + "," + number(run.seconds) + "," +
                 (run.seed ? std::to_string(*run.seed) : "") + "\n";
     }

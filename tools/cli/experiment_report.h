@@ -13,7 +13,7 @@ struct ExperimentRun {
     int number = 1;                      ///< among those of its step, from 1 on
     std::optional<double> step, step_z;  ///< m; of rasters, step_z of 3D ones
     std::optional<std::uint64_t> seed;   ///< of searches
-    VerdictCounts counts{};
+    VerdictCounts counts;
     std::uint64_t exact_checks = 0;
     double seconds = 0;  ///< of the query alone
 };

@@ -76,9 +76,9 @@ void check_options(const ExportArgs& args, const CLI::App& command)
 Ending run_export(const ExportArgs& args, const CLI::App& command, Summary& summary)
 {
     check_options(args, command);
-    const auto session = open_session(args, summary);
+    const Session session = open_session(args, summary);
     summary.lap("load");
-    format_of(args.format).write({args, command, *session, summary});
+    format_of(args.format).write({args, command, session, summary});
     if (!args.out.empty() && args.out != "-") summary.extra.push_back(args.out);
     return {};
 }

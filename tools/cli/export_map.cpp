@@ -20,11 +20,10 @@ std::vector<std::string> with(std::vector<std::string> names, const std::vector<
 RasterOptions raster_options(const ExportJob& job, const std::string& layers)
 {
     const ExportArgs& args = job.args;
-    RasterOptions options;
-    fill(options, args, "export");
-    options.exact_time = &job.summary.exact_time;
-    options.yaw = parse_yaw(args, args.yaw);
-    options.layers = parse_layers(args.ground.layers.empty() ? layers : args.ground.layers);
+    RasterOptions options{.yaw = parse_yaw(args, args.yaw),
+                          .layers = parse_layers(args.ground.layers.empty() ? layers : args.ground.layers),
+                          .threads = args.threads,
+                          .progress = progress_bar(args, "export")};
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     options.z = with_floor(heights_of(args.ground, options.bounds, "--bounds"), args.ground, job.session.map);
     options.offset = choose_offset(args, parse_offset(args.ground.offset), job.session.robot, job.summary);
@@ -70,7 +69,7 @@ GridFrame image_frame(const ExportJob& job)
 
 VerdictImage ask(const ExportJob& job, const RasterOptions& options, const GridFrame& frame)
 {
-    VerdictImage image = verdict_image(job.session.map, *job.session.checker, frame, options);
+    VerdictImage image = verdict_image(*job.session.judge, frame, options);
     job.summary.lap("query");
     job.summary.set_verdicts(image.counts, image.exact_checks);
     return image;
@@ -120,7 +119,7 @@ void write_ply(const ExportJob& job)
     RasterOptions options = raster_options(job, "all");
     options.step = parse_positive("--step", job.args.step);
     notice_if_off_map(job.args, job.session.map, "--bounds", options.bounds);
-    const RasterResult result = raster(job.session.map, *job.session.checker, options);
+    const RasterResult result = raster(*job.session.judge, options);
     job.summary.lap("query");
     job.summary.set_verdicts(result.counts, result.exact_checks);
     write_output(job.args.out,

@@ -88,10 +88,10 @@ void read_spawns(const HeatmapArgs& args, HeatmapOptions& picture)
 
 RasterOptions raster_options(const HeatmapArgs& args)
 {
-    RasterOptions options;
-    fill(options, args, "heatmap");
-    options.offset = parse_offset(args.ground.offset);
-    options.layers = parse_layers(args.ground.layers);
+    RasterOptions options{.offset = parse_offset(args.ground.offset),
+                          .layers = parse_layers(args.ground.layers),
+                          .threads = args.threads,
+                          .progress = progress_bar(args, "heatmap")};
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     options.z = heights_of(args.ground, options.bounds, "--bounds");
     options.area = read_area(args, args.area);
@@ -102,10 +102,7 @@ HeatmapOptions picture_options(const HeatmapArgs& args)
 {
     if (args.names && args.spawns.empty())
         throw ArgumentError("--names needs --spawns, because it writes the names of spawns");
-    HeatmapOptions picture;
-    picture.quantity = quantity_of(args.quantity);
-    picture.pixels = args.size;
-    picture.threads = args.threads;
+    HeatmapOptions picture{.quantity = quantity_of(args.quantity), .pixels = args.size, .threads = args.threads};
     read_spawns(args, picture);
     return picture;
 }
@@ -114,8 +111,8 @@ HeatmapOptions picture_options(const HeatmapArgs& args)
 RasterResult shown_raster(const Session& session, const RasterOptions& options, bool any_heading,
                           HeatmapOptions& picture)
 {
-    if (!any_heading) return raster(session.map, *session.checker, options);
-    HeadingRaster result = raster_at_headings(session.map, *session.checker, options);
+    if (!any_heading) return raster(*session.judge, options);
+    HeadingRaster result = raster_at_headings(*session.judge, options);
     picture.headings = result.headings;
     picture.valid_headings = std::move(result.valid_headings);
     return std::move(result.raster);
@@ -156,30 +153,29 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
 {
     const PictureFile file = picture_file(args.out, args.format);
     RasterOptions options = raster_options(args);
-    options.exact_time = &summary.exact_time;
     HeatmapOptions picture = picture_options(args);
     const Facing facing = facing_of(args, picture.spawns);
     options.yaw = facing.yaw;
-    const auto session = open_session(args, summary);
-    notice_if_off_map(args, session->map, "--bounds", options.bounds);
-    notice_about_area(args, session->map, options.area);
-    notice_if_no_layer(args, session->map, options.layers);
-    options.z = with_floor(options.z, args.ground, session->map);
-    options.offset = choose_offset(args, options.offset, session->robot, summary);
-    require_above_ground(session->robot, *options.offset);
-    const TerrainMap terrain = read_terrain(session->map);
-    crop_to_ground(args, session->map, terrain, options);
+    const Session session = open_session(args, summary);
+    notice_if_off_map(args, session.map, "--bounds", options.bounds);
+    notice_about_area(args, session.map, options.area);
+    notice_if_no_layer(args, session.map, options.layers);
+    options.z = with_floor(options.z, args.ground, session.map);
+    options.offset = choose_offset(args, options.offset, session.robot, summary);
+    require_above_ground(session.robot, *options.offset);
+    const TerrainMap terrain = read_terrain(session.map);
+    crop_to_ground(args, session.map, terrain, options);
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
-                                               : default_step(session->map, options);
+                                               : default_step(session.map, options);
     summary.lap("load");
-    const RasterResult result = shown_raster(*session, options, facing.is_any, picture);
+    const RasterResult result = shown_raster(session, options, facing.is_any, picture);
     summary.lap("query");
-    picture.title = session->map.name + ", " + session->robot.name;
+    picture.title = session.map.name + ", " + session.robot.name;
     const std::string headings = facing.is_any ? std::to_string(picture.headings) + " headings" : "";
-    picture.caption = heatmap_caption(options, args.ground, session->map, headings);
-    picture.robot = &session->robot;
+    picture.caption = heatmap_caption(options, args.ground, *session.judge, headings);
+    picture.robot = &session.robot;
     picture.format = file.format;
-    write_heatmap(session->map, terrain, result, picture, file.path);
+    write_heatmap(session.map, terrain, result, picture, file.path);
     summary.set_verdicts(result.counts, result.exact_checks);
     summary.extra.insert(summary.extra.begin(), args.out);
     return {};

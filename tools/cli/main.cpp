@@ -7,6 +7,8 @@
 
 #include <spawnfield/error.h>
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstring>
@@ -111,5 +113,7 @@ int main(int argc, char** argv)
         return app.exit(error) == 0 ? done : wrong_usage;
     }
     catch_interrupts();
+    // The process belongs to the program alone: --threads may ask for more threads than there are cores.
+    const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, most_threads);
     return run_guarded(app, chosen);
 }

@@ -45,17 +45,17 @@ PictureFile picture_file(const std::string& file, const std::string& format)
     return {path, chosen};
 }
 
-std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Map& map,
+std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Judge& judge,
                             const std::string& yaw)
 {
     std::string text;
     if (options.offset) text = "offset " + short_number(*options.offset) + " m, ";
     text += yaw.empty() ? "yaw " + short_number(options.yaw * 180 / std::numbers::pi) + " deg" : yaw;
-    if (const std::string words = height_words(ground, options.z, map); options.dims == 2 && !words.empty())
+    if (const std::string words = height_words(ground, options.z, judge.map()); options.dims == 2 && !words.empty())
         text += ", " + words;
     if (options.height_check) text += ", " + layer_words(ground.layers);
-    if (std::isfinite(options.max_slope))
-        text += ", slope up to " + short_number(options.max_slope * 180 / std::numbers::pi) + " deg";
+    if (const double limit = judge.options().max_slope; std::isfinite(limit))
+        text += ", slope up to " + short_number(limit * 180 / std::numbers::pi) + " deg";
     return text;
 }
 

@@ -18,7 +18,7 @@ PictureFile picture_file(const std::string& file, const std::string& format = ""
 
 /// Returns the second line of a heat map: the poses that its verdicts are for. `options` are complete. `yaw` is in
 /// words; empty: the raster's yaw.
-std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Map& map,
+std::string heatmap_caption(const RasterOptions& options, const GroundArgs& ground, const Judge& judge,
                             const std::string& yaw = "");
 
 }  // namespace spawnfield::cli

@@ -44,18 +44,19 @@ void add_robot_and_run(CLI::App& command, QueryArgs& args)
                      "Check every pose exactly, without the free-space mask: the same answers, slowly");
 }
 
-void fill(QueryOptions& options, const QueryArgs& args, const std::string& label)
+JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time)
 {
-    options.max_height = args.max_height;
-    options.max_water_depth = args.max_water_depth;
-    options.exhaustive = args.exhaustive;
-    options.threads = args.threads;
-    options.progress = progress_bar(args, label);
     if (args.max_slope && !(*args.max_slope > 0 && *args.max_slope < 90))
         throw bad_value("--max-slope", *args.max_slope, "> 0 and < 90 degrees");
+    if (!(args.max_height >= 0)) throw bad_value("--max-height", args.max_height, ">= 0 m");
+    if (!(args.max_water_depth >= 0)) throw bad_value("--max-water-depth", args.max_water_depth, ">= 0 m");
+    JudgeOptions options{.max_height = args.max_height,
+                         .max_water_depth = args.max_water_depth,
+                         .obstacles = args.collision == "octree" ? Obstacles::Voxels : Obstacles::Geometry,
+                         .exhaustive = args.exhaustive,
+                         .exact_time = &exact_time};
     if (args.max_slope) options.max_slope = *args.max_slope * std::numbers::pi / 180;
-    if (!(options.max_height >= 0)) throw bad_value("--max-height", options.max_height, ">= 0 m");
-    if (!(options.max_water_depth >= 0)) throw bad_value("--max-water-depth", options.max_water_depth, ">= 0 m");
+    return options;
 }
 
 }  // namespace spawnfield::cli

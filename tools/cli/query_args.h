@@ -29,7 +29,8 @@ void add_verdict_options(CLI::App& command, QueryArgs& args);
 /// Adds the options on how the robot is read, and those that every command has.
 void add_robot_and_run(CLI::App& command, QueryArgs& args);
 
-/// Sets the options that all queries share; `label` stands before the progress bar. Throws ArgumentError.
-void fill(QueryOptions& options, const QueryArgs& args, const std::string& label);
+/// Returns the options of the Judge. The time of exact checks is added to `exact_time`. Throws ArgumentError for limits
+/// out of range.
+JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time);
 
 }  // namespace spawnfield::cli

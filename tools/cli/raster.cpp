@@ -62,37 +62,36 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     add("Layers", args.ground.layers);
     if (!is_3d && !options.z.is_unlimited()) add("Heights of layers (m)", z_text(options.z));
     if (is_3d) add("Height check", options.height_check ? "yes" : "no");
-    if (is_3d && options.height_check) add("Max height (m)", number(options.max_height));
-    if (options.height_check) add("Max water depth (m)", number(options.max_water_depth));
-    if (options.height_check && std::isfinite(options.max_slope)) add("Max slope (rad)", number(options.max_slope));
+    const JudgeOptions& limits = session.judge->options();
+    if (is_3d && options.height_check) add("Max height (m)", number(limits.max_height));
+    if (options.height_check) add("Max water depth (m)", number(limits.max_water_depth));
+    if (options.height_check && std::isfinite(limits.max_slope)) add("Max slope (rad)", number(limits.max_slope));
     return out;
 }
 
 Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summary& summary)
 {
     RasterOptions options = options_of(args, command);
-    options.exact_time = &summary.exact_time;
     const std::optional<PictureFile> picture_to = args.heatmap.empty() ? std::nullopt
                                                                        : std::optional(picture_file(args.heatmap));
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
-    const auto session = open_session(args, summary);
-    complete(options, args, *session, summary);
+    const Session session = open_session(args, summary);
+    complete(options, args, session, summary);
     summary.lap("load");
-    const RasterResult result = raster(session->map, *session->checker, options);
+    const RasterResult result = raster(*session.judge, options);
     summary.lap("query");
     const auto draw = [&] {
         if (!picture_to) return;
-        HeatmapOptions picture;
-        picture.title = session->map.name + ", " + session->robot.name;
-        picture.caption = heatmap_caption(options, args.ground, session->map);
-        picture.robot = &session->robot;
-        picture.format = picture_to->format;
-        picture.threads = args.threads;
-        write_heatmap(session->map, read_terrain(session->map), result, picture, picture_to->path);
+        const HeatmapOptions picture{.title = session.map.name + ", " + session.robot.name,
+                                     .caption = heatmap_caption(options, args.ground, *session.judge),
+                                     .robot = &session.robot,
+                                     .format = picture_to->format,
+                                     .threads = args.threads};
+        write_heatmap(session.map, read_terrain(session.map), result, picture, picture_to->path);
     };
     if (folder)
         write_thesis(
-            *folder, settings_of(args, *session, options, result.grid), result.counts, summary,
+            *folder, settings_of(args, session, options, result.grid), result.counts, summary,
             [&](const auto& into) {
                 return write_thesis_locations(into, result, args.write_aerial, progress_bar(args, "writing"));
             },

@@ -63,14 +63,14 @@ RasterOptions raster_options(const RasterArgs& args, const CLI::App& command)
     if (args.dims == 3)
         refuse(command, {"--floor"}, "is only for --dims 2; in 3D use --z for the heights of the poses");
     notice_idle_options(args, command);
-    RasterOptions options;
-    fill(options, args, command.get_name());
-    options.dims = args.dims;
-    options.offset = parse_offset(args.ground.offset);
-    options.yaw = parse_yaw(args, args.yaw);
-    options.layers = parse_layers(args.ground.layers);
-    options.height_check = !args.no_height_check;
-    options.snap = args.snap;
+    RasterOptions options{.dims = args.dims,
+                          .offset = parse_offset(args.ground.offset),
+                          .yaw = parse_yaw(args, args.yaw),
+                          .layers = parse_layers(args.ground.layers),
+                          .height_check = !args.no_height_check,
+                          .snap = args.snap,
+                          .threads = args.threads,
+                          .progress = progress_bar(args, command.get_name())};
     if (args.snap) check_snap(args);
     if (!args.bounds.empty())
         options.bounds = parse_bounds("--bounds", args.bounds, args.dims == 2 || !args.ground.z.empty());

@@ -26,23 +26,19 @@ void notice_if_larger_than_map(const CommonArgs& args, const Robot& robot, const
 
 }  // namespace
 
-std::unique_ptr<Session> open_session(const QueryArgs& args, Summary& summary)
+Session open_session(const QueryArgs& args, Summary& summary)
 {
-    auto session = std::make_unique<Session>();
+    const JudgeOptions options = judge_options(args, summary.exact_time);
+    Session session;
     if (!args.robot.empty()) {
-        session->robot = load_robot(args.robot, robot_options(args));
-        notices(args, session->robot.notices);
+        session.robot = load_robot(args.robot, robot_options(args));
+        notices(args, session.robot.notices);
     }
-    session->map = read_map(args.map);
-    summary.map_hash = session->map.hash;
+    session.map = read_map(args.map);
+    summary.map_hash = session.map.hash;
     if (args.robot.empty()) return session;
-    notice_if_larger_than_map(args, session->robot, session->map);
-    if (args.collision == "octree") {
-        auto tree = std::make_shared<const OccupancyTree>(read_occupancy(session->map));
-        session->checker = std::make_unique<CollisionChecker>(std::move(tree), session->robot);
-    } else {
-        session->checker = std::make_unique<CollisionChecker>(session->map.geometry, session->robot);
-    }
+    notice_if_larger_than_map(args, session.robot, session.map);
+    session.judge.emplace(session.map, session.robot, options);
     return session;
 }
 

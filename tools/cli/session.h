@@ -5,20 +5,21 @@
 
 #include <spawnfield/poses.h>
 
-#include <memory>
+#include <optional>
 
 namespace spawnfield::cli {
 
-/// A map and a robot, ready for queries.
+/// The map and the robot of a command.
 struct Session {
     Map map;
     Robot robot;
-    std::unique_ptr<CollisionChecker> checker;  ///< nothing if the command was given no robot
+    std::optional<Judge> judge;  ///< nothing if the command was given no robot
 };
 
-/// Reads the map and the robot, and puts the map's hash into the summary. Without --robot, in commands that allow this,
-/// reads only the map. The result stays at its address, because the checker refers into it.
-std::unique_ptr<Session> open_session(const QueryArgs& args, Summary& summary);
+/// Reads the map and the robot, and puts the map's hash into the summary. The time of exact checks is added to the
+/// summary, too. Without --robot, in commands that allow this, reads only the map. Throws ArgumentError for limits out
+/// of range, before it reads anything.
+Session open_session(const QueryArgs& args, Summary& summary);
 
 /// Reads poses from a CSV file, or from standard input if it is `-`. Prints the file's notices.
 PoseTable open_poses(const CommonArgs& args, const std::string& file);

@@ -36,13 +36,16 @@ std::string upper_first(std::string text)
     return text;
 }
 
-std::string shortfall(const SpawnOptions& options, const SpawnList& list, const std::string& command)
+/// Why fewer spawns than wanted were found, and what may give more. `Options`, here and below: SearchOptions or
+/// SampleOptions.
+template <class Options>
+std::string shortfall(const Options& options, double max_slope, const SpawnList& list, const std::string& command)
 {
     const std::string found = std::to_string(list.spawns.size()),
                       of_count = found + " of " + std::to_string(options.count) + " spawns ";
     const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
                                (list.near_avoided > 0 ? "a smaller --avoid-distance, " : "") +
-                               (std::isfinite(options.max_slope) ? "a larger --max-slope, " : "") +
+                               (std::isfinite(max_slope) ? "a larger --max-slope, " : "") +
                                (command == "sample"            ? "another --offset or a wider --region"
                                 : options.area.is_everywhere() ? "more --max-failures or wider --bounds"
                                                                : "more --max-failures or a wider --region");
@@ -60,7 +63,8 @@ std::string shortfall(const SpawnOptions& options, const SpawnList& list, const 
 }
 
 /// Returns the options, then those that only this command has (`own`), then what was found.
-Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnOptions& options, const SpawnList& list,
+template <class Options>
+Settings settings_of(const SpawnArgs& args, const Session& session, const Options& options, const SpawnList& list,
                      const std::string& command, const Settings& own)
 {
     Settings out = query_settings(command, args, session);
@@ -74,8 +78,9 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const SpawnO
     for (const Region& region : options.area.within) add("Region", region.name);
     for (const Region& region : options.area.keep_out) add("Keep out", region.name);
     for (const AvoidedPoints& group : options.avoid) add("Avoid", words_of(group));
-    add("Max water depth (m)", number(options.max_water_depth));
-    if (std::isfinite(options.max_slope)) add("Max slope (rad)", number(options.max_slope));
+    const JudgeOptions& limits = session.judge->options();
+    add("Max water depth (m)", number(limits.max_water_depth));
+    if (std::isfinite(limits.max_slope)) add("Max slope (rad)", number(limits.max_slope));
     out.insert(out.end(), own.begin(), own.end());
     add("Spawns", std::to_string(list.spawns.size()));
     add("Draws", std::to_string(list.draws));
@@ -93,10 +98,11 @@ void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& 
     if (!output.has_names()) return write_output(args.out, [&](const auto& sink) { sink(spawns_csv(list)); });
     std::vector<RobotStart> robots = robot_starts(list);
     output.give_names(robots);
-    output.write(robots, session.map, [&] { return spawns_json(robots, list, session.map, session.robot, options); });
+    output.write(robots, session.map, [&] { return spawns_json(robots, list, *session.judge, options); });
 }
 
-void fill(Summary& summary, const SpawnOptions& options, const SpawnList& list)
+template <class Options>
+void fill(Summary& summary, const Options& options, const SpawnList& list)
 {
     summary.set_verdicts(list.counts, list.exact_checks);
     summary.seed = options.seed;
@@ -117,7 +123,7 @@ template <class Options>
 struct SpawnQuery {
     /// Completes the options when the map and the robot are known. Returns the settings that only this command has.
     std::function<Settings(const Session&, Options&)> prepare;
-    SpawnList (*run)(const Map&, const CollisionChecker&, const Options&);
+    SpawnList (*run)(const Judge&, const Options&);
     /// Returns why no pose can be valid, or an empty text.
     std::function<std::string(const Session&, const Options&)> find_hopeless = [](const auto&, const auto&) {
         return "";
@@ -125,9 +131,9 @@ struct SpawnQuery {
 };
 
 /// Returns the result without any draw: the whole region is undecided.
-SpawnList nothing_drawn(const Map& map, const SpawnOptions& options)
+SpawnList nothing_drawn(const Map& map, const Bounds& bounds)
 {
-    const Bounds box = options.bounds.is_empty() ? map.bounds : options.bounds;
+    const Bounds box = bounds.is_empty() ? map.bounds : bounds;
     SpawnList out;
     out.undecided_area = (box.max - box.min).head<2>().prod();
     return out;
@@ -143,30 +149,31 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
     options.random_yaw = !yaw;
     options.yaw = yaw.value_or(0);
     options.avoid = read_avoided(args, args.avoid, options.min_distance);
-    options.exact_time = &summary.exact_time;
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     if (folder) notice_idle_options(args, app, args.format);
     std::optional<SimulatorOutput> output;
     if (!folder)
         output.emplace(args, app, args.simulator,
                        SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args)});
-    const auto session = open_session(args, summary);
-    const Settings own = query.prepare(*session, options);
-    const std::string hopeless = query.find_hopeless(*session, options);
-    notice_about_avoided(args, session->map, options.avoid);
+    const Session session = open_session(args, summary);
+    const Settings own = query.prepare(session, options);
+    const std::string hopeless = query.find_hopeless(session, options);
+    notice_about_avoided(args, session.map, options.avoid);
     summary.lap("load");
-    const SpawnList list = hopeless.empty() ? query.run(session->map, *session->checker, options)
-                                            : nothing_drawn(session->map, options);
+    const SpawnList list = hopeless.empty() ? query.run(*session.judge, options)
+                                            : nothing_drawn(session.map, options.bounds);
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
     summary.lap("query");
     if (folder)
-        write_thesis(*folder, settings_of(args, *session, options, list, command, own), list.counts, summary,
+        write_thesis(*folder, settings_of(args, session, options, list, command, own), list.counts, summary,
                      [&](const auto& into) { return write_thesis_locations(into, list); });
     else
-        write(args, *output, *session, options, list);
+        write(args, *output, session, options, list);
     fill(summary, options, list);
     if (list.spawns.size() == options.count) return {};
-    return {.status = fewer_found, .notice = hopeless.empty() ? shortfall(options, list, command) : hopeless};
+    return {
+        .status = fewer_found,
+        .notice = hopeless.empty() ? shortfall(options, session.judge->options().max_slope, list, command) : hopeless};
 }
 
 Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summary)
@@ -179,22 +186,26 @@ Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summa
         notice_if_off_map(args, session.map, "--bounds", asked.bounds);
         notice_about_area(args, session.map, asked.area);
         return Settings{{"Max failures", std::to_string(asked.max_failures)},
-                        {"Max height (m)", number(asked.max_height)}};
+                        {"Max height (m)", number(session.judge->options().max_height)}};
     };
     return run_spawn<SearchOptions>({prepare, search}, summary, args, command, options);
 }
 
 Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summary)
 {
-    SampleOptions options;
-    fill(options, args, args.draws, "sample");
-    options.area = read_area(args, args.area);
+    check_draws(args.draws);
+    SampleOptions options{.count = std::size_t(args.draws.count),
+                          .min_distance = args.draws.min_distance,
+                          .seed = args.draws.seed,
+                          .offset = parse_offset(args.ground.offset),
+                          .layers = parse_layers(args.ground.layers),
+                          .area = read_area(args, args.area),
+                          .threads = args.threads,
+                          .progress = progress_bar(args, "sample")};
     if (const auto box = lone_box(args.area)) {  // as bounds, so that every draw is within the region
         options.bounds = *box;
         options.area.within.clear();
     }
-    options.offset = parse_offset(args.ground.offset);
-    options.layers = parse_layers(args.ground.layers);
     const ZRange heights = heights_of(args.ground, options.bounds, "--region");
     const auto prepare = [&](const Session& session, SampleOptions& asked) {
         asked.z = with_floor(heights, args.ground, session.map);

@@ -19,27 +19,27 @@ void add_max_failures(CLI::App& command, DrawArgs& args)
                        "Stop after so many draws in a row without a spawn (default 100000)");
 }
 
-void fill(SpawnOptions& options, const QueryArgs& args, const DrawArgs& draws, const std::string& label)
+void check_draws(const DrawArgs& args)
 {
-    fill(options, args, label);
-    if (draws.count < 1) throw bad_value("-n", double(draws.count), ">= 1");
-    if (draws.count > static_cast<long long>(max_spawns))
-        throw bad_value("-n", double(draws.count), "at most " + std::to_string(max_spawns));
-    options.count = std::size_t(draws.count);
-    options.min_distance = parse_finite("--min-distance", draws.min_distance, "m");
-    if (options.min_distance < 0) throw bad_value("--min-distance", options.min_distance, ">= 0 m");
-    options.seed = draws.seed;
+    if (args.count < 1) throw bad_value("-n", double(args.count), ">= 1");
+    if (args.count > static_cast<long long>(max_spawns))
+        throw bad_value("-n", double(args.count), "at most " + std::to_string(max_spawns));
+    parse_finite("--min-distance", args.min_distance, "m");
+    if (args.min_distance < 0) throw bad_value("--min-distance", args.min_distance, ">= 0 m");
 }
 
 SearchOptions search_options(const QueryArgs& args, const DrawArgs& draws, const std::string& bounds,
                              const std::string& label, bool flat_allowed)
 {
-    SearchOptions options;
-    fill(options, args, draws, label);
-    if (!bounds.empty()) options.bounds = parse_bounds("--bounds", bounds, flat_allowed);
+    check_draws(draws);
     if (draws.max_failures < 1) throw bad_value("--max-failures", double(draws.max_failures), ">= 1");
-    options.max_failures = std::uint64_t(draws.max_failures);
-    return options;
+    return {.count = std::size_t(draws.count),
+            .min_distance = draws.min_distance,
+            .seed = draws.seed,
+            .bounds = bounds.empty() ? Bounds{} : parse_bounds("--bounds", bounds, flat_allowed),
+            .max_failures = std::uint64_t(draws.max_failures),
+            .threads = args.threads,
+            .progress = progress_bar(args, label)};
 }
 
 }  // namespace spawnfield::cli

@@ -13,8 +13,8 @@ struct DrawArgs {
 void add_draws(CLI::App& command, DrawArgs& args);
 void add_max_failures(CLI::App& command, DrawArgs& args);
 
-/// Sets the options that search and sample share, except bounds and yaw. Throws ArgumentError.
-void fill(SpawnOptions& options, const QueryArgs& args, const DrawArgs& draws, const std::string& label);
+/// Throws ArgumentError for counts and distances out of range.
+void check_draws(const DrawArgs& args);
 
 /// Returns a search's options without the yaw. `bounds` is the value of --bounds, or empty; flat_allowed: it may have
 /// four numbers. Throws ArgumentError.

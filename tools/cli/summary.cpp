@@ -14,18 +14,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <numeric>
 #include <thread>
 
 namespace spawnfield::cli {
 namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-std::uint64_t sum_of(const VerdictCounts& counts)
-{
-    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-}
 
 std::uint64_t peak_memory_bytes()
 {
@@ -76,11 +70,11 @@ std::string Summary::line(double total) const
     std::string text = "spawnfield " + command_ + ": ";
     for (const std::string& words : extra) text += words + "; ";
     if (counts_) {
-        text += counted(sum_of(*counts_), "pose");
+        text += counted(counts_->total(), "pose");
         std::string verdicts;
-        for (std::size_t v = verdict_count; v-- > 0;)  // valid first
-            if (const std::uint64_t count = (*counts_)[v]; count > 0)
-                verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(count) + " " + to_string(Verdict(v));
+        for (auto verdict = all_verdicts.rbegin(); verdict != all_verdicts.rend(); ++verdict)  // valid first
+            if (const std::uint64_t count = (*counts_)[*verdict]; count > 0)
+                verdicts += (verdicts.empty() ? ": " : ", ") + std::to_string(count) + " " + to_string(*verdict);
         text += verdicts + "; " + counted(exact_checks_, "exact check") + "; ";
     }
     char seconds[32];
@@ -92,10 +86,10 @@ std::string Summary::json(double total) const
 {
     nlohmann::ordered_json out;
     out["command"] = command_;
-    out["poses"] = counts_ ? sum_of(*counts_) : 0;
+    out["poses"] = counts_ ? counts_->total() : 0;
     out["counts"] = nlohmann::ordered_json::object();
     if (counts_)
-        for (std::size_t v = 0; v < verdict_count; ++v) out["counts"][to_string(Verdict(v))] = (*counts_)[v];
+        for (const Verdict verdict : all_verdicts) out["counts"][to_string(verdict)] = (*counts_)[verdict];
     out["exact_checks"] = exact_checks_;
     if (fullness) {
         out["full"] = fullness->is_full;

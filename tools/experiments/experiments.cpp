@@ -24,20 +24,20 @@ double seconds_of(const std::function<void()>& work)
 void add_counts(const VerdictCounts& counts, Run& run)
 {
     std::array<std::uint64_t, thesis_class_count> sums{};
-    for (std::size_t i = 0; i < counts.size(); ++i) sums[std::size_t(thesis_class_of(Verdict(i)))] += counts[i];
+    for (const Verdict verdict : all_verdicts) sums[std::size_t(thesis_class_of(verdict))] += counts[verdict];
     run.valid = sums[std::size_t(ThesisClass::Valid)];
     run.invalid = sums[std::size_t(ThesisClass::Invalid)];
     run.aerial = sums[std::size_t(ThesisClass::Aerial)];
 }
 
-Run run_raster(const Environment& environment, const Robot& robot, const RasterOptions& options, Run run)
+Run run_raster(const Environment& environment, const Robot& robot, Mode mode, const RasterOptions& options, Run run)
 {
-    const CollisionChecker checker(environment.map.geometry, robot);
+    const Judge judge(environment.map, robot, {.exhaustive = mode == Mode::Fcl});
     RasterResult result;
-    run.seconds = seconds_of([&] { result = raster(environment.map, checker, options); });
+    run.seconds = seconds_of([&] { result = raster(judge, options); });
     run.environment = environment.name;
     run.robot = robot.name;
-    run.mode = options.exhaustive ? Mode::Fcl : Mode::Mask;
+    run.mode = mode;
     run.step = options.step;
     run.positions = std::uint64_t(result.grid.cols) * std::uint64_t(result.grid.rows) *
                     std::uint64_t(options.dims == 3 ? result.grid.heights : 1);
@@ -59,14 +59,14 @@ void check_same(const std::vector<Run>& runs)
 
 /// Runs a raster several times with the mask and several times with FCL at every position. Throws std::runtime_error if
 /// their counts differ.
-std::vector<Run> repeated(const Environment& environment, const Robot& robot, RasterOptions options, const Run& like,
-                          int mask_times, int fcl_times)
+std::vector<Run> repeated(const Environment& environment, const Robot& robot, const RasterOptions& options,
+                          const Run& like, int mask_times, int fcl_times)
 {
     std::vector<Run> runs;
     for (int i = 0; i < mask_times + fcl_times; ++i) {
-        options.exhaustive = i >= mask_times;
-        runs.push_back(run_raster(environment, robot, options, like));
-        runs.back().repetition = options.exhaustive ? i - mask_times + 1 : i + 1;
+        const bool with_mask = i < mask_times;
+        runs.push_back(run_raster(environment, robot, with_mask ? Mode::Mask : Mode::Fcl, options, like));
+        runs.back().repetition = with_mask ? i + 1 : i - mask_times + 1;
     }
     check_same(runs);
     return runs;
@@ -80,12 +80,7 @@ void append(std::vector<T>& to, const std::vector<T>& more)
 
 RasterOptions benchmark_options(const Settings& settings, int heights)
 {
-    RasterOptions options;
-    options.threads = settings.threads;
-    options.dims = 3;
-    options.step = 1;
-    options.bounds = {{0, 0, 0}, {9, 9, double(heights - 1)}};
-    return options;
+    return {.dims = 3, .step = 1, .bounds = {{0, 0, 0}, {9, 9, double(heights - 1)}}, .threads = settings.threads};
 }
 
 /// Returns the limits of the rasters and searches in the thesis. Its counts for tests 4 and 6 at steps of 1.5 m and
@@ -98,37 +93,33 @@ Bounds limits(int test, double step)
 
 RasterOptions raster_options(const Settings& settings, int test, double step)
 {
-    RasterOptions options;
-    options.threads = settings.threads;
-    options.dims = test <= 4 ? 3 : 2;
-    options.step = step;
-    options.offset = 1.0;
-    options.bounds = limits(test, step);
-    return options;
+    return {.dims = test <= 4 ? 3 : 2,
+            .step = step,
+            .bounds = limits(test, step),
+            .offset = 1.0,
+            .threads = settings.threads};
 }
 
 SearchOptions search_options(const Settings& settings, int test, bool with_distance, int seed)
 {
-    SearchOptions options;
-    options.threads = settings.threads;
-    options.bounds = limits(test, 1);
-    options.count = settings.quick ? 50 : 2000;
-    options.min_distance = with_distance ? 2.5 : 0;
-    options.max_failures = 100000;
-    options.seed = std::uint64_t(seed);
-    return options;
+    return {.count = settings.quick ? 50u : 2000u,
+            .min_distance = with_distance ? 2.5 : 0,
+            .seed = std::uint64_t(seed),
+            .bounds = limits(test, 1),
+            .max_failures = 100000,
+            .threads = settings.threads};
 }
 
 Run run_search(const Environment& environment, const Robot& robot, const SearchOptions& options, int test)
 {
-    const CollisionChecker checker(environment.map.geometry, robot);
+    const Judge judge(environment.map, robot);
     SpawnList list;
     Run run{.test = test,
             .environment = environment.name,
             .robot = robot.name,
             .step = options.min_distance,
             .repetition = int(options.seed)};
-    run.seconds = seconds_of([&] { list = search(environment.map, checker, options); });
+    run.seconds = seconds_of([&] { list = search(judge, options); });
     run.exact_checks = list.exact_checks;
     add_counts(list.counts, run);
     run.positions = run.valid + run.invalid + run.aerial;
@@ -210,8 +201,7 @@ std::vector<Run> search_runs(const Settings& settings, const Districts& district
 SpawnList first_search(const Settings& settings, const Districts& districts, int test)
 {
     const Environment& environment = environment_of(districts, test);
-    return search(environment.map, CollisionChecker(environment.map.geometry, robot(settings, "box")),
-                  search_options(settings, test, true, 1));
+    return search(Judge(environment.map, robot(settings, "box")), search_options(settings, test, true, 1));
 }
 
 std::vector<Milestone> milestones(const Settings& settings, const Districts& districts)
@@ -234,10 +224,10 @@ std::vector<Milestone> milestones(const Settings& settings, const Districts& dis
 std::vector<ColumnFinds> column_finds(const Settings& settings, const Environment& low)
 {
     settings.on_step("comparing 2D and 3D rasters");
-    const CollisionChecker checker(low.map.geometry, robot(settings, "box"));
+    const Judge judge(low.map, robot(settings, "box"));
     std::map<std::pair<double, double>, ColumnFinds> columns;
     const auto add_finds = [&](const RasterOptions& options, bool ColumnFinds::*found) {
-        for (const RasterPose& pose : raster(low.map, checker, options).poses)
+        for (const RasterPose& pose : raster(judge, options).poses)
             columns.try_emplace({pose.y, pose.x}, ColumnFinds{pose.x, pose.y, false, false, false}).first->second.*
                 found |= pose.verdict == Verdict::Valid;
     };

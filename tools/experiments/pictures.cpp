@@ -28,12 +28,11 @@ Bounds region_of(const Environment& environment, const std::string& name)
 
 RasterResult verdicts_in(const Settings& settings, const Environment& environment, const Bounds& bounds, double offset)
 {
-    RasterOptions options;
-    options.offset = offset;
-    options.threads = settings.threads;
-    options.bounds = bounds;
-    options.step = (bounds.max - bounds.min).head<2>().maxCoeff() / columns_across;
-    return raster(environment.map, CollisionChecker(environment.map.geometry, robot(settings, "box")), options);
+    return raster(Judge(environment.map, robot(settings, "box")),
+                  {.step = (bounds.max - bounds.min).head<2>().maxCoeff() / columns_across,
+                   .bounds = bounds,
+                   .offset = offset,
+                   .threads = settings.threads});
 }
 
 Picture draw_case(const Settings& settings, const Environment& environment, const Case& shown,
@@ -73,10 +72,8 @@ std::vector<Picture> draw_spawns(const Settings& settings, const Districts& dist
     for (const int test : {7, 8}) {
         const Environment& environment = test == 7 ? districts.low : districts.complex;
         const Robot box = robot(settings, "box");
-        HeatmapOptions options;
-        options.pixels = map_pixels;
-        options.robot = &box;
-        options.spawns = first_search(settings, districts, test).spawns;
+        HeatmapOptions options{
+            .pixels = map_pixels, .spawns = first_search(settings, districts, test).spawns, .robot = &box};
         options.title = environment.name + ", " + std::to_string(options.spawns.size()) + " random spawns";
         Picture picture{"spawns_" + environment.name + ".png", options.title};
         std::replace(picture.file.begin(), picture.file.end(), '-', '_');

@@ -1,0 +1,99 @@
+#include "catch.h"
+#include "test_map.h"
+
+#include <spawnfield/poses.h>
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <thread>
+
+using namespace spawnfield;
+
+TEST_CASE("any number of threads may ask one judge at the same time, pose by pose")
+{
+    const TestMap map = map_of(random_scene(5));
+    const Judge judge(map, random_robot(5), {.max_slope = 0.5});
+    const std::vector<Pose> poses = random_poses(map.scene, 5, 400);
+    const std::vector<Judgement> expected = judge.check(poses, {.threads = 1});
+    std::atomic<std::size_t> wrong{0};
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < 4; ++t)
+        threads.emplace_back([&, own = judge, t] {  // a copy shares its parts
+            for (std::size_t i = 0; i < poses.size(); ++i) {
+                const std::size_t p = (i + t * 100) % poses.size();
+                const Verdict verdict = own.check(poses[p]).verdict;
+                wrong += verdict != expected[p].verdict || own.is_valid(poses[p]) != (verdict == Verdict::Valid);
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("queries with different numbers of threads run at the same time and leave the rest of the process alone")
+{
+    const TestMap map = map_of(random_scene(6));
+    const Judge judge(map, random_robot(6));
+    const auto allowed = [] { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); };
+    const std::size_t before = allowed();
+    std::atomic<std::size_t> changed{0};
+    const auto run = [&](int threads) {
+        const auto look = [&](double) { changed += allowed() != before; };
+        return spawns_csv(sample(judge, {.count = 300, .min_distance = 0.1, .threads = threads, .progress = look}));
+    };
+    const std::string expected = run(1);
+    std::string one, three;
+    std::thread first([&] { one = run(1); }), second([&] { three = run(3); });
+    std::atomic<int> host_work{0};
+    tbb::parallel_for(0, 1000, [&](int) { ++host_work; });
+    first.join();
+    second.join();
+    CHECK(one == expected);
+    CHECK(three == expected);
+    CHECK(changed == 0);
+    CHECK(host_work == 1000);
+}
+
+TEST_CASE("a query with one thread inside the host's own arena does not narrow that arena")
+{
+    const TestMap map = training_map();
+    const Judge judge(map, husky());
+    tbb::task_arena host(3);
+    int width = 0;
+    host.execute([&] {
+        raster(judge, {.step = 1, .threads = 1});
+        width = tbb::this_task_arena::max_concurrency();
+    });
+    CHECK(width == 3);
+}
+
+TEST_CASE("a judge says in words why a pose is refused, and names what was hit")
+{
+    const Judge judge(training_map(), husky());
+    const auto reason = [&](double x, double y, double z) {
+        const Pose pose{{x, y, z}};
+        return judge.describe(pose, judge.check(pose));
+    };
+    CHECK(reason(0, 3, 0.1) == "valid");
+    CHECK(reason(100, 0, 0.1) == "outside the map's bounds");
+    CHECK(reason(-6.5, -5, 0.1) == "collision with thin_wall");
+    CHECK(reason(7, -7, 0.1) == "submerged");
+    CHECK(reason(0, 3, 2.5) == "aerial: 2.55 m above the ground, the limit is 1 m");
+    CHECK(reason(0, 3, -9) == "aerial: no ground below the origin");
+    CHECK(name_of(*judge.check({{-6.5, -5, 0.1}}).hit, judge.map()) == "thin_wall");
+}
+
+TEST_CASE("counts by verdict add up")
+{
+    VerdictCounts counts, more;
+    ++counts[Verdict::Valid];
+    more[Verdict::Outside] = 2;
+    more[Verdict::Valid] = 3;
+    counts += more;
+    CHECK((counts[Verdict::Valid] == 4 && counts[Verdict::Outside] == 2 && counts.total() == 6));
+    CHECK(counts != more);
+    std::uint64_t sum = 0;
+    for (const Verdict verdict : all_verdicts) sum += counts[verdict];
+    CHECK(sum == counts.total());
+}
