@@ -18,7 +18,8 @@ step() {
 
 # The files that the program of a build writes have the committed digests.
 golden() {
-  tools/build.sh "$1" spawnfield_cli spawnfield_worlds && tests/golden/check.sh "build/$1/bin" "$PWD" "$PWD/build/$1/golden"
+  tools/build.sh "$1" spawnfield_cli spawnfield_worlds &&
+    tests/golden/check.sh "$PWD/build/$1/bin" "$PWD" "$PWD/build/$1/golden"
 }
 
 asan() { tools/build.sh asan && ctest --preset asan -j "$(nproc)" --no-label-summary; }
