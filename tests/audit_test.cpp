@@ -4,6 +4,7 @@
 #include "test_map.h"
 
 #include <algorithm>
+#include <iostream>
 
 using namespace spawnfield;
 

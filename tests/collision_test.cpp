@@ -175,8 +175,8 @@ TEST_CASE("a search in a box finds what the rectangle below it has at these heig
     std::size_t found = 0;
     Random random(7);
     for (int i = 0; i < 200; ++i) {
-        const Vec3 low(random.between(-1, 9), random.between(-1, 9), random.between(-2, 60));
-        const Bounds space{low, low + Vec3(random.between(0, 2), random.between(0, 2), random.between(0, 3))};
+        const Vec3 low{random.between(-1, 9), random.between(-1, 9), random.between(-2, 60)};
+        const Bounds space{low, low + Vec3{random.between(0, 2), random.between(0, 2), random.between(0, 3)}};
         std::vector<std::uint32_t> expected, visited;
         geometry.impl().visit_in(space.min.x(), space.min.y(), space.max.x(), space.max.y(),
                                  [&](const Tile& tile, std::uint32_t element) {

@@ -397,7 +397,7 @@ TEST_CASE("with a mask that is made on first use, rasters are the same bytes wit
     }
 }
 
-TEST_CASE("every query gives the exhaustive verdicts in real scenes")
+TEST_CASE("every query gives the exhaustive verdicts in real scenes", "[real]")
 {
     const auto folder = shared_scenes();
     if (!folder) return;

@@ -162,13 +162,13 @@ bool same(const HeightImage& a, const HeightImage& b)
            std::equal(a.values.begin(), a.values.end(), b.values.begin(), [](float x, float y) { return same(x, y); });
 }
 
-/// Returns a Python that has this package and can read our files back; nothing if it is not installed (then ctest
-/// reports the test read_back_packages as skipped).
+/// Returns a Python that reads our files back with this package. If the package is not installed, the running test is
+/// skipped. Tests that call this have the tag [python] (see CMakeLists.txt).
 std::optional<std::string> python_with(const std::string& package)
 {
     const std::string python = "'" + python_file() + "'";
     if (std::system((python + " -c 'import " + package + "' > /dev/null 2>&1").c_str()) == 0) return python;
-    std::cout << "skipped: " << python << " has no " << package << "; tools/test-python.sh installs it\n";
+    skip_test(python + " has no " + package + "; tools/test-python.sh installs it");
     return std::nullopt;
 }
 
@@ -465,7 +465,7 @@ TEST_CASE("the slopes of a GeoTIFF use neighbours beyond the edge of a tile")
     CHECK((slopes(row, 254) == 0 && slopes(row, 255) > 80 && slopes(row, 256) > 80 && slopes(row, 257) == 0));
 }
 
-TEST_CASE("a GeoTIFF is at its survey coordinates, if the survey has an EPSG code")
+TEST_CASE("a GeoTIFF is at its survey coordinates, if the survey has an EPSG code", "[python]")
 {
     TestMap map = deck_map();
     map.origin = GeoOrigin{500000.25, 4100000.5, 1, "EPSG:32611"};
@@ -507,7 +507,7 @@ TEST_CASE("export --format geotiff writes the same bytes with any number of thre
     CHECK(read.at("water", 7, -7) == float(1.45));
 }
 
-TEST_CASE("GDAL reads the bands, transform, units and no-data of a GeoTIFF")
+TEST_CASE("GDAL reads the bands, transform, units and no-data of a GeoTIFF", "[python]")
 {
     const auto python = python_with("rasterio");
     if (!python) return;
@@ -574,7 +574,8 @@ TEST_CASE("a PLY has the poses of the raster as points, bit by bit, with the col
     CHECK(wrong == 0);
 }
 
-TEST_CASE("export --format ply writes to a file or to standard output, the same bytes with any number of threads")
+TEST_CASE("export --format ply writes to a file or to standard output, the same bytes with any number of threads",
+          "[python]")
 {
     const Arena arena;
     const std::string command = "export map --format ply --step 0.5 --offset 0.5" + husky_option;
@@ -718,7 +719,7 @@ TEST_CASE("a map that is baked from a GLB gives nearly the same verdicts everywh
     CHECK(glb_bytes(map, {}, 1) == glb_bytes(map, {}, 5));
 }
 
-TEST_CASE("real scenes are the same after export to GLB")
+TEST_CASE("real scenes are the same after export to GLB", "[real]")
 {
     const auto scenes = shared_scenes();
     if (!scenes) return;
@@ -740,7 +741,7 @@ TEST_CASE("real scenes are the same after export to GLB")
     }
 }
 
-TEST_CASE("export --format glb draws poses of a CSV file, and reports errors in the file")
+TEST_CASE("export --format glb draws poses of a CSV file, and reports errors in the file", "[python]")
 {
     const Arena arena;
     arena.write("poses.csv", "name,x,y,z,yaw\na,0,3,0.1,0\nb,-6.5,-5,0.1,1\n");

@@ -99,8 +99,8 @@ HardCase case_with_limit(std::uint64_t seed, const HardOptions& hard_options = {
     hard.max_slope = rad(random.between(3, 40));
     const int contacts = random.chance(0.5) ? 3 + random.below(3) : 0;
     for (int i = 0; i < contacts; ++i)
-        hard.robot.contacts.emplace_back(random.between(-0.4, 0.4), random.between(-0.4, 0.4),
-                                         random.between(-0.1, 0.1));
+        hard.robot.contacts.push_back(
+            {random.between(-0.4, 0.4), random.between(-0.4, 0.4), random.between(-0.1, 0.1)});
     return hard;
 }
 

@@ -177,8 +177,8 @@ TEST_CASE("footprints bound a part from outside and from inside")
             const double reach = std::max(box.max.norm(), box.min.norm());
             for (int i = 0; i < 200; ++i) {
                 // A grain of 0.1 mm is inside the part or not, by the independent decision.
-                const Vec3 at(random.between(-reach, reach), random.between(-reach, reach),
-                              random.between(box.min.z() - 0.1, box.max.z() + 0.1));
+                const Vec3 at{random.between(-reach, reach), random.between(-reach, reach),
+                              random.between(box.min.z() - 0.1, box.max.z() + 0.1)};
                 Scene grain;
                 hand::add_shape(grain, Label::Obstacle, box_at({1e-4, 1e-4, 1e-4}, at));
                 const bool solid = slow::collides(grain, part, {Vec3::Zero(), turn}, 0);

@@ -124,7 +124,7 @@ std::vector<AvoidedPoints> some_points(const TestMap& map, Random& random)
     out.distance = random.between(0, 0.2) * size.head<2>().minCoeff();
     for (int n = random.below(20); n > 0; --n)
         out.points.push_back(map.bounds.min +
-                             size.cwiseProduct(Vec3(random.between(0, 1), random.between(0, 1), random.between(0, 1))));
+                             size.cwiseProduct(Vec3{random.between(0, 1), random.between(0, 1), random.between(0, 1)}));
     return {out};
 }
 

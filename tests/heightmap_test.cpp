@@ -195,7 +195,7 @@ TEST_CASE("invalid heightmaps are refused by name")
                       start + "zed is not a known key; known keys: file, size, cell, z, origin, nodata, raw (line 4)");
 }
 
-TEST_CASE("real heightmaps have the heights that their sources document")
+TEST_CASE("real heightmaps have the heights that their sources document", "[real]")
 {
     const auto shared = shared_scenes();
     if (!shared) return;

@@ -37,12 +37,6 @@ std::string pipe_complaint(const std::string& file)
            "it\n";
 }
 
-/// Runs the program, which must end by itself: a pipe without a writer would make it wait.
-ProgramRun within_seconds(const Arena& arena, const std::string& arguments)
-{
-    return interrupt_program(arena, arguments, 20, "KILL");
-}
-
 std::vector<Pose> poses_in(const fs::path& file) { return read_poses(file, true).poses; }
 
 std::size_t nearer(const std::vector<Pose>& poses, const std::vector<Pose>& others, double distance)
@@ -370,7 +364,7 @@ TEST_CASE("a pipe is refused before it is opened, wherever a file is read")
         make_pipe(arena / name);
     const auto check = [&](const std::string& arguments, const std::string& file) {
         CAPTURE(arguments);
-        const ProgramRun run = within_seconds(arena, arguments);
+        const ProgramRun run = limited_program(arena, arguments);
         CHECK(run.status == 4);
         CHECK(run.err == pipe_complaint(file));
     };
@@ -414,19 +408,19 @@ TEST_CASE("pipes that a scene or a robot names are refused too")
                 "<sdf version='1.6'><world name='w'><include><uri>pipe.world</uri></include></world></sdf>");
     for (const char* const file : {"mesh.yaml", "height.yaml", "tree.yaml", "map2d.yaml", "include.world"}) {
         CAPTURE(file);
-        const ProgramRun run = within_seconds(arena, "bake -q -o new " + std::string(file));
+        const ProgramRun run = limited_program(arena, "bake -q -o new " + std::string(file));
         CHECK(run.status == 4);
         CHECK_THAT(run.err, Contains("is a pipe, needs a regular file"));
     }
     arena.write("robot.yaml", "format: spawnfield-robot/1\nparts: [{mesh: pipe.obj}]\n");
-    CHECK_THAT(within_seconds(arena, "info robot.yaml").err, Contains("pipe.obj: is a pipe, needs a regular file"));
+    CHECK_THAT(limited_program(arena, "info robot.yaml").err, Contains("pipe.obj: is a pipe, needs a regular file"));
     // The file of a material has no effect, so the mesh is read without it.
     arena.write("material.obj", "mtllib pipe\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    CHECK(within_seconds(arena, "info -q material.obj").status == 0);
+    CHECK(limited_program(arena, "info -q material.obj").status == 0);
     arena.write("buffer.gltf", R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "pipe", "byteLength": 36}],
         "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0})");
-    CHECK(within_seconds(arena, "info -q buffer.gltf").status == 4);
+    CHECK(limited_program(arena, "info -q buffer.gltf").status == 4);
 }
 
 TEST_CASE("folders, devices, sockets and circles of links are refused, and the message names the kind")
@@ -441,7 +435,7 @@ TEST_CASE("folders, devices, sockets and circles of links are refused, and the m
     fs::current_path(before);
     REQUIRE(is_bound);
     const auto said = [&](const std::string& file) {
-        const ProgramRun run = within_seconds(arena, "check map --poses " + file + box);
+        const ProgramRun run = limited_program(arena, "check map --poses " + file + box);
         CHECK(run.status == 4);
         return run.err;
     };
@@ -450,8 +444,8 @@ TEST_CASE("folders, devices, sockets and circles of links are refused, and the m
     CHECK(said("socket") == "spawnfield: socket: is a socket, needs a regular file\n");
     CHECK(said("circle") == "spawnfield: circle: cannot be reached: Too many levels of symbolic links\n");
     CHECK(said("none") == "spawnfield: none: does not exist; is the path right?\n");
-    CHECK(within_seconds(arena, "check map --poses p.csv --robot circle").status == 4);
-    CHECK(within_seconds(arena, "check map --poses p.csv --robot /dev/zero").status == 4);
+    CHECK(limited_program(arena, "check map --poses p.csv --robot circle").status == 4);
+    CHECK(limited_program(arena, "check map --poses p.csv --robot /dev/zero").status == 4);
     close(descriptor);
 }
 

@@ -62,7 +62,7 @@ octomap::OcTree random_tree(unsigned seed)
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> place(-1.5f, 1.5f);
     for (int k = 0; k < 400; ++k) {
-        const octomap::point3d centre(place(random), place(random), place(random));
+        const octomap::point3d centre{place(random), place(random), place(random)};
         const bool occupied = random() % 3 == 0;
         const int side = 1 << random() % 4;
         for (int cell = 0; cell < side * side * side; ++cell) {
@@ -303,7 +303,7 @@ TEST_CASE("bake --unknown blocked puts unknown space into the map")
     CHECK(run_program(folder, "bake scan.bt -o other --unknown solid").status == 2);
 }
 
-TEST_CASE("the unknown space of the corridor is a reasonable number of boxes")
+TEST_CASE("the unknown space of the corridor is a reasonable number of boxes", "[real]")
 {
     const auto shared = shared_scenes();
     if (!shared) return;

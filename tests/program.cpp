@@ -1,34 +1,80 @@
 #include "paths.h"
 #include "program.h"
 
+#include <poll.h>
+#include <pty.h>
 #include <sys/wait.h>
+
+#include <chrono>
 
 namespace {
 
+/// A shell command for the program, with no input and its standard output in the folder's `.out`.
+std::string command_for(const TempFolder& folder, const std::string& before, const std::string& arguments)
+{
+    return "exec </dev/null >'" + (folder / ".out").string() + "'; cd '" + folder.path().string() + "' && " + before +
+           " '" + program_file() + "' " + arguments;
+}
+
+int exit_status(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
+
+std::string taken(const std::filesystem::path& file)
+{
+    std::string bytes = bytes_of(file);
+    std::filesystem::remove(file);
+    return bytes;
+}
+
 ProgramRun run(const TempFolder& folder, const std::string& before, const std::string& arguments)
 {
-    const std::string out = (folder / ".out").string(), err = (folder / ".err").string();
-    const std::string command = "exec </dev/null >'" + out + "' 2>'" + err + "'; cd '" + folder.path().string() +
-                                "' && " + before + " '" + program_file() + "' " + arguments;
+    const std::filesystem::path err = folder / ".err";
+    const std::string command = "exec 2>'" + err.string() + "'; " + command_for(folder, before, arguments);
     const int status = std::system(command.c_str());
-    const ProgramRun result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), bytes_of(out),
-                            bytes_of(err)};
-    std::filesystem::remove(out);
-    std::filesystem::remove(err);
-    return result;
+    return {exit_status(status), taken(folder / ".out"), taken(err)};
 }
 
 }  // namespace
 
 ProgramRun run_program(const TempFolder& folder, const std::string& arguments) { return run(folder, "", arguments); }
 
-ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds,
-                             const std::string& signal)
+ProgramRun limited_program(const TempFolder& folder, const std::string& arguments)
 {
-    // With --foreground only the program gets the signal. Without it, every process of the group gets the signal, so
-    // the program gets it twice, and a second Ctrl-C ends it at once.
-    return run(
-        folder,
-        "timeout --foreground --preserve-status --signal=" + signal + " --kill-after=30 " + std::to_string(seconds),
-        arguments);
+    return run(folder, "timeout --signal=KILL 120", arguments);
+}
+
+ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, int signal)
+{
+    const std::string command = command_for(folder, "exec", arguments);
+    termios settings{};  // all off: lines arrive as they were written
+    int terminal = -1;
+    const pid_t child = forkpty(&terminal, nullptr, &settings, nullptr);
+    if (child < 0) throw std::runtime_error("no terminal for tests");
+    if (child == 0) {
+        execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+        _exit(127);
+    }
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::seconds patience(60);  // until the bar, and then until the end
+    std::string err;
+    bool is_sent = false;
+    for (auto deadline = Clock::now() + patience;;) {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+        pollfd input{terminal, POLLIN, 0};
+        if (left <= 0 || poll(&input, 1, int(left)) <= 0) {
+            kill(child, SIGKILL);
+            break;
+        }
+        char bytes[4096];
+        const ssize_t count = read(terminal, bytes, sizeof bytes);
+        if (count <= 0) break;  // the program has ended
+        err.append(bytes, std::size_t(count));
+        if (is_sent || err.find(" %") == std::string::npos) continue;
+        kill(child, signal);
+        is_sent = true;
+        deadline = Clock::now() + patience;
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    close(terminal);
+    return {exit_status(status), taken(folder / ".out"), err};
 }

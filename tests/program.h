@@ -2,6 +2,8 @@
 
 #include "temp_folder.h"
 
+#include <csignal>
+
 /// The result of a run of the program.
 struct ProgramRun {
     int status;  ///< status as in a shell: 128 + N for signal N
@@ -11,6 +13,10 @@ struct ProgramRun {
 /// Runs `spawnfield ARGUMENTS` in the folder, in a shell and without a terminal.
 ProgramRun run_program(const TempFolder& folder, const std::string& arguments);
 
-/// Does the same, but sends the signal (Ctrl-C by default) after `seconds`, and kills the program half a minute later.
-ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, double seconds,
-                             const std::string& signal = "INT");
+/// Does the same, but kills the program (status 137) after two minutes, many times what it needs: for inputs that could
+/// make it wait for ever.
+ProgramRun limited_program(const TempFolder& folder, const std::string& arguments);
+
+/// Does the same with a terminal for standard error. Sends the signal when the first progress bar appears there, so in
+/// the middle of the work on any machine. Kills the program if it shows no bar, or does not end, within a minute.
+ProgramRun interrupt_program(const TempFolder& folder, const std::string& arguments, int signal = SIGINT);

@@ -36,7 +36,7 @@ Ring star(Draw& draw, const Vec2& centre, double radius, int corners)
 Ring tangle(Draw& draw, int corners)
 {
     Ring out;
-    for (int i = 0; i < corners; ++i) out.emplace_back(draw.uniform(-5, 5), draw.uniform(-5, 5));
+    for (int i = 0; i < corners; ++i) out.push_back({draw.uniform(-5, 5), draw.uniform(-5, 5)});
     return out;
 }
 
@@ -48,7 +48,7 @@ std::vector<Region> random_regions(Draw& draw)
         Region region;
         const int polygons = 1 + int(draw.unit() * 3);
         for (int p = 0; p < polygons; ++p) {
-            const Vec2 centre(draw.uniform(-4, 4), draw.uniform(-4, 4));
+            const Vec2 centre{draw.uniform(-4, 4), draw.uniform(-4, 4)};
             if (draw.unit() < 0.3)
                 region.polygons.push_back({tangle(draw, 3 + int(draw.unit() * 8))});
             else
@@ -113,7 +113,7 @@ TEST_CASE("a point is in a region by the even-odd rule, counted in another way")
         const std::vector<Region> regions = random_regions(draw);
         const PolygonIndex index(regions);
         for (int i = 0; i < 300; ++i) {
-            const Vec2 p(draw.uniform(-8, 8), draw.uniform(-8, 8));
+            const Vec2 p{draw.uniform(-8, 8), draw.uniform(-8, 8)};
             const auto wanted = slow_contains(regions, p);
             if (!wanted) continue;
             REQUIRE(index.contains(p) == *wanted);

@@ -205,7 +205,7 @@ TEST_CASE("the polyhedron of an ellipsoid contains it, with little extra space")
     double farthest = -1;
     for (int k = 0; k < 2000; ++k) {
         const Vec3 point = pose.rotation *
-                               Vec3(normal(random), normal(random), normal(random)).normalized().cwiseProduct(radii) +
+                               Vec3{normal(random), normal(random), normal(random)}.normalized().cwiseProduct(radii) +
                            pose.position;
         for (const auto& f : hull.hull_faces) {
             const Vec3 a = hull.hull_vertices[std::size_t(f[0])];
@@ -443,7 +443,7 @@ TEST_CASE("a solid that is cut along all three axes keeps the place where the pl
         const auto parts = convex_split(beams, most);
         int inside = 0;
         for (int k = 0; k < 4000; ++k) {
-            const Vec3 p(unit(random), unit(random), unit(random));
+            const Vec3 p{unit(random), unit(random), unit(random)};
             const Eigen::Array3d a = p.array().abs();
             if ((a <= 0.5).count() < 2) continue;
             ++inside;

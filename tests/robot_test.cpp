@@ -478,7 +478,7 @@ TEST_CASE("a far too large robot is refused, a chain longer than the call stack 
               .parts.size() == 1);
 }
 
-TEST_CASE("real robots have the bounds that their sources document")
+TEST_CASE("real robots have the bounds that their sources document", "[real]")
 {
     const auto shared = shared_scenes();
     if (!shared) return;

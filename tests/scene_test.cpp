@@ -308,7 +308,7 @@ TEST_CASE("the training arena has the heights of the thesis")
     CHECK(column_at(geometry, 7.3, -7.4).water == std::vector<double>{1.45});
 }
 
-TEST_CASE("real scenes have as many triangles of each label as their sources document")
+TEST_CASE("real scenes have as many triangles of each label as their sources document", "[real]")
 {
     const auto shared = shared_scenes();
     if (!shared) return;

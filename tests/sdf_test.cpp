@@ -757,7 +757,7 @@ TEST_CASE("models that include the next one twice, and so on, are refused before
               "makes more than 100000 includes in total"));
 }
 
-TEST_CASE("the real worlds contain what an independent reader finds in them")
+TEST_CASE("the real worlds contain what an independent reader finds in them", "[real]")
 {
     const auto folder = shared_scenes();
     if (!folder) return;

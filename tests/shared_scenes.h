@@ -1,14 +1,15 @@
 #pragma once
 
 #include "paths.h"
+#include "skip.h"
 
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <optional>
 
-/// Returns the folder of the real scenes: SPAWNFIELD_SCENES, or else the one beside the repository. Prints a line if it
-/// does not exist.
+/// Returns the folder of the real scenes: SPAWNFIELD_SCENES, or the one beside the repository. If it does not exist,
+/// the running test is skipped. Tests that call this have the tag [real], unless all tests of their file call it (see
+/// CMakeLists.txt).
 inline std::optional<std::filesystem::path> shared_scenes()
 {
     const char* const given = std::getenv("SPAWNFIELD_SCENES");
@@ -16,7 +17,6 @@ inline std::optional<std::filesystem::path> shared_scenes()
                                              ? given
                                              : std::filesystem::path(source_folder()) / ".." / "shared" / "scenes";
     if (std::filesystem::is_directory(folder)) return std::filesystem::canonical(folder);
-    std::cout << "skipped: there are no shared scenes at " << folder.string()
-              << "; set SPAWNFIELD_SCENES to their folder\n";
+    skip_test("no shared scenes at " + folder.string() + "; set SPAWNFIELD_SCENES to their folder");
     return std::nullopt;
 }

@@ -60,18 +60,24 @@ TEST_CASE("Unity's frame is left-handed with y up")
 
 TEST_CASE("in the terms of the thesis valid is valid, aerial and off_terrain are aerial, and all others are invalid")
 {
-    for (const Verdict verdict : {Verdict::Outside, Verdict::Submerged, Verdict::Collision})
-        CHECK(thesis_class_of(verdict) == ThesisClass::Invalid);
-    for (const Verdict verdict : {Verdict::Aerial, Verdict::OffTerrain})
-        CHECK(thesis_class_of(verdict) == ThesisClass::Aerial);
-    CHECK(thesis_class_of(Verdict::Valid) == ThesisClass::Valid);
+    const std::map<Verdict, ThesisClass> classes = {
+        {Verdict::Outside, ThesisClass::Invalid},   {Verdict::Aerial, ThesisClass::Aerial},
+        {Verdict::OffTerrain, ThesisClass::Aerial}, {Verdict::Submerged, ThesisClass::Invalid},
+        {Verdict::Collision, ThesisClass::Invalid}, {Verdict::Steep, ThesisClass::Invalid},
+        {Verdict::Unstable, ThesisClass::Invalid},  {Verdict::Valid, ThesisClass::Valid},
+    };
+    CHECK(classes.size() == verdict_count);  // every verdict is there
+    for (const auto& [verdict, expected] : classes) CHECK(thesis_class_of(verdict) == expected);
 }
 
 TEST_CASE("locations of rasters are read back as the same poses, class by class, with and without aerial poses")
 {
+    std::uint64_t steep = 0, unstable = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const TestMap map = seed == 1 ? training_map() : map_of(random_scene(seed));
-        const Judge judge(map, husky());
+        JudgeOptions limits;
+        if (seed % 2 == 1) limits.max_slope = 0.1;
+        const Judge judge(map, husky(), limits);
         for (const int dims : {2, 3}) {
             RasterOptions options{.dims = dims};
             options.step = 0.7 + 0.01 * double(seed);  // numbers with many digits
@@ -81,11 +87,15 @@ TEST_CASE("locations of rasters are read back as the same poses, class by class,
             const ThesisCounts with_air = write_thesis_locations(folder.path(), result, true);
             CHECK(locations(folder / "Valid_Locations.txt") == poses_of(result, true, {Verdict::Valid}));
             CHECK(locations(folder / "Invalid_Locations.txt") ==
-                  poses_of(result, true, {Verdict::Outside, Verdict::Submerged, Verdict::Collision}));
+                  poses_of(
+                      result, true,
+                      {Verdict::Outside, Verdict::Submerged, Verdict::Collision, Verdict::Steep, Verdict::Unstable}));
             CHECK(locations(folder / "Air_Locations.txt") ==
                   poses_of(result, true, {Verdict::Aerial, Verdict::OffTerrain}));
             CHECK(with_air[std::size_t(ThesisClass::Aerial)] ==
                   result.counts[Verdict::Aerial] + result.counts[Verdict::OffTerrain]);
+            steep += result.counts[Verdict::Steep];
+            unstable += result.counts[Verdict::Unstable];
             const TempFolder other;
             const ThesisCounts without = write_thesis_locations(other.path(), result, false);
             CHECK(without == ThesisCounts{with_air[0], with_air[1], 0});
@@ -94,6 +104,7 @@ TEST_CASE("locations of rasters are read back as the same poses, class by class,
                 CHECK(bytes_of(other / name) == bytes_of(folder / name));
         }
     }
+    CHECK((steep > 0 && unstable > 0));
 }
 
 TEST_CASE("raster --format thesis writes a folder whose counts are those of the summary")
@@ -190,7 +201,7 @@ TEST_CASE("a folder with other contents is refused, and does not change")
     CHECK(fs::is_symlink(arena / "link"));
     CHECK(names_in(arena / "empty").contains("Valid_Locations.txt"));
     const ProgramRun stopped = interrupt_program(
-        arena, "raster map --dims 3 --step 0.02 --no-height-check --format thesis -o empty" + husky_option, 1.0);
+        arena, "raster map --dims 3 --step 0.02 --no-height-check --format thesis -o empty" + husky_option);
     CHECK(stopped.status == 130);
     CHECK(value_of(bytes_of(arena / "empty/Stats.txt"), "Dimensions") == "2");
     CHECK(arena.names() == std::set<std::string>{"map", "out", "file", "nested", "empty", "link"});

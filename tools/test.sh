@@ -16,7 +16,7 @@ tools/test-python.sh
 echo "building (some minutes the first time)" >&2
 tools/build.sh release
 results=$PWD/build/release/tests.xml
-ctest --preset release -j "$(nproc)" --output-junit "$results"
+ctest --preset release -j "$(nproc)" --no-label-summary --output-junit "$results"
 if [ -n "$no_skips" ] && grep -q '<skipped' "$results"; then
   echo "test.sh: some tests were skipped (see above), which --no-skips does not allow" >&2
   exit 1

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Everything that must pass before a change is accepted: ci.sh. From a fresh clone, step by step, each with its time; it
+# stops at the first step that fails and prints the end of that step's log. All logs are in build/ci.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+mkdir -p build/ci
+
+step() {
+  local name=$1 log=build/ci/$1.log began=$SECONDS
+  shift
+  if ! "$@" >"$log" 2>&1; then
+    tail -n 60 "$log"
+    echo "ci.sh: step $name failed after $((SECONDS - began)) s; the whole log is $log"
+    exit 1
+  fi
+  echo "ci.sh: $name passed in $((SECONDS - began)) s"
+}
+
+# The files that the program of a build writes have the committed digests.
+golden() {
+  tools/build.sh "$1" spawnfield_cli spawnfield_worlds &&
+    tests/golden/check.sh "$PWD/build/$1/bin" "$PWD" "$PWD/build/$1/golden"
+}
+
+asan() { tools/build.sh asan && ctest --preset asan -j "$(nproc)" --no-label-summary; }
+
+tsan() {
+  tools/build.sh tsan spawnfield_tests spawnfield_worlds && ctest --preset tsan -j "$(nproc)" --label-regex threads
+}
+
+step dependencies tools/install-dependencies.sh --tests
+step python tools/test-python.sh
+step format tools/format.sh --check
+step layers tools/check-layers.py
+step dev golden dev
+step clang golden clang
+step asan asan
+step tsan tsan
+# The last step prints by itself: its last line is the summary of ctest, which CI reads.
+tools/test.sh --no-skips
