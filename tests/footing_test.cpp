@@ -237,15 +237,14 @@ TEST_CASE("on a beam between its wheels, on a pillar and over an edge a robot is
     CHECK(verdict_of(scene, load_robot("box:0.31,0.31,1"), pose_at(1.15, 0, 5.1), limit) == Unstable);
 
     CHECK(verdict_of(scene, husky(), pose_at(8.7, 0, 5.1), limit) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 5.1), limit) ==
-          Unstable);  // both front wheels are beyond the edge
+    // The edge of the deck is at x = 9.
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 5.1), limit) == Unstable);  // both front wheels are beyond it
     CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), limit) == Unstable);  // one of them is beyond it
     CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), 80) == Unstable);
     CHECK(verdict_of(scene, husky(), pose_at(6, 0, 0.1), limit) == Valid);  // below the deck
     CHECK(verdict_of(scene, husky(), pose_at(9.6, 9.6, 0.1, 1), limit) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(9.7, 9.6, 0.1, 1), limit) ==
-          Unstable);                                                         // a contact is beyond the end of the scene
-    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 7), limit) == Aerial);  // aerial comes before unstable
+    CHECK(verdict_of(scene, husky(), pose_at(9.7, 9.6, 0.1, 1), limit) == Unstable);  // a contact is beyond the scene
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 7), limit) == Aerial);           // aerial comes before unstable
 }
 
 TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is not")
@@ -260,8 +259,7 @@ TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is no
                    {.kind = "plane"});
     CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), off) == Valid);
     CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), 20) == Unstable);  // two wheels are above the bench
-    CHECK(verdict_of(bench, load_robot("box:0.6,0.5,0.2"), pose_at(0, -1, 0.1), 20) ==
-          Valid);  // the robot is below the bench
+    CHECK(verdict_of(bench, load_robot("box:0.6,0.5,0.2"), pose_at(0, -1, 0.1), 20) == Valid);  // below the bench
 }
 
 TEST_CASE("sunken and stacked solids count as one, and a low bump under the origin does not matter")
@@ -271,8 +269,7 @@ TEST_CASE("sunken and stacked solids count as one, and a low bump under the orig
     add_box(scene, {-3, -3, 0.05}, {3, 3, 0.1}, Label::Obstacle);  // and one on top of it
     add_box(scene, {-0.1, -0.1, 0.1}, {0.1, 0.1, 0.13});           // terrain below the origin
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 10) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 1) ==
-          Unstable);  // the contacts' surfaces are 3 cm below the pose's ground
+    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 1) == Unstable);  // 3 cm below the pose's ground
 }
 
 TEST_CASE("on a bridge that is terrain as a whole, frames, rails and pillars are unstable; deck and ground are not")

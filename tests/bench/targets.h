@@ -7,13 +7,12 @@ namespace bench {
 /// A row of the table of targets for speed and memory.
 struct TargetRow {
     std::string scene = {}, work = {};
-    int threads = 0;          ///< 0: not applicable
-    std::string target = {};  ///< as text; empty for rows without a target
-    double measured = 0;      ///< median
-    std::string unit = {};    ///< of `measured`: "s", "ms", "ms per 1,000", "MB", "times"
-    std::optional<double> over_exhaustive =
-        {};                               ///< time per item of alternative (a), the exhaustive query, divided by ours
-    std::optional<double> over_fcl = {};  ///< time per item of alternative (b), PlainFcl, divided by ours
+    int threads = 0;                             ///< 0: not applicable
+    std::string target = {};                     ///< as text; empty for rows without a target
+    double measured = 0;                         ///< median
+    std::string unit = {};                       ///< of `measured`: "s", "ms", "ms per 1,000", "MB", "times"
+    std::optional<double> over_exhaustive = {};  ///< time per item of (a), the exhaustive query, divided by ours
+    std::optional<double> over_fcl = {};         ///< time per item of (b), PlainFcl, divided by ours
     std::optional<bool> reached = {};
     double memory = 0;  ///< bytes of the whole process, or bytes that a query needed in addition to scene and map
     std::optional<double> exact_share = {};  ///< share of the items that FCL decided

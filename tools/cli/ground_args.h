@@ -39,8 +39,8 @@ Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map)
 /// Returns "floor 1 at 5.2 m" or "heights 2:4 m", for captions; empty if the heights are unlimited.
 std::string height_words(const GroundArgs& args, const ZRange& heights, const Map& map);
 
-/// Returns `wanted`, or the robot's auto offset without it, in m, and puts it into the summary. Throws ArgumentError if
-/// it is above --max-height, because `check` would call such poses aerial.
+/// Returns the offset, m: `wanted`, or the robot's auto offset if that is empty. Puts it into the summary. Throws
+/// ArgumentError if it is above --max-height, because `check` would call such poses aerial.
 double choose_offset(const QueryArgs& args, const std::optional<double>& wanted, const Robot& robot, Summary& summary);
 
 /// If the robot reaches down to its layer or below, returns the reason why no pose on flat ground can be valid. Else
