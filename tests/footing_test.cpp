@@ -13,7 +13,7 @@
 using namespace spawnfield;
 using enum Verdict;
 
-// Tests of how a robot stands on the ground, which queries examine if max_slope is set.
+// Tests of how a robot stands on the ground (its footing). Queries examine this only if max_slope is set.
 
 namespace {
 
@@ -91,7 +91,7 @@ double extent(const Polygon2& polygon, const Vec2& direction)
     return out;
 }
 
-/// Returns the hard case of a seed with some limit of slope. Every second robot has its own contacts.
+/// Returns the hard case of a seed with a random max_slope. About half of the robots have random contacts.
 HardCase case_with_limit(std::uint64_t seed, const HardOptions& hard_options = {})
 {
     HardCase hard = hard_case(seed, hard_options);
@@ -160,7 +160,7 @@ TEST_CASE("a robot stands on the corners of its lowest parts, unless its file li
     }
 }
 
-TEST_CASE("footprints of low parts are those of dense samples")
+TEST_CASE("the footprint of the lowest parts agrees with dense samples of their lower sides")
 {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         Robot robot = random_robot(seed);
@@ -212,7 +212,7 @@ TEST_CASE("a slope above the limit is steep, a slope at the limit is not, whiche
     CHECK(verdict_of(slope_scene(60), own, pose_at(0, 0, 0.5, 0.4), 61) == Valid);
 }
 
-TEST_CASE("the slope also counts for a robot that is tilted like its slope")
+TEST_CASE("the slope also counts for a robot that is tilted like the ground")
 {
     const Pose along = pose_at(0, 0, 0.2, 0, 0, -rad(20));
     CHECK(verdict_of(slope_scene(20), husky(), along, 25) == Valid);
@@ -237,13 +237,14 @@ TEST_CASE("on a beam between its wheels, on a pillar and over an edge a robot is
     CHECK(verdict_of(scene, load_robot("box:0.31,0.31,1"), pose_at(1.15, 0, 5.1), limit) == Unstable);
 
     CHECK(verdict_of(scene, husky(), pose_at(8.7, 0, 5.1), limit) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 5.1), limit) == Unstable);  // both front wheels are over the edge
-    CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), limit) == Unstable);  // one of them is
+    // The edge of the deck is at x = 9.
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 5.1), limit) == Unstable);  // both front wheels are beyond it
+    CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), limit) == Unstable);  // one of them is beyond it
     CHECK(verdict_of(scene, husky(), pose_at(8.75, 0, 5.1, M_PI / 4), 80) == Unstable);
     CHECK(verdict_of(scene, husky(), pose_at(6, 0, 0.1), limit) == Valid);  // below the deck
     CHECK(verdict_of(scene, husky(), pose_at(9.6, 9.6, 0.1, 1), limit) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(9.7, 9.6, 0.1, 1), limit) == Unstable);  // the scene ends there
-    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 7), limit) == Aerial);           // the first verdict that applies
+    CHECK(verdict_of(scene, husky(), pose_at(9.7, 9.6, 0.1, 1), limit) == Unstable);  // a contact is beyond the scene
+    CHECK(verdict_of(scene, husky(), pose_at(8.8, 0, 7), limit) == Aerial);           // aerial comes before unstable
 }
 
 TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is not")
@@ -252,23 +253,23 @@ TEST_CASE("a kerb under two wheels is ground, a wall or a bench under them is no
     add_box(scene, {-8, -3, 0}, {8, -0.2, 0.1}, Label::Obstacle);
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 20) == Valid);
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 9) ==
-          Unstable);  // 9.9 degrees, but this is an edge and not a slope
+          Unstable);  // the wheels are at 9.9 degrees, but on an edge and not on a slope
     Scene bench = floor_scene();
     hand::add_mesh(bench, Label::Obstacle, hand::moved(hand::rectangle(4, 2), {Vec3(0, -1.2, 0.4), Mat3::Identity()}),
                    {.kind = "plane"});
     CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), off) == Valid);
-    CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), 20) == Unstable);  // a wheel would come down on it
-    CHECK(verdict_of(bench, load_robot("box:0.6,0.5,0.2"), pose_at(0, -1, 0.1), 20) == Valid);  // below it
+    CHECK(verdict_of(bench, husky(), pose_at(0, 0, 0.5), 20) == Unstable);  // two wheels are above the bench
+    CHECK(verdict_of(bench, load_robot("box:0.6,0.5,0.2"), pose_at(0, -1, 0.1), 20) == Valid);  // below the bench
 }
 
-TEST_CASE("sunken and stacked solids count as one, and a thin crack under the origin does not matter")
+TEST_CASE("sunken and stacked solids count as one, and a low bump under the origin does not matter")
 {
     Scene scene = floor_scene();
     add_box(scene, {-3, -3, -0.5}, {3, 3, 0.05});                  // a plate sunk into the floor
     add_box(scene, {-3, -3, 0.05}, {3, 3, 0.1}, Label::Obstacle);  // and one on top of it
     add_box(scene, {-0.1, -0.1, 0.1}, {0.1, 0.1, 0.13});           // terrain below the origin
     CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 10) == Valid);
-    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 1) == Unstable);  // 3 cm lower than the ground
+    CHECK(verdict_of(scene, husky(), pose_at(0, 0, 0.2), 1) == Unstable);  // 3 cm below the pose's ground
 }
 
 TEST_CASE("on a bridge that is terrain as a whole, frames, rails and pillars are unstable; deck and ground are not")
@@ -314,7 +315,7 @@ TEST_CASE("on a bridge that is terrain as a whole, frames, rails and pillars are
     CHECK(with.counts[Unstable] + with.counts[Valid] == without.counts[Valid]);
 }
 
-TEST_CASE("a limit out of its range is wrong usage, named with its value and limits")
+TEST_CASE("a max_slope out of its range is refused with its value and limits")
 {
     const TestMap map = map_of(floor_scene());
     const std::pair<double, std::string> bad[] = {{0, "0"}, {-0.1, "-0.1"},        {M_PI / 2, "1.5707963267948966"},
@@ -332,7 +333,7 @@ TEST_CASE("footings only remove valid poses, fewer with a larger limit, and need
         const HardCase hard = case_with_limit(seed);
         const TestMap map = compare::map_of_case(hard);
         const RasterOptions options = raster_options(map, hard, 40);
-        std::vector<RasterResult> results;  // from no limit to smaller and smaller limits
+        std::vector<RasterResult> results;  // first without a limit, then with smaller and smaller limits
         for (const double limit : {off, 1.5, 1.0, 0.6, 0.35, 0.2, 0.1, 0.01}) {
             results.push_back(raster(Judge(map, hard.robot, {.max_slope = limit}), options));
         }
@@ -454,7 +455,7 @@ TEST_CASE("samples have a footing, and footings are the same bytes with any numb
     }
 }
 
-TEST_CASE("where everything is too steep, sample finds nothing, and reports nothing as full without a proof")
+TEST_CASE("where everything is too steep, sample finds nothing, but does not call the region full without a proof")
 {
     const TestMap map = map_of(slope_scene(20));
     const Robot robot = load_robot("box:0.4,0.4,0.3");

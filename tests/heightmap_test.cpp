@@ -19,7 +19,7 @@ constexpr double hole = std::numeric_limits<double>::quiet_NaN();
 
 using Pixels = std::vector<std::vector<double>>;
 
-/// Writes the rows as an image of the given OpenCV depth.
+/// Writes the rows as an image with the given OpenCV depth (type of pixels).
 void write_image(const TempFolder& folder, const std::string& name, const Pixels& rows, int depth)
 {
     cv::Mat image(int(rows.size()), int(rows[0].size()), CV_64F);
@@ -88,10 +88,10 @@ TEST_CASE("z may be reversed, and then dark is high")
     CHECK(height(scene, 0, -1) == Approx(1));
 }
 
-TEST_CASE("cells are split from the corner with the smaller column and row to the one with the larger")
+TEST_CASE("the diagonal that splits a cell starts at the smaller column and row")
 {
     const TempFolder folder;
-    // Along that diagonal all heights are 0. Along the other one the middle would be 1.
+    // Along that diagonal all heights are 0. The other diagonal would give height 1 in the middle.
     write_image(folder, "a.tiff", {{0, 1}, {1, 0}}, CV_32F);
     const Scene valley = load(folder, "file: a.tiff, size: [2, 2]");
     CHECK(height(valley, 0, 0) == Approx(0).margin(1e-12));

@@ -11,31 +11,34 @@
 
 namespace spawnfield {
 
-/// Proofs that no further sample can stand anywhere in a cell, from the scene's own geometry: the mask has no part in
-/// them, so that they are the same with it and without it.
+/// Proves that a cell is closed: no further sample can stand anywhere in it. The proofs use the scene's own geometry
+/// and not the mask, so they are the same with and without a mask.
 ///
-/// A cell's layers lie between heights that the planes of its terrain give. At each such height, as far as layers are
-/// ground there, all poses must be off the area, outside, too close to one taken or avoided position, under water, or
-/// collide: the robot eroded by half a cell does at its centre, or some point of the robot is inside the ground at
-/// every pose. Lines within 1e-9 m of an upright face are left aside. What is not proven stays open: cells half on an
-/// obstacle as flat as the offset, for one. A footing that is asked for (max_slope) only takes valid poses away, so
-/// what is closed without it is closed with it; cells where all is steep stay open.
+/// The planes of the terrain in a cell give bands of heights that contain all of the cell's layers. A cell is closed if
+/// in each band one reason holds for all poses on ground: they are off the area, outside, too close to one taken or
+/// avoided position, under water, or they collide. There are two proofs of collision: the robot eroded by half a cell
+/// collides at the centre of the cell, or some point of the robot is inside the ground, or inside one solid, at every
+/// pose. Vertical lines within 1e-9 m of an upright face are ignored.
+///
+/// A cell without a proof stays open, for example a cell half on an obstacle that is not higher than the offset.
+/// Footings (max_slope) only make valid poses invalid, so a cell that is closed without them is closed with them. But
+/// steepness is not a proof: a cell in which all ground is steep stays open.
 class CellProofs {
 public:
-    /// options.offset is given. `taken` may grow between calls of is_closed, never during them.
+    /// options.offset must have a value. `taken` may grow between calls of is_closed(), but not during a call.
     CellProofs(const Judge::Impl& shared, const SampleOptions& options, const AreaIndex& area,
                const SpacedPoints& taken, const AvoidIndex& avoided);
     ~CellProofs();
 
-    /// For cells of these half sides, m. Not to be called while others ask.
+    /// Sets half the side lengths of the following cells, m. Must not run at the same time as is_closed().
     void set_half_cell(double half_x, double half_y);
     bool is_closed(const Rect& cell) const;
 
 private:
     struct Prism;
     class Cell;
-    /// The robot's inside, smaller by half a cell and by half a range of heights: where it collides, the robot does at
-    /// every pose of the cell.
+    /// The inside of the robot, eroded by half a cell in x and y and by half_height in z. If it collides at the middle
+    /// of a cell and of a band, the robot collides at every pose of both. The band is at most twice half_height high.
     struct Eroded {
         double half_height;  ///< m
         CollisionChecker checker;
@@ -45,13 +48,13 @@ private:
     const Judge::Impl& shared_;
     const SampleOptions& options_;
     const double offset_;
-    const ZRange ground_z_;  ///< layers elsewhere are no ground, or give poses that are outside
-    const ZRange layer_z_;   ///< layers elsewhere are no ground
+    const ZRange ground_z_;  ///< layers beyond it are not ground, or their poses are outside
+    const ZRange layer_z_;   ///< layers beyond it are not ground
     const AreaIndex& area_;
     const SpacedPoints& taken_;
     const AvoidIndex& avoided_;
-    std::vector<Prism> prisms_;   ///< within the robot at every yaw that is drawn, relative to its origin
-    std::vector<Eroded> eroded_;  ///< from the lowest range of heights on
+    std::vector<Prism> prisms_;   ///< relative to the origin; inside the robot at every yaw that is drawn
+    std::vector<Eroded> eroded_;  ///< by growing half_height
 };
 
 }  // namespace spawnfield

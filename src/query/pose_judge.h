@@ -9,39 +9,42 @@
 
 namespace spawnfield {
 
-/// Returns whether a pose with its origin there is not `outside`.
+/// Returns whether a position is within the map's bounds in x and y, and within its z limits. Other poses are
+/// `outside`.
 inline bool is_within(const Map& map, const Vec3& position)
 {
     return map.bounds.contains_xy(position.x(), position.y(), touch_tolerance) &&
            map.z_limits.contains(position.z(), touch_tolerance);
 }
 
-/// Throws ArgumentError unless the range is one and the offset, if given, is finite.
+/// Throws ArgumentError if z.low is above z.high, if one of them is NaN, or if the offset is given and not finite.
 void check_ground(const char* function, const ZRange& z, const std::optional<double>& offset);
 
-/// Throws ArgumentError for an offset above max_height: `check` calls such poses aerial.
+/// Throws ArgumentError if the offset is above max_height, because `check` would call such poses aerial.
 void check_offset(const char* function, double offset, double max_height);
 
 /// Judges poses of one thread: the mask first, then an exact check where the mask cannot decide, then the footing of
-/// poses that are free. Keeps what neighbouring poses share, so it is fast for poses in rows of equal y and rotation.
+/// poses that are free. Caches what neighbouring poses share, so it is fast for rows of poses with equal y and
+/// rotation.
 class PoseJudge {
 public:
-    /// Upright at this yaw until another rotation is set. Poses may be up to max_height above their ground.
+    /// Poses are upright with this yaw until set_rotation() is called. Poses more than max_height above their ground
+    /// are aerial.
     PoseJudge(const Judge::Impl& shared, double yaw, double max_height);
     PoseJudge(const Judge::Impl& shared, double yaw);  ///< with JudgeOptions::max_height
     PoseJudge(const PoseJudge&) = delete;
     PoseJudge& operator=(const PoseJudge&) = delete;
 
-    /// Sets the rotation of the following poses. Returns at once if it is the present one.
+    /// Sets the rotation of the following poses. Does nothing if they have it already.
     void set_rotation(double yaw);
     void set_rotation(const Mat3& rotation);
 
-    /// Returns the verdict on a pose with its ground. `column` is the one at its x and y. With `with_hit` also what the
-    /// robot collides with, which takes an exact check.
+    /// Returns the verdict on a pose, and its ground. `column` must be the column at its x and y. `with_hit` adds what
+    /// the robot collides with; this needs an exact check.
     Judgement judge(const ColumnView& column, const Vec3& position, bool with_hit = false);
-    /// The same for a pose whose column is not at hand.
+    /// The same, but looks up the column of the pose itself.
     Judgement judge(const Vec3& position, bool with_hit = false);
-    /// Returns Valid or Collision: without ground and footing.
+    /// Returns Valid or Collision. Does not look at ground and footing.
     Judgement judge_collision(const Vec3& position);
 
 private:
@@ -50,11 +53,11 @@ private:
 
     const Judge::Impl& shared_;
     const double max_height_;
-    std::optional<Mask> mask_;        ///< none: every pose is checked exactly
-    std::optional<Footing> footing_;  ///< none: slopes are not looked at
+    std::optional<Mask> mask_;        ///< empty: every pose is checked exactly
+    std::optional<Footing> footing_;  ///< empty: footings are not examined
     Mat3 rotation_;
-    double yaw_;     ///< if the rotation was set by a yaw, else not a number
-    Column column_;  ///< of the last pose that came without one
+    double yaw_;     ///< that set the rotation; NaN if a matrix set it
+    Column column_;  ///< of the last pose that was judged without a column
 };
 
 struct Judge::Impl {
@@ -64,10 +67,9 @@ struct Judge::Impl {
     const Robot robot;
     const JudgeOptions options;
     const CollisionChecker checker;
-    const std::optional<FreeSpace> space;  ///< none: every pose is checked exactly
-    const std::optional<Footing> footing;  ///< none: slopes are not looked at; each PoseJudge takes its own copy
-    mutable PerThread<PoseJudge> pose_judges{
-        [this] { return PoseJudge(*this, 0); }};  ///< for poses that come one by one
+    const std::optional<FreeSpace> space;  ///< empty: every pose is checked exactly
+    const std::optional<Footing> footing;  ///< empty: footings are not examined; each PoseJudge has its own copy
+    mutable PerThread<PoseJudge> pose_judges{[this] { return PoseJudge(*this, 0); }};  ///< for calls with one pose
 };
 
 }  // namespace spawnfield

@@ -14,25 +14,28 @@
 namespace spawnfield {
 namespace {
 
-/// Draws without a spawn in a row after which cells are looked at; or of so many draws less than a share gave one.
+// The first pass draws in the whole region. It ends after `blind_patience` failures in a row, or when at most
+// `least_share` of the last `blind_window` draws gave a spawn. After that, draws are made only in cells that are not
+// proven full.
 constexpr std::uint64_t blind_patience = 2000, blind_window = 1 << 17;
 constexpr double least_share = 0.02;
-constexpr double fair_share = 0.05;  // with which it goes on in the same cells
-constexpr double first_cells = 1024, most_first_cells = 65536;
-constexpr std::size_t most_cells = 1 << 24;  // kept at a time
-/// Proofs made in all: some, half as many where next to nothing is left to decide, and more for each spawn found and
-/// each avoided point.
+// Cells are not split as long as more than this share of a round of draws gives a spawn.
+constexpr double fair_share = 0.05;
+constexpr double first_cells = 1024, most_first_cells = 65536;  // about the limits of the number of cells at first
+constexpr std::size_t most_cells = 1 << 24;                     // kept at a time
+// Limit of the number of proofs: `some_proofs`, or half of that if the cells that are left cover less than
+// `next_to_nothing` of the region; and `proofs_per_point` for each spawn found and each avoided point.
 constexpr std::size_t some_proofs = 1 << 19, proofs_per_point = 12;
-constexpr double next_to_nothing = 2e-5;  // of the region
+constexpr double next_to_nothing = 2e-5;  // share of the region's area
 constexpr double smallest_cell = 0.0001;  // m
 
-/// A region in equal cells, of which some remain. They are split all at once, so that drawing one of them, and then a
-/// point in it, draws by area.
+/// The cells of a region that are not proven full. All cells have the same size, because all are split at the same
+/// time. So a random point in a random cell is uniform by area.
 class Cells {
 public:
     Cells(const Bounds& box, double min_distance) : box_(box), size_(box.max.head<2>() - box.min.head<2>())
     {
-        if (!(size_.minCoeff() >= 0)) return;  // no region at all
+        if (!(size_.minCoeff() >= 0)) return;  // the region is empty
         const double area = std::max(size_.x() * size_.y(), smallest_cell * smallest_cell);
         const double side = std::clamp(min_distance / std::numbers::sqrt2, std::sqrt(area / most_first_cells),
                                        std::sqrt(area / first_cells));
@@ -71,7 +74,7 @@ public:
         cells_ = std::move(out);
     }
 
-    /// Keeps those whose flag is 0.
+    /// Keeps only the cells whose flag is 0.
     void drop(const std::vector<std::uint8_t>& flags)
     {
         std::size_t kept = 0;
@@ -102,8 +105,9 @@ Bounds within(const Bounds& box, Bounds limits)
     return overlap(box, limits);
 }
 
-/// One pass with a fixed number of slots per column. A draw takes one slot at one point; a slot without a layer gives
-/// nothing. So each layer is drawn with equal density, however many there are above each other.
+/// One pass of sampling with a fixed number of slots per column. Each slot of a column stands for one of its chosen
+/// layers or is empty. A draw chooses a random point and a random slot, and fails if the slot is empty. So all layers
+/// are drawn with the same density, no matter how many lie above each other.
 class Sampler {
 public:
     Sampler(const Judge& judge, const SampleOptions& options, std::size_t slots)
@@ -114,7 +118,7 @@ public:
     {
     }
 
-    /// False if a column had more layers than slots: then nothing that was drawn counts.
+    /// Returns false if a column had more layers than slots. Then `out` is not valid.
     bool run(SpawnList& out)
     {
         const auto point = [&](Draw& from) {
@@ -133,8 +137,8 @@ public:
     }
 
 private:
-    /// At most so many draws of points, until all are found or go_on(draws, failures in a row) says no. Returns how
-    /// many spawns they gave.
+    /// Makes at most `most` draws of points. Stops earlier when all spawns are found, or when go_on(draws, failures in
+    /// a row) returns false. Returns how many spawns it added.
     template <class Point, class GoOn>
     std::size_t draw(SpawnList& out, std::uint64_t most, const Point& point, const GoOn& go_on)
     {
@@ -159,7 +163,8 @@ private:
         return out.spawns.size() - before;
     }
 
-    /// Goes on in the cells that are not proven full, as long as they can be split.
+    /// Draws in the cells that are not proven full, and splits these cells again and again. Ends when all spawns are
+    /// found, when no cell is left, or when more proofs are not worth their time.
     void fill(SpawnList& out)
     {
         Cells cells(within(box_, shared_.map.bounds), options_.min_distance);
@@ -194,6 +199,7 @@ private:
 
     bool is_done(const SpawnList& out) const { return overfull_ || out.spawns.size() == options_.count; }
 
+    /// Drops the cells in which, by proof, no further spawn fits.
     void drop_closed(Cells& cells, CellProofs& proofs, const SpawnList& out) const
     {
         constexpr std::size_t chunk = 64;
@@ -209,7 +215,7 @@ private:
         cells.drop(flags);
     }
 
-    /// Layers of a column that are ground, were chosen and lie in the area, from the top.
+    /// Returns the heights of a column's layers that are ground, chosen by the options and in the area, from the top.
     std::vector<double> chosen_layers(const Column& column, const Vec2& at) const
     {
         std::vector<double> out;
@@ -267,13 +273,13 @@ private:
     const Judge::Impl& shared_;
     const SampleOptions& options_;
     const double offset_;
-    const ZRange ground_z_;  ///< layers elsewhere are no ground
+    const ZRange ground_z_;  ///< layers beyond it are not ground
     const AreaIndex area_;
     const Bounds box_;
     const std::size_t slots_;
     const AvoidIndex avoided_;
     TakenPoints taken_;
-    std::uint64_t next_ = 0;  ///< draw
+    std::uint64_t next_ = 0;  ///< number of the next draw
     std::atomic<bool> overfull_{false};
 };
 
@@ -287,7 +293,8 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
     options.offset = wanted.offset.value_or(auto_offset(judge.robot()));
     check_offset("sample", *options.offset, judge.options().max_height);
     const bool one = options.layers.kind != LayerChoice::Kind::All;
-    // The map counts layers at cell centres only; where a point between them has more, all starts over with more slots.
+    // The map counts layers at cell centres only. If a point between centres has more layers, sampling starts again
+    // with one more slot.
     for (std::size_t slots = one ? 1 : std::size_t(std::max(1, judge.map().layers));; ++slots) {
         SpawnList out;
         if (Sampler(judge, options, slots).run(out)) return out;

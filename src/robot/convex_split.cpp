@@ -16,7 +16,8 @@ namespace {
 
 constexpr int even_cuts = 15;           // per axis, at equal distances from each other
 constexpr std::size_t vertex_cuts = 8;  // vertices per axis that get a cut on either side
-// Share of the first hull's volume that a cut must save, together with the later cuts that it makes possible.
+// A cut that saves at most this share of the volume of the uncut hull is undone, unless a later cut of one of its sides
+// is kept.
 constexpr double least_gain = 1e-3;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -136,14 +137,14 @@ std::optional<std::array<Block, 2>> sides_of(const Block& block, const Plane& pl
     return sides;
 }
 
-/// Returns planes at equal distances, and planes just beside vertices, where walls often are. Small, varying offsets
-/// make it very unlikely that a plane goes through a vertex, or that three planes meet on a face: rounding would decide
-/// there what is inside.
+/// Returns planes at equal distances, and planes just beside vertices, where walls often are. Each plane is moved by a
+/// small distance, which differs from plane to plane. So it is very unlikely that a plane goes through a vertex, or
+/// that three planes meet on a face, where rounding would decide what is inside.
 std::vector<Plane> planes_through(const Block& block)
 {
     std::vector<Plane> out;
     const Bounds bounds = block.hull.bounds();
-    const auto aside = [&](double length) {  // 0.5 .. 1.5 millionths of the length
+    const auto aside = [&](double length) {  // next distance: 0.5 .. 1.5 millionths of the length
         const double turn = std::numbers::phi * double(out.size() + 1);
         return 1e-6 * length * (0.5 + turn - std::floor(turn));
     };

@@ -34,7 +34,7 @@ bool is_filled(const std::vector<Label>& labels, const std::vector<std::uint32_t
     return count(Label::Ignore) == 0 && (water == 0 || water == std::ptrdiff_t(faces.size()));
 }
 
-/// Area of the shells' faces that are level enough for ground, m2.
+/// Total area of the shells' faces that are level enough for ground and look up or down, m2.
 struct ShellAreas {
     double up = 0, down = 0;
 };
@@ -47,8 +47,8 @@ public:
     {
     }
 
-    /// Labels by slope the faces of a piece that no rule matches. If the piece is a shell, adds the areas of its faces
-    /// that look up or down to `areas`.
+    /// Gives each face of a piece that no rule matches a label by its slope. If the piece is a shell, adds the areas of
+    /// these faces to `areas`, if they are level enough for ground.
     void label_by_slope(const std::vector<std::uint32_t>& faces, const std::vector<char>& has_rule,
                         std::uint32_t open_edges, std::vector<Label>& labels, ShellAreas& areas) const
     {

@@ -55,8 +55,9 @@ void check_type(const std::filesystem::path& file, const OctoMapHeader& header)
                     "is an OctoMap of type " + (header.id.empty() ? "\"\"" : header.id) + ", needs " + known_types);
 }
 
-/// Returns the number of nodes. A node has two bits for each of its eight children. Returns 0 if the tree is too deep
-/// or the bytes end too early: octomap itself would read on past the end, so this is checked before.
+/// Returns the number of nodes. A node has two bits for each of its eight children: 0 unknown, 1 a free leaf, 2 an
+/// occupied leaf, 3 a node with children, whose bits follow. Returns 0 if the tree is too deep or the bytes end too
+/// early. octomap itself does not check this and would read past the end.
 std::size_t count_nodes(std::string_view data, int depth, std::size_t& position)
 {
     if (depth >= max_depth || position + 2 > data.size()) return 0;
@@ -93,8 +94,9 @@ std::unique_ptr<octomap::OcTree> read_binary(const std::filesystem::path& file)
     return tree;
 }
 
-/// Copies a tree, but of each node only its log-odds and its children. Returns false if the bytes end too early. A node
-/// is a float, `extra` bytes, a mask of its children, then the children (octomap/OcTreeBaseImpl.hxx).
+/// Copies a tree without the `extra` bytes of its nodes. Returns false if the tree is too deep or the bytes end too
+/// early. A node consists of a float (its log-odds), `extra` bytes, a bit mask of its children, then the children
+/// (octomap/OcTreeBaseImpl.hxx).
 bool copy_log_odds(std::string_view data, std::size_t extra, int depth, std::size_t& position, std::string& out)
 {
     constexpr std::size_t value_size = sizeof(float);

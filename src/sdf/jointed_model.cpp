@@ -132,8 +132,8 @@ private:
         return hinge;
     }
 
-    /// Moves every link as the joints between it and the root move it. The canonical link stays in place, because the
-    /// model's frame depends on it.
+    /// Moves every link by the positions of the joints between it and the root. Then moves all links together so that
+    /// the canonical link is where it was, because the model's frame is attached to it.
     void move_links(const sdf::Model& model)
     {
         std::vector<Joint> joints;
@@ -144,10 +144,12 @@ private:
         if (!moved) return;
         const Pose canonical = motion_of_link(model.CanonicalLinkAndRelativeName().second, 0);
         const Mat3 back = canonical.rotation.transpose();
-        const Pose still{-(back * canonical.position), back};
+        const Pose still{-(back * canonical.position), back};  // inverse of `canonical`
         for (Link& link : links_) link.robot_from_link = still * motion_of_link(link.name, 0) * link.robot_from_link;
     }
 
+    /// Returns how the joints between a link and the root move it, in the robot's frame. `depth` is the number of
+    /// joints on the way so far. Throws FileError if the joints form a closed chain.
     Pose motion_of_link(const std::string& link, std::size_t depth) const
     {
         const Hinge* above = nullptr;
@@ -175,7 +177,7 @@ private:
                                        "\" is ignored: by its <surface> it touches nothing");
                 continue;
             }
-            // libsdformat resolves the pose of a collision in its link's frame.
+            // With an empty frame name, libsdformat resolves the pose of a collision in the frame of its link.
             out_.bodies.push_back({{out_.name, link.name, collision.Name()},
                                    link.robot_from_link * resolved(collision.SemanticPose(), ""),
                                    geometry_of(*collision.Geom(), {file_, link.name + "::" + collision.Name(),

@@ -61,6 +61,7 @@ public:
     }
 
 private:
+    /// Throws FileError if a <geometry> contains shapes of several kinds. It may contain several <polyline>.
     void check_count(const sdf::ElementPtr& geometry) const
     {
         std::string shapes;
@@ -114,7 +115,7 @@ private:
         }
         double height = 0;
         for (sdf::ElementPtr line = element->GetElement("polyline"); line; line = line->GetNextElement("polyline")) {
-            if (height == 0) height = line->Get<double>("height");  // that of the first one, as in Gazebo
+            if (height == 0) height = line->Get<double>("height");  // of the first <polyline>, as in Gazebo
             auto& outline = out.outlines.emplace_back();
             for (sdf::ElementPtr point = line->HasElement("point") ? line->GetElement("point") : nullptr; point;
                  point = point->GetNextElement("point")) {
@@ -125,8 +126,8 @@ private:
         set(out, Kind::Polyline, "<polyline> <height>", Vec3(height, 1, 1));
     }
 
-    /// Returns the folder of the file that contains the geometry. For text in memory, libsdformat's file name is in
-    /// angle brackets; then it is the folder of the place.
+    /// Returns the folder of the file that contains the geometry. libsdformat gives text in memory a name in angle
+    /// brackets. Then this is the folder of the file in SdfPlace.
     fs::path folder_of(const std::string& named) const
     {
         return named.empty() || named.front() == '<' || !fs::exists(named) ? place_.file.parent_path()
@@ -191,7 +192,7 @@ std::string text_of_error(const sdf::Error& error, const std::string& file)
 {
     std::string out = error.FilePath().value_or(file);
     if (out.empty() || out.front() == '<' || out == path_for_libsdformat(file))
-        out = file;  // for text in memory the name is in angle brackets
+        out = file;  // libsdformat gives text in memory a name in angle brackets
     if (error.LineNumber()) out += ": line " + std::to_string(*error.LineNumber());
     if (error.XmlPath()) out += ": " + *error.XmlPath();
     const SdfErrorKind kind = kind_of(error);

@@ -105,8 +105,8 @@ bool is_tag(std::string_view text, std::string_view start)
            std::string_view(" \t\r\n/>").find(text[start.size()]) != std::string_view::npos;
 }
 
-/// Returns where the end tag of the file's world with this index begins. The XML must be valid. Returns npos if the
-/// world has no end tag (<world/>).
+/// Returns the position of the end tag of a world. `index` is the world's index among the worlds of the file. The XML
+/// must be valid. Returns npos if the world has no end tag (<world/>).
 std::size_t end_of_world(std::string_view text, int index)
 {
     int depth = 0, number = -1;
@@ -150,7 +150,8 @@ std::string inserted(std::span<const RobotStart> robots, const SdfWorldOptions& 
     return out + text.substr(is_alone ? line : end);
 }
 
-/// Returns the world file with the robots. The rest of the file remains the same to the letter, if possible.
+/// Returns the world file with the robots. If possible, every other character of the file stays as it is; otherwise the
+/// whole XML document is printed anew.
 std::string filled(std::span<const RobotStart> robots, const SdfWorldOptions& options)
 {
     tinyxml2::XMLDocument document;

@@ -11,8 +11,8 @@ struct TargetRow {
     std::string target = {};                     ///< as text; empty for rows without a target
     double measured = 0;                         ///< median
     std::string unit = {};                       ///< of `measured`: "s", "ms", "ms per 1,000", "MB", "times"
-    std::optional<double> over_exhaustive = {};  ///< time of (a) per item, divided by ours
-    std::optional<double> over_fcl = {};         ///< time of (b) per item, divided by ours
+    std::optional<double> over_exhaustive = {};  ///< time per item of (a), the exhaustive query, divided by ours
+    std::optional<double> over_fcl = {};         ///< time per item of (b), PlainFcl, divided by ours
     std::optional<bool> reached = {};
     double memory = 0;  ///< bytes of the whole process, or bytes that a query needed in addition to scene and map
     std::optional<double> exact_share = {};  ///< share of the items that FCL decided
@@ -31,7 +31,7 @@ struct TargetOptions {
 /// Measures every row. Whole programs come first, while this process is still small (see ProcessRun::peak_memory).
 std::vector<TargetRow> measure_targets(const TargetOptions& options);
 
-/// A line that --write-maps prints for a map. measure_targets reads it.
+/// What `spawnfield_bench --write-maps` prints for each map, in one line. measure_targets() reads these lines.
 struct BakedMap {
     std::filesystem::path folder = {};
     double seconds = 0;       ///< time of the bake only

@@ -22,7 +22,7 @@ void add_options(CLI::App& app, FuzzArgs& args)
     app.add_option("--seed", args.seed, "Seed of the first scene; the next scenes use the next seeds (default 1)");
     app.add_option("--scenes", args.scenes, "Maximum number of scenes (default: as many as the time allows)");
     app.add_flag("--independent", args.independent,
-                 "Compare check with the independent decision of the tests instead, which uses neither FCL nor a mask");
+                 "Instead, compare check with a second implementation in the tests that uses neither FCL nor a mask");
     app.add_flag("--keep-going", args.keep_going, "Continue after a difference; the exit status is 1 all the same");
     app.footer(
         "Example, and how to repeat a scene that it printed:\n"
@@ -78,8 +78,8 @@ int run(const FuzzArgs& args)
 int main(int argc, char** argv)
 {
     CLI::App app{
-        "Asks all queries in random hard scenes, with the free-space mask and exhaustively. The answers must be the "
-        "same"};
+        "Runs all queries in random hard scenes, once with the free-space mask and once exhaustively, and checks that "
+        "the answers are the same"};
     FuzzArgs args;
     add_options(app, args);
     CLI11_PARSE(app, argc, argv);

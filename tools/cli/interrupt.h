@@ -9,7 +9,7 @@ struct Interrupted {};
 /// the program at once.
 void catch_interrupts();
 
-/// Throws Interrupted if such a signal has come.
+/// Throws Interrupted if one of these signals has arrived.
 void stop_if_interrupted();
 
 }  // namespace spawnfield::cli

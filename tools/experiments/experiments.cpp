@@ -83,8 +83,8 @@ RasterOptions benchmark_options(const Settings& settings, int heights)
     return {.dims = 3, .step = 1, .bounds = {{0, 0, 0}, {9, 9, double(heights - 1)}}, .threads = settings.threads};
 }
 
-/// Returns the limits of the rasters and searches in the thesis. Its counts for tests 4 and 6 at steps of 1.5 m and
-/// more are those of a square, which is 1 m longer in y.
+/// Returns the limits of the rasters and searches in the thesis. The thesis's counts for tests 4 and 6 show that its
+/// area is a square, 1 m longer in y, at steps of 1.5 m and more.
 Bounds limits(int test, double step)
 {
     if (test % 2 == 1) return {{0, 0, 31}, {500, 500, 124}};

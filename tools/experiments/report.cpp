@@ -27,7 +27,7 @@ std::string seconds_text(double seconds)
     return seconds < 1 ? formatted("%.3g ms", seconds * 1e3) : formatted("%.3g s", seconds);
 }
 
-/// As printed.
+/// Formats seconds as the thesis prints them.
 std::string thesis_text(double seconds)
 {
     return seconds < 1 ? formatted("%.1f ms", seconds * 1e3) : formatted("%.1f s", seconds);
@@ -52,12 +52,13 @@ std::string percent(std::uint64_t part, std::uint64_t whole)
 
 // ---- Runs ----
 
-/// Runs that differ in repetition alone.
+/// Runs of the same experiment, which differ only in their repetition.
 struct Group {
     Run first;
-    std::vector<double> seconds;
+    std::vector<double> seconds;  ///< of every run
 };
 
+/// Returns the groups of those runs for which counts(run) is true.
 std::vector<Group> groups_of(const std::vector<Run>& runs, const std::function<bool(const Run&)>& counts)
 {
     std::vector<Group> groups;
@@ -76,6 +77,7 @@ std::vector<Group> groups_of(const std::vector<Run>& runs, const std::function<b
     return groups;
 }
 
+/// Returns the group of the same raster with FCL at every position.
 const Group& other_mode(const std::vector<Group>& groups, const Group& mask)
 {
     return *std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
@@ -85,12 +87,12 @@ const Group& other_mode(const std::vector<Group>& groups, const Group& mask)
     });
 }
 
-/// How many times faster than the thesis, for each of its figures.
+/// For each test: how many times as fast as the thesis spawnfield is, for each figure of the thesis.
 using Ratios = std::map<int, std::vector<double>>;
 
 // ---- Sections ----
 
-/// What the maps say they were baked with: {assimp: "5.2.4", …}.
+/// Returns the versions of the libraries that baked a map, from its map.yaml: {assimp: "5.2.4", …}.
 std::string libraries(const Map& map)
 {
     const std::string key = "libraries: ";
@@ -176,7 +178,8 @@ std::string collision_section(const std::vector<Run>& runs, Ratios& ratios)
     return text + "\n";
 }
 
-/// In the thesis's order of steps; in quick runs ours are coarser, and nothing is compared.
+/// Returns the table row of a group. The thesis's columns stay empty if the thesis has no figure for the step. This is
+/// so in quick runs, because their steps are coarser.
 std::string raster_line(const Group& group, const std::vector<Group>& groups,
                         const std::vector<thesis::Raster>& figures, std::vector<double>& ratios)
 {
@@ -265,6 +268,7 @@ std::string ratios_section(const Ratios& ratios)
     return text + "\n";
 }
 
+/// Returns from which step on the 3D raster takes no more time than the 2D raster, for both environments.
 std::string break_even_text(const std::vector<Run>& runs)
 {
     std::string text;
