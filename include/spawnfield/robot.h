@@ -27,7 +27,7 @@ struct MeshFit {
     std::string file;                   ///< name of the mesh file, without folders
     std::size_t parts = 1;              ///< number of convex hulls; they do not overlap
     double volume = 0;                  ///< of all hulls together, m3
-    std::optional<double> mesh_volume;  ///< m3; known only if the mesh's pieces are watertight and do not overlap
+    std::optional<double> mesh_volume;  ///< m3; known only if the mesh's pieces are watertight and lie apart
 
     /// Returns how much larger the hulls are than the mesh, as a share of its volume: 0.1 is 10 % more.
     std::optional<double> growth() const
@@ -68,9 +68,9 @@ struct RobotOptions {
 /// for joints that are not in the file, cannot move or have limits that exclude the value.
 SPAWNFIELD_API Robot load_robot(const std::string& robot, const RobotOptions& options = {});
 
-/// The points at which the robot touches the ground, in its own frame. `given`: they come from the robot's file.
-/// Otherwise they are the points that JudgeOptions::max_slope uses: the corners of the convex hull, seen from above, of
-/// everything within 2 cm of the robot's lowest point.
+/// The points at which the robot touches the ground, in its own frame. `given` is true if the robot's
+/// file has contacts that span an area. Otherwise the points are those that JudgeOptions::max_slope uses: the corners
+/// of the convex hull, seen from above, of everything within 2 cm of the robot's lowest point.
 struct RobotContacts {
     std::vector<Vec3> points;
     bool given = false;

@@ -25,10 +25,10 @@ SPAWNFIELD_API GridFrame frame_around(const Bounds& bounds, double cell);
 inline constexpr double max_columns = 1e8;
 inline constexpr double max_side = 1e6;  ///< most rows, and most columns, because libpng accepts no more
 
-/// A height for each cell of a raster; row 0 is the largest y. A cell without a height is NaN.
+/// A value for each cell of a raster; row 0 is the largest y. A cell without a value is NaN.
 struct HeightImage {
     int rows = 0, cols = 0;
-    std::vector<float> values = {};  ///< rows * cols heights, m, row after row
+    std::vector<float> values = {};  ///< rows * cols, row after row; heights in m
 
     HeightImage() = default;
     HeightImage(int rows_, int cols_, float value = std::numeric_limits<float>::quiet_NaN())
