@@ -74,7 +74,7 @@ void Mask::set_rotation(const Mat3& rotation)
 }
 
 /// Chooses a raster level for each pass: the one with the largest cells of which at least cells_along lie along the
-/// part's width. Passes with the same level as the pass before are left out.
+/// part's width, or else the finest level. A pass with the same level as the one before is left out.
 void Mask::choose_passes(Part& part) const
 {
     Vec2 low(inf, inf), high(-inf, -inf);
@@ -168,7 +168,8 @@ void Mask::cover(const Part& part, Pass& pass) const
     pass.is_ready = true;
 }
 
-/// Returns tile (col, row) of the pass's level. The last four tiles stay open.
+/// Returns tile (col, row) of the pass's level. Up to four adjacent tiles stay open, because a part may lie on the
+/// corner of four tiles.
 const Mask::OpenTile& Mask::tile_of(Pass& pass, int col, int row) const
 {
     OpenTile& open = pass.tiles[std::size_t(row % 2 * 2 + col % 2)];
