@@ -168,8 +168,8 @@ private:
         put(marks);
         for (const std::uint32_t start : starts) put(start);
         for (const QuantizedSpan& span : spans) put(span);
-        if ((starts.size() + spans.size()) % 2 == 1)
-            put(std::uint32_t{0});  // so that the next marks begin at a multiple of 8 bytes
+        // Padding, so that the next marks begin at a multiple of 8 bytes.
+        if ((starts.size() + spans.size()) % 2 == 1) put(std::uint32_t{0});
         put(ranks);
     }
 
