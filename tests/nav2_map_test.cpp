@@ -127,10 +127,10 @@ TEST_CASE("blocks cover each selected cell once and nothing else")
         const double share = draw.unit();
         std::vector<int> wanted(std::size_t(rows * cols)), seen(wanted.size(), 0);
         for (int& cell : wanted) cell = draw.unit() < share;
-        for (const CellBlock& b :
+        for (const CellRectangle& b :
              blocks_of(rows, cols, [&](int row, int col) { return wanted[std::size_t(row * cols + col)] == 1; }))
-            for (int row = b.first_row; row < b.last_row; ++row)
-                for (int col = b.first_col; col < b.last_col; ++col) ++seen[std::size_t(row * cols + col)];
+            for (int row = b.first_row; row < b.end_row; ++row)
+                for (int col = b.first_col; col < b.end_col; ++col) ++seen[std::size_t(row * cols + col)];
         CHECK(seen == wanted);
     }
     CHECK(blocks_of(3, 4, [](int, int) { return true; }).size() == 1);

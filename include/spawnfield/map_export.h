@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-/// A whole map in files of other programs.
+/// Functions that write a whole map into files of other programs.
 namespace spawnfield {
 
-/// The verdict on one pose in each cell of a frame.
+/// A verdict for each cell of a raster.
 struct VerdictImage {
     static constexpr std::uint8_t no_pose = 255;
 
@@ -25,74 +25,78 @@ struct VerdictImage {
     }
 };
 
-/// Returns the verdict at the centre of each cell, as a 2D raster gives it; no pose where the column lacks the chosen
-/// layer. The options' step and bounds are not used. Works in strips of rows: a byte for each cell, and little more.
-/// Throws as raster() does, and ArgumentError for LayerChoice All, because a cell has one verdict.
+/// Returns the verdict at the centre of each cell, as a 2D raster gives it; no_pose where the column lacks the chosen
+/// layer. The options' step and bounds are not used. Judges a few rows at a time, so that memory is little more than a
+/// byte for each cell. Throws as raster() does, and ArgumentError for LayerChoice All, because a cell has one verdict.
 SPAWNFIELD_API VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const RasterOptions& options);
 
-/// The image that belongs to a map_server's yaml: of the same name, but .pgm. Throws ArgumentError unless that ends in
-/// .yaml or .yml.
+/// Returns the name of the image that belongs to the yaml file of a nav2 map: the same name with the ending .pgm.
+/// Throws ArgumentError unless `yaml` ends in .yaml or .yml.
 SPAWNFIELD_API std::filesystem::path nav2_image_of(const std::filesystem::path& yaml);
 
-/// The feasible area as map_server of ROS and nav2 reads it: `yaml`, and nav2_image_of(yaml) beside it.
+/// Writes the area of valid poses for the map_server of ROS and nav2: the file `yaml`, and nav2_image_of(yaml) beside
+/// it.
 ///
-/// Free (254) where the verdict is valid, occupied (0) where it is another, unknown (205) where there is no pose or the
-/// cell's centre is outside. Pixels are cells; `origin` is the lower left corner of the lower left one. Each line of
-/// `comment` is one of the yaml. Both files appear, or none. Throws ArgumentError for the name, OutputError. Source:
-/// map_server's documentation of its map format (wiki.ros.org/map_server).
+/// A pixel is unknown (205) where there is no pose or the verdict is `outside`, free (254) where it is `valid`,
+/// occupied (0) where it is any other. A pixel is a cell; `origin` in the yaml is the lower left corner of the raster.
+/// Each line of `comment` becomes a comment line of the yaml. Both files appear, or none. Throws ArgumentError for a
+/// wrong ending of the name, and OutputError. Source: map_server's documentation of its map format
+/// (wiki.ros.org/map_server).
 SPAWNFIELD_API void write_nav2_map(const VerdictImage& image, const std::filesystem::path& yaml,
                                    const std::vector<std::string>& comment = {});
 
 struct GeoTiffOptions {
-    LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< whose clearance and slope are written: one layer
+    LayerChoice layers = {LayerChoice::Kind::Top, 0};  ///< the one layer whose clearance and slope are written
     ZRange z = {};       ///< layers beyond these heights, m, or beyond the map's z limits are left out
-    bool survey = true;  ///< in the survey's coordinates where the map knows them by an EPSG code
+    bool survey = true;  ///< use survey coordinates if the map's origin has an EPSG code
     int threads = 0;
     Progress progress = {};
 };
 
-/// Bands of float32 over a frame's cells, at their centres; no-data is NaN. In this order, by their descriptions:
+/// Writes a GeoTIFF. Its bands are float32 values at the centres of the frame's cells; no-data is NaN. The bands, in
+/// this order, with these descriptions:
 ///
-/// - elevation, elevation_1, …: layers of the column from the top down, m; as many as the highest stack of the frame
-/// has
-/// - layers: how many the column has; 0 where there is no terrain
-/// - clearance: from the chosen layer up to the next solid, m; 0 where something stands on it; no-data under the open
-/// sky
-/// - slope: of the chosen layer, degrees; by its neighbours' heights, so a layer's edge is steep
+/// - elevation, elevation_1, …: heights of the layers from the top down, m; as many bands as the column with most
+///   layers has layers
+/// - layers: number of layers in the column; 0 where there is no terrain
+/// - clearance: free height above the chosen layer, m; 0 where something stands on the layer; no-data where nothing is
+///   above it
+/// - slope: slope of the chosen layer, degrees, from the heights of neighbouring cells; so the edge of a layer is steep
 /// - water: highest water surface, m
 /// - obstacle: highest obstacle that stands above elevation, or where there is no terrain, m
-/// - verdict: with `verdicts` (of the same frame) only: the number of the Verdict
+/// - verdict: number of the Verdict; only if `verdicts` (of the same frame) is given
 ///
-/// A local metric frame, or the survey's: pixels are areas, upper left corner first, x right, y up. Tiles deflated with
-/// predictor 3; BigTIFF where it might pass 4 GB. O(elements + cells), in rows of tiles. Throws ArgumentError for
-/// LayerChoice All, OutputError. Sources: OGC GeoTIFF 1.1 (19-008r4); GDAL's GeoTIFF driver for GDAL_METADATA and
-/// GDAL_NODATA.
+/// The coordinates are the map's own metres or the survey's. A pixel is an area; the first pixel is the upper left one.
+/// Tiles are deflated with predictor 3. A file that might exceed 4 GB becomes a BigTIFF. Works on one row of tiles
+/// after the other. O(elements + cells). Throws ArgumentError for LayerChoice All, and OutputError. Sources: OGC
+/// GeoTIFF 1.1 (19-008r4); GDAL's GeoTIFF driver for GDAL_METADATA and GDAL_NODATA.
 SPAWNFIELD_API void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* verdicts,
                                   const GeoTiffOptions& options, const std::filesystem::path& file);
 
-/// A raster's poses as points of a binary little-endian PLY, in their order, given to `sink` in pieces: x, y, z as
-/// double (m), red, green, blue of the verdict as in heat maps, and its number as uchar `verdict`. Each line of
-/// `comment` is one of the header, and one explains the numbers. Source: Turk, The PLY Polygon File Format, 1994.
+/// Writes the poses of a raster, in their order, as points of a binary little-endian PLY. Passes the file to `sink` in
+/// pieces. A point has x, y, z as double (m), the verdict's colour in heat maps as red, green, blue, and the verdict's
+/// number as uchar `verdict`. Each line of `comment` becomes a comment line of the header; one more line explains the
+/// numbers. Source: Turk, The PLY Polygon File Format, 1994.
 SPAWNFIELD_API void write_ply(const RasterResult& raster, const std::vector<std::string>& comment,
                               const std::function<void(std::string_view)>& sink);
 
-/// Poses to be drawn into a GLB.
+/// Poses to draw in a GLB file.
 struct GlbMarkers {
     std::vector<Pose> poses = {};         ///< scene_from_robot
     std::vector<Verdict> verdicts = {};   ///< one for each pose, or none at all
     std::vector<std::string> names = {};  ///< one for each pose, or none at all: "spawn 0", …
-    const Robot* robot = nullptr;  ///< drawn with a cone on its top along its x; without it the cone alone, 1 m long
+    const Robot* robot = nullptr;  ///< drawn with a cone on top that points along its x; nullptr: only a cone, 1 m long
 };
 
-/// Writes the scene as binary glTF 2.0, given to `sink` in pieces: y up as glTF wants it, (x, y, z) becomes (x, z, -y),
-/// metres.
+/// Writes the scene as binary glTF 2.0 (GLB), in metres. Passes the file to `sink` in pieces. In glTF y points up, so
+/// (x, y, z) becomes (x, z, -y).
 ///
-/// A node for each part, of its name; a material for each label and for the verdicts of markers. Their root carries the
-/// scene's place in whole metres, so that float32 corners keep their millimetres far from the origin. Round solids
-/// become polygons on their surface: of 32 sides, of 16 where there are more than 2000 of them, of 8 beyond 20000.
-/// Markers are the children of a node "spawns". About 100 bytes of memory for each triangle. Throws OutputError beyond
-/// the 4 GiB that the format can hold, FileError for a damaged map. Source: Khronos, glTF 2.0 specification (ISO/IEC
-/// 12113:2022).
+/// Each part becomes a node with the part's name. Each label, and each verdict of the markers, has a material. The root
+/// node has the scene's centre, in whole metres, as its translation, so that float32 corners are exact to millimetres
+/// far from the origin. Circles of round primitives become polygons of 32 sides; of 16 sides if there are more than
+/// 2000 round primitives, of 8 if there are more than 20000. Markers are the children of a node "spawns". Needs about
+/// 100 bytes of memory for each triangle. Throws OutputError for more than the 4 GiB that the format can hold, and
+/// FileError for a damaged map. Source: Khronos, glTF 2.0 specification (ISO/IEC 12113:2022).
 SPAWNFIELD_API void write_glb(const Map& map, const GlbMarkers& markers,
                               const std::function<void(std::string_view)>& sink, int threads = 0,
                               const Progress& progress = {});

@@ -21,30 +21,31 @@ struct RobotPart {
     SPAWNFIELD_API Bounds bounds() const;
 };
 
-/// What stands for a mesh collision: one convex hull or several, which hold all of it.
+/// The convex hulls that replace a mesh collision of a robot. Their union contains the whole mesh.
 struct MeshFit {
-    std::string name;                   ///< of its parts
-    std::string file;                   ///< without folders
-    std::size_t parts = 1;              ///< convex hulls; they share no volume
-    double volume = 0;                  ///< of these, m3
-    std::optional<double> mesh_volume;  ///< m3; only of a mesh whose pieces are watertight and lie apart
+    std::string name;                   ///< name of the robot's parts that it became
+    std::string file;                   ///< name of the mesh file, without folders
+    std::size_t parts = 1;              ///< number of convex hulls; they do not overlap
+    double volume = 0;                  ///< of all hulls together, m3
+    std::optional<double> mesh_volume;  ///< m3; known only if the mesh's pieces are watertight and lie apart
 
-    /// What is added to the mesh, as a share of it: 0.1 is 10 % more.
+    /// Returns how much larger the hulls are than the mesh, as a share of its volume: 0.1 is 10 % more.
     std::optional<double> growth() const
     {
         return mesh_volume ? std::optional(volume / *mesh_volume - 1) : std::nullopt;
     }
 };
 
-/// A rigid body: the union of convex parts, in its own frame, whose origin is the pose that commands take and give.
+/// A rigid body: the union of convex parts, in its own frame. The poses that commands read and write are poses of this
+/// frame.
 struct Robot {
     std::string name;
     std::vector<RobotPart> parts;  ///< at least one
     std::vector<Vec3> contacts;    ///< where wheels or feet touch the ground; may be empty
     std::vector<std::string> notices;
     std::vector<MeshFit> meshes = {};        ///< one for each mesh collision
-    std::vector<JointPosition> joints = {};  ///< RobotOptions::joints, as it was read
-    int mesh_parts = 1;                      ///< RobotOptions::mesh_parts, as it was read
+    std::vector<JointPosition> joints = {};  ///< the RobotOptions::joints with which it was read
+    int mesh_parts = 1;                      ///< the RobotOptions::mesh_parts with which it was read
 
     SPAWNFIELD_API Bounds bounds() const;
 };
@@ -53,22 +54,23 @@ struct RobotOptions {
     std::vector<std::filesystem::path> model_paths =
         {};  ///< folders that hold models or ROS packages, as SceneOptions::model_paths
     std::vector<JointPosition> joints =
-        {};              ///< of a URDF or SDF model; all others stand at 0, or where those that they mimic tell
-    int mesh_parts = 1;  ///< most convex parts that a mesh collision is split into, 1 .. 64; 1: its convex hull
+        {};              ///< of a URDF or SDF model; all others are at 0, or where the joint that they mimic puts them
+    int mesh_parts = 1;  ///< largest number of convex parts for each mesh collision, 1 .. 64; 1: its convex hull
 };
 
 /// Reads robot.yaml (format spawnfield-robot/1), a .urdf, an SDF model (.sdf, or the folder with its model.config), or
 /// `box:LX,LY,LZ[@x,y,z]`.
 ///
-/// URDF, SDF: the union of all links' <collision>, in the frame of the root link or of the model; <visual> is never
-/// read. Meshes become their convex hulls (Barber, Dobkin, Huhdanpaa, The Quickhull algorithm, 1996; libqhull), or
-/// several of them, of what planes cut them into: nothing of the mesh is outside of their union. Throws FileError for
-/// files, ArgumentError for a bad `box:`, for joints that the file has not, that cannot be moved or whose limits do not
-/// hold the value, and for mesh_parts out of range.
+/// The robot of a URDF or SDF file is the union of all links' <collision>, in the frame of the root link or of the
+/// model; <visual> is never read. A mesh becomes its convex hull (Barber, Dobkin, Huhdanpaa, The Quickhull algorithm,
+/// 1996; libqhull). With mesh_parts > 1, planes cut the mesh first, and each part becomes a hull; their union contains
+/// the whole mesh. Throws FileError for files. Throws ArgumentError for a bad `box:`, for mesh_parts out of range, and
+/// for joints that are not in the file, cannot move or have limits that exclude the value.
 SPAWNFIELD_API Robot load_robot(const std::string& robot, const RobotOptions& options = {});
 
-/// Where the robot touches the ground, in its own frame, and whether its file says so. Otherwise they are what
-/// JudgeOptions::max_slope uses: the corners of what lies within 2 cm of its lowest point.
+/// The points at which the robot touches the ground, in its own frame. `given` is true if the robot's
+/// file has contacts that span an area. Otherwise the points are those that JudgeOptions::max_slope uses: the corners
+/// of the convex hull, seen from above, of everything within 2 cm of the robot's lowest point.
 struct RobotContacts {
     std::vector<Vec3> points;
     bool given = false;

@@ -73,8 +73,9 @@ double default_occupancy_resolution(const Bounds& bounds, double resolution, Bak
     return voxel;
 }
 
-/// Writes a 16-bit image of the top layer: 0 where there is none, 1 .. 65535 from the lowest height to the highest.
-/// Returns the heights that 0 and 65535 stand for, m; a scene file takes them as `heightmap: {z: [..]}`.
+/// Writes a 16-bit image of the top layer. Pixel 0 means no layer; pixels 1 .. 65535 are the heights from the lowest to
+/// the highest, in equal steps. Returns the heights of pixels 0 (one step below the lowest) and 65535, m: the two
+/// limits that a scene file needs as `heightmap: {z: [LOW, HIGH]}` to read the image.
 std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::path& file)
 {
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -94,15 +95,16 @@ std::pair<double, double> write_heightmap_png(const HeightImage& top, const fs::
     return {low - step, low + 65534 * step};
 }
 
-/// Returns the largest number of terrain layers above one cell's centre.
+/// Returns the largest number of layers in a column. It is 0 if `top`, the highest layer, is empty:
+/// TerrainMap::layers() is then 1, because the page of the highest layer always exists.
 int count_layers(const TerrainMap& terrain, const HeightImage& top)
 {
     const bool is_empty = std::all_of(top.values.begin(), top.values.end(), [](float z) { return std::isnan(z); });
     return is_empty ? 0 : terrain.layers();
 }
 
-/// Writes terrain.tiff, heightmap.png and preview.png at the same time. Sets map.layers. Returns the range of
-/// heightmap.png.
+/// Writes terrain.tiff, heightmap.png and preview.png in parallel. Sets map.layers. Returns the two heights of
+/// write_heightmap_png().
 std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path& folder, Map& map, int threads)
 {
     std::pair<double, double> z_range;
@@ -118,7 +120,7 @@ std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path
     return z_range;
 }
 
-/// Returns the progress function of one stage: its progress 0 .. 1 becomes from .. to of the whole.
+/// Returns the progress function of one stage, during which the progress of the whole grows from `from` to `to`.
 Progress part_of(const Progress& progress, double from, double to)
 {
     if (!progress) return {};
@@ -126,7 +128,8 @@ Progress part_of(const Progress& progress, double from, double to)
 }
 
 /// Checks the options. Returns a map with its names, bounds and resolutions, but without geometry, layers and floors.
-/// `refuse` throws an error with a reason to refuse the scene.
+/// `function` is the name in error messages. For a scene that cannot become a map, it calls refuse(reason), which must
+/// throw.
 Map plan_map(const char* function, const Scene& scene, const BakeOptions& options, BakeReport& report,
              const std::function<void(const std::string&)>& refuse)
 {
@@ -149,7 +152,7 @@ Map plan_map(const char* function, const Scene& scene, const BakeOptions& option
     if (!map.bounds.meets(extent))
         refuse("bounds are " + to_string(map.bounds) + ", need to meet the scene: " + to_string(extent));
     const Vec3 size = map.bounds.max - map.bounds.min;
-    constexpr double tiny = 1 + 1e-9;  // m; a smaller map is likely only the remainder of a scene
+    constexpr double tiny = 1 + 1e-9;  // m; such a small scene probably has a wrong unit or lacks parts
     if (options.bounds.is_empty() && size.x() <= tiny && size.y() <= tiny)
         report.notices.push_back("the map is only " + number(size.x()) + " x " + number(size.y()) +
                                  " m; is a part of the scene missing or in the wrong unit?");

@@ -5,15 +5,16 @@
 
 namespace spawnfield {
 
-/// A block of grid cells: rows first_row .. last_row - 1, columns first_col .. last_col - 1.
-struct CellBlock {
-    int first_row = 0, last_row = 0, first_col = 0, last_col = 0;
+/// A rectangle of grid cells: rows first_row .. end_row - 1, columns first_col .. end_col - 1.
+struct CellRectangle {
+    int first_row = 0, end_row = 0, first_col = 0, end_col = 0;
 };
 
-/// Returns blocks that cover exactly the cells for which is_in(row, col) is true, each cell once. Starting from row 0,
-/// each block is first made as wide as possible, then as high as possible. O(rows x cols).
+/// Returns rectangles that cover exactly the cells for which is_in(row, col) is true, each cell once. The cells are
+/// visited row by row, from row 0. Each rectangle is first made as wide as possible, then extended over as many rows as
+/// possible. O(rows x cols).
 template <class IsIn>
-std::vector<CellBlock> blocks_of(int rows, int cols, const IsIn& is_in)
+std::vector<CellRectangle> blocks_of(int rows, int cols, const IsIn& is_in)
 {
     std::vector<std::uint8_t> remaining(std::size_t(rows) * std::size_t(cols));
     const auto cell = [&](int row, int col) -> std::uint8_t& {
@@ -26,17 +27,17 @@ std::vector<CellBlock> blocks_of(int rows, int cols, const IsIn& is_in)
             if (!cell(row, col)) return false;
         return true;
     };
-    std::vector<CellBlock> out;
+    std::vector<CellRectangle> out;
     for (int row = 0; row < rows; ++row)
         for (int col = 0; col < cols; ++col) {
             if (!cell(row, col)) continue;
-            CellBlock block{row, row + 1, col, col + 1};
-            while (block.last_col < cols && cell(row, block.last_col)) ++block.last_col;
-            while (block.last_row < rows && all_remain(block.last_row, block.first_col, block.last_col))
-                ++block.last_row;
-            for (int r = block.first_row; r < block.last_row; ++r)
-                for (int c = block.first_col; c < block.last_col; ++c) cell(r, c) = 0;
-            out.push_back(block);
+            CellRectangle rectangle{row, row + 1, col, col + 1};
+            while (rectangle.end_col < cols && cell(row, rectangle.end_col)) ++rectangle.end_col;
+            while (rectangle.end_row < rows && all_remain(rectangle.end_row, rectangle.first_col, rectangle.end_col))
+                ++rectangle.end_row;
+            for (int r = rectangle.first_row; r < rectangle.end_row; ++r)
+                for (int c = rectangle.first_col; c < rectangle.end_col; ++c) cell(r, c) = 0;
+            out.push_back(rectangle);
         }
     return out;
 }

@@ -57,14 +57,15 @@ Transform transform_of(const Pose& pose)
     return transform;
 }
 
-/// A part of the robot, grown by touch_margin. The corners of a hull are already in the robot's frame.
+/// A part of the robot in the forms that the check needs. The constructor takes a part that is already grown by
+/// touch_margin. The corners of a hull are in the robot's frame, so robot_from_shape is the identity for hulls.
 struct CheckedPart {
     FclShape shape;
     Pose robot_from_shape;
     Vec3 centre;
     Shape bounds_shape;  ///< for bounds_at(); not used for hulls
     std::vector<Vec3> hull_vertices;
-    Vec3 box_centre, box_half;  ///< of the part's bounding box along the shape's own axes
+    Vec3 box_centre, box_half;  ///< of the bounding box along the shape's axes, in its frame
 
     explicit CheckedPart(const RobotPart& part)
         : shape(part.shape.kind == ShapeKind::Hull ? fcl_convex(part) : fcl_shape(part.shape)),
@@ -101,13 +102,14 @@ bool overlap(const ElementBox& a, const Bounds& b)
 /// and precise even far from the scene's origin.
 struct PlacedPart {
     const CheckedPart* part;
-    Transform robot_from_shape;  ///< the robot's frame here: axes of the scene, origin at the robot's position
+    Transform robot_from_shape;  ///< "robot" here: a frame with the scene's axes and the robot's position as origin
     Bounds bounds;               ///< in the scene's frame
 };
 
-/// Returns whether the box around a part lies beside a triangle, or on one side of its plane, by more than
-/// FreeSpace::margin. Closer than that, FCL's answer depends on its own tolerance. This excludes most triangles near a
-/// robot, and is much faster than FCL.
+/// Returns whether a fast test proves that a part does not meet a triangle: a gap of more than FreeSpace::margin is
+/// between the part's box and the triangle's bounding box along the axes of the part's box, or between the part's box
+/// and the triangle's plane. For smaller gaps FCL must decide, because its answer depends on its own tolerance. This
+/// test excludes most triangles near a robot, and is much faster than FCL.
 bool is_apart(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
 {
     const Vec3& half = placed.part->box_half;
@@ -196,9 +198,9 @@ struct CollisionChecker::Impl {
         return false;
     }
 
-    /// Returns the first part of the scene before `best` in whose filled meshes a part of the robot lies; `best` if
-    /// there is none. The robot touches no surface of the parts before `best`, so one point of each convex part of the
-    /// robot decides for all of it.
+    /// Returns the smallest number of a part of the scene, below `best`, whose filled meshes contain a part of the
+    /// robot; `best` if there is none. The robot must not touch the surfaces of the scene's parts below `best`. Then
+    /// one point of each convex part of the robot decides for the whole robot.
     std::uint32_t first_around(const Pose& pose, std::uint32_t best) const
     {
         if (!geometry.impl().has_filled_meshes) return best;
@@ -210,6 +212,8 @@ struct CollisionChecker::Impl {
         return best;
     }
 
+    /// Returns the hit with the smallest part number; with `any_will_do` any hit, which is faster. Returns nothing if
+    /// the robot does not collide.
     std::optional<CollisionHit> find(const Pose& pose, bool any_will_do) const
     {
         const std::vector<PlacedPart> placed = place(pose);
@@ -219,7 +223,7 @@ struct CollisionChecker::Impl {
             all.extend(part.bounds.min);
             all.extend(part.bounds.max);
         }
-        std::uint32_t best = CollisionHit::occupancy;
+        std::uint32_t best = CollisionHit::occupancy;  // larger than every part number: no hit yet
         geometry.impl().visit_in(all, [&](const Tile& tile, std::uint32_t element) {
             if ((any_will_do && best != CollisionHit::occupancy) || tile.label(element) == Label::Water) return;
             const std::uint32_t part = tile.part(element);

@@ -17,16 +17,16 @@ struct CellBlock {
 /// cell of a block. Water is left out. The insides of meshes are not included, with one exception: a surface of a mesh
 /// with holes that the user asked to fill (Piece::open) counts from its top down to the mesh's lowest vertex.
 ///
-/// Each upper end is the height of a solid point in the cell or at most 1e-8 m beside it. Cylinders are replaced by
-/// prisms around them that are at most 4e-6 m wider. If that takes more than 4096 sides, the prism has 4096 sides and
-/// is_tight() is false. O(triangles + cells that they cover). Source of the clipping: Sutherland, Hodgman, Reentrant
-/// polygon clipping, 1974.
+/// Each upper end is the height of a solid point that lies in the cell or at most 1e-8 m outside it. Cylinders are
+/// replaced by prisms around them that are at most 4e-6 m wider. If that takes more than 4096 sides, the prism has 4096
+/// sides and is_tight() is false. O(triangles + cells that they cover). Source of the clipping: Sutherland, Hodgman,
+/// Reentrant polygon clipping, 1974.
 class CellSpans {
 public:
     CellSpans(const Geometry& geometry, const CellBlock& block);
 
-    /// Returns whether a cell has several intervals, before they are joined. If not, first() is its only interval;
-    /// bottom > top means that the cell has none.
+    /// Returns whether a cell has more intervals than first(). If not, first() is its only interval, or the cell has
+    /// none: then first() has bottom > top.
     bool has_more(std::uint32_t cell) const { return more_[cell]; }
     const Interval& first(std::uint32_t cell) const { return first_[cell]; }
     /// Writes the intervals of one cell to `out`, joined, from the bottom up.

@@ -36,9 +36,9 @@ inline std::span<const double> heights_within(std::span<const double> heights, c
     return heights.subspan(first, end - first);
 }
 
-/// Returns the top of the highest span that overlaps the range, if it is higher than the highest of `layers` or if
-/// there are no layers. `layers` are the column's layers within the range. Such a span is an obstacle there, even if it
-/// is terrain, whose top is then above the range.
+/// Returns the top of the highest span that overlaps the range `z`, if it is higher than all `layers`, which are the
+/// column's layers within the range; nothing otherwise. Such a span is an obstacle, or terrain whose top is above the
+/// range. Both count as obstacles within the range.
 inline std::optional<double> obstacle_above(const ColumnView& column, std::span<const double> layers, const ZRange& z)
 {
     for (const Span& span : column.spans) {
@@ -52,20 +52,20 @@ inline std::optional<double> obstacle_above(const ColumnView& column, std::span<
 /// A grid of columns at x = x0 + (col + shift) * step, y = y0 + (row + shift) * step.
 struct ColumnGrid {
     double x0 = 0, y0 = 0, step = 1;
-    int first_col = 0, first_row = 0, cols = 0, rows = 0;  ///< the block of the grid that is wanted
+    int first_col = 0, first_row = 0, cols = 0, rows = 0;  ///< the block of columns to compute
     double shift = 0;                                      ///< 0.5: at the centres of cells
 
     double x_of(int col) const { return x0 + (col + shift) * step; }
     double y_of(int row) const { return y0 + (row + shift) * step; }
 };
 
-/// The surfaces of a scene that columns are made of: all, or only those of solids.
+/// Which surfaces of a scene the columns contain: all, or only those of solids.
 enum class Surfaces { All, Filled };
 
 /// The columns of a block of a grid. They are identical to those that column_at returns one by one.
 ///
-/// If there are many more elements than columns, each column is looked up by itself. Otherwise the elements are
-/// scan-converted: O(elements + columns).
+/// If there are many more elements than columns, column after column is looked up in the geometry. Otherwise each
+/// element is visited once and added to all columns that it meets (scan conversion): O(elements + columns).
 class Columns {
 public:
     Columns() = default;

@@ -39,7 +39,7 @@ void extend(const Vec3& p, const Vec3& q, double x, double y, std::optional<Inte
     joined = joined ? Interval{std::min(joined->bottom, here.bottom), std::max(joined->top, here.top)} : here;
 }
 
-/// Returns the segment in which the vertical line runs along a vertical triangle, if it does.
+/// Returns the interval of heights in which the vertical line through (x, y) lies in a vertical triangle, if it does.
 std::optional<Interval> segment(const std::array<Vec3, 3>& corners, double x, double y)
 {
     std::optional<Interval> joined;
@@ -88,7 +88,7 @@ void SeenTriangle::prepare()
     const Interval z = extent(corners_, 2);
     const double acx = c.x() - a.x(), acy = c.y() - a.y(), abz = b.z() - a.z(), acz = c.z() - a.z();
     twice_area_ = edges_[0].x * acy - edges_[0].y * acx;
-    low_ = twice_area_ != 0 ? z.bottom : z.top;  // without an area, the height at a point is undefined
+    low_ = twice_area_ != 0 ? z.bottom : z.top;  // a vertical triangle has no single height at a point: its top counts
     high_ = z.top;
     if (twice_area_ != 0) {
         slope_x_ = (abz * acy - acz * edges_[0].y) / twice_area_;
@@ -124,7 +124,7 @@ std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x, double y)
     // If the triangle is thinner than the tolerance, its height at a point is undefined.
     const bool is_vertical = twice_area_ * twice_area_ <= squared_tolerance * longest;
     if (is_vertical) {
-        // Also looked for if the line crosses the triangle: through rounding, a line along it may cross it as well.
+        // Computed even if `crosses` is true: because of rounding, a line in a vertical triangle may also cross it.
         const auto met = out.filled ? segment(corners_, x, y) : std::nullopt;
         out.touches = met.has_value();
         if (met) out.z = *met;

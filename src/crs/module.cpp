@@ -21,14 +21,15 @@ Context open_context()
     if (!context) throw std::runtime_error("coordinate systems cannot be looked up: PROJ cannot start");
     proj_log_level(context.get(), PJ_LOG_NONE);
     proj_context_set_enable_network(context.get(), 0);
-    if (proj_context_get_database_path(context.get()) == nullptr)  // also for a database of another PROJ version
+    if (proj_context_get_database_path(context.get()) == nullptr)  // also null for a database of another PROJ version
         throw std::runtime_error(
             "coordinate systems cannot be looked up: PROJ " + std::string(proj_info().version) +
             " does not find a proj.db for its version; install the package proj-data, or check PROJ_LIB and PROJ_DATA");
     return context;
 }
 
-/// Returns metres per unit of an axis of length, < 0 if it points down; empty if there is no such axis.
+/// Returns the metres per unit of axis number `index`, < 0 if the axis points down; empty if there is no such axis.
+/// Only for axes along which lengths are measured.
 std::optional<double> axis_unit(PJ_CONTEXT* context, const PJ* axes, int index)
 {
     const char* direction = nullptr;

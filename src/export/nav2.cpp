@@ -34,7 +34,8 @@ std::string yaml_text(const GridFrame& frame, const std::string& image, const st
     name << image;
     text += std::string("image: ") + name.c_str() + "\nmode: trinary\nresolution: " + number(frame.cell) + "\n";
     text += "origin: [" + number(frame.x0) + ", " + number(frame.y0) + ", 0]\nnegate: 0\noccupied_thresh: 0.65\n";
-    // A pixel of 205 means 0.19608 occupied and must not count as free. It would with 0.25, which many files have.
+    // map_server takes pixels whose occupancy is below free_thresh as free. The unknown pixel, 205, has the occupancy
+    // 0.19608, so free_thresh must be lower. With 0.25, as in many files, unknown pixels would be free.
     return text + "free_thresh: 0.196\n";
 }
 

@@ -8,25 +8,28 @@
 
 namespace spawnfield {
 
-/// An upright prism.
+/// A prism with vertical sides: a polygon in the x-y plane, from bottom to top, m.
 struct Prism {
     Polygon2 polygon;
     double bottom = 0, top = 0;
 };
 
-/// A convex part of a robot as seen from above, relative to the robot's origin.
+/// Two prisms for a convex part of a robot, relative to the robot's origin: one around the part, one inside it.
 struct Footprint {
-    Prism outer;  ///< holds all of the part grown by the touch margin, and FreeSpace::margin more
-    Prism inner;  ///< lies in the part, FreeSpace::margin from its surface; no corners: none is known
+    Prism outer;  ///< contains the part, grown by touch_margin and then by FreeSpace::margin
+    Prism inner;  ///< lies inside the part, at least FreeSpace::margin from its surface; no corners: not known
 };
 
-/// Lowest and highest point of the part with the robot turned by `rotation` about its origin.
+/// Returns the heights of the part's lowest and highest point above the robot's origin, m, when the robot is turned by
+/// `rotation` about its origin.
 Interval height_of(const RobotPart& part, const Mat3& rotation);
 
-/// Footprints of all parts with the robot turned by `rotation`; inner prisms only if asked for.
+/// Returns the footprints of all parts when the robot is turned by `rotation`. Without `with_inner`, the inner prisms
+/// have no corners.
 std::vector<Footprint> footprints(const Robot& robot, const Mat3& rotation, bool with_inner);
 
-/// Footprints that hold for every yaw of the upright robot: discs around its origin.
+/// Returns footprints that are valid for every yaw of the upright robot. Their polygons are approximate discs around
+/// the robot's origin.
 std::vector<Footprint> yaw_free_footprints(const Robot& robot);
 
 }  // namespace spawnfield

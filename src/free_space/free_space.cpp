@@ -9,7 +9,7 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// std::floor and std::ceil of values that fit an int, sooner.
+/// Return the same as std::floor and std::ceil, but faster. The value must fit an int.
 int floor_of(double value)
 {
     const int whole = int(value);
@@ -17,13 +17,14 @@ int floor_of(double value)
 }
 int ceil_of(double value) { return -floor_of(-value); }
 
-/// The largest value of a tile that stays below a height.
+/// Returns the largest quantized height of a tile that is below z; 0 if there is none.
 int values_below(const BoundsHead& head, double inverse_quantum, double z)
 {
     return std::max(0, ceil_of(std::clamp((z - head.base) * inverse_quantum, 0.0, 65536.0)) - 1);
 }
 
-/// The lowest interval of a cell for which the test holds, as it then does for all above it; nullptr: there is none.
+/// Returns the lowest interval of a cell for which the test is true; nullptr if there is none. If the test is true for
+/// an interval, it must be true for all intervals above it.
 template <class Test>
 const QuantizedSpan* lowest_where(std::span<const QuantizedSpan> spans, const Test& test)
 {
@@ -35,8 +36,8 @@ const QuantizedSpan* lowest_where(std::span<const QuantizedSpan> spans, const Te
     return lowest == spans.end() ? nullptr : &*lowest;
 }
 
-/// Cells along a part's width in each pass: a look at what is near, one that follows the part's shape, one that is as
-/// fine as pays beside an exact check.
+/// The number of cells along a part's width in each pass. The first pass is a quick look at the surroundings. The
+/// second one follows the part's shape. The third one is the finest that is still cheaper than an exact check.
 constexpr std::array cells_along{1.4, 6.0, 24.0};
 
 }  // namespace
@@ -72,7 +73,8 @@ void Mask::set_rotation(const Mat3& rotation)
         set_footprints(footprints(space_.robot, rotation, false), 1, 0);
 }
 
-/// The coarsest cells of which some number lies along the part, for each pass; never the same twice.
+/// Chooses a raster level for each pass: the one with the largest cells of which at least cells_along lie along the
+/// part's width, or else the finest level. A pass with the same level as the one before is left out.
 void Mask::choose_passes(Part& part) const
 {
     Vec2 low(inf, inf), high(-inf, -inf);
@@ -102,8 +104,9 @@ void Mask::set_y(double y)
         for (Pass& pass : part.passes) pass.is_ready = false;
 }
 
-/// Rows of cells that the polygons overlap, or within which cells lie whole: both follow from where the rims cross the
-/// lines between rows, and from the corners.
+/// Computes the rows of cells that the part covers at the current y: for each row, the range in x that the outer
+/// polygon overlaps, and the range in which cells lie completely inside the inner polygon. Both follow from the corners
+/// of the polygons and from the points at which their edges cross the lines between rows.
 void Mask::cover(const Part& part, Pass& pass) const
 {
     const double cell = raster_.levels[pass.level].cell, v = (y_ - raster_.y0) / cell;
@@ -140,7 +143,7 @@ void Mask::cover(const Part& part, Pass& pass) const
         extend(x, line);
     });
     if (!part.footprint.inner.polygon.empty()) {
-        // Lines first..last + 1 between rows: where they enter and leave the inner polygon.
+        // For each line between rows, first .. last + 1: where it enters and leaves the inner polygon.
         thread_local std::vector<std::array<double, 2>> lines;
         lines.assign(pass.rows.size() + 1, {inf, -inf});
         visit_rim(
@@ -165,12 +168,13 @@ void Mask::cover(const Part& part, Pass& pass) const
     pass.is_ready = true;
 }
 
-/// Tile (col, row) of the pass's level.
+/// Returns tile (col, row) of the pass's level. Up to four adjacent tiles stay open, because a part may lie on the
+/// corner of four tiles.
 const Mask::OpenTile& Mask::tile_of(Pass& pass, int col, int row) const
 {
     OpenTile& open = pass.tiles[std::size_t(row % 2 * 2 + col % 2)];
     if (col == open.col && row == open.row) return open;
-    open.col = open.row = -1;  // stays so if the tile is damaged
+    open.col = open.row = -1;  // remains -1 if open() throws because the tile is damaged
     open.tile = raster_.open(pass.level, std::uint32_t(col), std::uint32_t(row));
     if (open.tile.head != nullptr) open.inverse_quantum = 1 / open.tile.head->quantum;
     open.col = col;
@@ -178,7 +182,8 @@ const Mask::OpenTile& Mask::tile_of(Pass& pass, int col, int row) const
     return open;
 }
 
-/// Whether nothing in the cells around a part reaches up to it: most of open ground.
+/// Returns whether nothing in the rectangle of cells around a part reaches up to its lowest point. This fast test is
+/// true for most poses on open ground.
 bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
 {
     constexpr int side = BoundsTile::side;
@@ -201,11 +206,11 @@ bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
     return true;
 }
 
-/// A part's heights at a pose, in those of a tile.
+/// The heights of a part at a pose, in m and as quantized heights of the current tile.
 struct Mask::Heights {
-    double bottom, top, inner_bottom, inner_top;  ///< m
-    std::uint32_t below = 0;                      ///< cells that reach up to this value are under the part
-    std::uint32_t hit_low = 1, hit_high = 0;      ///< upper ends from the one to the other are inside it
+    double bottom, top, inner_bottom, inner_top;  ///< of the outer and the inner prism, m
+    std::uint32_t below = 0;                      ///< cells whose top is at most this value are below the part
+    std::uint32_t hit_low = 1, hit_high = 0;      ///< an upper end in this range means a hit inside the part
 
     void set_tile(const BoundsHead& head, double inverse_quantum)
     {
@@ -217,7 +222,8 @@ struct Mask::Heights {
     bool is_hit(std::uint32_t value) const { return value >= hit_low && value <= hit_high; }
 };
 
-/// Whether something in the cell is inside the part for certain, if the cell is.
+/// Returns whether something in the cell is certainly inside the part. The cell must lie completely inside the inner
+/// polygon.
 bool Mask::is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights)
 {
     if (heights.is_hit(tile.tops[cell])) return true;
@@ -232,7 +238,8 @@ bool Mask::is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& hei
     return solid != nullptr && tile.height(solid->bottom) <= heights.inner_top;
 }
 
-/// Whether nothing in the cell, which reaches above the part's underside, is where the part is.
+/// Returns whether nothing in the cell lies between the part's lowest and highest point. The top of the cell must be
+/// above the part's lowest point.
 bool Mask::is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights)
 {
     if (!tile.bounds.has(cell)) return false;
@@ -241,7 +248,8 @@ bool Mask::is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& he
     return span == nullptr || tile.height(span->bottom) > heights.top;
 }
 
-/// Columns of a row that a part covers, and that the coarser pass could not prove free.
+/// Returns the cells of a row that a part covers and that the coarser pass (if there is one) did not prove free. `u` is
+/// the x of the pose, in cells from the raster's left edge.
 Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u)
 {
     if (!(cover.low <= cover.high)) return no_cells;
@@ -249,13 +257,15 @@ Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const 
     if (coarser == nullptr) return out;
     const std::size_t finer = coarser->level - pass.level;
     const int row = (cover.row >> finer) - coarser->rows.front().row;
-    if (row < 0 || row >= int(coarser->rows.size())) return no_cells;  // on the rim to rounding, so of the margin alone
+    if (row < 0 || row >= int(coarser->rows.size()))
+        return no_cells;  // rounding: only the margin around the part touches this row
     const CellRange& range = coarser->undecided[std::size_t(row)];
     if (range.first > range.last) return no_cells;
     return {std::max(out.first, range.first << finer), std::min(out.last, (range.last << finer) + (1 << finer) - 1)};
 }
 
-/// Looks at each cell that is open: free, blocked if some cell within the part is hit, or what is left for a finer
+/// Looks at each cell that open_cells() returns. The proof is Blocked if something in a cell is certainly inside the
+/// part, Free if every cell is free, and otherwise Candidate. Then pass.undecided has the cells for the next, finer
 /// pass.
 Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const
 {
@@ -273,7 +283,9 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
     const OpenTile* open = nullptr;
     for (std::size_t n = 0; n < pass.rows.size(); ++n) {
         const std::size_t middle = pass.rows.size() / 2,
-                          k = n % 2 == 0 ? middle + n / 2 : middle - (n + 1) / 2;  // outwards: hits are found soon
+                          k = n % 2 == 0
+                                  ? middle + n / 2
+                                  : middle - (n + 1) / 2;  // from the middle row outwards, which finds hits sooner
         const CoverRow& cover = pass.rows[k];
         CellRange& undecided = pass.undecided[k];
         undecided = no_cells;
@@ -313,7 +325,7 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
 Proof Mask::proof_of(const Vec3& position)
 {
     const double x = position.x(), y = position.y(), z = position.z();
-    constexpr double farthest = 1e8;  // cells; beyond it their numbers would not fit
+    constexpr double farthest = 1e8;  // cells; farther cells have numbers that might not fit an int
     if (raster_.levels.empty() || !(std::abs(x - raster_.x0) < farthest * raster_.levels[0].cell) ||
         !(std::abs(y - raster_.y0) < farthest * raster_.levels[0].cell))
         return Proof::Candidate;

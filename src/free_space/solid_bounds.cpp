@@ -11,25 +11,28 @@
 namespace spawnfield {
 namespace {
 
-constexpr double steps = 65500;         // of a tile's heights, with room for rounding outwards
+constexpr double steps = 65500;         // quantized heights of a tile; fewer than 65535, so that rounding outwards fits
 constexpr double least_quantum = 1e-6;  // m
-constexpr double least_solid = 1e-4;    // m; thinner ones are surfaces, which the intervals tell
+constexpr double least_solid = 1e-4;    // m; thinner solids count as surfaces only, which are in the bounds
 constexpr std::size_t alignment = 64;
 constexpr std::uint32_t side = BoundsTile::side;
 
-/// What is solid in each cell of a tile, before it is packed.
+/// Intervals of heights in each cell of a tile, before they are packed. Those of cell c are spans[starts[c]] ..
+/// spans[starts[c + 1] - 1].
 struct CellList {
     std::array<std::uint32_t, BoundsTile::cells + 1> starts{};
     std::vector<Interval> spans;  ///< from the bottom up, with gaps between them
 };
 
+/// A tile before it is packed.
 struct LooseTile {
-    CellList bounds, solids;
-    double slack = 0;  ///< as BoundsHead, before the heights are rounded
+    CellList bounds, solids;  ///< as in BoundsTile
+    double slack = 0;         ///< as in BoundsHead, before the heights are rounded
     bool is_empty() const { return bounds.spans.empty(); }
 };
 
-/// Adds what is solid in one cell: surfaces anywhere in it, and the insides on the line through its centre.
+/// Adds one cell to a tile. `surfaces` has the surfaces anywhere in the cell; `inside` has the spans of solids on the
+/// vertical line through its centre.
 void add_cell(const CellSpans& surfaces, std::uint32_t cell, std::span<const Span> inside, LooseTile& out)
 {
     if (inside.empty() && !surfaces.has_more(cell)) {  // open ground
@@ -39,7 +42,7 @@ void add_cell(const CellSpans& surfaces, std::uint32_t cell, std::span<const Spa
     thread_local std::vector<Interval> bounds, solids;
     surfaces.get(cell, bounds);
     solids.clear();
-    // Where no surface passes at a height, the whole cell is inside or outside there, as its centre is.
+    // At heights where the cell has no surface, the whole cell is inside a solid, or outside, as its centre is.
     for (const Span& span : inside) {
         if (span.top > span.bottom) bounds.push_back({span.bottom, span.top});
         if (span.sealed && span.top - span.bottom >= least_solid) solids.push_back({span.bottom, span.top});
@@ -52,7 +55,7 @@ void add_cell(const CellSpans& surfaces, std::uint32_t cell, std::span<const Spa
     out.solids.spans.insert(out.solids.spans.end(), solids.begin(), solids.end());
 }
 
-/// Cells of one tile of the finest level; those beyond the raster stay empty.
+/// Returns one tile of the finest level. Its cells beyond the raster stay empty.
 LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, std::uint32_t tile_col,
                      std::uint32_t tile_row)
 {
@@ -77,7 +80,8 @@ LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, 
 
 std::uint32_t count_of(const CellList& list, std::size_t cell) { return list.starts[cell + 1] - list.starts[cell]; }
 
-/// Writes a tile: its heights as 16-bit numbers, and the intervals of the cells that need them.
+/// Packs a tile into bytes: heights become 16-bit numbers. A cell with one interval of bounds has only its top in the
+/// tile; only cells with two or more have their intervals.
 class TilePacker {
 public:
     explicit TilePacker(const LooseTile& tile) : tile_(tile)
@@ -135,6 +139,7 @@ private:
         out_.append(reinterpret_cast<const char*>(&value), sizeof value);
     }
 
+    /// Counts the cells with at least `least` intervals, and the intervals of these cells.
     static void count(const CellList& list, std::uint32_t least, std::uint32_t& cells, std::uint32_t& spans)
     {
         for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell)
@@ -163,7 +168,8 @@ private:
         put(marks);
         for (const std::uint32_t start : starts) put(start);
         for (const QuantizedSpan& span : spans) put(span);
-        if ((starts.size() + spans.size()) % 2 == 1) put(std::uint32_t{0});  // the next marks lie at a multiple of 8
+        // Padding, so that the next marks begin at a multiple of 8 bytes.
+        if ((starts.size() + spans.size()) % 2 == 1) put(std::uint32_t{0});
         put(ranks);
     }
 
@@ -174,6 +180,7 @@ private:
 
 std::string packed(const LooseTile& tile) { return tile.is_empty() ? std::string() : TilePacker(tile).pack(); }
 
+/// Returns whether all counts and indices of a tile fit its bytes.
 bool is_consistent(std::string_view view)
 {
     if (view.size() < sizeof(BoundsHead)) return false;
@@ -197,7 +204,8 @@ bool is_consistent(std::string_view view)
            counts_up(tile.solids, head.solid_cells, head.solids);
 }
 
-/// The next coarser cells: what is solid in any of the four finer ones. A gap stays only where all four have it.
+/// Returns a tile of the next coarser level. Each of its cells is the union of four finer cells, so a gap remains only
+/// where all four have a gap. Solids are not kept.
 LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>& finer, std::uint32_t tile_col,
                  std::uint32_t tile_row)
 {
@@ -218,7 +226,7 @@ LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>
         for (std::uint32_t col = 0; col < side; ++col) {
             joined.clear();
             const BoundsTile& tile = tiles[(row >= side / 2 ? 2 : 0) + (col >= side / 2 ? 1 : 0)];
-            std::uint16_t highest = 0;  // of those below whose tops all may be solid
+            std::uint16_t highest = 0;  // top of the finer cells without gaps, which may be solid all the way down
             for (std::uint32_t k = 0; k < 4 && tile.head != nullptr; ++k) {
                 const std::uint32_t cell = (2 * row + k / 2) % side * side + (2 * col + k % 2) % side;
                 if (!tile.bounds.has(cell)) {

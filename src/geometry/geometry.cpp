@@ -15,8 +15,8 @@ namespace {
 constexpr double pad = 1e-8;   // m; wider than touch_tolerance, so a line on an edge finds its triangle
 constexpr int refinement = 4;  // factor between the cell sizes of two consecutive levels
 constexpr double elements_per_tile = 256;
-constexpr double most_tiles_along = 1024;  // along one side; limits the tiles of long, narrow scenes
-constexpr double refs_per_element = 6;
+constexpr double most_tiles_along = 1024;   // along one side; limits the tiles of long, narrow scenes
+constexpr double refs_per_element = 6;      // most bins that an element of a tile is in, on average
 constexpr std::size_t tile_alignment = 64;  // of a tile's size, bytes
 
 ElementBox box_of(const Scene& scene, std::uint32_t element)
@@ -127,8 +127,8 @@ private:
         return std::uint32_t(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
     }
 
-    /// Sorts the elements into about two bins for each element, or into larger bins if elements would lie in too many
-    /// of them.
+    /// Divides the tile into about twice as many bins as it has elements, or into fewer, larger bins if the elements
+    /// would be in more than refs_per_element bins on average. Sorts the elements into the bins.
     void sort_into_bins(TileHead& head, double side)
     {
         std::uint32_t along = std::uint32_t(std::ceil(std::sqrt(2.0 * double(elements_.size()))));
@@ -332,7 +332,7 @@ double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, 
     constexpr double bytes_per_element = 100;
     double sum = 0;
     for (const TileLevel& level : levels) {
-        // The share of the side of cell n that lies in low .. high.
+        // Returns the share of the side of tile number n that lies in low .. high.
         const auto share = [&](double low, double high, double origin, std::uint32_t n) {
             const double start = origin + n * level.cell;
             return std::clamp((std::min(high, start + level.cell) - std::max(low, start)) / level.cell, 0.0, 1.0);
@@ -379,6 +379,7 @@ Geometry::Geometry(const Scene& scene, int threads)
         double cell = std::max(std::sqrt(width * depth * elements_per_tile / elements),
                                std::max(width, depth) / most_tiles_along);
 
+        // The elements of each level. An element belongs to the first level whose tiles are not smaller than itself.
         std::vector<std::vector<std::uint32_t>> members(1);
         for (std::uint32_t element = 0; element < elements; ++element) {
             const ElementBox& box = boxes[element];

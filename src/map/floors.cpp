@@ -13,9 +13,9 @@ namespace spawnfield {
 namespace {
 
 constexpr double step = 0.01;             // m between counted heights
-constexpr double head_room = 1.5;         // m; least free height above ground, because slabs are hollow in many meshes
-constexpr int smoothing = 25;             // a height also counts for so many steps to either side, with falling weight
-constexpr double deepest_valley = 0.5;    // share of the lower of two peaks; a valley between two floors is lower
+constexpr double head_room = 1.5;         // m; least free height above ground; excludes the inside of hollow slabs
+constexpr int smoothing = 25;             // a height also counts up to this many steps above and below, but less
+constexpr double highest_valley = 0.5;    // share of the lower of two peaks; a lower density between separates floors
 constexpr double flat_within = 0.25;      // m above and below a floor's height
 constexpr double least_flat_share = 0.5;  // share of a floor's ground that must be flat
 constexpr double least_share = 0.02;      // share of the map's ground that a floor must have
@@ -33,8 +33,8 @@ std::vector<float> tile_of(const TerrainMap::Page& page, std::size_t tile)
     return heights;
 }
 
-/// Returns how often each bin occurs. If the bins lie close together, as they mostly do in one tile, a table counts
-/// them; that is faster than a look-up in the histogram for each cell.
+/// Returns how often each bin (a height in steps) occurs. If the bins lie close together, as they mostly do in one
+/// tile, they are counted in a table, which is faster than a look-up in the histogram for each cell.
 Histogram counted(const std::vector<std::int64_t>& bins)
 {
     Histogram out;
@@ -83,7 +83,8 @@ Histogram ground_of(const TerrainMap& terrain, double room, int threads)
     return sum;
 }
 
-/// The ground of a map by height, with cumulative sums, and with the smoothed density in which peaks are found.
+/// The number of ground cells of a map at each height, with cumulative sums. Peaks are found in a smoothed copy of
+/// these numbers, the density.
 class GroundHeights {
 public:
     explicit GroundHeights(const Histogram& counts)
@@ -152,9 +153,10 @@ private:
         return next < density_.size() && density_[next].first == density_[i].first + by ? density_[next].second : 0;
     }
 
+    /// Returns whether the density has a valley between entries `from` and `to`. `peak` is the lower of these two.
     bool has_valley(std::size_t from, std::size_t to, std::size_t peak) const
     {
-        const double deep = deepest_valley * double(density_[peak].second);
+        const double deep = highest_valley * double(density_[peak].second);
         for (std::size_t i = from; i < to; ++i)
             if (double(std::min(density_[i].second, density_at(i, 1))) < deep) return true;
         return false;

@@ -8,15 +8,15 @@
 
 namespace spawnfield {
 
-/// Prepares the import of a file before assimp reads it. assimp trusts its input, so files that are damaged or made to
-/// do harm are refused here, with the place in the file. A PLY file is read here, too: all loaders of `importer` are
-/// replaced by one that hands over its vertices and faces. Returns the text that assimp should read instead of the
-/// file, or "" if it can read the file itself. Throws FileError.
+/// Prepares the import of a file before assimp reads it. assimp does not check its input. So this function refuses
+/// damaged and malicious files; the error names the place in the file. It also parses PLY files: it replaces all
+/// loaders of `importer` by one that passes the parsed vertices and faces to assimp. Returns the text that assimp
+/// should read instead of the file, or "" if it can read the file itself. Throws FileError.
 std::string prepare_import(const std::filesystem::path& file, Assimp::Importer& importer);
 
-/// Checks what assimp has read, before its further steps, which trust it: each face has corners, and these are vertices
-/// of its mesh; nodes are at most 1000 deep; all instances of meshes together have at most 100 million triangles, or
-/// the number in the file if that is larger. Throws FileError.
+/// Checks what assimp has read, before assimp's further steps, which do not check it: each face has corners, and these
+/// are vertices of its mesh; nodes are at most 1000 deep; all instances of meshes together have at most 100 million
+/// triangles, or the number in the file if that is larger. Throws FileError.
 void check_imported_scene(const aiScene& scene, const std::string& file);
 
 }  // namespace spawnfield

@@ -90,7 +90,8 @@ class HeaderReader {
 public:
     HeaderReader(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file)
     {
-        // Only the first line shows how lines end: after the header, binary data may begin with any byte.
+        // The first line shows how all lines of the header end. The end of the last one would not: the byte after it
+        // may be binary data that looks like \n.
         const std::size_t end = bytes.find_first_of(line_ends);
         if (end != std::string_view::npos && bytes[end] == '\r' && (end + 1 == bytes.size() || bytes[end + 1] != '\n'))
             line_end_ = '\r';

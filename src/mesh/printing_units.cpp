@@ -124,7 +124,7 @@ using Units = std::vector<std::pair<std::string, double>>;
 
 double metres_of(const std::string& unit, const Units& units, const std::string& file)
 {
-    if (unit.empty()) return 1e-3;
+    if (unit.empty()) return 1e-3;  // both formats: millimetres without an attribute
     std::string names;
     for (const auto& [known, metres] : units) {
         if (unit == known) return metres;
@@ -133,7 +133,7 @@ double metres_of(const std::string& unit, const Units& units, const std::string&
     throw FileError(file, "has the unit \"" + unit + "\", needs one of " + names);
 }
 
-constexpr std::size_t head = 1 << 16;  // bytes at the start that must contain the root element
+constexpr std::size_t head = 1 << 16;  // bytes; the root element must lie in this first part of the file
 
 }  // namespace
 

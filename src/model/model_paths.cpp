@@ -118,7 +118,7 @@ ModelPaths::Path ModelPaths::find_on_disk(const std::string& uri, const Path& fo
 {
     if (uri.starts_with("https://") || uri.starts_with("http://")) return found_in_fuel_cache(uri);
     Path inside = uri;
-    bool is_named = false;  // a model or package by name: not relative to the folder
+    bool is_named = false;  // the URI begins with a model or package name, so it is not relative to `folder`
     for (const char* const scheme : {"model://", "package://", "file://"})
         if (uri.starts_with(scheme)) {
             inside = without(scheme, uri);
@@ -131,7 +131,7 @@ ModelPaths::Path ModelPaths::find_on_disk(const std::string& uri, const Path& fo
         if (const Path found = found_in(named, inside); !found.empty()) return found;
     for (const Path& above : above_)
         if (const Path found = found_in(above, inside); !found.empty()) {
-            if (above != above_.front()) guessed_.insert(above);  // a folder beside the file is not a guess
+            if (above != above_.front()) guessed_.insert(above);  // the folder of the file itself is not a guess
             return found;
         }
     return {};

@@ -3,9 +3,9 @@
 #include "model/jointed_model.h"
 #include "model/sdf_model.h"
 
-/// The code that uses libsdformat is a module of its own (src/sdf), which is loaded when the first SDF file is read.
-/// Loading libsdformat takes 50 ms, because it compiles a regular expression in each of its files; every start of a
-/// program would pay for that.
+/// The interface of the module src/sdf: a shared library that contains all code that uses libsdformat, and that is
+/// loaded when the first SDF file is read. Loading libsdformat takes 50 ms, because it compiles many regular
+/// expressions at its start. Without the module, each start of a program would take that time.
 namespace spawnfield::sdf_module {
 
 SdfContent read_file(const std::filesystem::path& file, ModelPaths& paths, const std::optional<std::string>& text);

@@ -16,11 +16,12 @@ struct SdfWorld {
     std::vector<std::string> notices;
 };
 
-/// Reads a .sdf or .world file, or the file of a model. An <include> of a world is plain if neither its pose nor that
-/// of its model depends on a frame. Plain includes are removed from the text that libsdformat reads, and each of their
-/// models is parsed once, however often it is included; libsdformat resolves all others. Throws FileError for: includes
-/// that are not found (the message lists all), unless allow_missing; malformed XML, with the line; files that include
-/// themselves; <population>; and as read_sdf_file().
+/// Reads a .sdf or .world file, or the file of a model. For speed, this function itself handles each <include> of a
+/// world whose pose, and whose model's pose, do not depend on another frame: it removes these from the text that
+/// libsdformat reads, and parses each of their models once, however often it is included. libsdformat handles all other
+/// includes. Throws FileError for includes that are not found, unless allow_missing (the message lists all of them),
+/// for malformed XML (the message names the line), for files that include themselves, for <population>, and as
+/// read_sdf_file() does.
 SdfWorld read_sdf_world(const std::filesystem::path& file, ModelPaths& paths, bool allow_missing);
 
 }  // namespace spawnfield

@@ -17,9 +17,9 @@ namespace {
 
 constexpr double label_cap = 10, number_cap = 8, heading_cap = 14, line_step = 19;  // pixels
 constexpr double left = 66, right = 24, top = 66, bottom = 46, pane_gap = 74;
-constexpr double least_legend = 250;
+constexpr double least_legend = 250;  // width, pixels
 
-/// A view with its names. `nearness` is the direction towards the viewer.
+/// A view with its title and the names of its two axes. `nearness` is the direction towards the viewer.
 struct Axes : ViewAxes {
     Vec3 nearness;
     const char* heading;
@@ -142,8 +142,8 @@ void draw_grid(Figure& figure, const Pane& pane)
         draw_text(figure, names, {double(pane.area.br().x), pane.area.y - 9.0}, {number_cap, muted, Align::Right});
 }
 
-/// Draws the parts, the farthest first. A thick line around all of them shows the outline of their union; thin lines
-/// show hidden parts.
+/// Draws the parts, the farthest first. A thick line shows the outline of their union; thin lines show the outline of
+/// each part, also where another part hides it.
 void draw_parts(Figure& figure, const Pane& pane, const Robot& robot, const LinkColours& colours)
 {
     std::vector<std::vector<cv::Point2d>> outlines;

@@ -10,7 +10,8 @@ namespace {
 
 constexpr int circle_corners = 64;
 
-/// Adds the corners of a polygon around a circle, as the view shows it.
+/// Adds the corners of a polygon that contains a circle, as seen in the view. `a` and `b` are perpendicular radii of
+/// the circle.
 void add_circle(const ViewAxes& axes, const Vec3& centre, const Vec3& a, const Vec3& b, Polygon2& out)
 {
     const double outer = 1 / std::cos(std::numbers::pi / circle_corners);

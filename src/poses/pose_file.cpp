@@ -18,12 +18,12 @@ namespace {
 
 constexpr double radians_per_degree = std::numbers::pi / 180;
 
-/// The column of an angle.
+/// The column of an angle: roll, pitch or yaw.
 struct AngleColumn {
     std::string name;
     int field = -1;  ///< its index; -1: not in the file
     bool is_degrees = false;
-    std::size_t beyond_turn = 0;  ///< rows with more than a whole turn, which are likely degrees
+    std::size_t beyond_turn = 0;  ///< number of rows with more than a whole turn: likely degrees
     std::string first = {};       ///< place and value of the first of these, for the notice
 };
 

@@ -96,6 +96,7 @@ Json settings_json(const Options& options, const Judge& judge, int axes)
     return out;
 }
 
+/// Adds the counts and the poses to `out`, and returns its text.
 std::string finished(Json out, const std::optional<VerdictCounts>& counts, std::span<const RobotStart> robots)
 {
     if (counts)

@@ -82,6 +82,7 @@ Json verdict_json(const VerdictReport& report, std::size_t index, const std::str
 /// Returns a text that XML can contain on one line: valid UTF-8 without control characters.
 std::string xml_text(const std::string& text)
 {
+    // json_text replaces bytes that are not valid UTF-8.
     std::string out = one_line(Json::parse(json_text(text, -1)).get<std::string>());
     for (const char* const forbidden : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE, U+FFFF
         for (std::size_t place = out.find(forbidden); place != std::string::npos; place = out.find(forbidden, place))

@@ -207,10 +207,10 @@ void append_floor(Scene& scene, std::uint32_t part, const Nav2Map& map)
         if (is_new) vertices.push_back(map.corner(row, col));
         return found->second;
     };
-    for (const CellBlock& b : blocks_of(
+    for (const CellRectangle& b : blocks_of(
              map.rows, map.cols, [&](int row, int col) { return map.cell(row, col) != Nav2Map::Cell::Unknown; })) {
-        const std::uint32_t low = vertex(b.last_row, b.first_col), right = vertex(b.last_row, b.last_col);
-        const std::uint32_t high = vertex(b.first_row, b.last_col), left = vertex(b.first_row, b.first_col);
+        const std::uint32_t low = vertex(b.end_row, b.first_col), right = vertex(b.end_row, b.end_col);
+        const std::uint32_t high = vertex(b.first_row, b.end_col), left = vertex(b.first_row, b.first_col);
         triangles.push_back({low, right, high});
         triangles.push_back({low, high, left});
     }
@@ -219,13 +219,13 @@ void append_floor(Scene& scene, std::uint32_t part, const Nav2Map& map)
 
 void append_walls(Scene& scene, std::uint32_t part, const Nav2Map& map, double height)
 {
-    for (const CellBlock& b : blocks_of(
+    for (const CellRectangle& b : blocks_of(
              map.rows, map.cols, [&](int row, int col) { return map.cell(row, col) == Nav2Map::Cell::Occupied; })) {
         Primitive wall;
         wall.shape.kind = ShapeKind::Box;
-        wall.shape.size = Vec3((b.last_col - b.first_col) * map.resolution, (b.last_row - b.first_row) * map.resolution,
+        wall.shape.size = Vec3((b.end_col - b.first_col) * map.resolution, (b.end_row - b.first_row) * map.resolution,
                                height);
-        wall.shape.pose.position = (map.corner(b.first_row, b.first_col) + map.corner(b.last_row, b.last_col)) / 2 +
+        wall.shape.pose.position = (map.corner(b.first_row, b.first_col) + map.corner(b.end_row, b.end_col)) / 2 +
                                    Vec3(0, 0, height / 2);
         wall.shape.pose.rotation = rotation_from_rpy(0, 0, map.yaw);
         wall.part = part;
