@@ -9,30 +9,39 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path stored_maps() { return source_folder() + "/tests/data/maps"; }
+const fs::path stored_maps = source_folder() + "/tests/data/maps";
 
-std::string stored_map(int version)
-{
-    return "'" + (stored_maps() / ("format-" + std::to_string(version))).string() + "'";
-}
+/// A folder with `map`, as a program wrote it that had this format version. Files that are the same in version 3 are
+/// stored there only.
+struct StoredMap : TempFolder {
+    explicit StoredMap(int version)
+    {
+        // Without `recursive`, copy() ignores folders if another option is given.
+        constexpr auto overwrite = fs::copy_options::recursive | fs::copy_options::overwrite_existing;
+        fs::copy(stored_maps / "format-3", *this / "map");
+        fs::copy(stored_maps / ("format-" + std::to_string(version)), *this / "map", overwrite);
+    }
+};
 
 }  // namespace
 
-TEST_CASE("a stored map of every format version that is read gives the verdicts of its scene")
+TEST_CASE("stored maps of all format versions that are read give the verdicts of their scene")
 {
-    const TempFolder folder;
-    const std::string check_poses = " --robot box:0.1,0.1,0.1 --poses '" + (stored_maps() / "poses.csv").string() + "'";
+    const std::string poses = "'" + (stored_maps / "poses.csv").string() + "'";
     for (int version = 2; version <= map_format_version; ++version) {
         CAPTURE(version);
-        CHECK(run_program(folder, "info --verify " + stored_map(version)).status == 0);
-        CHECK(run_program(folder, "check " + stored_map(version) + check_poses).out ==
+        const StoredMap stored(version);
+        CHECK(
+            bytes_of(stored / "map/map.yaml").starts_with("format: spawnfield-map/" + std::to_string(version) + "\n"));
+        CHECK(run_program(stored, "info --verify map").status == 0);
+        CHECK(run_program(stored, "check map --robot box:0.1,0.1,0.1 --poses " + poses).out ==
               "name,x,y,z,verdict,ground,height_above,hit\n"
               "floor,-1,0,0.1,valid,0,0.1,\n"
-              "on_deck,-3,0,1.6,valid,1.5,0.10000000000000009,\n"
-              "under_deck,-3,0,0.1,valid,0,0.1,\n"
+              "on_deck,-6,0,1.6,valid,1.5,0.10000000000000009,\n"
+              "under_deck,-6,0,0.1,valid,0,0.1,\n"
               "ball,1,0,0.1,collision,0,0.1,ball\n"
               "in_rock,2.1,-0.2,0.05,collision,0,0.05,rock\n"
-              "pool,4,0,0.1,submerged,0,0.1,\n"
+              "pool,6,0,0.1,submerged,0,0.1,\n"
               "air,-1,0,3,aerial,0,3,\n"
               "beyond,9,0,0.1,outside,,,\n");
     }
@@ -40,8 +49,8 @@ TEST_CASE("a stored map of every format version that is read gives the verdicts 
 
 TEST_CASE("a stored map of format version 1 is refused with the reason")
 {
-    const TempFolder folder;
-    const ProgramRun run = run_program(folder, "info " + stored_map(1));
+    const StoredMap stored(1);
+    const ProgramRun run = run_program(stored, "info map");
     CHECK(run.status == 4);
-    CHECK_THAT(run.err, Contains("map.yaml: has format version 1, this program reads 2 and 3; bake the map again"));
+    CHECK_THAT(run.err, Contains("map/map.yaml: has format version 1, this program reads 2 and 3; bake the map again"));
 }
