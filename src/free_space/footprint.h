@@ -20,13 +20,13 @@ struct Footprint {
     Prism inner;  ///< lies in the part, FreeSpace::margin from its surface; no corners: none is known
 };
 
-/// Lowest and highest point of the part with the robot turned by `rotation` about its origin.
+/// Returns the lowest and highest point of the part with the robot turned by `rotation` about its origin.
 Interval height_of(const RobotPart& part, const Mat3& rotation);
 
-/// Footprints of all parts with the robot turned by `rotation`; inner prisms only if asked for.
+/// Returns the footprints of all parts with the robot turned by `rotation`; inner prisms only if with_inner is set.
 std::vector<Footprint> footprints(const Robot& robot, const Mat3& rotation, bool with_inner);
 
-/// Footprints that hold for every yaw of the upright robot: discs around its origin.
+/// Returns footprints that hold for every yaw of the upright robot: discs around its origin.
 std::vector<Footprint> yaw_free_footprints(const Robot& robot);
 
 }  // namespace spawnfield

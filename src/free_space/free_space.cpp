@@ -9,7 +9,7 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// std::floor and std::ceil of values that fit an int, sooner.
+/// std::floor and std::ceil for values that fit an int, but faster.
 int floor_of(double value)
 {
     const int whole = int(value);
@@ -17,13 +17,13 @@ int floor_of(double value)
 }
 int ceil_of(double value) { return -floor_of(-value); }
 
-/// The largest value of a tile that stays below a height.
+/// Returns the largest value of a tile that stays below a height.
 int values_below(const BoundsHead& head, double inverse_quantum, double z)
 {
     return std::max(0, ceil_of(std::clamp((z - head.base) * inverse_quantum, 0.0, 65536.0)) - 1);
 }
 
-/// The lowest interval of a cell for which the test holds, as it then does for all above it; nullptr: there is none.
+/// Returns the lowest interval of a cell that passes the test, or nullptr. All intervals above it must pass, too.
 template <class Test>
 const QuantizedSpan* lowest_where(std::span<const QuantizedSpan> spans, const Test& test)
 {
@@ -35,8 +35,8 @@ const QuantizedSpan* lowest_where(std::span<const QuantizedSpan> spans, const Te
     return lowest == spans.end() ? nullptr : &*lowest;
 }
 
-/// Cells along a part's width in each pass: a look at what is near, one that follows the part's shape, one that is as
-/// fine as pays beside an exact check.
+/// Cells along a part's width in each pass: the first finds what is near, the second follows the part's shape, the
+/// third is as fine as is still cheaper than an exact check.
 constexpr std::array cells_along{1.4, 6.0, 24.0};
 
 }  // namespace
@@ -72,7 +72,7 @@ void Mask::set_rotation(const Mat3& rotation)
         set_footprints(footprints(space_.robot, rotation, false), 1, 0);
 }
 
-/// The coarsest cells of which some number lies along the part, for each pass; never the same twice.
+/// Chooses for each pass the coarsest level with enough cells along the part; never the same level twice.
 void Mask::choose_passes(Part& part) const
 {
     Vec2 low(inf, inf), high(-inf, -inf);
@@ -102,8 +102,8 @@ void Mask::set_y(double y)
         for (Pass& pass : part.passes) pass.is_ready = false;
 }
 
-/// Rows of cells that the polygons overlap, or within which cells lie whole: both follow from where the rims cross the
-/// lines between rows, and from the corners.
+/// Computes the rows of cells that the outer polygon overlaps, and the cells that lie wholly in the inner one. Both
+/// follow from where the rims cross the lines between rows, and from the corners.
 void Mask::cover(const Part& part, Pass& pass) const
 {
     const double cell = raster_.levels[pass.level].cell, v = (y_ - raster_.y0) / cell;
@@ -165,7 +165,7 @@ void Mask::cover(const Part& part, Pass& pass) const
     pass.is_ready = true;
 }
 
-/// Tile (col, row) of the pass's level.
+/// Returns tile (col, row) of the pass's level.
 const Mask::OpenTile& Mask::tile_of(Pass& pass, int col, int row) const
 {
     OpenTile& open = pass.tiles[std::size_t(row % 2 * 2 + col % 2)];
@@ -178,7 +178,7 @@ const Mask::OpenTile& Mask::tile_of(Pass& pass, int col, int row) const
     return open;
 }
 
-/// Whether nothing in the cells around a part reaches up to it: most of open ground.
+/// Returns whether nothing in the cells around a part reaches up to it, as on most open ground.
 bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
 {
     constexpr int side = BoundsTile::side;
@@ -201,7 +201,7 @@ bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
     return true;
 }
 
-/// A part's heights at a pose, in those of a tile.
+/// A part's heights at a pose, as values of a tile.
 struct Mask::Heights {
     double bottom, top, inner_bottom, inner_top;  ///< m
     std::uint32_t below = 0;                      ///< cells that reach up to this value are under the part
@@ -217,7 +217,7 @@ struct Mask::Heights {
     bool is_hit(std::uint32_t value) const { return value >= hit_low && value <= hit_high; }
 };
 
-/// Whether something in the cell is inside the part for certain, if the cell is.
+/// Returns whether something in the cell is certainly inside the part, if the cell is.
 bool Mask::is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights)
 {
     if (heights.is_hit(tile.tops[cell])) return true;
@@ -232,7 +232,7 @@ bool Mask::is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& hei
     return solid != nullptr && tile.height(solid->bottom) <= heights.inner_top;
 }
 
-/// Whether nothing in the cell, which reaches above the part's underside, is where the part is.
+/// Returns whether nothing in a cell that reaches above the part's underside is where the part is.
 bool Mask::is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights)
 {
     if (!tile.bounds.has(cell)) return false;
@@ -241,7 +241,7 @@ bool Mask::is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& he
     return span == nullptr || tile.height(span->bottom) > heights.top;
 }
 
-/// Columns of a row that a part covers, and that the coarser pass could not prove free.
+/// Returns the columns of a row that a part covers and that the coarser pass could not prove free.
 Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u)
 {
     if (!(cover.low <= cover.high)) return no_cells;
@@ -255,8 +255,8 @@ Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const 
     return {std::max(out.first, range.first << finer), std::min(out.last, (range.last << finer) + (1 << finer) - 1)};
 }
 
-/// Looks at each cell that is open: free, blocked if some cell within the part is hit, or what is left for a finer
-/// pass.
+/// Looks at each undecided cell: the part is free if nothing reaches into it, blocked if a cell within the part is hit,
+/// otherwise a finer pass decides the remaining cells.
 Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const
 {
     const BoundsLevel& level = raster_.levels[pass.level];
@@ -313,7 +313,7 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
 Proof Mask::proof_of(const Vec3& position)
 {
     const double x = position.x(), y = position.y(), z = position.z();
-    constexpr double farthest = 1e8;  // cells; beyond it their numbers would not fit
+    constexpr double farthest = 1e8;  // cells; at larger distances cell numbers would not fit an int
     if (raster_.levels.empty() || !(std::abs(x - raster_.x0) < farthest * raster_.levels[0].cell) ||
         !(std::abs(y - raster_.y0) < farthest * raster_.levels[0].cell))
         return Proof::Candidate;

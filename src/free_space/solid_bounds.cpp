@@ -13,7 +13,7 @@ namespace {
 
 constexpr double steps = 65500;         // of a tile's heights, with room for rounding outwards
 constexpr double least_quantum = 1e-6;  // m
-constexpr double least_solid = 1e-4;    // m; thinner ones are surfaces, which the intervals tell
+constexpr double least_solid = 1e-4;    // m; thinner solids count as surfaces, which the intervals contain
 constexpr std::size_t alignment = 64;
 constexpr std::uint32_t side = BoundsTile::side;
 
@@ -29,7 +29,7 @@ struct LooseTile {
     bool is_empty() const { return bounds.spans.empty(); }
 };
 
-/// Adds what is solid in one cell: surfaces anywhere in it, and the insides on the line through its centre.
+/// Adds the solids of one cell: surfaces anywhere in it, and the insides on the line through its centre.
 void add_cell(const CellSpans& surfaces, std::uint32_t cell, std::span<const Span> inside, LooseTile& out)
 {
     if (inside.empty() && !surfaces.has_more(cell)) {  // open ground
@@ -197,7 +197,7 @@ bool is_consistent(std::string_view view)
            counts_up(tile.solids, head.solid_cells, head.solids);
 }
 
-/// The next coarser cells: what is solid in any of the four finer ones. A gap stays only where all four have it.
+/// Makes the next coarser cells from four finer ones each. A gap remains only where all four have it.
 LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>& finer, std::uint32_t tile_col,
                  std::uint32_t tile_row)
 {

@@ -11,15 +11,15 @@
 
 namespace spawnfield {
 
-/// Proofs that no further sample can stand anywhere in a cell, from the scene's own geometry: the mask has no part in
-/// them, so that they are the same with it and without it.
+/// Proves that no further sample can stand anywhere in a cell, from the scene's own geometry and without the mask, so
+/// that the proofs are the same with the mask and without it.
 ///
 /// A cell's layers lie between heights that the planes of its terrain give. At each such height, as far as layers are
 /// ground there, all poses must be off the area, outside, too close to one taken or avoided position, under water, or
 /// collide: the robot eroded by half a cell does at its centre, or some point of the robot is inside the ground at
-/// every pose. Lines within 1e-9 m of an upright face are left aside. What is not proven stays open: cells half on an
-/// obstacle as flat as the offset, for one. A footing that is asked for (max_slope) only takes valid poses away, so
-/// what is closed without it is closed with it; cells where all is steep stay open.
+/// every pose. Lines within 1e-9 m of an upright face are ignored. A cell without a proof stays open, for example one
+/// half on an obstacle as flat as the offset. max_slope only makes valid poses invalid, so a cell that is closed
+/// without it is closed with it; cells where all ground is steep stay open.
 class CellProofs {
 public:
     /// options.offset is given. `taken` may grow between calls of is_closed, never during them.
@@ -27,7 +27,7 @@ public:
                const SpacedPoints& taken, const AvoidIndex& avoided);
     ~CellProofs();
 
-    /// For cells of these half sides, m. Not to be called while others ask.
+    /// Prepares proofs for cells of these half sides, m. Must not run at the same time as is_closed.
     void set_half_cell(double half_x, double half_y);
     bool is_closed(const Rect& cell) const;
 

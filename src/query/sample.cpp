@@ -14,14 +14,15 @@
 namespace spawnfield {
 namespace {
 
-/// Draws without a spawn in a row after which cells are looked at; or of so many draws less than a share gave one.
+/// The sampler goes over to cells after so many draws in a row without a spawn, or if of so many draws less than a
+/// share gave one.
 constexpr std::uint64_t blind_patience = 2000, blind_window = 1 << 17;
 constexpr double least_share = 0.02;
 constexpr double fair_share = 0.05;  // with which it goes on in the same cells
 constexpr double first_cells = 1024, most_first_cells = 65536;
 constexpr std::size_t most_cells = 1 << 24;  // kept at a time
-/// Proofs made in all: some, half as many where next to nothing is left to decide, and more for each spawn found and
-/// each avoided point.
+/// Largest number of proofs: a base, half of it if nearly the whole region is decided, and more for each spawn found
+/// and each avoided point.
 constexpr std::size_t some_proofs = 1 << 19, proofs_per_point = 12;
 constexpr double next_to_nothing = 2e-5;  // of the region
 constexpr double smallest_cell = 0.0001;  // m
@@ -103,7 +104,7 @@ Bounds within(const Bounds& box, Bounds limits)
 }
 
 /// One pass with a fixed number of slots per column. A draw takes one slot at one point; a slot without a layer gives
-/// nothing. So each layer is drawn with equal density, however many there are above each other.
+/// nothing. So every layer is drawn with the same density, regardless of how many lie above each other.
 class Sampler {
 public:
     Sampler(const Judge& judge, const SampleOptions& options, std::size_t slots)
@@ -114,7 +115,7 @@ public:
     {
     }
 
-    /// False if a column had more layers than slots: then nothing that was drawn counts.
+    /// Returns false if a column had more layers than slots; then the draws do not count.
     bool run(SpawnList& out)
     {
         const auto point = [&](Draw& from) {
@@ -133,8 +134,8 @@ public:
     }
 
 private:
-    /// At most so many draws of points, until all are found or go_on(draws, failures in a row) says no. Returns how
-    /// many spawns they gave.
+    /// Makes at most so many draws of points, until all spawns are found or go_on(draws, failures in a row) returns
+    /// false. Returns how many spawns they gave.
     template <class Point, class GoOn>
     std::size_t draw(SpawnList& out, std::uint64_t most, const Point& point, const GoOn& go_on)
     {
@@ -159,7 +160,7 @@ private:
         return out.spawns.size() - before;
     }
 
-    /// Goes on in the cells that are not proven full, as long as they can be split.
+    /// Draws from the cells that are not proven full, and splits them as long as that is possible.
     void fill(SpawnList& out)
     {
         Cells cells(within(box_, shared_.map.bounds), options_.min_distance);
@@ -209,7 +210,7 @@ private:
         cells.drop(flags);
     }
 
-    /// Layers of a column that are ground, were chosen and lie in the area, from the top.
+    /// Returns the layers of a column that are ground, are chosen and lie in the area, from the top down.
     std::vector<double> chosen_layers(const Column& column, const Vec2& at) const
     {
         std::vector<double> out;
