@@ -109,6 +109,7 @@ TEST_CASE("check in real scenes agrees with the independent decision")
             continue;  // the independent decision visits each triangle for each pose
         const Robot robot = load_robot((*folder / real_robots()[1].file).string());
         const Judge judge(map, robot);
+        // Random poses and poses of a sample, because half of the random ones miss the ground.
         std::vector<Pose> poses = random_poses(map.scene, 17, 20);
         SampleOptions sampling{.count = 15, .offset = 0.15};
         for (const Spawn& spawn : sample(judge, sampling).spawns)

@@ -9,7 +9,7 @@
 namespace spawnfield {
 
 /// Occupied, free and unknown space as an OctoMap (Hornung et al., OctoMap: An Efficient Probabilistic 3D Mapping
-/// Framework Based on Octrees, 2013).
+/// Framework Based on Octrees, 2013). Any number of threads may call its const methods at the same time.
 class SPAWNFIELD_API OccupancyTree {
 public:
     struct Impl;
@@ -29,11 +29,10 @@ private:
     std::unique_ptr<const Impl> impl_;
 };
 
-/// A voxel is occupied when any solid surface touches it or its centre is inside a solid; free elsewhere inside the
-/// bounds, unknown outside them. Pruned. Round primitives count as the polygons of 256 sides around them: up to 0.01 %
-/// of their radius too wide.
-/// Throws ArgumentError unless resolution > 0 and the bounds lie within 32768 voxels of the scene's origin (OctoMap's
-/// 16-bit keys).
+/// Returns the tree of a scene. A voxel is occupied when any solid surface touches it or its centre is inside a solid;
+/// free elsewhere inside the bounds, unknown outside them. Pruned. Round primitives count as the polygons of 256 sides
+/// around them: up to 0.01 % of their radius too wide. Throws ArgumentError unless resolution > 0 and the bounds lie
+/// within 32768 voxels of the scene's origin (OctoMap's 16-bit keys).
 SPAWNFIELD_API OccupancyTree build_occupancy(const Geometry& geometry, const Bounds& bounds, double resolution,
                                              int threads = 0, const Progress& progress = {});
 
@@ -43,7 +42,7 @@ SPAWNFIELD_API std::size_t write_occupancy(const std::filesystem::path& file, co
                                            const Bounds& bounds, double resolution, int threads = 0,
                                            const Progress& progress = {});
 
-/// Throws FileError.
+/// Reads a binary .bt. Throws FileError.
 SPAWNFIELD_API OccupancyTree read_occupancy(const std::filesystem::path& file);
 
 }  // namespace spawnfield

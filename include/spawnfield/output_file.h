@@ -11,7 +11,7 @@ namespace spawnfield {
 
 /// A file that appears whole or not at all: written beside its name, renamed by commit(), removed if that never comes.
 /// What is no regular file (a pipe, /dev/null, /dev/stdout) is written directly; of a link, what it leads to is
-/// written.
+/// written. One thread at a time may use it. What it cannot write is an OutputError.
 class SPAWNFIELD_API OutputFile {
 public:
     explicit OutputFile(std::filesystem::path file);  ///< throws OutputError

@@ -10,7 +10,7 @@
 namespace spawnfield {
 
 /// A folder that appears whole or not at all: filled beside its name, takes its place by commit(), removed if that
-/// never comes. Of a link to a folder, what it leads to is replaced.
+/// never comes. Of a link to a folder, what it leads to is replaced. One thread at a time may use it.
 class SPAWNFIELD_API OutputFolder {
 public:
     using Path = std::filesystem::path;

@@ -52,7 +52,7 @@ struct RasterGrid {
     double x_of(int i) const { return x0 + i * step; }
     double y_of(int j) const { return y0 + j * step; }
     double z_of(int k) const { return z0 + k * step_z; }
-    /// The lowest of the heights at or above this one, to touch_tolerance; `heights` if there is none.
+    /// Returns the lowest step at or above this height, to touch_tolerance; `heights` if there is none.
     SPAWNFIELD_API int step_above(double height) const;
 };
 
@@ -80,8 +80,8 @@ struct RasterResult {
 /// wrong way round or more than 2^31 columns, FileError for a damaged map.
 SPAWNFIELD_API RasterResult raster(const Judge& judge, const RasterOptions& options);
 
-/// A raster's poses in their order, with `aerial` also the aerial ones of a 3D raster that it does not list, in their
-/// places.
+/// Calls visit for each pose of a raster in their order; with `aerial` also for the aerial ones of a 3D raster that it
+/// does not list, in their places.
 SPAWNFIELD_API void for_each_pose(const RasterResult& raster, bool aerial,
                                   const std::function<void(const RasterPose&)>& visit);
 

@@ -29,7 +29,7 @@ struct CellIntervals {
     const QuantizedSpan* spans = nullptr;   ///< from the bottom up
 
     bool has(std::uint32_t cell) const { return marks != nullptr && (marks[cell / 64] >> (cell % 64) & 1) != 0; }
-    /// Of a cell that has some.
+    /// Returns the intervals of a cell that has some.
     std::span<const QuantizedSpan> of(std::uint32_t cell) const
     {
         const std::uint64_t before = marks[cell / 64] & ((std::uint64_t{1} << (cell % 64)) - 1);
@@ -38,7 +38,7 @@ struct CellIntervals {
     }
 };
 
-/// A tile's bytes as what they are. Cell (col, row) of it is number row * side + col; row 0 is the smallest y.
+/// A view of a tile's bytes. Its cell (col, row) has the number row * side + col; row 0 is the smallest y.
 struct BoundsTile {
     static constexpr std::uint32_t side = 64;
     static constexpr std::uint32_t cells = side * side;
@@ -47,7 +47,7 @@ struct BoundsTile {
     const std::uint16_t* tops = nullptr;  ///< of all that is solid in the cell, rounded up
     CellIntervals
         bounds;  ///< that hold all that is solid in the cell, where there is a gap; elsewhere all below the top may be
-    CellIntervals solids;  ///< what is solid for certain at the cell's centre, rounded inwards
+    CellIntervals solids;  ///< certainly solid at the cell's centre, rounded inwards
 
     BoundsTile() = default;
     /// The arrays behind a head, whose counts must fit the bytes (bounds_tile_size).
@@ -74,7 +74,7 @@ struct SolidBounds::Impl {
 
     void make_states();
 
-    /// Cells of a level that lie on the finest raster whole: coarse ones at the upper rims reach beyond it.
+    /// Number of cells of a level that lie wholly on the finest raster. Coarse cells at its upper rims reach beyond it.
     std::uint32_t whole_cols(std::size_t level) const { return levels[0].cols >> level; }
     std::uint32_t whole_rows(std::size_t level) const { return levels[0].rows >> level; }
 

@@ -18,7 +18,7 @@ struct PartCorners {
     std::vector<std::pair<std::size_t, std::size_t>> edges;  ///< of `within`; empty: any two of them may be one
 };
 
-/// A circle of `radius` around `centre` in the plane of u and v, as corners of polygons around it and within it.
+/// Adds a circle of `radius` around `centre` in the plane of u and v, as corners of polygons around it and within it.
 void add_circle(const Vec3& centre, const Vec3& u, const Vec3& v, double radius, PartCorners& out)
 {
     const double wide = radius / std::cos(std::numbers::pi / disc_sides);
@@ -30,7 +30,7 @@ void add_circle(const Vec3& centre, const Vec3& u, const Vec3& v, double radius,
     }
 }
 
-/// Circles of latitude of a ball. They and the poles hold it only as seen from above; its height is told apart.
+/// Adds circles of latitude of a ball. Seen from above they contain it; its height is computed separately.
 void add_ball(const Vec3& centre, double radius, PartCorners& out)
 {
     const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
@@ -75,7 +75,7 @@ PartCorners corners_of(const RobotPart& part, const Mat3& rotation)
     return out;
 }
 
-/// All points nearer than `reach` to the polygon lie in the result.
+/// Returns a polygon that contains all points nearer than `reach` to this one.
 Polygon2 widened(const Polygon2& polygon, double reach)
 {
     Polygon2 corners;
@@ -85,7 +85,7 @@ Polygon2 widened(const Polygon2& polygon, double reach)
     return convex_hull(std::move(corners));
 }
 
-/// The polygon drawn towards its centre until it is `reach` from its old rim; nothing if it is too thin.
+/// Returns the polygon scaled towards its centre until its rim is `reach` inside the old one; empty if it is too thin.
 Polygon2 narrowed(const Polygon2& polygon, double reach)
 {
     if (polygon.size() < 3) return {};

@@ -54,7 +54,7 @@ private:
     struct Pass {
         std::size_t level;
         bool is_ready = false;
-        std::vector<CoverRow> rows;        ///< one after the other
+        std::vector<CoverRow> rows;        ///< in the order of their numbers
         double low = 0, high = 0;          ///< of all rows
         std::vector<CellRange> undecided;  ///< of each row: cells outside of this are proven free at the last pose
         std::array<OpenTile, 4> tiles;     ///< the last ones that were looked at: all that a part straddles

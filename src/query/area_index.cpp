@@ -10,7 +10,7 @@ namespace spawnfield {
 namespace {
 
 constexpr double on_edge = 1e-9;    // m
-constexpr double near_edge = 2e-9;  // m; what is farther from edges is on one side of them for certain
+constexpr double near_edge = 2e-9;  // m; points farther from an edge are certainly on one side of it
 
 double squared_distance(const Vec2& p, const Vec2& from, const Vec2& to)
 {

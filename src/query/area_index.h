@@ -9,14 +9,15 @@
 
 namespace spawnfield {
 
-/// Some polygons' edges in rows, so that a question meets only those beside it. The union of the polygons, as Region
-/// has it.
+/// The union of some polygons, as Region defines it. Their edges are sorted into rows, so that a look-up meets only the
+/// edges beside it.
 class PolygonIndex {
 public:
     explicit PolygonIndex(const std::vector<Region>& regions);
 
     bool contains(const Vec2& point) const;
-    /// Proofs about closed rectangles; false where edges come near. covers: one polygon holds all of it.
+    /// Return true only if it is certain that no polygon meets the closed rectangle, or that one polygon contains all
+    /// of it. False where edges come near.
     bool misses(const Rect& rect) const;
     bool covers(const Rect& rect) const;
 
@@ -24,14 +25,14 @@ private:
     struct Edge {
         Vec2 from, to;
     };
-    /// Of one polygon in one row.
+    /// The edges of one polygon in one row.
     struct Group {
         std::uint32_t polygon, first, last;  ///< edges
         double low_x, high_x;                ///< that they reach
     };
     std::size_t row_of(double y) const;
     bool holds(const Group& group, const Vec2& point) const;
-    /// Whether an edge of the group comes within the slack of the rectangle.
+    /// Returns whether an edge of the group comes within the slack of the rectangle.
     bool meets(const Group& group, const Rect& rect) const;
 
     double y0_ = 0, height_ = 1, end_ = -1;  ///< of the rows; where the last one ends
@@ -40,12 +41,12 @@ private:
     std::vector<Edge> edges_;
 };
 
-/// Area, ready to be asked.
+/// An area, prepared for fast look-ups.
 class AreaIndex {
 public:
     explicit AreaIndex(const Area& area);
 
-    /// Whether the area has the point at some height.
+    /// Returns whether the area contains the point at some height.
     bool contains(const Vec2& point) const;
     bool contains(const Vec2& point, double z) const;  ///< z to touch_tolerance
 

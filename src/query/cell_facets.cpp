@@ -13,7 +13,7 @@ namespace {
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr std::size_t most_facets = 64;  // in a cell; beyond them only their heights count
 
-/// Narrower than lines are told apart.
+/// m; narrower than any two lines that count as different.
 bool is_sliver(const SmallPolygon& polygon)
 {
     double longest = 0;
@@ -80,7 +80,7 @@ CellFacets::CellFacets(const Geometry& geometry, const Rect& cell) : cell_(cell)
                                      add_primitive(tile, element);
                              });
     if (has_too_many || !has_filled_terrain_) return;
-    // Crossings of the same mesh that are no terrain count where inside and outside are told apart.
+    // Crossings of the same mesh that are not terrain count too, where they separate inside from outside.
     geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y,
                              [&](const Tile& tile, std::uint32_t element) {
                                  has_too_many = has_too_many || all.size() >= most_facets;

@@ -43,10 +43,10 @@ SmallPolygon corners_of(const Rect& rect);
 /// Unit normal of the edge from p to q of a counterclockwise polygon, outwards.
 Vec2 outward_normal(const Vec2& p, const Vec2& q);
 
-/// Whether some edge of one has the other beyond it, but for `by` m.
+/// Returns whether an edge of one polygon separates the other one from it; they may overlap by `by` m.
 bool are_parted(const SmallPolygon& a, const SmallPolygon& b, double by);
 
-/// What is left of a rectangle when convex polygons are taken away.
+/// The rest of a rectangle from which convex polygons are taken away.
 class Remainder {
 public:
     explicit Remainder(const Rect& rect) : left_{corners_of(rect)} {}
@@ -75,7 +75,8 @@ struct Facet {
     double at(double x, double y) const { return height + slope.x() * x + slope.y() * y; }
 };
 
-/// Terrain and water in a cell, as flat pieces; those of filled meshes that tell inside from outside as well.
+/// Terrain and water in a cell, as flat pieces; also the other faces of filled meshes, which separate inside from
+/// outside.
 struct CellFacets {
     std::vector<Facet> all;
     bool has_too_many = false;  ///< for planes: only `terrain` counts

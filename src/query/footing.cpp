@@ -14,10 +14,10 @@ namespace spawnfield {
 namespace {
 
 constexpr double step = 0.02;      // m by which the ground may rise or fall under any contact
-constexpr double evenness = 0.1;   // of the range of heights: what lies further off its plane is no slope
+constexpr double evenness = 0.1;   // share of the range of heights by which a slope may be uneven
 constexpr double rounding = 1e-9;  // of gradients
 
-/// What is solid on the column's line, all that touches taken as one, from the bottom up.
+/// Writes the solids of the column to `out`, from the bottom up; solids that touch count as one.
 void join_solids(const Column& column, std::vector<Interval>& out)
 {
     out.clear();
@@ -33,7 +33,7 @@ void join_solids(const Column& column, std::vector<Interval>& out)
     out.resize(kept);
 }
 
-/// Top of the highest solid that begins at or below z.
+/// Returns the top of the highest solid that begins at or below z.
 std::optional<double> surface_below(const std::vector<Interval>& solids, double z)
 {
     for (auto solid = solids.rbegin(); solid != solids.rend(); ++solid)
@@ -102,7 +102,7 @@ Verdict Footing::judge(const Vec3& position, double ground)
     return is_steep && is_even(slope) ? Verdict::Steep : Verdict::Unstable;
 }
 
-/// Of the plane that fits the surfaces best (least squares of heights).
+/// Returns the gradient of the plane that fits the surfaces best (least squares of heights).
 Vec2 Footing::gradient() const
 {
     Vec2 out = Vec2::Zero();
@@ -110,7 +110,7 @@ Vec2 Footing::gradient() const
     return out;
 }
 
-/// Whether contacts and the pose's ground lie on that plane, as those of a slope do and those at an edge do not.
+/// Returns whether the surfaces and the pose's ground lie on that plane, as on a slope but not at an edge.
 bool Footing::is_even(const Vec2& gradient) const
 {
     const double mean = std::accumulate(rises_.begin(), rises_.end(), 0.0) / double(rises_.size());

@@ -11,7 +11,7 @@
 namespace spawnfield {
 namespace {
 
-/// Poses from `from` up to and with `to`, to 1e-9 of a step.
+/// Returns the number of poses from `from` to `to`, both included, to 1e-9 of a step.
 int count_steps(double from, double to, double step, const char* axis)
 {
     const double count = std::floor((to - from) / step + 1e-9) + 1;
@@ -76,7 +76,7 @@ double chosen_offset(const Judge& judge, const RasterOptions& options)
     return offset;
 }
 
-/// Numbers of heights, each once.
+/// Step numbers, each once.
 using Steps = std::vector<int>;
 
 bool contains(const Steps& steps, int k) { return std::find(steps.begin(), steps.end(), k) != steps.end(); }
@@ -97,7 +97,7 @@ Steps replaced_steps(const RasterGrid& grid, double offset, std::span<const Rast
     return out;
 }
 
-/// Poses of one row of columns, with what is counted but not kept.
+/// The listed poses of one row of columns, and the counts of those that are not listed.
 struct Row {
     std::vector<RasterPose> poses;
     std::uint64_t aerial = 0, exact_checks = 0;
@@ -163,7 +163,7 @@ private:
                                out.poses.end(), [](const RasterPose& a, const RasterPose& b) { return a.z > b.z; });
     }
 
-    /// Layers that are ground, from the top down: their numbers are those of the answer.
+    /// Returns the layers that are ground, from the top down. RasterPose::layer counts these.
     std::span<const double> ground_layers(const ColumnView& column) const
     {
         return heights_within(column.layers, ground_z_);
@@ -185,8 +185,8 @@ private:
         }
     }
 
-    /// Heights at which the ground may be near enough, those beyond the map's z limits, and the replaced ones, from the
-    /// top down: the rest is aerial without a look.
+    /// Returns the steps at which the ground may be near enough, those beyond the map's z limits, and the replaced
+    /// ones, from the top down. All other steps are certainly aerial.
     const Steps& near_heights(const ColumnView& column, const Steps& replaced) const
     {
         thread_local Steps near;
@@ -228,7 +228,7 @@ private:
         }
     }
 
-    /// A column whose heights all count: outside the map, or for collisions alone.
+    /// Judges a column in which every step is listed: outside the map, or for collisions alone.
     void all_heights(PoseJudge& judge, const Steps& replaced, double x, double y, Row& out) const
     {
         for (int k = grid_.heights - 1; k >= 0; --k) {
@@ -250,7 +250,7 @@ private:
         return -1;
     }
 
-    /// Heights of a 3D raster beyond the map's z limits.
+    /// Returns the steps of a 3D raster beyond the map's z limits.
     Steps steps_outside() const
     {
         Steps out;
@@ -275,7 +275,7 @@ int RasterGrid::step_above(double height) const
 {
     const double lowest = height - touch_tolerance;
     int k = int(std::clamp(std::ceil((lowest - z0) / step_z), 0.0, double(heights)));
-    while (k > 0 && z_of(k - 1) >= lowest) --k;  // what rounding took
+    while (k > 0 && z_of(k - 1) >= lowest) --k;  // corrects rounding
     while (k < heights && z_of(k) < lowest) ++k;
     return k;
 }

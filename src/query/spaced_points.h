@@ -8,7 +8,7 @@
 
 namespace spawnfield {
 
-/// Points in a hash grid with cells of the distance that is asked for, so that a look-up meets 27 cells: nine rows of
+/// Points in a hash grid whose cells are as large as the distance, so that a look-up meets 27 cells: nine rows of
 /// three neighbouring table entries. Cells that share an entry share its list too: distances decide, so that does no
 /// harm. Source: Bridson, Fast Poisson Disk Sampling in Arbitrary Dimensions, 2007 (the background grid).
 class SpacedPoints {
