@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Everything that must pass before a change is accepted: ci.sh. From a fresh clone, step by step, each with its time; it
-# stops at the first step that fails and prints the end of that step's log. All logs are in build/ci.
+# More checks than .ci/run, from a fresh clone: the golden digests of debug and clang builds, the tests under the
+# address, undefined behaviour and thread sanitizers, and then those of .ci/run. Each step prints its time. The script
+# stops at the first step that fails and prints the end of its log. All logs are in build/ci.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 mkdir -p build/ci
@@ -36,5 +37,5 @@ step dev golden dev
 step clang golden clang
 step asan asan
 step tsan tsan
-# The last step prints by itself: its last line is the summary of ctest, which CI reads.
+# The last step prints its own output, which ends with the summary of ctest.
 tools/test.sh --no-skips
