@@ -1,7 +1,7 @@
 #include "catch.h"
 #include "geometry/tile.h"
+#include "base/checksum.h"
 #include "map/geometry_file.h"
-#include "map/tiled_file.h"
 #include "mesh_text.h"
 #include "scene_text.h"
 #include "test_map.h"
@@ -412,8 +412,10 @@ TEST_CASE("geometry.bin and map.yaml give a result or a FileError wherever they 
     check_harmed(folder, "map/geometry.bin", bytes_of(map / "geometry.bin"), 7, [&](const fs::path& file) {
         const std::string bytes = bytes_of(file);
         if (bytes.size() < 24) return;
+        std::uint64_t head = 0;  // size of the head, bytes
+        std::memcpy(&head, bytes.data() + 16, sizeof head);
         // The checksum is the one that map.yaml would have.
-        const Geometry geometry = open_geometry(file, head_checksum(bytes));
+        const Geometry geometry = open_geometry(file, checksum(std::string_view(bytes).substr(0, head)));
         column_at(geometry, 0.1, 0.2);
     });
     check_harmed(folder, "map/map.yaml", bytes_of(map / "map.yaml"), 3, [&](const fs::path&) { read_map(map); });
@@ -474,24 +476,24 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
         Geometry::Impl changed;
         changed.elements = geometry.impl().elements;
         changed.parts = geometry.impl().parts;
-        changed.levels = geometry.impl().levels;
-        std::string tiles(geometry.impl().bytes.view);
+        std::vector<TileLevel> levels = geometry.impl().levels();
+        std::string tiles(geometry.impl().tiles().bytes());
         TileEntry* entry = nullptr;  // the tile with the triangles and the sphere
-        for (TileEntry& tile : changed.levels[0].tiles)
+        for (TileEntry& tile : levels[0].tiles)
             if (tile.size > 0) entry = &tile;
         char* const tile = tiles.data() + entry->offset;
-        change(changed, tile, Tile({tile, entry->size}));
+        change(levels, tile, Tile({tile, entry->size}));
         entry->checksum = XXH64(tile, entry->size, 0);
-        changed.bytes = spawnfield::bytes_of(std::move(tiles));
-        changed.make_states();
+        changed.set_tiles(TileStore(std::move(levels), spawnfield::bytes_of(std::move(tiles))));
         const fs::path file = folder / "geometry.bin";
         return complaint(folder, [&] {
-            write_geometry(file, Geometry(std::make_shared<const Geometry::Impl>(std::move(changed))));
-            column_at(open_geometry(file, head_checksum(::bytes_of(file))), 0.1, 0.2);
+            const ListedFile written = write_geometry(
+                file, Geometry(std::make_shared<const Geometry::Impl>(std::move(changed))));
+            column_at(open_geometry(file, written.head_checksum), 0.1, 0.2);
         });
     };
     const auto at = [](const auto& item) -> char* { return const_cast<char*>(reinterpret_cast<const char*>(&item)); };
-    const std::string wanted = "@/geometry.bin: contradicts itself; bake the map again";
+    const std::string wanted = "@/geometry.bin: has counts or positions that do not fit together; bake the map again";
     CHECK(complaint_of([](auto&, char*, const Tile&) {}).empty());
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.triangles[1].corners[2]) = 4; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.triangles[0].label) = 7; }) == wanted);
@@ -503,6 +505,6 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.refs[0]) = 99; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.starts.back()) += 1; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.head->triangles) += 1; }) == wanted);
-    CHECK(complaint_of([&](auto& g, char*, const Tile&) { g.levels[0].cell = 0; }) == wanted);
-    CHECK(complaint_of([&](auto& g, char*, const Tile&) { g.levels[0].tiles.back().offset = 1 << 20; }) == wanted);
+    CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].cell = 0; }) == wanted);
+    CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].tiles.back().offset = 1 << 20; }) == wanted);
 }

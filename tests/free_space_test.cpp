@@ -22,7 +22,7 @@ struct CellAt {
 CellAt cell_at(const SolidBounds& bounds, std::size_t level, double x, double y)
 {
     const auto number = [&](double offset) {
-        return std::uint32_t(std::floor(offset / bounds.impl().levels[level].cell));
+        return std::uint32_t(std::floor(offset / bounds.impl().levels()[level].cell));
     };
     const std::uint32_t col = number(x - bounds.impl().x0), row = number(y - bounds.impl().y0);
     return {bounds.impl().open(level, col / BoundsTile::side, row / BoundsTile::side),
@@ -66,7 +66,7 @@ TEST_CASE("the bounds of every level contain everything that is solid in their c
             const double x = random.between(map.bounds.min.x(), map.bounds.max.x()),
                          y = random.between(map.bounds.min.y(), map.bounds.max.y());
             for (const slow::Span& span : slow::column(map.scene, x, y).spans)
-                for (std::size_t level = 0; level < map.solid_bounds.impl().levels.size(); ++level) {
+                for (std::size_t level = 0; level < map.solid_bounds.impl().levels().size(); ++level) {
                     CAPTURE(seed, level, x, y, span.bottom, span.top);
                     const CellAt at = cell_at(map.solid_bounds, level, x, y);
                     CHECK(may_be_solid(at, span.top));

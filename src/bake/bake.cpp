@@ -209,7 +209,7 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     lap("images");
     map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads,
                                    part_of(options.progress, 0.3, 0.6));
-    write_bounds(target.path() / "bounds.bin", map.solid_bounds);
+    const ListedFile bounds_file = write_bounds(target.path() / "bounds.bin", map.solid_bounds);
     map.solid_bounds = {};
     lap("bounds");
     report.occupancy_leaves = write_occupancy(target.path() / "occupancy.bt", map.geometry, map.bounds,
@@ -217,8 +217,8 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
                                               part_of(options.progress, 0.6, 0.9));
     lap("occupancy");
 
-    write_geometry(target.path() / "geometry.bin", map.geometry);
-    report.hash = write_map_yaml(target.path(), map, terrain, z_range);
+    const ListedFile geometry_file = write_geometry(target.path() / "geometry.bin", map.geometry);
+    report.hash = write_map_yaml(target.path(), map, terrain, z_range, {bounds_file, geometry_file});
     if (options.progress) options.progress(1);
     for (const auto& entry : fs::directory_iterator(target.path())) report.bytes += entry.file_size();
     target.commit(keep_foreign_files);

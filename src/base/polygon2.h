@@ -26,17 +26,30 @@ double area_of(const Polygon& polygon)
     return twice / 2;
 }
 
+/// Clips a convex polygon to where distance(point) <= 0; `distance` must be linear. Calls keep(corner, is_cut) for the
+/// corners of the result in their order. is_cut is true for the new corners, at most two, on edges of the polygon.
+/// Source: Sutherland, Hodgman, Reentrant polygon clipping, 1974.
+template <class Polygon, class Distance, class Keep>
+void clip_polygon(const Polygon& polygon, const Distance& distance, const Keep& keep)
+{
+    if (polygon.size() == 0) return;
+    double dp = distance(polygon[0]);
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const auto &p = polygon[k], &q = polygon[k + 1 < polygon.size() ? k + 1 : 0];
+        const double dq = distance(q);
+        if (dp <= 0) keep(p, false);
+        if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) keep(p + dp / (dp - dq) * (q - p), true);
+        dp = dq;
+    }
+}
+
 /// Returns the part of a convex polygon where normal · point <= offset. It has at most one corner more.
 template <class Polygon>
 Polygon cut(const Polygon& polygon, const Vec2& normal, double offset)
 {
     Polygon out;
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec2 &p = polygon[k], &q = polygon[k + 1 < polygon.size() ? k + 1 : 0];
-        const double dp = normal.dot(p) - offset, dq = normal.dot(q) - offset;
-        if (dp <= 0) out.push_back(p);
-        if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) out.push_back(p + dp / (dp - dq) * (q - p));
-    }
+    const auto distance = [&](const Vec2& p) { return normal.dot(p) - offset; };
+    clip_polygon(polygon, distance, [&](const Vec2& p, bool) { out.push_back(p); });
     return out;
 }
 

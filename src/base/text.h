@@ -32,4 +32,23 @@ inline std::string one_line(std::string text)
     return text;
 }
 
+/// Returns a text with XML's special characters escaped, for elements and for attributes in double quotes.
+inline std::string xml_escaped(std::string_view text)
+{
+    std::string out;
+    for (const char c : text) {
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += c;
+    }
+    return out;
+}
+
 }  // namespace spawnfield

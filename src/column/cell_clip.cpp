@@ -1,5 +1,8 @@
 #include "column/cell_clip.h"
 
+#include "base/intervals.h"
+#include "base/polygon2.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,21 +23,12 @@ using Polygon = std::vector<Vec3>;
 /// Writes to `out` the part of a convex polygon where sign * (p.y - limit) <= 0.
 void clip_y(const Polygon& in, double limit, double sign, Polygon& out)
 {
-    out.resize(2 * in.size());  // each corner gives at most itself and a cut
-    std::size_t count = 0;
-    double dp = in.empty() ? 0 : sign * (in[0].y() - limit);
-    for (std::size_t i = 0; i < in.size(); ++i) {
-        const Vec3 &p = in[i], &q = in[i + 1 < in.size() ? i + 1 : 0];
-        const double dq = sign * (q.y() - limit);
-        if (dp <= 0) out[count++] = p;
-        if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) {
-            Vec3& cut = out[count++];
-            cut = p + dp / (dp - dq) * (q - p);
-            cut.y() = limit;
-        }
-        dp = dq;
-    }
-    out.resize(count);
+    out.clear();
+    const auto distance = [&](const Vec3& p) { return sign * (p.y() - limit); };
+    clip_polygon(in, distance, [&](const Vec3& p, bool is_cut) {
+        out.push_back(p);
+        if (is_cut) out.back().y() = limit;  // exactly
+    });
 }
 
 Interval range_of(const Polygon& polygon, int axis)
@@ -317,27 +311,14 @@ void CellSpans::get(std::uint32_t cell, std::vector<Interval>& out) const
     auto span = std::lower_bound(further_.begin() + starts_[row], end, cell,
                                  [](const Further& f, std::uint32_t c) { return f.cell < c; });
     for (; span != end && span->cell == cell; ++span) out.push_back(span->z);
-    join_spans(out);
-}
-
-void join_spans(std::vector<Interval>& spans)
-{
-    std::sort(spans.begin(), spans.end(), [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
-    std::size_t kept = 0;
-    for (const Interval& next : spans) {
-        if (kept > 0 && next.bottom <= spans[kept - 1].top + touch_tolerance)
-            spans[kept - 1].top = std::max(spans[kept - 1].top, next.top);
-        else
-            spans[kept++] = next;
-    }
-    spans.resize(kept);
+    join_intervals(out, touch_tolerance);
 }
 
 std::vector<Interval> solid_intervals(const ColumnView& column)
 {
     std::vector<Interval> out;
     for (const Span& span : column.spans) out.push_back({span.bottom, span.top});
-    join_spans(out);
+    join_intervals(out, touch_tolerance);
     return out;
 }
 

@@ -47,9 +47,6 @@ private:
     bool tight_ = true;
 };
 
-/// Joins intervals that overlap or touch (to touch_tolerance), and sorts them from the bottom up.
-void join_spans(std::vector<Interval>& spans);
-
 /// Returns the solid intervals of a column, terrain and obstacles joined, from the bottom up.
 std::vector<Interval> solid_intervals(const ColumnView& column);
 

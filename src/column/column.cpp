@@ -1,3 +1,4 @@
+#include "base/intervals.h"
 #include "column/columns.h"
 
 #include <algorithm>
@@ -31,22 +32,14 @@ void pair_crossings(std::vector<Hit>& crossings, double piece_bottom, std::vecto
 /// of the joined interval.
 void join(std::vector<Hit>& intervals, double tolerance)
 {
-    std::sort(intervals.begin(), intervals.end(), [](const Hit& l, const Hit& r) { return l.z.bottom < r.z.bottom; });
-    std::size_t kept = 0;
-    for (const Hit& next : intervals) {
-        if (kept == 0 || next.z.bottom > intervals[kept - 1].z.top + tolerance) {
-            intervals[kept++] = next;
-            continue;
-        }
-        Hit& current = intervals[kept - 1];
-        const bool same_top = std::abs(next.z.top - current.z.top) <= touch_tolerance;
+    const auto z_of = [](auto& hit) -> auto& { return hit.z; };
+    join_intervals(intervals, tolerance, z_of, [](Hit& hit, const Hit& next) {
+        const bool same_top = std::abs(next.z.top - hit.z.top) <= touch_tolerance;
         if (same_top)
-            current.terrain = current.terrain || next.terrain;
-        else if (next.z.top > current.z.top)
-            current.terrain = next.terrain;
-        current.z.top = std::max(current.z.top, next.z.top);
-    }
-    intervals.resize(kept);
+            hit.terrain = hit.terrain || next.terrain;
+        else if (next.z.top > hit.z.top)
+            hit.terrain = next.terrain;
+    });
 }
 
 /// Builds columns from the hits of their vertical lines. Reuses its temporary memory for the next column.

@@ -1,5 +1,6 @@
 #include "base/deflate.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "base/tiff.h"
 #include "column/columns.h"
 #include "export/words.h"
@@ -173,14 +174,6 @@ private:
 constexpr std::uint32_t pixel_scale_tag = 33550, tiepoint_tag = 33922, geo_keys_tag = 34735, geo_text_tag = 34737,
                         gdal_metadata_tag = 42112, gdal_no_data_tag = 42113;
 
-std::string escaped(const std::string& text)
-{
-    std::string out;
-    for (const char c : text)
-        out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
-    return out;
-}
-
 std::string layer_text(const LayerChoice& layers)
 {
     return layers.kind == LayerChoice::Kind::Top      ? "top"
@@ -192,7 +185,7 @@ std::string metadata(const Map& map, const std::vector<Band>& bands, const Layer
 {
     std::string text = "<GDALMetadata>\n";
     const auto add = [&](const std::string& name, const std::string& attributes, const std::string& value) {
-        text += "  <Item name=\"" + name + "\"" + attributes + ">" + escaped(value) + "</Item>\n";
+        text += "  <Item name=\"" + name + "\"" + attributes + ">" + xml_escaped(value) + "</Item>\n";
     };
     add("MAP", "", map.name);
     add("MAP_HASH", "", map.hash);

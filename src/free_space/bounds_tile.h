@@ -1,11 +1,11 @@
 #pragma once
 
-#include "base/bytes.h"
-#include "geometry/tile.h"
+#include "base/tile_store.h"
 
 #include <spawnfield/solid_bounds.h>
 
 #include <bit>
+#include <span>
 
 namespace spawnfield {
 
@@ -58,45 +58,29 @@ struct BoundsTile {
 
 std::uint64_t bounds_tile_size(const BoundsHead& head);
 
-struct BoundsLevel {
-    double cell = 0;                   ///< m
-    std::uint32_t cols = 0, rows = 0;  ///< cells
-    std::uint32_t tile_cols = 0, tile_rows = 0;
-    std::vector<TileEntry> tiles;  ///< row after row; row 0 is the smallest y; a size of 0: nothing solid
-};
-
 struct SolidBounds::Impl {
-    double x0 = 0, y0 = 0;            ///< lower left corner of all levels
-    bool is_whole = false;            ///< nothing solid lies beyond the raster
-    std::vector<BoundsLevel> levels;  ///< finest first
-    Bytes bytes;
-    std::string file;  ///< that they lie in, for messages; empty: in memory, and trusted
+    double x0 = 0, y0 = 0;  ///< lower left corner of all levels, m
+    bool is_whole = false;  ///< nothing solid is beyond the raster
+    TileStore tiles;        ///< level 0 is the finest; each next level has cells of twice the size
 
-    void make_states();
+    const std::vector<TileLevel>& levels() const { return tiles.levels(); }
 
-    /// Number of cells of a level that lie wholly on the finest raster. Coarse cells at its upper rims reach beyond it.
-    std::uint32_t whole_cols(std::size_t level) const { return levels[0].cols >> level; }
-    std::uint32_t whole_rows(std::size_t level) const { return levels[0].rows >> level; }
+    /// Returns how many columns or rows of a level lie completely on the finest raster. The last coarse cells may reach
+    /// beyond it.
+    std::uint32_t whole_cols(std::size_t level) const { return levels()[0].cols >> level; }
+    std::uint32_t whole_rows(std::size_t level) const { return levels()[0].rows >> level; }
 
-    /// The tile, or one without a head where nothing is solid. Throws FileError.
+    /// Returns a tile. It has no head if nothing in it is solid. Throws FileError for a damaged tile of a file.
     BoundsTile open(std::size_t level, std::uint32_t col, std::uint32_t row) const
     {
-        const std::size_t number = std::size_t{row} * levels[level].tile_cols + col;
-        const TileEntry& entry = levels[level].tiles[number];
-        if (entry.size == 0) return {};
-        const std::string_view view = bytes.view.substr(entry.offset, entry.size);
-        std::atomic<std::uint8_t>& checked = states_[level][number];
-        if (checked.load(std::memory_order_acquire) == 0) {
-            verify(view, entry);
-            checked.store(1, std::memory_order_release);
-        }
-        return BoundsTile(view);
+        const std::size_t number = std::size_t{row} * levels()[level].tile_cols + col;
+        if (levels()[level].tiles[number].size == 0) return {};
+        return BoundsTile(tiles.open(level, number, is_consistent));
     }
 
 private:
-    void verify(std::string_view view, const TileEntry& entry) const;
-
-    mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> states_;  ///< 1: checked
+    /// Returns whether all counts and indices of a tile fit its bytes.
+    static bool is_consistent(std::string_view bytes);
 };
 
 }  // namespace spawnfield

@@ -86,8 +86,8 @@ void Mask::choose_passes(Part& part) const
     std::size_t count = 0;
     for (const double cells : cells_along) {
         std::size_t level = 0;
-        while (level + 1 < raster_.levels.size() && raster_.levels[level + 1].cell * cells <= width) ++level;
-        if (raster_.levels.empty() || (count > 0 && part.passes[count - 1].level == level)) continue;
+        while (level + 1 < raster_.levels().size() && raster_.levels()[level + 1].cell * cells <= width) ++level;
+        if (raster_.levels().empty() || (count > 0 && part.passes[count - 1].level == level)) continue;
         if (part.passes.size() <= count) part.passes.emplace_back();
         if (part.passes[count].level != level) part.passes[count].tiles = {};
         part.passes[count].level = level;
@@ -109,7 +109,7 @@ void Mask::set_y(double y)
 /// of the polygons and from the points at which their edges cross the lines between rows.
 void Mask::cover(const Part& part, Pass& pass) const
 {
-    const double cell = raster_.levels[pass.level].cell, v = (y_ - raster_.y0) / cell;
+    const double cell = raster_.levels()[pass.level].cell, v = (y_ - raster_.y0) / cell;
     const auto visit_rim = [&](const Polygon2& polygon, const auto& on_corner, const auto& on_line) {
         for (std::size_t k = 0; k < polygon.size(); ++k) {
             const Vec2 p = polygon[k] / cell, q = polygon[k + 1 < polygon.size() ? k + 1 : 0] / cell;
@@ -187,7 +187,7 @@ const Mask::OpenTile& Mask::tile_of(Pass& pass, int col, int row) const
 bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
 {
     constexpr int side = BoundsTile::side;
-    const double u = (x - raster_.x0) / raster_.levels[pass.level].cell;
+    const double u = (x - raster_.x0) / raster_.levels()[pass.level].cell;
     const int low = floor_of(u + pass.low), high = floor_of(u + pass.high), first = pass.rows.front().row,
               last = pass.rows.back().row;
     const int known_cols = int(raster_.whole_cols(pass.level)), known_rows = int(raster_.whole_rows(pass.level));
@@ -269,7 +269,7 @@ Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const 
 /// pass.
 Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const
 {
-    const BoundsLevel& level = raster_.levels[pass.level];
+    const TileLevel& level = raster_.levels()[pass.level];
     const Footprint& footprint = part.footprint;
     const bool has_inner = !footprint.inner.polygon.empty();
     Heights heights{.bottom = z + footprint.outer.bottom,
@@ -326,8 +326,8 @@ Proof Mask::proof_of(const Vec3& position)
 {
     const double x = position.x(), y = position.y(), z = position.z();
     constexpr double farthest = 1e8;  // cells; farther cells have numbers that might not fit an int
-    if (raster_.levels.empty() || !(std::abs(x - raster_.x0) < farthest * raster_.levels[0].cell) ||
-        !(std::abs(y - raster_.y0) < farthest * raster_.levels[0].cell))
+    if (raster_.levels().empty() || !(std::abs(x - raster_.x0) < farthest * raster_.levels()[0].cell) ||
+        !(std::abs(y - raster_.y0) < farthest * raster_.levels()[0].cell))
         return Proof::Candidate;
     if (y != y_) set_y(y);
     bool is_free = true;

@@ -1,8 +1,7 @@
+#include "base/intervals.h"
 #include "base/parallel.h"
 #include "column/cell_clip.h"
 #include "free_space/bounds_tile.h"
-
-#include <spawnfield/error.h>
 
 #include <xxhash.h>
 
@@ -14,7 +13,6 @@ namespace {
 constexpr double steps = 65500;         // quantized heights of a tile; fewer than 65535, so that rounding outwards fits
 constexpr double least_quantum = 1e-6;  // m
 constexpr double least_solid = 1e-4;    // m; thinner solids count as surfaces only, which are in the bounds
-constexpr std::size_t alignment = 64;
 constexpr std::uint32_t side = BoundsTile::side;
 
 /// Intervals of heights in each cell of a tile, before they are packed. Those of cell c are spans[starts[c]] ..
@@ -48,18 +46,17 @@ void add_cell(const CellSpans& surfaces, std::uint32_t cell, std::span<const Spa
         if (span.sealed && span.top - span.bottom >= least_solid) solids.push_back({span.bottom, span.top});
     }
     if (!inside.empty()) {
-        join_spans(bounds);
-        join_spans(solids);
+        join_intervals(bounds, touch_tolerance);
+        join_intervals(solids, touch_tolerance);
     }
     out.bounds.spans.insert(out.bounds.spans.end(), bounds.begin(), bounds.end());
     out.solids.spans.insert(out.solids.spans.end(), solids.begin(), solids.end());
 }
 
 /// Returns one tile of the finest level. Its cells beyond the raster stay empty.
-LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, std::uint32_t tile_col,
-                     std::uint32_t tile_row)
+LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, const TileLevel& level,
+                     std::uint32_t tile_col, std::uint32_t tile_row)
 {
-    const BoundsLevel& level = raster.levels[0];
     const int col0 = int(tile_col * side), row0 = int(tile_row * side);
     const int cols = std::min(int(side), int(level.cols) - col0), rows = std::min(int(side), int(level.rows) - row0);
     const CellBlock block{raster.x0 + col0 * level.cell, raster.y0 + row0 * level.cell, level.cell, cols, rows};
@@ -100,7 +97,7 @@ public:
 
     std::string pack()
     {
-        out_.reserve(bounds_tile_size(head_) + alignment);
+        out_.reserve(bounds_tile_size(head_) + tile_alignment);
         put(head_);
         put_list(tile_.bounds, 2, head_.bound_cells, [&](const Interval& span) {
             return QuantizedSpan{down(span.bottom), up(span.top)};
@@ -114,7 +111,6 @@ public:
             tops[cell] = end > tile_.bounds.starts[cell] ? up(tile_.bounds.spans[end - 1].top) : std::uint16_t{0};
         }
         put(tops);
-        out_.resize((out_.size() + alignment - 1) / alignment * alignment, '\0');
         return std::move(out_);
     }
 
@@ -180,42 +176,17 @@ private:
 
 std::string packed(const LooseTile& tile) { return tile.is_empty() ? std::string() : TilePacker(tile).pack(); }
 
-/// Returns whether all counts and indices of a tile fit its bytes.
-bool is_consistent(std::string_view view)
-{
-    if (view.size() < sizeof(BoundsHead)) return false;
-    BoundsHead head;
-    std::memcpy(&head, view.data(), sizeof head);
-    const std::uint64_t size = bounds_tile_size(head);
-    if (view.size() < size || view.size() >= size + alignment) return false;
-    if (!(head.quantum > 0) || !std::isfinite(head.base) || !(head.slack >= 0)) return false;
-    const BoundsTile tile(view);
-    const auto counts_up = [](const CellIntervals& list, std::uint32_t cells, std::uint32_t spans) {
-        if (cells == 0) return true;
-        std::uint32_t marked = 0;
-        for (std::size_t word = 0; word < BoundsTile::cells / 64; ++word) {
-            if (list.ranks[word] != marked) return false;
-            marked += std::uint32_t(std::popcount(list.marks[word]));
-        }
-        return marked == cells && list.starts[0] == 0 && list.starts[cells] == spans &&
-               std::is_sorted(list.starts, list.starts + cells + 1);
-    };
-    return counts_up(tile.bounds, head.bound_cells, head.bounds) &&
-           counts_up(tile.solids, head.solid_cells, head.solids);
-}
-
 /// Returns a tile of the next coarser level. Each of its cells is the union of four finer cells, so a gap remains only
 /// where all four have a gap. Solids are not kept.
-LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>& finer, std::uint32_t tile_col,
-                 std::uint32_t tile_row)
+LooseTile pooled(const TileStoreBuilder& finer, std::uint32_t tile_col, std::uint32_t tile_row)
 {
     LooseTile out;
     std::array<BoundsTile, 4> tiles;
     for (std::uint32_t t = 0; t < 4; ++t) {
         const std::uint32_t col = 2 * tile_col + t % 2, row = 2 * tile_row + t / 2;
-        const BoundsLevel& fine = raster.levels.back();
+        const TileLevel& fine = finer.levels().back();
         if (col >= fine.tile_cols || row >= fine.tile_rows) continue;
-        const std::string& bytes = finer[std::size_t{row} * fine.tile_cols + col];
+        const std::string_view bytes = finer.last(std::size_t{row} * fine.tile_cols + col);
         if (bytes.empty()) continue;
         tiles[t] = BoundsTile(bytes);
         out.slack = std::max(out.slack, tiles[t].head->slack);
@@ -237,7 +208,7 @@ LooseTile pooled(const SolidBounds::Impl& raster, const std::vector<std::string>
                 }
             }
             if (highest > 0) joined.push_back({tile.height(0), tile.height(highest)});
-            if (joined.size() > 1) join_spans(joined);
+            if (joined.size() > 1) join_intervals(joined, touch_tolerance);
             out.bounds.spans.insert(out.bounds.spans.end(), joined.begin(), joined.end());
             out.bounds.starts[row * side + col + 1] = std::uint32_t(out.bounds.spans.size());
         }
@@ -272,19 +243,27 @@ BoundsTile::BoundsTile(std::string_view bytes) : head(reinterpret_cast<const Bou
     tops = reinterpret_cast<const std::uint16_t*>(at);
 }
 
-void SolidBounds::Impl::make_states()
+bool SolidBounds::Impl::is_consistent(std::string_view bytes)
 {
-    states_.clear();
-    for (const BoundsLevel& level : levels)
-        states_.push_back(std::make_unique<std::atomic<std::uint8_t>[]>(level.tiles.size()));
-}
-
-void SolidBounds::Impl::verify(std::string_view view, const TileEntry& entry) const
-{
-    if (file.empty()) return;
-    if (XXH64(view.data(), view.size(), 0) != entry.checksum)
-        throw FileError(file, "is damaged (the checksum of a tile differs); bake the map again");
-    if (!is_consistent(view)) throw FileError(file, "contradicts itself; bake the map again");
+    if (bytes.size() < sizeof(BoundsHead)) return false;
+    BoundsHead head;
+    std::memcpy(&head, bytes.data(), sizeof head);
+    const std::uint64_t size = bounds_tile_size(head);
+    if (bytes.size() < size || bytes.size() >= size + tile_alignment) return false;
+    if (!(head.quantum > 0) || !std::isfinite(head.base) || !(head.slack >= 0)) return false;
+    const BoundsTile tile(bytes);
+    const auto counts_up = [](const CellIntervals& list, std::uint32_t cells, std::uint32_t spans) {
+        if (cells == 0) return true;
+        std::uint32_t marked = 0;
+        for (std::size_t word = 0; word < BoundsTile::cells / 64; ++word) {
+            if (list.ranks[word] != marked) return false;
+            marked += std::uint32_t(std::popcount(list.marks[word]));
+        }
+        return marked == cells && list.starts[0] == 0 && list.starts[cells] == spans &&
+               std::is_sorted(list.starts, list.starts + cells + 1);
+    };
+    return counts_up(tile.bounds, head.bound_cells, head.bounds) &&
+           counts_up(tile.solids, head.solid_cells, head.solids);
 }
 
 SolidBounds::SolidBounds() : impl_(std::make_shared<const Impl>()) {}
@@ -297,45 +276,27 @@ SolidBounds::SolidBounds(const Geometry& geometry, const Bounds& bounds, double 
     auto impl = std::make_shared<Impl>();
     impl->x0 = bounds.min.x();
     impl->y0 = bounds.min.y();
-    const auto count = [&](int axis, double size) {
-        return std::uint32_t(std::max(1.0, std::ceil((bounds.max[axis] - bounds.min[axis]) / size - 1e-9)));
+    const auto count = [&](int axis) {
+        return std::uint32_t(std::max(1.0, std::ceil((bounds.max[axis] - bounds.min[axis]) / cell - 1e-9)));
     };
     const Bounds solid = geometry.bounds();
     impl->is_whole = solid.is_empty() || ((solid.min - bounds.min).head<2>().minCoeff() >= 0 &&
                                           (bounds.max - solid.max).head<2>().minCoeff() >= 0);
-    std::string bytes;
-    std::vector<std::string> finer;
-    for (double size = cell;; size *= 2) {
-        BoundsLevel level;
-        level.cell = size;
-        const bool first = impl->levels.empty();
-        level.cols = first ? count(0, cell) : (impl->levels.back().cols + 1) / 2;
-        level.rows = first ? count(1, cell) : (impl->levels.back().rows + 1) / 2;
-        level.tile_cols = (level.cols + side - 1) / side;
-        level.tile_rows = (level.rows + side - 1) / side;
-        level.tiles.resize(std::size_t{level.tile_cols} * level.tile_rows);
-        std::vector<std::string> tiles(level.tiles.size());
-        if (first) impl->levels.push_back(level);
-        parallel_for(level.tiles.size(), threads, first ? progress : Progress{}, [&](std::size_t t) {
+    TileStoreBuilder store(XXH64(nullptr, 0, 0));
+    for (TileLevel level(cell, count(0), count(1), side);;) {
+        const bool is_finest = store.levels().empty();
+        std::vector<std::string> tiles(std::size_t{level.tile_cols} * level.tile_rows);
+        parallel_for(tiles.size(), threads, is_finest ? progress : Progress{}, [&](std::size_t t) {
             const auto col = std::uint32_t(t % level.tile_cols), row = std::uint32_t(t / level.tile_cols);
-            const LooseTile loose = first ? rasterized(geometry, *impl, col, row) : pooled(*impl, finer, col, row);
-            tiles[t] = packed(loose);
-            level.tiles[t].checksum = XXH64(tiles[t].data(), tiles[t].size(), 0);
+            tiles[t] = packed(is_finest ? rasterized(geometry, *impl, level, col, row) : pooled(store, col, row));
         });
-        for (std::size_t t = 0; t < level.tiles.size(); ++t) {
-            level.tiles[t].offset = bytes.size();
-            level.tiles[t].size = tiles[t].size();
-            bytes += tiles[t];
-        }
-        if (first)
-            impl->levels.back() = level;
-        else
-            impl->levels.push_back(level);
-        finer = std::move(tiles);
-        if (std::max(level.cols, level.rows) <= 4) break;
+        const TileLevel coarser(2 * level.cell, (level.cols + 1) / 2, (level.rows + 1) / 2, side);
+        const bool is_coarsest = std::max(level.cols, level.rows) <= 4;
+        store.add(std::move(level), std::move(tiles), threads);
+        if (is_coarsest) break;
+        level = coarser;
     }
-    impl->bytes = bytes_of(std::move(bytes));
-    impl->make_states();
+    impl->tiles = store.build();
     impl_ = std::move(impl);
 }
 

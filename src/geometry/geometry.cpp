@@ -3,10 +3,6 @@
 #include "geometry/tile.h"
 #include "scene/elements.h"
 
-#include <spawnfield/error.h>
-
-#include <xxhash.h>
-
 #include <cstring>
 
 namespace spawnfield {
@@ -15,9 +11,8 @@ namespace {
 constexpr double pad = 1e-8;   // m; wider than touch_tolerance, so a line on an edge finds its triangle
 constexpr int refinement = 4;  // factor between the cell sizes of two consecutive levels
 constexpr double elements_per_tile = 256;
-constexpr double most_tiles_along = 1024;   // along one side; limits the tiles of long, narrow scenes
-constexpr double refs_per_element = 6;      // most bins that an element of a tile is in, on average
-constexpr std::size_t tile_alignment = 64;  // of a tile's size, bytes
+constexpr double most_tiles_along = 1024;  // along one side; limits the tiles of long, narrow scenes
+constexpr double refs_per_element = 6;     // most bins that an element of a tile is in, on average
 
 ElementBox box_of(const Scene& scene, std::uint32_t element)
 {
@@ -101,7 +96,6 @@ public:
         for (const std::uint32_t element : elements_) put(element);
         for (const std::uint32_t start : starts_) put(start);
         for (const std::uint32_t ref : refs_) put(ref);
-        out_.resize((out_.size() + tile_alignment - 1) / tile_alignment * tile_alignment, '\0');
         return std::move(out_);
     }
 
@@ -231,32 +225,6 @@ private:
     std::string out_;
 };
 
-/// Returns whether all counts and indices of a tile fit its bytes and the number of parts.
-bool is_consistent(std::string_view view, std::size_t parts)
-{
-    if (view.size() < sizeof(TileHead)) return false;
-    TileHead head;
-    std::memcpy(&head, view.data(), sizeof head);
-    const std::uint64_t size = tile_size(head);
-    if (view.size() < size || view.size() >= size + tile_alignment) return false;
-    if (!(head.bin > 0) || head.bin_cols == 0 || head.bin_rows == 0) return false;
-    const Tile tile(view);
-    const auto below = [](std::uint32_t value, std::size_t limit) { return value < limit; };
-    for (const TileTriangle& t : tile.triangles) {
-        for (const std::uint32_t corner : t.corners)
-            if (!below(corner, tile.vertices.size())) return false;
-        if (!below(t.piece, tile.pieces.size()) || t.label > Label::Water) return false;
-    }
-    for (const TilePiece& p : tile.pieces)
-        if (!below(p.part, parts)) return false;
-    for (const TilePrimitive& p : tile.primitives)
-        if (p.kind > ShapeKind::Capsule || p.label > Label::Water || !below(p.part, parts)) return false;
-    if (tile.starts.front() != 0 || tile.starts.back() != tile.refs.size()) return false;
-    return std::is_sorted(tile.starts.begin(), tile.starts.end()) &&
-           std::all_of(tile.refs.begin(), tile.refs.end(),
-                       [&](std::uint32_t ref) { return below(ref, tile.elements()); });
-}
-
 }  // namespace
 
 std::uint64_t tile_size(const TileHead& head)
@@ -281,20 +249,18 @@ Tile::Tile(std::string_view bytes) : head(reinterpret_cast<const TileHead*>(byte
     refs = take<std::uint32_t>(next, head->refs);
 }
 
-void Geometry::Impl::make_states()
+void Geometry::Impl::set_tiles(TileStore tiles)
 {
-    states_.clear();
+    tiles_ = std::move(tiles);
     runs_.clear();
-    for (const TileLevel& level : levels) {
-        states_.push_back(std::make_unique<std::atomic<std::uint8_t>[]>(level.tiles.size()));
+    for (const TileLevel& level : levels())
         runs_.push_back(std::make_unique<std::atomic<const HeightRun*>[]>(level.tiles.size()));
-    }
 }
 
 Geometry::Impl::~Impl()
 {
     for (std::size_t l = 0; l < runs_.size(); ++l)
-        for (std::size_t t = 0; t < levels[l].tiles.size(); ++t) delete[] runs_[l][t].load(std::memory_order_relaxed);
+        for (std::size_t t = 0; t < levels()[l].tiles.size(); ++t) delete[] runs_[l][t].load(std::memory_order_relaxed);
 }
 
 const HeightRun* Geometry::Impl::make_height_runs(std::size_t level, std::size_t number, const Tile& tile) const
@@ -313,12 +279,29 @@ const HeightRun* Geometry::Impl::make_height_runs(std::size_t level, std::size_t
     return existing;
 }
 
-void Geometry::Impl::verify(std::string_view view, const TileEntry& entry) const
+bool Geometry::Impl::is_consistent(std::string_view bytes) const
 {
-    if (file.empty()) return;
-    if (XXH64(view.data(), view.size(), 0) != entry.checksum)
-        throw FileError(file, "is damaged (the checksum of a tile differs); bake the map again");
-    if (!is_consistent(view, parts.size())) throw FileError(file, "contradicts itself; bake the map again");
+    if (bytes.size() < sizeof(TileHead)) return false;
+    TileHead head;
+    std::memcpy(&head, bytes.data(), sizeof head);
+    const std::uint64_t size = tile_size(head);
+    if (bytes.size() < size || bytes.size() >= size + tile_alignment) return false;
+    if (!(head.bin > 0) || head.bin_cols == 0 || head.bin_rows == 0) return false;
+    const Tile tile(bytes);
+    const auto below = [](std::uint32_t value, std::size_t limit) { return value < limit; };
+    for (const TileTriangle& t : tile.triangles) {
+        for (const std::uint32_t corner : t.corners)
+            if (!below(corner, tile.vertices.size())) return false;
+        if (!below(t.piece, tile.pieces.size()) || t.label > Label::Water) return false;
+    }
+    for (const TilePiece& p : tile.pieces)
+        if (!below(p.part, parts.size())) return false;
+    for (const TilePrimitive& p : tile.primitives)
+        if (p.kind > ShapeKind::Capsule || p.label > Label::Water || !below(p.part, parts.size())) return false;
+    if (tile.starts.front() != 0 || tile.starts.back() != tile.refs.size()) return false;
+    return std::is_sorted(tile.starts.begin(), tile.starts.end()) &&
+           std::all_of(tile.refs.begin(), tile.refs.end(),
+                       [&](std::uint32_t ref) { return below(ref, tile.elements()); });
 }
 
 Geometry::Impl::Visits& Geometry::Impl::visits_of_thread()
@@ -331,7 +314,7 @@ double Geometry::Impl::elements_near(double low_x, double low_y, double high_x, 
 {
     constexpr double bytes_per_element = 100;
     double sum = 0;
-    for (const TileLevel& level : levels) {
+    for (const TileLevel& level : levels()) {
         // Returns the share of the side of tile number n that lies in low .. high.
         const auto share = [&](double low, double high, double origin, std::uint32_t n) {
             const double start = origin + n * level.cell;
@@ -389,34 +372,24 @@ Geometry::Geometry(const Scene& scene, int threads)
             if (level >= members.size()) members.resize(level + 1);
             members[level].push_back(element);
         }
-        std::string bytes;
+        TileStoreBuilder store(0);
         for (const std::vector<std::uint32_t>& list : members) {
             if (!list.empty()) {
-                TileLevel level{
-                    cell, std::uint32_t(std::ceil(width / cell)), std::uint32_t(std::ceil(depth / cell)), {}};
+                TileLevel level(cell, std::uint32_t(std::ceil(width / cell)), std::uint32_t(std::ceil(depth / cell)),
+                                1);
                 const Members sorted = sort_into_tiles(*impl, level, list, boxes);
-                level.tiles.resize(sorted.starts.size() - 1);
-                std::vector<std::string> tiles(level.tiles.size());
+                std::vector<std::string> tiles(sorted.starts.size() - 1);
                 parallel_for(tiles.size(), threads, {}, [&](std::size_t t) {
                     const std::span<const std::uint32_t> in_tile(sorted.elements.data() + sorted.starts[t],
                                                                  sorted.starts[t + 1] - sorted.starts[t]);
-                    if (in_tile.empty()) return;
-                    tiles[t] = TileBuilder(scene, boxes, in_tile, *impl, level, t).build();
-                    level.tiles[t].checksum = XXH64(tiles[t].data(), tiles[t].size(), 0);
+                    if (!in_tile.empty()) tiles[t] = TileBuilder(scene, boxes, in_tile, *impl, level, t).build();
                 });
-                for (std::size_t t = 0; t < tiles.size(); ++t) {
-                    level.tiles[t].offset = bytes.size();
-                    level.tiles[t].size = tiles[t].size();
-                    bytes += tiles[t];
-                    tiles[t] = {};
-                }
-                impl->levels.push_back(std::move(level));
+                store.add(std::move(level), std::move(tiles), threads);
             }
             cell *= refinement;
         }
-        impl->bytes = bytes_of(std::move(bytes));
+        impl->set_tiles(store.build());
     }
-    impl->make_states();
     impl_ = std::move(impl);
 }
 

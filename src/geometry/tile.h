@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/bytes.h"
+#include "base/tile_store.h"
 
 #include <spawnfield/geometry.h>
 
@@ -114,17 +114,6 @@ struct Tile {
 /// Returns the size of a tile with this head, bytes, without the padding at its end.
 std::uint64_t tile_size(const TileHead& head);
 
-/// The place of a tile in the bytes of all tiles. A tile of size 0 is empty.
-struct TileEntry {
-    std::uint64_t offset = 0, size = 0, checksum = 0;
-};
-
-struct TileLevel {
-    double cell = 0;  ///< side of a tile, m
-    std::uint32_t cols = 0, rows = 0;
-    std::vector<TileEntry> tiles;  ///< row after row; row 0 is the smallest y
-};
-
 /// The height range of a run of consecutive elements of a tile. Consecutive elements of a scene are mostly near each
 /// other, so that a query can skip whole runs.
 struct HeightRun {
@@ -141,29 +130,21 @@ struct Geometry::Impl {
     std::vector<Part> parts;  ///< of the scene, in its order
     LabelCounts labels{};
     bool has_filled_meshes = false;
-    std::vector<TileLevel> levels;
-    Bytes bytes;       ///< of all tiles
-    std::string file;  ///< the file of these bytes, for messages; empty: made in memory, not to be checked
 
     Impl() = default;
     Impl(Impl&&) = default;
     Impl& operator=(Impl&&) = delete;
     ~Impl();
-    /// Prepares the state of each tile. Must be called after the levels are filled and before the first tile is opened.
-    void make_states();
 
-    /// Returns a tile. Checks its checksum and its indices when it is opened for the first time. Throws FileError if
-    /// they are wrong.
+    /// Gives the geometry its tiles. A cell of their levels is one tile.
+    void set_tiles(TileStore tiles);
+    const TileStore& tiles() const { return tiles_; }
+    const std::vector<TileLevel>& levels() const { return tiles_.levels(); }
+
+    /// Returns a tile. Throws FileError for a damaged tile of a file.
     Tile open(std::size_t level, std::size_t tile) const
     {
-        const TileEntry& entry = levels[level].tiles[tile];
-        const std::string_view view = bytes.view.substr(entry.offset, entry.size);
-        std::atomic<std::uint8_t>& checked = states_[level][tile];
-        if (checked.load(std::memory_order_acquire) == 0) {
-            verify(view, entry);
-            checked.store(1, std::memory_order_release);
-        }
-        return Tile(view);
+        return Tile(tiles_.open(level, tile, [this](std::string_view bytes) { return is_consistent(bytes); }));
     }
 
     /// Calls visit(tile, bin) for the bin of each level that contains (x, y).
@@ -172,8 +153,8 @@ struct Geometry::Impl {
     {
         const double dx = x - x0, dy = y - y0;
         if (dx < 0 || dy < 0) return;
-        for (std::size_t l = 0; l < levels.size(); ++l) {
-            const TileLevel& level = levels[l];
+        for (std::size_t l = 0; l < levels().size(); ++l) {
+            const TileLevel& level = levels()[l];
             if (dx > level.cell * level.cols || dy > level.cell * level.rows) continue;
             const std::size_t t = std::size_t{cell_number(dy, level.cell, level.rows)} * level.cols +
                                   cell_number(dx, level.cell, level.cols);
@@ -219,8 +200,8 @@ private:
     void visit_if(double low_x, double low_y, double high_x, double high_y, const Heights& heights, const Meets& meets,
                   const Visit& visit) const
     {
-        for (std::size_t l = 0; l < levels.size(); ++l) {
-            const TileLevel& level = levels[l];
+        for (std::size_t l = 0; l < levels().size(); ++l) {
+            const TileLevel& level = levels()[l];
             // Skips rectangles beyond the grid, because cell_number would return the outermost tiles for them.
             if (high_x < x0 || high_y < y0 || low_x > x0 + level.cell * level.cols ||
                 low_y > y0 + level.cell * level.rows)
@@ -306,7 +287,8 @@ private:
     /// in the same thread.
     static Visits& visits_of_thread();
 
-    void verify(std::string_view view, const TileEntry& entry) const;
+    /// Returns whether all counts and indices of a tile fit its bytes and the number of parts.
+    bool is_consistent(std::string_view bytes) const;
 
     /// Returns the height runs of a tile with many elements; nullptr for other tiles. The first call for a tile makes
     /// its runs, which take a quarter of a byte for each element.
@@ -319,7 +301,7 @@ private:
     }
     const HeightRun* make_height_runs(std::size_t level, std::size_t number, const Tile& tile) const;
 
-    mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> states_;    ///< 1: the tile was checked
+    TileStore tiles_;
     mutable std::vector<std::unique_ptr<std::atomic<const HeightRun*>[]>> runs_;  ///< owned; nullptr: not made yet
 };
 

@@ -1,17 +1,14 @@
 #include "map/geometry_file.h"
 
-#include "base/binary.h"
 #include "geometry/tile.h"
 #include "map/tiled_file.h"
 
-#include <spawnfield/error.h>
-#include <spawnfield/output_file.h>
+#include <algorithm>
 
 namespace spawnfield {
 namespace {
 
-constexpr std::string_view geometry_magic = "SPAWNGEO";
-constexpr std::uint32_t geometry_version = 2;
+constexpr TiledFormat geometry_format{"SPAWNGEO", 2};
 
 std::string written_head(const Geometry::Impl& geometry)
 {
@@ -22,13 +19,7 @@ std::string written_head(const Geometry::Impl& geometry)
     for (const double limit : geometry.bounds.min) out.put(limit);
     for (const double limit : geometry.bounds.max) out.put(limit);
     out.put(std::uint32_t(geometry.has_filled_meshes));
-    out.put(std::uint32_t(geometry.levels.size()));
-    for (const TileLevel& level : geometry.levels) {
-        out.put(level.cell);
-        out.put(level.cols);
-        out.put(level.rows);
-        out.put_array(level.tiles);
-    }
+    put_levels(out, geometry.levels());
     for (const LabelCount& count : geometry.labels) {
         out.put(count.triangles);
         out.put(count.primitives);
@@ -61,60 +52,27 @@ void read_parts(BinaryReader& in, Geometry::Impl& geometry)
     }
 }
 
-/// Returns whether the levels are valid and every tile lies within the bytes. A file with correct checksums may still
-/// come from another program.
-bool is_consistent(const Geometry::Impl& geometry)
-{
-    for (const TileLevel& level : geometry.levels) {
-        if (!(level.cell > 0) || level.tiles.size() != std::uint64_t{level.cols} * level.rows || level.tiles.empty())
-            return false;
-        for (const TileEntry& tile : level.tiles)
-            if (tile.offset % 8 != 0 || tile.offset > geometry.bytes.view.size() ||
-                tile.size > geometry.bytes.view.size() - tile.offset)
-                return false;
-    }
-    return true;
-}
-
 }  // namespace
 
-void write_geometry(const std::filesystem::path& file, const Geometry& geometry)
+ListedFile write_geometry(const std::filesystem::path& file, const Geometry& geometry)
 {
-    OutputFile out(file);
-    out.write(tiled_head(geometry_magic, geometry_version, written_head(geometry.impl())));
-    out.write(geometry.impl().bytes.view);
-    out.commit();
+    return write_tiled(file, geometry_format, written_head(geometry.impl()), geometry.impl().tiles());
 }
 
 Geometry open_geometry(const std::filesystem::path& file, const std::string& head_checksum)
 {
-    const TiledFile tiled = open_tiled(file, geometry_magic, geometry_version, head_checksum);
     auto impl = std::make_shared<Geometry::Impl>();
-    try {
-        BinaryReader in(tiled.head);
-        impl->x0 = in.get<double>();
-        impl->y0 = in.get<double>();
-        impl->elements = in.get<std::uint64_t>();
-        for (double& limit : impl->bounds.min) limit = in.get<double>();
-        for (double& limit : impl->bounds.max) limit = in.get<double>();
-        impl->has_filled_meshes = in.get<std::uint32_t>() != 0;
-        const auto levels = in.get<std::uint32_t>();
-        for (std::uint32_t l = 0; l < levels; ++l) {
-            TileLevel level;
-            level.cell = in.get<double>();
-            level.cols = in.get<std::uint32_t>();
-            level.rows = in.get<std::uint32_t>();
-            level.tiles = in.get_array<TileEntry>();
-            impl->levels.push_back(std::move(level));
-        }
-        read_parts(in, *impl);
-    } catch (const std::out_of_range&) {
-        throw FileError(file.string(), "is cut short; bake the map again");
-    }
-    impl->bytes = tiled.tiles;
-    impl->file = file.string();
-    if (!is_consistent(*impl)) throw FileError(file.string(), "contradicts itself; bake the map again");
-    impl->make_states();
+    impl->set_tiles(open_tiled(file, geometry_format, head_checksum, [&](BinaryReader& head) {
+        impl->x0 = head.get<double>();
+        impl->y0 = head.get<double>();
+        impl->elements = head.get<std::uint64_t>();
+        for (double& limit : impl->bounds.min) limit = head.get<double>();
+        for (double& limit : impl->bounds.max) limit = head.get<double>();
+        impl->has_filled_meshes = head.get<std::uint32_t>() != 0;
+        std::vector<TileLevel> levels = get_levels(head, 1);
+        read_parts(head, *impl);
+        return levels;
+    }));
     return Geometry(std::move(impl));
 }
 

@@ -1,5 +1,3 @@
-#include "base/checksum.h"
-#include "base/input_file.h"
 #include "map/bounds_file.h"
 #include "map/geometry_file.h"
 #include "map/map_yaml.h"
@@ -14,25 +12,6 @@ namespace spawnfield {
 namespace {
 
 namespace fs = std::filesystem;
-
-void check_size(const fs::path& folder, const ListedFile& file)
-{
-    std::error_code error;
-    if (fs::exists(folder / file.name, error)) require_file(folder / file.name);
-    const auto bytes = fs::file_size(folder / file.name, error);
-    if (error) throw FileError((folder / file.name).string(), "is missing; bake the map again");
-    if (bytes != file.bytes)
-        throw FileError((folder / file.name).string(), "has " + std::to_string(bytes) + " bytes, map.yaml lists " +
-                                                           std::to_string(file.bytes) +
-                                                           ": it was cut short or altered; bake the map again");
-}
-
-void check_sum(const fs::path& folder, const ListedFile& file)
-{
-    if (checksum(read_file(folder / file.name)) != file.checksum)
-        throw FileError((folder / file.name).string(),
-                        "differs from its checksum in map.yaml: it was altered; bake the map again");
-}
 
 const ListedFile& listed(const MapYaml& yaml, const std::string& name)
 {
@@ -62,7 +41,7 @@ TerrainMap read_terrain(const Map& map)
     const MapYaml yaml = read_map_yaml(map.folder);
     const fs::path file = map.folder / "terrain.tiff";
     check_size(map.folder, listed(yaml, "terrain.tiff"));
-    check_sum(map.folder, listed(yaml, "terrain.tiff"));
+    check_checksum(map.folder, listed(yaml, "terrain.tiff"));
     TerrainMap terrain = read_terrain_file(file, yaml.frame);
     const bool same = std::equal(
         terrain.pages.begin(), terrain.pages.end(), yaml.pages.begin(), yaml.pages.end(),
@@ -78,7 +57,7 @@ OccupancyTree read_occupancy(const Map& map)
     if (map.folder.empty()) return build_occupancy(map.geometry, map.bounds, map.occupancy_resolution);
     const MapYaml yaml = read_map_yaml(map.folder);
     check_size(map.folder, listed(yaml, "occupancy.bt"));
-    check_sum(map.folder, listed(yaml, "occupancy.bt"));
+    check_checksum(map.folder, listed(yaml, "occupancy.bt"));
     return read_occupancy(map.folder / "occupancy.bt");
 }
 
@@ -86,7 +65,7 @@ void verify_map(const fs::path& folder)
 {
     for (const ListedFile& file : read_map_yaml(folder).files) {
         check_size(folder, file);
-        check_sum(folder, file);
+        check_checksum(folder, file);
     }
 }
 

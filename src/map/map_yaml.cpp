@@ -1,5 +1,4 @@
 #include "map/map_yaml.h"
-#include "map/tiled_file.h"
 
 #include "base/checksum.h"
 #include "base/foreign_file.h"
@@ -63,14 +62,15 @@ std::string label_counts(const LabelCounts& counts)
     return out;
 }
 
-std::string file_lines(const fs::path& folder)
+std::string file_lines(const fs::path& folder, const std::vector<ListedFile>& written)
 {
     std::string out;
     for (const char* const name : map_files) {
-        const std::string bytes = read_file(folder / name);
-        out += std::string("  ") + name + ": {bytes: " + std::to_string(bytes.size()) + ", xxh64: \"" +
-               checksum(bytes) + "\"";
-        if (const std::string head = head_checksum(bytes); !head.empty()) out += ", head_xxh64: \"" + head + "\"";
+        const auto known = std::find_if(written.begin(), written.end(),
+                                        [&](const ListedFile& file) { return file.name == name; });
+        const ListedFile file = known != written.end() ? *known : list_file(folder / name);
+        out += "  " + file.name + ": {bytes: " + std::to_string(file.bytes) + ", xxh64: \"" + file.checksum + "\"";
+        if (!file.head_checksum.empty()) out += ", head_xxh64: \"" + file.head_checksum + "\"";
         out += "}\n";
     }
     return out;
@@ -201,7 +201,7 @@ int version_of(const fs::path& file, const std::string& text)
 }  // namespace
 
 std::string write_map_yaml(const fs::path& folder, const Map& map, const TerrainMap& terrain,
-                           std::pair<double, double> heightmap_range)
+                           std::pair<double, double> heightmap_range, const std::vector<ListedFile>& written)
 {
     const GridFrame& frame = terrain.frame;
     std::string text = "format: " + format_prefix + std::to_string(map_format_version) + "\n";
@@ -232,7 +232,7 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
     text += "heightmap: {z: " + list_of({heightmap_range.first, heightmap_range.second}) +
             ", no_terrain: 0}  # of pixels 0 and 65535\n";
     text += "labels:\n" + label_counts(map.geometry.labels());
-    text += "files:\n" + file_lines(folder);
+    text += "files:\n" + file_lines(folder, written);
     const std::string hash = checksum(text);
     write_file_atomically(folder / "map.yaml", text + hash_line(hash));
     return hash;

@@ -1,20 +1,15 @@
 #pragma once
 
+#include "map/listed_file.h"
+
 #include <spawnfield/map.h>
 
 namespace spawnfield {
 
 /// Writes map.yaml to a folder that already contains the map's other files, and lists their sizes and checksums in it.
-/// Returns the map's hash.
+/// `written` has entries that are known already; the other files are read. Returns the map's hash.
 std::string write_map_yaml(const std::filesystem::path& folder, const Map& map, const TerrainMap& terrain,
-                           std::pair<double, double> heightmap_range);
-
-/// A file of the map as map.yaml lists it.
-struct ListedFile {
-    std::string name, checksum;
-    std::string head_checksum;  ///< for files that are read tile by tile; otherwise empty
-    std::uintmax_t bytes = 0;
-};
+                           std::pair<double, double> heightmap_range, const std::vector<ListedFile>& written);
 
 /// The contents of map.yaml. `map` is complete except for its geometry and its solid bounds.
 struct MapYaml {

@@ -1,28 +1,34 @@
 #pragma once
 
-#include "base/bytes.h"
+#include "base/binary.h"
+#include "base/tile_store.h"
+#include "map/listed_file.h"
 
-#include <filesystem>
+#include <functional>
 
 namespace spawnfield {
 
-/// A file of the map that queries read tile by tile. It begins with a head: magic (8 bytes), u32 version, u32 0, u64
-/// size of the head, then the places and checksums of the tiles. The tiles follow, at multiples of 64 bytes. map.yaml
-/// contains the checksum of the head.
-struct TiledFile {
-    std::string head;  ///< without its first 24 bytes
-    Bytes tiles;
+/// The kind of a file of the map that queries read tile by tile. Such a file begins with a head: magic (8 bytes), u32
+/// version, u32 0, u64 size of the head, then the places and checksums of the tiles, with what else the kind contains.
+/// The tiles follow, at multiples of 64 bytes. map.yaml contains the checksum of the head (docs/map-format.md).
+struct TiledFormat {
+    std::string_view magic;
+    std::uint32_t version;
 };
 
-/// Returns the bytes of such a file up to its tiles. `head` is the head without its first 24 bytes.
-std::string tiled_head(std::string_view magic, std::uint32_t version, const std::string& head);
+/// Appends the levels of a store to the head of a file.
+void put_levels(BinaryWriter& head, const std::vector<TileLevel>& levels);
 
-/// Opens such a file and reads its head. Throws FileError for a file that is cut short, altered, of another kind or of
-/// another version.
-TiledFile open_tiled(const std::filesystem::path& file, std::string_view magic, std::uint32_t version,
-                     const std::string& head_checksum);
+/// Reads what put_levels() wrote. `tile_side` is the number of cells along the side of a tile.
+std::vector<TileLevel> get_levels(BinaryReader& head, std::uint32_t tile_side);
 
-/// Returns the checksum of a tiled file's head; an empty text for other files.
-std::string head_checksum(std::string_view bytes);
+/// Writes a file. `head` is its head behind the size. Returns its entry for map.yaml. Throws OutputError.
+ListedFile write_tiled(const std::filesystem::path& file, const TiledFormat& format, const std::string& head,
+                       const TileStore& tiles);
+
+/// Opens a file. read_head(head) reads the bytes behind the size and returns the levels. Throws FileError for a file
+/// that is cut short, altered, of another kind or of another version.
+TileStore open_tiled(const std::filesystem::path& file, const TiledFormat& format, const std::string& head_checksum,
+                     const std::function<std::vector<TileLevel>(BinaryReader&)>& read_head);
 
 }  // namespace spawnfield

@@ -1,4 +1,5 @@
 #include "base/png.h"
+#include "base/text.h"
 #include "picture/figure.h"
 
 #include <charconv>
@@ -32,21 +33,6 @@ std::string attribute(const char* name, const std::string& value)
     return std::string(" ") + name + "=\"" + value + '"';
 }
 
-std::string escaped(const std::string& text)
-{
-    std::string out;
-    for (const char c : text)
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else
-            out += c;
-    return out;
-}
-
 /// Returns bytes in base64 (RFC 4648).
 std::string base64(std::string_view bytes)
 {
@@ -71,7 +57,7 @@ public:
                               attribute("y", number(mark.baseline.y)) +
                               attribute("font-size", number(mark.style.cap / cap_height)) +
                               attribute("text-anchor", anchors[static_cast<std::size_t>(mark.style.align)]);
-        const std::string text = ">" + escaped(printable(mark.text)) + "</text>\n";
+        const std::string text = ">" + xml_escaped(printable(mark.text)) + "</text>\n";
         if (mark.style.halo)
             out_ += element + attribute("fill", "none") + attribute("stroke", hex(*mark.style.halo)) +
                     attribute("stroke-width", number(halo_width(mark.style.cap))) + text;

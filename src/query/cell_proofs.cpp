@@ -1,5 +1,6 @@
 #include "query/cell_proofs.h"
 
+#include "base/intervals.h"
 #include "free_space/footprint.h"
 #include "robot/hull.h"
 
@@ -53,16 +54,7 @@ private:
         drop_lower_ends();
         for (const Facet& facet : facets_.all)
             if (facet.terrain) bands_.push_back(facet.z);
-        std::sort(bands_.begin(), bands_.end(),
-                  [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
-        std::size_t kept = 0;
-        for (const Interval& next : bands_) {
-            if (kept > 0 && next.bottom <= bands_[kept - 1].top + 2 * layer_tolerance)
-                bands_[kept - 1].top = std::max(bands_[kept - 1].top, next.top);
-            else
-                bands_[kept++] = next;
-        }
-        bands_.resize(kept);
+        join_intervals(bands_, 2 * layer_tolerance);
     }
 
     /// Crossings of a filled mesh at which a line that goes down leaves it are no layers. Faces that overlap in height

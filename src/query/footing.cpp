@@ -1,5 +1,6 @@
 #include "query/footing.h"
 
+#include "base/intervals.h"
 #include "free_space/footprint.h"
 #include "robot/contacts.h"
 
@@ -22,15 +23,7 @@ void join_solids(const Column& column, std::vector<Interval>& out)
 {
     out.clear();
     for (const Span& span : column.spans) out.push_back({span.bottom, span.top});
-    std::sort(out.begin(), out.end(), [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
-    std::size_t kept = 0;
-    for (const Interval& next : out) {
-        if (kept > 0 && next.bottom <= out[kept - 1].top + layer_tolerance)
-            out[kept - 1].top = std::max(out[kept - 1].top, next.top);
-        else
-            out[kept++] = next;
-    }
-    out.resize(kept);
+    join_intervals(out, layer_tolerance);
 }
 
 /// Returns the top of the highest solid that begins at or below z.

@@ -41,7 +41,7 @@ CollisionChecker checker_of(const Map& map, const Robot& robot, Obstacles obstac
 std::optional<FreeSpace> mask_of(const Map& map, const Robot& robot, const JudgeOptions& options)
 {
     const bool is_usable = !options.exhaustive && options.obstacles == Obstacles::Geometry &&
-                           !map.solid_bounds.impl().levels.empty();
+                           !map.solid_bounds.impl().levels().empty();
     return is_usable ? std::optional<FreeSpace>(std::in_place, map.solid_bounds, robot) : std::nullopt;
 }
 

@@ -1,6 +1,7 @@
 #include "base/chosen_bounds.h"
 #include "query/area_index.h"
 #include "query/pose_judge.h"
+#include "query/raster_grid.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/query.h>
@@ -19,23 +20,6 @@ int count_steps(double from, double to, double step, const char* axis)
         throw ArgumentError("raster", std::string("steps along ") + axis, count,
                             "at most 2147483647; take a larger step");
     return static_cast<int>(count);
-}
-
-RasterGrid grid_of(const Bounds& bounds, const RasterOptions& options)
-{
-    RasterGrid grid;
-    grid.x0 = bounds.min.x();
-    grid.y0 = bounds.min.y();
-    grid.z0 = bounds.min.z();
-    grid.step = options.step;
-    grid.step_z = options.step_z > 0 ? options.step_z : options.step;
-    grid.cols = count_steps(grid.x0, bounds.max.x(), grid.step, "x");
-    grid.rows = count_steps(grid.y0, bounds.max.y(), grid.step, "y");
-    if (double(grid.cols) * grid.rows > 2147483647.0)
-        throw ArgumentError("raster", "columns", double(grid.cols) * grid.rows,
-                            "at most 2147483647; take a larger step");
-    if (options.dims == 3) grid.heights = count_steps(grid.z0, bounds.max.z(), grid.step_z, "z");
-    return grid;
 }
 
 bool has_no_z_limits(const Area& area)
@@ -271,6 +255,23 @@ private:
 
 }  // namespace
 
+RasterGrid raster_grid(const Bounds& bounds, const RasterOptions& options)
+{
+    RasterGrid grid;
+    grid.x0 = bounds.min.x();
+    grid.y0 = bounds.min.y();
+    grid.z0 = bounds.min.z();
+    grid.step = options.step;
+    grid.step_z = options.step_z > 0 ? options.step_z : options.step;
+    grid.cols = count_steps(grid.x0, bounds.max.x(), grid.step, "x");
+    grid.rows = count_steps(grid.y0, bounds.max.y(), grid.step, "y");
+    if (double(grid.cols) * grid.rows > 2147483647.0)
+        throw ArgumentError("raster", "columns", double(grid.cols) * grid.rows,
+                            "at most 2147483647; take a larger step");
+    if (options.dims == 3) grid.heights = count_steps(grid.z0, bounds.max.z(), grid.step_z, "z");
+    return grid;
+}
+
 int RasterGrid::step_above(double height) const
 {
     const double lowest = height - touch_tolerance;
@@ -291,7 +292,7 @@ RasterResult raster(const Judge& judge, const RasterOptions& options)
     out.area = options.area;
     if (options.dims == 2) out.z = overlap(map.z_limits, options.z);
     const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
-    out.grid = grid_of(bounds, options);
+    out.grid = raster_grid(bounds, options);
     const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z());
     std::vector<Row> rows(std::size_t(out.grid.rows));
     // Without heights rows share nothing, and each takes long.

@@ -53,14 +53,14 @@ public:
         if (map == nullptr) return;
         raster_ = &map->solid_bounds.impl();
         map_ = map;
-        while (level_ + 1 < raster_->levels.size() && raster_->levels[level_].cell < finest) ++level_;
-        if (raster_->levels.empty()) raster_ = nullptr;
+        while (level_ + 1 < raster_->levels().size() && raster_->levels()[level_].cell < finest) ++level_;
+        if (raster_->levels().empty()) raster_ = nullptr;
     }
 
     bool holds(const Vec3& p) const
     {
         if (raster_ == nullptr || !is_within(*map_, p)) return false;
-        const BoundsLevel& level = raster_->levels[level_];
+        const TileLevel& level = raster_->levels()[level_];
         const double u = (p.x() - raster_->x0) / level.cell, v = (p.y() - raster_->y0) / level.cell;
         const double col = std::floor(u), row = std::floor(v);
         // Lines along a border between cells see what touches it from either side.

@@ -1,6 +1,7 @@
 #include "scene/bodies.h"
 
 #include "base/number.h"
+#include "base/polygon2.h"
 #include "base/rotation.h"
 #include "mesh/sphere_mesh.h"
 #include "scene/extrusion.h"
@@ -56,12 +57,8 @@ std::vector<Vec3> plane_in_box(const Pose& pose, const Bounds& box)
         for (const double sign : {1.0, -1.0}) {
             const double limit = sign > 0 ? box.max[axis] : -box.min[axis];
             std::vector<Vec3> kept;
-            for (std::size_t k = 0; k < polygon.size(); ++k) {
-                const Vec3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-                const double dp = sign * p[axis] - limit, dq = sign * q[axis] - limit;
-                if (dp <= 0) kept.push_back(p);
-                if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) kept.push_back(p + dp / (dp - dq) * (q - p));
-            }
+            const auto distance = [&](const Vec3& p) { return sign * p[axis] - limit; };
+            clip_polygon(polygon, distance, [&](const Vec3& p, bool) { kept.push_back(p); });
             polygon = std::move(kept);
         }
     return polygon;

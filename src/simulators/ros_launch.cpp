@@ -1,4 +1,5 @@
 #include "base/number.h"
+#include "base/text.h"
 #include "simulators/text.h"
 
 #include <spawnfield/error.h>

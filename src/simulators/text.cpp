@@ -16,24 +16,6 @@ std::string plain_number(double value)
     return {buffer, end};
 }
 
-std::string xml_escaped(std::string_view text)
-{
-    std::string out;
-    for (const char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
-    return out;
-}
-
 std::string shell_quoted(std::string_view word)
 {
     const auto is_plain = [](unsigned char c) {

@@ -11,9 +11,6 @@ namespace spawnfield {
 /// -1e-05 as an option.
 std::string plain_number(double value);
 
-/// Returns a text with XML's special characters escaped, for elements and for attributes in double quotes.
-std::string xml_escaped(std::string_view text);
-
 /// Returns a word, quoted if needed, for shlex and for a POSIX shell.
 std::string shell_quoted(std::string_view word);
 

@@ -3,6 +3,7 @@
 #include "../random_scene.h"
 #include "base/stopwatch.h"
 #include "digest.h"
+#include "query/raster_grid.h"
 #include "world.h"
 
 #include <algorithm>
@@ -56,24 +57,6 @@ std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
         poses.push_back({{x, y, z}, rotation_from_rpy(0, 0, random.between(-std::numbers::pi, std::numbers::pi))});
     }
     return poses;
-}
-
-/// Returns the raster that the library uses for bounds and steps.
-RasterGrid grid_of(const Bounds& bounds, const RasterOptions& options)
-{
-    const auto count = [](double from, double to, double step) {
-        return int(std::floor((to - from) / step + 1e-9)) + 1;
-    };
-    RasterGrid grid;
-    grid.x0 = bounds.min.x();
-    grid.y0 = bounds.min.y();
-    grid.z0 = bounds.min.z();
-    grid.step = options.step;
-    grid.step_z = options.step_z > 0 ? options.step_z : options.step;
-    grid.cols = count(grid.x0, bounds.max.x(), grid.step);
-    grid.rows = count(grid.y0, bounds.max.y(), grid.step);
-    grid.heights = count(grid.z0, bounds.max.z(), grid.step_z);
-    return grid;
 }
 
 /// Returns the options with only every `thinning`-th row and column.
@@ -395,7 +378,7 @@ Measurement Workbench::search(const Judge& judge, const SearchOptions& options)
 
 Measurement Workbench::fcl_raster_2d(const RasterWork& work, int threads)
 {
-    const RasterGrid grid = grid_of(map().bounds, options_2d(work));
+    const RasterGrid grid = raster_grid(map().bounds, options_2d(work));
     const PlainFcl& ready = plain_fcl();
     const auto judged = timed([&] { return ready.raster_top(grid, work.offset, threads); });
     Digest digest;
@@ -410,7 +393,7 @@ Measurement Workbench::fcl_raster_2d(const RasterWork& work, int threads)
 
 Measurement Workbench::fcl_raster_3d(int threads)
 {
-    const RasterGrid grid = grid_of(map().bounds, thinned(options_3d(), setting_.thinning));
+    const RasterGrid grid = raster_grid(map().bounds, thinned(options_3d(), setting_.thinning));
     const PlainFcl& ready = plain_fcl();
     const auto counts = timed([&] { return ready.raster_3d(grid, 1.0, setting_.height_check, threads); });
     Digest digest;

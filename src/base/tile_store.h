@@ -1,0 +1,96 @@
+#pragma once
+
+#include "base/bytes.h"
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace spawnfield {
+
+constexpr std::size_t tile_alignment = 64;  // bytes: the size of a tile is a multiple of it
+
+/// The place of a tile in the bytes of its store, and the XXH64 hash of its bytes. An empty tile has size 0.
+struct TileEntry {
+    std::uint64_t offset = 0, size = 0, checksum = 0;
+};
+
+/// A grid of square cells, cut into square tiles. Row 0 of the cells and of the tiles is the smallest y.
+struct TileLevel {
+    double cell = 0;                            ///< side of a cell, m
+    std::uint32_t cols = 0, rows = 0;           ///< cells
+    std::uint32_t tile_cols = 0, tile_rows = 0;
+    std::vector<TileEntry> tiles;               ///< row after row
+
+    TileLevel() = default;
+    /// All tiles are empty. `tile_side` is the number of cells along the side of a tile.
+    TileLevel(double cell, std::uint32_t cols, std::uint32_t rows, std::uint32_t tile_side);
+};
+
+/// The tiles of several levels, in memory or in a file that is mapped into memory. A tile of a file is checked when it
+/// is opened for the first time; tiles in memory are trusted. Any number of threads may open tiles at the same time.
+class TileStore {
+public:
+    TileStore() = default;
+    /// `file` is the name of the mapped file that contains the bytes; it is empty for bytes in memory.
+    TileStore(std::vector<TileLevel> levels, Bytes bytes, std::string file = {});
+
+    const std::vector<TileLevel>& levels() const { return levels_; }
+    const std::string& file() const { return file_; }
+    std::string_view bytes() const { return bytes_.view; }
+
+    /// Returns the bytes of a tile. If is_consistent(bytes) is false for a tile of a file, or its checksum is wrong,
+    /// this throws FileError.
+    template <class IsConsistent>
+    std::string_view open(std::size_t level, std::size_t tile, const IsConsistent& is_consistent) const
+    {
+        const TileEntry& entry = levels_[level].tiles[tile];
+        const std::string_view bytes = bytes_.view.substr(entry.offset, entry.size);
+        if (checked_.empty() || checked_[level][tile].load(std::memory_order_acquire) != 0) return bytes;
+        verify_checksum(bytes, entry);
+        if (!is_consistent(bytes)) fail_inconsistent();
+        checked_[level][tile].store(1, std::memory_order_release);
+        return bytes;
+    }
+
+    /// Throws FileError for a file whose checksums are right but whose values cannot be.
+    [[noreturn]] void fail_inconsistent() const;
+
+private:
+    void verify_checksum(std::string_view bytes, const TileEntry& entry) const;
+
+    std::vector<TileLevel> levels_;
+    Bytes bytes_;
+    std::string file_;
+    /// 1: the tile was checked. Empty for a store in memory.
+    mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> checked_;
+};
+
+/// Makes a store in memory, level by level.
+class TileStoreBuilder {
+public:
+    /// `checksum_of_empty` is what the file format stores for an empty tile. Nothing reads it.
+    explicit TileStoreBuilder(std::uint64_t checksum_of_empty) : checksum_of_empty_(checksum_of_empty) {}
+
+    const std::vector<TileLevel>& levels() const { return levels_; }
+
+    /// Returns the bytes of a tile of the level that was added last.
+    std::string_view last(std::size_t tile) const
+    {
+        const TileEntry& entry = levels_.back().tiles[tile];
+        return std::string_view(bytes_).substr(entry.offset, entry.size);
+    }
+
+    /// Adds a level. `tiles` has the bytes of each of its tiles.
+    void add(TileLevel level, std::vector<std::string> tiles, int threads);
+
+    TileStore build();
+
+private:
+    const std::uint64_t checksum_of_empty_;
+    std::vector<TileLevel> levels_;
+    std::string bytes_;
+};
+
+}  // namespace spawnfield
