@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# More checks than .ci/run, from a fresh clone: the golden digests of debug and clang builds, the tests under the
-# address, undefined behaviour and thread sanitizers, and then those of .ci/run. Each step prints its time. The script
-# stops at the first step that fails and prints the end of its log. All logs are in build/ci.
+# Runs the checks of .ci/run from a fresh clone: the format, the layers, the golden digests of debug and clang builds,
+# the tests under the address, undefined behaviour and thread sanitizers, and at last all tests of the release. Each
+# step prints its time. The script stops at the first step that fails and prints the end of its log. All logs are in
+# build/ci.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 mkdir -p build/ci
