@@ -11,14 +11,17 @@ if [[ -z $clang_format || $("$clang_format" --version) != *"version 14."* ]]; th
   exit 2
 fi
 
+# Prints the names of the files of the repository that fit the patterns, also new ones that are not committed yet.
+files() { git ls-files -z --cached --others --exclude-standard "$@"; }
+
 case "$*" in
-  "") git ls-files -z '*.cpp' '*.h' | xargs -0 "$clang_format" -i; exit ;;
+  "") files '*.cpp' '*.h' | xargs -0 "$clang_format" -i; exit ;;
   --check) ;;
   *) echo "format.sh: unknown argument $*; usage: tools/format.sh [--check]" >&2; exit 2 ;;
 esac
 
-git ls-files -z '*.cpp' '*.h' | xargs -0 "$clang_format" --dry-run --Werror
-git ls-files -z '*.md' '*.sh' '*.py' '*.cmake' '*CMakeLists.txt' '.ci/run' | xargs -0 python3 -c '
+files '*.cpp' '*.h' | xargs -0 "$clang_format" --dry-run --Werror
+files '*.md' '*.sh' '*.py' '*.cmake' '*CMakeLists.txt' '.ci/run' | xargs -0 python3 -c '
 import sys
 bad = 0
 for name in sys.argv[1:]:

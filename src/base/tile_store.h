@@ -18,10 +18,10 @@ struct TileEntry {
 
 /// A grid of square cells, cut into square tiles. Row 0 of the cells and of the tiles is the smallest y.
 struct TileLevel {
-    double cell = 0;                            ///< side of a cell, m
-    std::uint32_t cols = 0, rows = 0;           ///< cells
+    double cell = 0;                   ///< side of a cell, m
+    std::uint32_t cols = 0, rows = 0;  ///< cells
     std::uint32_t tile_cols = 0, tile_rows = 0;
-    std::vector<TileEntry> tiles;               ///< row after row
+    std::vector<TileEntry> tiles;  ///< row after row
 
     TileLevel() = default;
     /// All tiles are empty. `tile_side` is the number of cells along the side of a tile.
