@@ -23,12 +23,15 @@ using Polygon = std::vector<Vec3>;
 /// Writes to `out` the part of a convex polygon where sign * (p.y - limit) <= 0.
 void clip_y(const Polygon& in, double limit, double sign, Polygon& out)
 {
-    out.clear();
+    out.resize(2 * in.size());  // each corner gives at most itself and a cut
+    std::size_t count = 0;
     const auto distance = [&](const Vec3& p) { return sign * (p.y() - limit); };
-    clip_polygon(in, distance, [&](const Vec3& p, bool is_cut) {
-        out.push_back(p);
-        if (is_cut) out.back().y() = limit;  // exactly
+    clip_polygon(in, distance, [&](const auto& p, bool is_cut) {
+        Vec3& corner = out[count++];
+        corner = p;
+        if (is_cut) corner.y() = limit;  // exactly
     });
+    out.resize(count);
 }
 
 Interval range_of(const Polygon& polygon, int axis)
