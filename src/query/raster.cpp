@@ -76,12 +76,12 @@ double chosen_offset(const Judge& judge, const RasterOptions& options)
     return offset;
 }
 
-/// Step numbers, each once.
+/// Numbers of steps, without duplicates.
 using Steps = std::vector<int>;
 
 bool contains(const Steps& steps, int k) { return std::find(steps.begin(), steps.end(), k) != steps.end(); }
 
-/// Steps that a column's snapped poses replace, and steps at their very places.
+/// Returns the steps that a column's snapped poses replace, and the steps at the same heights as these poses.
 Steps replaced_steps(const RasterGrid& grid, double offset, std::span<const RasterPose> column)
 {
     Steps out;
@@ -103,10 +103,10 @@ struct Row {
     std::uint64_t aerial = 0, exact_checks = 0;
 };
 
-/// Strips of rows, judged block by block so that neighbouring columns share their work.
+/// Judges strips of rows. In a strip, it goes from block to block, so that neighbouring columns share work.
 class RasterJudge {
 public:
-    static constexpr int most_rows = 32, block = 128;  ///< of a strip; columns of a block
+    static constexpr int most_rows = 32, block = 128;  ///< rows of a strip; columns of a block
 
     RasterJudge(const Judge::Impl& shared, const RasterOptions& options, const RasterGrid& grid, double offset,
                 double top)
@@ -115,7 +115,7 @@ public:
     {
     }
 
-    /// Rows first, first + 1, … of out.
+    /// Judges as many rows as `out` has entries, beginning with row `first`.
     void judge_rows(int first, std::span<Row> out) const
     {
         PoseJudge judge(shared_, options_.yaw, max_height());
@@ -185,8 +185,8 @@ private:
         }
     }
 
-    /// Returns the steps at which the ground may be near enough, those beyond the map's z limits, and the replaced
-    /// ones, from the top down. All other steps are certainly aerial.
+    /// Returns the steps that may be near enough to the ground, the steps beyond the map's z limits, and the replaced
+    /// steps, from the top down. All other steps are certainly aerial.
     const Steps& near_heights(const ColumnView& column, const Steps& replaced) const
     {
         thread_local Steps near;
@@ -228,13 +228,13 @@ private:
         }
     }
 
-    /// Judges a column in which every step is listed: outside the map, or for collisions alone.
+    /// Judges a column whose aerial poses are listed too: a column outside the map, or any column without height check.
     void all_heights(PoseJudge& judge, const Steps& replaced, double x, double y, Row& out) const
     {
         for (int k = grid_.heights - 1; k >= 0; --k) {
             if (contains(replaced, k)) continue;
             const double z = grid_.z_of(k);
-            Judgement judged;  // outside
+            Judgement judged;  // default: Verdict::Outside
             if (!options_.height_check) judged = judge.judge_collision({x, y, z});
             out.exact_checks += judged.exact_check;
             out.poses.push_back({x, y, z, -1, judged.verdict});
@@ -264,7 +264,7 @@ private:
     const RasterGrid& grid_;
     const double offset_;
     const double top_;       ///< upper limit of the bounds' z
-    const ZRange ground_z_;  ///< layers elsewhere are no ground
+    const ZRange ground_z_;  ///< layers beyond it are not ground
     const AreaIndex area_;
     const Steps outside_ = steps_outside();
 };
@@ -294,7 +294,7 @@ RasterResult raster(const Judge& judge, const RasterOptions& options)
     out.grid = grid_of(bounds, options);
     const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z());
     std::vector<Row> rows(std::size_t(out.grid.rows));
-    // Without heights rows share nothing, and each takes long.
+    // Without the height check, rows share no work, and each row takes long.
     const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
     const std::size_t strip = std::clamp<std::size_t>(rows.size() / std::size_t(4 * thread_count(options.threads)), 1,
                                                       most_rows);
