@@ -60,7 +60,8 @@ Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
                 const std::uint64_t id = tile.ids[element];
                 if (home.col == 0 || home.row == 0) continue;  // taken from its home tile
                 if (id >= impl.elements || tile.is_triangle(element) != (id < triangles))
-                    throw FileError(impl.file, "contradicts itself; bake the map again");
+                    throw FileError(impl.file,
+                                    "is damaged (the number of an element does not fit its kind); bake the map again");
                 if (tile.is_triangle(element)) {
                     CornersOfTriangle& to = out.triangles[id];
                     const auto corners = tile.corners(element);

@@ -115,8 +115,8 @@ Vec2 Footing::gradient() const
 bool Footing::is_even(const Vec2& gradient) const
 {
     const double mean = std::accumulate(rises_.begin(), rises_.end(), 0.0) / double(rises_.size());
-    double farthest = std::abs(mean - gradient.dot(middle_)), lowest = 0,
-           highest = 0;  // farthest: first of the ground at the origin
+    // The ground at the origin counts too; its height is 0 here.
+    double farthest = std::abs(mean - gradient.dot(middle_)), lowest = 0, highest = 0;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         farthest = std::max(farthest, std::abs(mean + gradient.dot(contacts_[i].shift - middle_) - rises_[i]));
         lowest = std::min(lowest, rises_[i]);

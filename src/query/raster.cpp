@@ -58,13 +58,13 @@ void check(const RasterOptions& options)
         throw ArgumentError(
             "raster", "without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
     if (options.dims == 3 && !has_no_z_limits(options.area))
-        throw ArgumentError("raster",
-                            "area has z limits, needs regions without any for dims 3: bounds has the heights");
+        throw ArgumentError(
+            "raster", "area has z limits, but with dims 3 its regions must have none; limit the heights with bounds");
     if (!options.snap) return;
     if (options.dims != 3)
         throw ArgumentError("raster", "snap needs dims 3: a pose of a 2D raster stands on its layer by definition");
     if (!options.height_check)
-        throw ArgumentError("raster", "snap needs the height check: collisions alone know no layers");
+        throw ArgumentError("raster", "snap needs the height check, because only it finds the layers");
 }
 
 double chosen_offset(const Judge& judge, const RasterOptions& options)
