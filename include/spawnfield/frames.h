@@ -7,7 +7,7 @@
 
 #include <vector>
 
-/// Converts poses to the frames of simulators. No other code converts frames.
+/// Converts poses to the frames of simulators. One table, which rule_of() returns, has all these conversions.
 namespace spawnfield {
 
 /// Rotations about the fixed axes x, y, z, as in ROS, URDF and SDF: R = Rz(yaw) Ry(pitch) Rx(roll). rad.

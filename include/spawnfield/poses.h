@@ -64,8 +64,8 @@ SPAWNFIELD_API std::string spawns_csv(const SpawnList& list);
 /// The same for robots. If they have names, the first column is `name`.
 SPAWNFIELD_API std::string robots_csv(std::span<const RobotStart> robots);
 
-/// Returns poses with names and quaternions (x, y, z, w), the files and settings that they were made with, and the
-/// counts; for a sample, also whether it is full. `robots` are the list's spawns.
+/// Returns JSON with the map, the robot, the settings, the counts, and the poses with names and quaternions (x, y, z,
+/// w); for a sample, also whether it is full. `robots` are the list's spawns.
 SPAWNFIELD_API std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
                                        const SampleOptions& options);
 SPAWNFIELD_API std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,

@@ -35,8 +35,10 @@ struct RasterOptions {
     /// Height of the origin above its layer, m, for 2D rasters and snap; with snap 0 .. max_height. No value:
     /// auto_offset().
     std::optional<double> offset = {};
-    double yaw = 0;           ///< rad
-    LayerChoice layers = {};  ///< 3D: of the ground; aerial poses, and poses over other layers, are left out
+    double yaw = 0;  ///< rad
+    /// The layers that count. For 3D rasters, the layer is the pose's ground: unless all layers are chosen, aerial
+    /// poses and poses over other ground are left out.
+    LayerChoice layers = {};
     /// False (3D only): every pose is checked for collisions, and for nothing else; max_slope is not used.
     bool height_check = true;
     /// For 3D with height check. Each chosen layer within the z of the bounds gets its pose of the 2D raster. This pose

@@ -134,8 +134,8 @@ struct SceneOptions {
 /// Scene::origin is its place in the survey. A 2D map becomes two parts. "floor" is terrain at z = 0 under all cells
 /// that are not unknown, and "walls" are boxes on the occupied cells. In SDF and URDF files, each collision becomes a
 /// part with the name model::link::collision. The options' rules match this name or one of its words between "::". If
-/// none matches, planes, heightmaps and names of ground are terrain, and all else is an obstacle. Throws FileError with
-/// the file, part, key, value and limit.
+/// none matches, planes, heightmaps and collisions with a name of ground are terrain, and all else is an obstacle.
+/// Throws FileError with the file, part, key, value and limit.
 SPAWNFIELD_API Scene load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 
 /// Returns the file from which a scene is read. For a model's folder, this is the SDF file that its model.config names.

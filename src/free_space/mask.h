@@ -38,7 +38,7 @@ public:
 
 private:
     /// The cells of one row that a part covers (low .. high), and those completely under its inner prism (inner_low ..
-    /// inner_high), in cells from the column of the robot's origin.
+    /// inner_high). All four are x, in cells from the robot's origin.
     struct CoverRow {
         int row;
         double low, high, inner_low, inner_high;

@@ -124,8 +124,8 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
     }
 }
 
-/// Returns how many draws the missing spawns will need, about, if the share of successful draws stays the same. Limited
-/// to a useful size of a batch.
+/// Returns the size of the next batch: about as many draws as the missing spawns will need if the share of successful
+/// draws stays the same, but at most twice the draws so far, and within fixed limits.
 inline std::size_t batch_for(std::size_t wanted, std::size_t found, std::uint64_t draws)
 {
     constexpr double smallest = 256, largest = 16384;
