@@ -21,12 +21,13 @@ struct Floor {
 /// Returns the floors of a map, from the lowest to the highest. There is at least one, unless the map has no ground.
 ///
 /// Ground is each cell of each layer with at least 1.5 m of free height up to the next layer. If a map has no such
-/// cell, all cells of all layers are ground. The heights of the ground are counted in steps of 1 cm, and smoothed over
-/// 0.25 m upwards and downwards. A peak of this density is a floor if it is separate, flat and large. Separate: between
-/// it and the next higher peak, the density falls below half of its own. Flat: of the ground that is nearer to this
-/// peak than to any other, at least half lies within 0.25 m. Large: it has at least 2 % of the ground, and 1 m2. If
-/// there is no such peak, for example in hills, all ground is one floor at the median height. O(cells x layers).
-/// Source: persistence of peaks (Edelsbrunner, Letscher, Zomorodian, Topological persistence and simplification, 2002).
+/// cell, all cells of all layers are ground. The density is the number of ground cells at each height, counted in steps
+/// of 1 cm and smoothed over 0.25 m upwards and downwards. A peak of the density is a floor if it is separate, flat and
+/// large. Separate: between it and the next higher peak, the density falls below half of its own. Flat: of the ground
+/// that is nearer to this peak than to any other, at least half lies within 0.25 m. Large: it has at least 2 % of the
+/// ground, and 1 m2. If there is no such peak, for example in hills, all ground is one floor at the median height.
+/// O(cells x layers). Source: persistence of peaks (Edelsbrunner, Letscher, Zomorodian, Topological persistence and
+/// simplification, 2002).
 SPAWNFIELD_API std::vector<Floor> find_floors(const TerrainMap& terrain, int threads = 0);
 
 }  // namespace spawnfield

@@ -13,12 +13,12 @@ enum class Proof : std::uint8_t { Candidate, Free, Blocked };
 /// in the cells under and around the robot. If it has no proof, the CollisionChecker must decide. Any number of threads
 /// may call its const methods at the same time; they throw FileError if a tile of a map is damaged.
 ///
-/// Free: for each part of the robot, look at all cells that the part overlaps, seen from above and enlarged by 1e-5 m.
-/// None of them has anything solid between the part's lowest and highest point. Blocked: a cell lies completely under a
-/// part and has something solid inside the part, at least 1e-5 m from the part's surface. Each part is examined on its
-/// own, so a low body and a thin mast do not block each other. Coarse cells come first, and finer ones where the coarse
-/// ones do not decide. This is grey dilation of the scene by the robot (Lozano-Pérez, Spatial planning: a configuration
-/// space approach, 1983), computed only at the poses in question.
+/// Free: each part of the robot is taken as seen from above, and enlarged by 1e-5 m. No cell that it overlaps has
+/// anything solid between the part's lowest and highest point. Blocked: a cell lies completely under a part and has
+/// something solid inside the part, at least 1e-5 m from the part's surface. Each part is examined on its own, so a low
+/// body and a thin mast do not block each other. Coarse cells come first, and finer ones where the coarse ones do not
+/// decide. This is grey dilation of the scene by the robot (Lozano-Pérez, Spatial planning: a configuration space
+/// approach, 1983), computed only at the poses in question.
 class SPAWNFIELD_API FreeSpace {
 public:
     /// Distance from contact that proofs keep, m. It is larger than FCL's tolerance and touch_margin.

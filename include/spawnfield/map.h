@@ -20,7 +20,7 @@ struct Map {
     Geometry geometry;
     SolidBounds solid_bounds;                  ///< for the cells of the terrain's raster
     std::optional<GeoOrigin> origin;           ///< the scene's place in the coordinates of a survey
-    int layers = 0;                            ///< largest number of terrain layers above a cell centre
+    int layers = 0;                            ///< largest number of terrain layers in the column of a cell's centre
     std::optional<std::vector<Floor>> floors;  ///< from find_floors(); no value for a map of format version 2
     std::string scene_file;                    ///< name of the file from which it was baked
     std::string scene_hash;                    ///< xxh64 of that file, 16 hexadecimal digits

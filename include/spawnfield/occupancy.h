@@ -17,7 +17,7 @@ public:
     OccupancyTree(OccupancyTree&&) noexcept;
     ~OccupancyTree();
 
-    double resolution() const;  ///< side of a smallest voxel, m
+    double resolution() const;  ///< side of the smallest voxels, m
     std::size_t leaves() const;
     enum class State { Free, Occupied, Unknown };
     State at(const Vec3& point) const;

@@ -106,10 +106,11 @@ struct SpawnList {
     std::uint64_t near_avoided = 0;  ///< draws too near to a point of the options' `avoid`
     std::uint64_t too_close = 0;     ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
-    /// sample: fewer than `count` spawns, and it is proven that no other spawn fits.
+    /// Only set by sample(): there are fewer than `count` spawns, and it is proven that no other spawn fits.
     bool is_full = false;
-    double undecided_area = 0;  ///< sample: horizontal area, m2, in which a spawn may still fit; only if there are
-                                ///< fewer than `count` and is_full is false
+    /// Only set by sample(), if there are fewer than `count` spawns without that proof: the horizontal area, m2, in
+    /// which a spawn may still fit.
+    double undecided_area = 0;
 };
 
 /// Largest number of spawns. More do not fit into memory, and nobody needs more.
@@ -134,8 +135,8 @@ struct SearchOptions {
     Area area = {};
     /// A draw that is too near to one of these points counts as a failure and is not judged (SpawnList::near_avoided).
     std::vector<AvoidedPoints> avoid = {};
-    std::uint64_t max_failures =
-        100000;       ///< number of draws in a row without a spawn, after which the search ends; >= 1
+    /// The search ends after this number of draws in a row without a spawn; >= 1.
+    std::uint64_t max_failures = 100000;
     int threads = 0;  ///< 0: all cores; results are the same for any number
     Progress progress = {};
 };

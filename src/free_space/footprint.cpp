@@ -15,8 +15,8 @@ constexpr int disc_sides = 32, inner_disc_sides = 16;
 /// Corners of two polyhedra, one around a part and one within it, in the robot's frame turned by `rotation`.
 struct PartCorners {
     std::vector<Vec3> around, within;
-    std::vector<std::pair<std::size_t, std::size_t>>
-        edges;  ///< of `within`; empty: not known, so each pair of corners counts as an edge
+    /// Edges of `within`. Empty: not known, so each pair of corners counts as an edge.
+    std::vector<std::pair<std::size_t, std::size_t>> edges;
 };
 
 /// Adds a circle of `radius` around `centre` in the plane of u and v, as corners of polygons around it and within it.

@@ -124,7 +124,7 @@ void CellFacets::add_triangle(const Tile& tile, std::uint32_t element, bool othe
     const Interval limits{std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()})};
     const double longest = std::max({(b - a).head<2>().norm(), (c - a).head<2>().norm(), (c - b).head<2>().norm()});
     if (std::abs(normal.z()) <= touch_tolerance * longest) {
-        if (!out.filled) return;  // the column of a vertical triangle is empty if it belongs to a sheet
+        if (!out.filled) return;  // a vertical triangle of a sheet gives no interval
         out.z = limits;
         all.push_back(std::move(out));
         return;

@@ -65,7 +65,7 @@ private:
         bands_.resize(kept);
     }
 
-    /// Excludes crossings that are not layers, because a line that goes down leaves a filled mesh there. Faces whose
+    /// Excludes lower ends, which are not layers: there, a line that goes down leaves a filled mesh. Faces whose
     /// heights overlap form a cluster. Between two clusters, the cell is completely inside the mesh or completely
     /// outside, like its centre.
     void drop_lower_ends()
@@ -150,7 +150,7 @@ private:
                            [&](const SpacedPoints& points) { return is_covered(band, points); });
     }
 
-    /// Returns whether all poses of the band are too near to the same one of the points.
+    /// Returns whether all poses of the band are too near to one and the same point.
     bool is_covered(const Interval& band, const SpacedPoints& points) const
     {
         const double distance = points.distance();
@@ -168,8 +168,8 @@ private:
         const Interval& band = bands_[b];
         const double max_water_depth = proofs_.shared_.options.max_water_depth;
         const bool any_depth = std::isinf(max_water_depth);
-        // All terrain that may be the ground of a pose must be under water: its layer, and layers between that and the
-        // origin.
+        // All terrain that may be the ground of a pose must be under water: its layer, and the layers between that
+        // layer and the origin.
         double highest = band.top;
         for (std::size_t above = b + 1;
              above < bands_.size() && bands_[above].bottom <= band.top + proofs_.offset_ + slack; ++above)

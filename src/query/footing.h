@@ -40,8 +40,8 @@ private:
     std::vector<Contact> contacts_;  ///< empty: at this rotation, the contacts lie on one line
     Vec2 middle_ = Vec2::Zero();     ///< of the contacts
     std::vector<double> rises_;      ///< heights of the surfaces under the contacts above the pose's ground
-    std::optional<Vec2>
-        columns_at_;  ///< x and y of the pose whose columns are in contacts_; poses above each other share them
+    /// x and y of the pose whose columns are in contacts_; poses above each other share them.
+    std::optional<Vec2> columns_at_;
 };
 
 }  // namespace spawnfield

@@ -58,7 +58,7 @@ bool is_submerged(const ColumnView& column, double ground, double max_water_dept
     });
 }
 
-/// Decides all verdicts that do not depend on collisions. Returns true if the pose has none of them.
+/// Decides the verdicts that come before `collision`. Returns true if none of them applies.
 bool judge_ground(const Judge::Impl& shared, double max_height, const ColumnView& column, const Vec3& position,
                   Judgement& out)
 {
