@@ -329,7 +329,7 @@ TEST_CASE("output that cannot be written ends with status 1, and nothing remains
                1);
     desk.check(
         {"experiment map -q --dims 2 --steps 1 -o map" + husky,
-         "spawnfield: map: contains bounds.bin, which is not part of a former experiment; choose another name or "
+         "spawnfield: map: contains bounds.bin, which is not part of any former experiment; choose another name or "
          "remove it"},
         1);
     desk.check({raster + "-o new.csv --heatmap none/new.png",

@@ -273,7 +273,7 @@ TEST_CASE("the program refuses a world with missing includes, and a map of 1 x 1
     const ProgramRun obstacle = run_program(folder, "bake a.world -o map --allow-missing");
     CHECK(obstacle.status == 4);
     CHECK_THAT(obstacle.err,
-               Contains("none of it is made terrain") && Contains("has no terrain, so no robot can stand anywhere"));
+               Contains("none of it becomes terrain") && Contains("has no terrain, so no robot can stand anywhere"));
     const ProgramRun small = run_program(folder, "bake a.world -o map --allow-missing --label 'rock=terrain'");
     CHECK(small.status == 0);
     const std::string tiny = "notice: the map is only 1 x 1 m; is a part of the scene missing or in the wrong unit?\n";

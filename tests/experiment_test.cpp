@@ -203,9 +203,9 @@ TEST_CASE("an experiment replaces an earlier experiment, but no other folder")
     arena.write("out/experiment.md", "old");
     const ProgramRun run = arena(command);
     CHECK(run.status == 1);
-    CHECK(
-        run.err ==
-        "spawnfield: out: contains notes.txt, which is not part of a former experiment; choose another name or remove "
-        "it\n");
+    CHECK(run.err ==
+          "spawnfield: out: contains notes.txt, which is not part of any former experiment; choose another name or "
+          "remove "
+          "it\n");
     CHECK(bytes_of(arena / "out/experiment.md") == "old");
 }

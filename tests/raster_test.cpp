@@ -343,7 +343,7 @@ TEST_CASE("snap refuses 2D, no height check, and offsets that would be aerial")
     CHECK_THROWS_AS(raster(judge, options), ArgumentError);
     options.offset = 0.1;
     options.height_check = false;
-    CHECK_THROWS_WITH(raster(judge, options), "raster: snap needs the height check: collisions alone know no layers");
+    CHECK_THROWS_WITH(raster(judge, options), "raster: snap needs the height check, because only it finds the layers");
     options.height_check = true;
     options.dims = 2;
     CHECK_THROWS_AS(raster(judge, options), ArgumentError);

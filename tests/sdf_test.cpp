@@ -394,7 +394,7 @@ TEST_CASE("elements that SDF does not know, or that have no effect, get a notice
                      "model.sdf: line 2: /sdf/model[@name=\"crate\"]/link[@name=\"l\"]/colision[@name=\"d\"]: is not "
                      "an SDF element"));
     CHECK(has_notice(scene, "collision with name[c] already exists. It is ignored"));
-    CHECK(has_notice(scene, "<collision>: 1 without a shape ignored"));
+    CHECK(has_notice(scene, "<collision>: 1 ignored, because they have no shape"));
     CHECK(scene.parts.size() == 3);
     CHECK(has(refusal_of(folder, world, {.strict = true}), "already exists"));
 
@@ -600,7 +600,7 @@ TEST_CASE("nothing becomes terrain because a file is missing")
         const Scene scene = load_world(folder, desk + lost, {.allow_missing = true});
         CAPTURE(lost);
         CHECK_FALSE(scene.has_terrain());
-        CHECK(has_notice(scene, "none of it is made terrain"));
+        CHECK(has_notice(scene, "none of it becomes terrain"));
         CHECK(load_world(folder, desk + lost, {.labels = {{"desk", Label::Terrain}}, .allow_missing = true})
                   .has_terrain());
     }

@@ -109,7 +109,7 @@ TEST_CASE("bad patterns and names are refused, and the message names them")
     CHECK_THAT(refused("a\n{i}", 1), Contains("control character"));
     const std::vector<std::string> twice = {"a", "b", "a"};
     CHECK(message_of([&] { check_names("column name:", twice); }) ==
-          "column name: \"a\" is the name of two robots, needs one each");
+          "column name: \"a\" is the name of two robots; give each robot a name of its own");
 }
 
 TEST_CASE("names for ROS and SDF keep their rules")
@@ -261,7 +261,7 @@ TEST_CASE("each tile of the terrain has its patches, and the message names an em
     CHECK(patches.patches_per_tile == 2);  // points outside belong to the nearest tile
     CHECK(patches.flat_patches.size() == 128 + 2 * 1 * 2 * 3 * 4);
     CHECK(message_of([&] { terrain_patches(points, {.rows = 2, .cols = 2, .bounds = grid.bounds}); }) ==
-          "tile 1,1 (row, column, from 0) has no spawn, needs one in each; ask for more spawns or fewer tiles");
+          "tile 1,1 (row, column, from 0) has no spawn, but each tile needs one; ask for more spawns or fewer tiles");
     CHECK_FALSE(message_of([&] { terrain_patches(points, {.rows = 0}); }).empty());
     CHECK(terrain_patches({}, grid).patches_per_tile == 0);
 }

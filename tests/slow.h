@@ -46,9 +46,9 @@ Column column(const spawnfield::Scene& scene, double x, double y);
 std::vector<double> layers(const spawnfield::Scene& scene, double x, double y);
 
 struct Decision {
-    /// Nothing if the verdict, or the piece of the ground, changes within margin.
+    /// No value if the verdict, or the piece of the ground, changes within margin.
     std::optional<spawnfield::Verdict> verdict;
-    std::optional<double> ground;  ///< z, m; nothing if there is no ground
+    std::optional<double> ground;  ///< z, m; no value if there is no ground
 };
 
 /// Returns the verdict by the table of verdicts, if it is the same at the pose and at its neighbours at distance
@@ -58,7 +58,7 @@ Decision decide(const spawnfield::Scene& scene, const spawnfield::Bounds& map_bo
                 double margin = 1e-3);
 
 /// Returns how a robot with these contacts stands at a pose over ground of this height, by the rules of
-/// QueryOptions::max_slope: Valid, Steep or Unstable. Returns nothing if a change by margin (m, or relative) gives
+/// JudgeOptions::max_slope: Valid, Steep or Unstable. Returns nothing if a change by margin (m, or relative) gives
 /// another answer.
 std::optional<spawnfield::Verdict> footing(const spawnfield::Scene& scene, const spawnfield::Robot& robot,
                                            const std::vector<spawnfield::Vec3>& contacts,

@@ -178,7 +178,7 @@ TEST_CASE("a folder with other contents is refused, and does not change")
     const ProgramRun run = arena(command + "-o out");
     CHECK(run.status == 1);
     CHECK(run.err ==
-          "spawnfield: out: contains notes.txt, which is not part of a thesis result; choose another name or remove "
+          "spawnfield: out: contains notes.txt, which is not part of any thesis result; choose another name or remove "
           "it\n");
     CHECK(bytes_of(arena / "out/Stats.txt") == "old");
     CHECK(bytes_of(arena / "out/notes.txt") == "mine");

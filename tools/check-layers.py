@@ -59,7 +59,7 @@ def by_includes():
 def by_symbols(build):
     """The same from the object files of a Ninja build. Symbols that several folders define are inline: left out."""
     if not (build / "build.ninja").exists():
-        fail(f"{build} is no build folder of Ninja")
+        fail(f"{build} is not a build folder of Ninja")
     listed = (build / "build.ninja").read_text(encoding="utf-8")  # objects src/FOLDER/X.cpp.o, unity_FOLDER_cxx.cxx.o
     objects = re.findall(r"^build (\S+/(?:src/|unity_)(\w+?)(?:/\w+\.cpp|_cxx\.cxx)\.o): ", listed, re.MULTILINE)
     folders = {name: folder for name, folder in objects if (ROOT / "src" / folder).is_dir()}

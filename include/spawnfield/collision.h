@@ -11,18 +11,19 @@ namespace spawnfield {
 
 class OccupancyTree;
 
-/// What a robot collides with: a part of the scene, or occupied voxels where it is checked against an OccupancyTree.
+/// What a robot collides with: a part of the scene, or occupied voxels if the checker uses an OccupancyTree.
 struct CollisionHit {
     static constexpr std::uint32_t occupancy = 0xffffffff;
     std::uint32_t part = occupancy;
 };
 
-/// Decides whether a robot collides with a scene. Judge contains one; by itself it is for collisions alone.
+/// Decides whether a robot collides with a scene. A Judge contains one. Use it without a Judge if only collisions
+/// matter.
 ///
 /// Any number of threads may call its const methods at the same time. They read the scene's tiles when they first need
-/// them, so they throw FileError if a tile of a damaged map turns up. FCL decides (Pan, Chitta, Manocha, FCL: A General
-/// Purpose Library for Collision and Proximity Queries, 2012), through its libccd solver. The robot is grown by
-/// touch_margin, so that a touching pair reads as collision whatever that solver's rounding says.
+/// them, so they throw FileError if a tile of a map is damaged. FCL decides (Pan, Chitta, Manocha, FCL: A General
+/// Purpose Library for Collision and Proximity Queries, 2012), with its libccd solver. The robot is enlarged by
+/// touch_margin, so that touching counts as a collision in spite of the solver's rounding.
 class SPAWNFIELD_API CollisionChecker {
 public:
     /// Checks against the scene's own geometry.
@@ -33,13 +34,13 @@ public:
     ~CollisionChecker();
 
     const Robot& robot() const;
-    bool uses_occupancy() const;  ///< rather than the scene's own geometry
+    bool uses_occupancy() const;  ///< false: it uses the scene's own geometry
 
     /// Returns whether the robot neither touches nor overlaps any solid, nor is inside one. Obstacles and terrain
     /// count, water does not.
     bool is_free(const Pose& scene_from_robot) const;
 
-    /// Returns the first part, in the scene's order, that the robot collides with; nothing if it is free.
+    /// Returns the part that the robot collides with, the first one in the scene's order; nothing if the robot is free.
     std::optional<CollisionHit> find_hit(const Pose& scene_from_robot) const;
 
 private:

@@ -5,17 +5,18 @@
 
 namespace spawnfield {
 
-/// One piece's interval on a vertical line; a sheet's has no length.
+/// The interval in which a vertical line runs through one piece. For a sheet, bottom and top are equal.
 struct Span {
     double bottom = 0, top = 0;
     std::uint32_t part = 0;
     bool terrain = false;  ///< a robot may stand on its top
-    bool sealed = true;    ///< false: of a mesh with holes that is solid by wish, so its inside is a guess
+    /// False: the piece is a mesh with holes that the user asked to fill, so its inside is a guess.
+    bool sealed = true;
 };
 
 /// What stands on the vertical line through (x, y).
 struct Column {
-    std::vector<Span> spans;     ///< every single piece's, terrain and obstacle, highest top first; not joined
+    std::vector<Span> spans;     ///< one for each piece, terrain and obstacles, not joined; the highest top first
     std::vector<double> layers;  ///< upper ends of joined terrain, from the top down
     std::vector<double> water;   ///< water surfaces, from the top down
 };
@@ -23,11 +24,12 @@ struct Column {
 /// Layers closer than this are one, and intervals closer than this are joined, m.
 inline constexpr double layer_tolerance = 1e-6;
 
-/// Exact intervals along the vertical line through (x, y).
+/// Returns the exact intervals along the vertical line through (x, y).
 ///
-/// A filled mesh counts as inside between odd and even crossings (crossing number with one decision per edge, so a line
-/// through an edge or corner is counted once); lines along its surface count too. Sheets: triangles seen edge-on give
-/// nothing. Source: Haines, Point in Polygon Strategies, Graphics Gems IV, 1994 (crossings test).
+/// In a filled mesh, the line is inside after an odd number of crossings and outside after an even number. Each edge
+/// belongs to one triangle only, so a line through an edge or a corner is counted once. A line along the surface also
+/// counts. A vertical triangle of a sheet gives no interval. Source: Haines, Point in Polygon Strategies, Graphics Gems
+/// IV, 1994 (crossings test).
 SPAWNFIELD_API Column column_at(const Geometry& geometry, double x, double y);
 
 struct Ground {
@@ -36,7 +38,8 @@ struct Ground {
     std::uint32_t part = 0;
 };
 
-/// The highest upper end of a single span at or below z; within touch_tolerance terrain wins.
+/// Returns the highest upper end of a single span at or below z. If terrain and an obstacle are equally high (to
+/// touch_tolerance), returns the terrain.
 SPAWNFIELD_API std::optional<Ground> ground_below(const Column& column, double z);
 
 }  // namespace spawnfield

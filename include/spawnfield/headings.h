@@ -5,16 +5,17 @@
 
 namespace spawnfield {
 
-/// A 2D raster at several yaws, for robots that may look anywhere.
+/// A 2D raster at several yaws, for robots that may have any heading.
 struct HeadingRaster {
-    /// Each pose is Valid if it is valid at one heading or more, else it has its commonest verdict. Its yaw is 0.
+    /// Each pose is Valid if it is valid at one heading or more. Otherwise it has its most frequent verdict. Its yaw is
+    /// 0.
     RasterResult raster;
     int headings = 16;
-    std::vector<std::uint8_t> valid_headings;  ///< of each pose: at how many headings it is valid
+    std::vector<std::uint8_t> valid_headings;  ///< for each pose: the number of headings at which it is valid
 };
 
-/// Returns the raster at yaws 2 pi k / headings. options.yaw is not used. Takes as long as `headings` rasters.
-/// Throws ArgumentError unless headings is in 1 .. 255 and options.dims is 2, and what raster() throws.
+/// Returns the raster at yaws 2 pi k / headings. options.yaw is not used. Takes as long as `headings` rasters. Throws
+/// ArgumentError unless headings is in 1 .. 255 and options.dims is 2, and everything that raster() throws.
 SPAWNFIELD_API HeadingRaster raster_at_headings(const Judge& judge, const RasterOptions& options, int headings = 16);
 
 }  // namespace spawnfield

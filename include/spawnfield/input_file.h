@@ -7,14 +7,14 @@
 
 namespace spawnfield {
 
-/// Throws FileError unless there is a regular file (links are followed). To be called before a file is opened: opening
-/// a pipe waits for its writer, and a device may never end.
+/// Throws FileError unless the file exists and is a regular file (links are followed). Call it before opening a file,
+/// because opening a pipe waits for its writer, and reading a device may never end.
 SPAWNFIELD_API void require_file(const std::filesystem::path& file);
 
-/// All bytes of a file. Throws FileError.
+/// Returns all bytes of a file. Throws FileError.
 SPAWNFIELD_API std::string read_file(const std::filesystem::path& file);
 
-/// The first bytes of a file, at most so many. Throws FileError.
+/// Returns the first `most` bytes of a file, or all if there are fewer. Throws FileError.
 SPAWNFIELD_API std::string read_start(const std::filesystem::path& file, std::size_t most);
 
 }  // namespace spawnfield

@@ -4,10 +4,10 @@
 
 namespace spawnfield {
 
-/// Where a joint stands.
+/// The position of a joint.
 struct JointPosition {
     std::string joint;
-    double value = 0;  ///< rad of revolute and continuous joints, m of prismatic ones
+    double value = 0;  ///< rad for revolute and continuous joints, m for prismatic joints
 };
 
 }  // namespace spawnfield

@@ -16,48 +16,49 @@ struct ExactTime {
     std::atomic<std::int64_t> nanoseconds{0};
 };
 
-/// What a robot must not touch.
+/// What the robot must not touch.
 enum class Obstacles : std::uint8_t {
-    Geometry,  ///< the scene's own geometry, exactly
+    Geometry,  ///< the scene's own geometry; collisions are exact
     Voxels     ///< the occupied voxels of the map's OctoMap
 };
 
-/// What a Judge decides by.
+/// The limits and methods by which a Judge decides.
 struct JudgeOptions {
     /// Greatest height of the robot's origin above its ground, m, inclusive, >= 0. Rasters of two dimensions do not use
     /// it, because their poses stand on the ground by definition.
     double max_height = 1.0;
-    double max_water_depth = std::numeric_limits<double>::infinity();  ///< m of water above the ground that count, >= 0
-    /// Steepest ground to stand on: rad from level, inclusive, > 0 and < pi/2. Infinite: slopes are not looked at. With
-    /// a limit, a pose that would be valid is also judged by the surfaces under the robot's contacts, and may be
-    /// `steep` or `unstable`.
+    /// m, >= 0. Water that stands higher than this above the ground does not count.
+    double max_water_depth = std::numeric_limits<double>::infinity();
+    /// Steepest ground on which the robot may stand: rad from level, inclusive, > 0 and < pi/2. Infinite: slopes are
+    /// not examined. With a limit, a pose that would be valid is also judged by the surfaces under the robot's
+    /// contacts, and may be `steep` or `unstable`.
     ///
-    /// Contacts are the robot's own if it has three or more that do not lie on one line; else the corners of the convex
-    /// hull, seen from above, of all that lies within 2 cm of its lowest point. They move with the pose, its roll and
-    /// pitch too. If they then lie on one line (a robot on its side), the pose is unstable. The surface under a contact
-    /// is the top of the highest solid, terrain or obstacle, that begins no higher than the contact or the robot's
-    /// lowest point; solids that touch count as one. A surface is within reach if it is at most r tan(max_slope) + 2 cm
-    /// above or below the pose's ground, where r is the contact's horizontal distance from the origin. If all surfaces
-    /// are within reach, the pose is steep when the plane that fits them best (least squares) is inclined by more than
-    /// max_slope, else valid. If a surface is out of reach, the pose is unstable. Exception: it is steep when that
-    /// plane is too inclined and neither a surface nor the ground lies farther from it than 2 cm + 10 % of the range of
-    /// their heights (an even slope). So a larger max_slope never makes a valid pose invalid. Ground between the
-    /// contacts is not looked at.
+    /// The robot's own contacts are used if it has at least three that do not lie on one line. Otherwise, the contacts
+    /// are the corners of the convex hull, seen from above, of all that lies within 2 cm of the robot's lowest point.
+    /// They move with the pose, including its roll and pitch. If they then lie on one line (for example, a robot on its
+    /// side), the pose is unstable. The surface under a contact is the top of the highest solid, terrain or obstacle,
+    /// that begins no higher than the contact or the robot's lowest point. Solids that touch count as one. A surface is
+    /// within reach if it is at most r tan(max_slope) + 2 cm above or below the pose's ground, where r is the contact's
+    /// horizontal distance from the origin. If all surfaces are within reach, the pose is steep when the plane that
+    /// fits them best (least squares) is steeper than max_slope, and otherwise valid. If a surface is out of reach, the
+    /// pose is unstable. Exception: the pose is steep if that plane is too steep, and if the surfaces and the ground
+    /// lie at most 2 cm + 10 % of the range of their heights from it (an even slope). So a larger max_slope never makes
+    /// a valid pose invalid. Ground between the contacts is not examined.
     double max_slope = std::numeric_limits<double>::infinity();
     Obstacles obstacles = Obstacles::Geometry;
-    bool exhaustive = false;  ///< decide every collision by an exact check, without the mask: the same answers, slowly
+    bool exhaustive = false;  ///< decide every collision by an exact check, without the mask: same answers, but slower
     ExactTime* exact_time = nullptr;  ///< if given, the time of exact checks is added to it
 };
 
 /// The verdict on one pose with its reasons.
 struct Judgement {
     Verdict verdict = Verdict::Outside;
-    std::optional<Ground> ground;     ///< also for poses outside the bounds
+    std::optional<Ground> ground;     ///< poses outside the bounds may have one too
     std::optional<CollisionHit> hit;  ///< what the robot collides with; only from Judge::check
     bool exact_check = false;         ///< whether an exact collision check was made
 };
 
-/// How a long call runs. Results are the same at any number of threads.
+/// How a long call runs. Results are the same for any number of threads.
 struct RunOptions {
     int threads = 0;  ///< 0: all cores
     Progress progress = {};
@@ -65,25 +66,25 @@ struct RunOptions {
 
 /// Decides where a robot can stand in a map. Cheap to copy: copies share their parts.
 ///
-/// It is built once for a map, a robot and options, and contains what queries prepare: the collision checker and the
-/// free-space mask. Any number of threads may call its const methods at the same time. Those methods read the map's
-/// tiles when they first need them, so they throw FileError if a tile of a damaged map turns up.
+/// Create one for each combination of map, robot and options. It contains what queries prepare: the collision checker
+/// and the free-space mask. Any number of threads may call its const methods at the same time. Those methods read the
+/// map's tiles when they first need them, so they throw FileError if a tile of a map is damaged.
 class SPAWNFIELD_API Judge {
 public:
-    /// Throws ArgumentError for options beyond their limits or a robot without parts, FileError if the map's OctoMap is
-    /// needed and cannot be read.
+    /// Throws ArgumentError for options beyond their limits and for a robot without parts. Throws FileError if the
+    /// map's OctoMap is needed and cannot be read.
     Judge(Map map, Robot robot, const JudgeOptions& options = {});
 
-    /// Returns the verdict on a pose with its ground and what the robot collides with.
+    /// Returns the verdict on a pose, with its ground and the part that the robot collides with.
     Judgement check(const Pose& scene_from_robot) const;
     /// Returns the judgement of each pose, in their order. Throws what options.progress throws.
     std::vector<Judgement> check(std::span<const Pose> poses, const RunOptions& options = {}) const;
-    /// Returns whether the verdict is Valid. Faster than check() where the robot collides, because the mask can prove a
-    /// collision but not with what. For planners.
+    /// Returns whether the verdict is Valid, for example for planners. If the robot collides, this is faster than
+    /// check(): the mask can prove a collision, but not with which part.
     bool is_valid(const Pose& scene_from_robot) const;
 
-    /// Returns the verdict and its cause in words, for example "collision with thin_wall". The judgement is that of the
-    /// pose.
+    /// Returns the verdict and its cause in words, for example "collision with thin_wall". `judgement` must be that of
+    /// the pose.
     std::string describe(const Pose& pose, const Judgement& judgement) const;
 
     const Map& map() const;
@@ -97,13 +98,14 @@ private:
     std::shared_ptr<const Impl> impl_;
 };
 
-/// Returns the name of the part of the map's scene that was hit, or "occupancy" for voxels.
+/// Returns the name of the part of the scene that was hit, or "occupancy" for voxels.
 SPAWNFIELD_API std::string name_of(const CollisionHit& hit, const Map& map);
 
 /// Returns the offset that puts the robot's lowest point 0.1 m above its layer, m.
 SPAWNFIELD_API double auto_offset(const Robot& robot);
 
-/// Returns whether a robot with this offset collides with all flat ground: its lowest point is not above its layer.
+/// Returns whether a robot with this offset collides with all flat ground, because its lowest point is not above its
+/// layer.
 SPAWNFIELD_API bool is_in_flat_ground(const Robot& robot, double offset);
 
 }  // namespace spawnfield

@@ -10,45 +10,47 @@
 
 namespace spawnfield {
 
-/// A scene made ready for queries. `folder` is empty until it is written or read.
+/// A scene, prepared for queries. `folder` is empty until the map is written or read.
 struct Map {
     std::string name;
     Bounds bounds;                    ///< poses beyond them in x and y are `outside`
-    ZRange z_limits;                  ///< poses beyond them are `outside`, layers beyond them are no ground
-    double resolution = 0.1;          ///< of the terrain, m
-    double occupancy_resolution = 0;  ///< m
+    ZRange z_limits;                  ///< poses beyond them are `outside`; layers beyond them are not ground
+    double resolution = 0.1;          ///< side of a terrain cell, m
+    double occupancy_resolution = 0;  ///< side of a voxel, m
     Geometry geometry;
-    SolidBounds solid_bounds;                  ///< of the terrain's raster
-    std::optional<GeoOrigin> origin;           ///< where it lies in a survey's coordinates
-    int layers = 0;                            ///< most terrain layers above one cell centre
-    std::optional<std::vector<Floor>> floors;  ///< as find_floors; nothing: in a map of format version 2
-    std::string scene_file;                    ///< name of the file it was baked from
+    SolidBounds solid_bounds;                  ///< for the cells of the terrain's raster
+    std::optional<GeoOrigin> origin;           ///< the scene's place in the coordinates of a survey
+    int layers = 0;                            ///< largest number of terrain layers in the column of a cell's centre
+    std::optional<std::vector<Floor>> floors;  ///< from find_floors(); no value for a map of format version 2
+    std::string scene_file;                    ///< name of the file from which it was baked
     std::string scene_hash;                    ///< xxh64 of that file, 16 hexadecimal digits
-    std::string hash;                          ///< of the map: of its files' checksums, 16 hexadecimal digits
+    std::string hash;                          ///< 16 hexadecimal digits, from the checksums of the map's files
     std::filesystem::path folder;
 };
 
-/// The files of a map folder beside map.yaml. What else lies there is none of spawnfield's.
+/// The files of a map folder, except map.yaml. Other files in the folder do not belong to the map.
 inline constexpr std::array map_files{"bounds.bin",   "geometry.bin", "heightmap.png",
                                       "occupancy.bt", "preview.png",  "terrain.tiff"};
 
-/// What queries need: map.yaml and geometry.bin, sizes and checksums verified.
-/// Throws FileError, which names the file, for a map that is missing, damaged, cut short or newer.
+/// Reads map.yaml, and opens geometry.bin and bounds.bin. Verifies the sizes of all files; tiles are verified when they
+/// are first used. Throws FileError, which names the file, if the map is missing, damaged, cut short or of a newer
+/// version.
 SPAWNFIELD_API Map read_map(const std::filesystem::path& folder);
 
 /// Returns the pages of terrain.tiff, or makes them for a map without a folder. Throws FileError.
 SPAWNFIELD_API TerrainMap read_terrain(const Map& map);
 
-/// Map::floors, or where there are none find_floors of the terrain. Throws FileError.
+/// Returns Map::floors. If the map has none, computes them with find_floors() from the terrain. Throws FileError.
 SPAWNFIELD_API std::vector<Floor> floors_of(const Map& map);
 
 /// Returns the tree of occupancy.bt, or makes it for a map without a folder. Throws FileError.
 SPAWNFIELD_API OccupancyTree read_occupancy(const Map& map);
 
-/// Sizes and checksums of all files of the folder. Throws FileError at the first that differs.
+/// Verifies the sizes and checksums of all files of the folder. Throws FileError at the first that differs.
 SPAWNFIELD_API void verify_map(const std::filesystem::path& folder);
 
-/// Version 3 added z_limits and floors. Version 2 is read: without z limits, floors found anew from terrain.tiff.
+/// Version 3 added z_limits and floors. A map of version 2 has no z limits, and its floors are computed from
+/// terrain.tiff.
 inline constexpr int map_format_version = 3;
 
 }  // namespace spawnfield

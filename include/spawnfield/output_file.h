@@ -9,9 +9,9 @@
 
 namespace spawnfield {
 
-/// A file that appears whole or not at all: written beside its name, renamed by commit(), removed if that never comes.
-/// What is no regular file (a pipe, /dev/null, /dev/stdout) is written directly; of a link, what it leads to is
-/// written. One thread at a time may use it. What it cannot write is an OutputError.
+/// A file that appears complete or not at all. It is written beside its final name, and commit() renames it. Without
+/// commit(), it is removed. A pipe or device (for example /dev/null, /dev/stdout) is written directly. If the name is a
+/// link, the target of the link is written. Only one thread at a time may use it. Throws OutputError if writing fails.
 class SPAWNFIELD_API OutputFile {
 public:
     explicit OutputFile(std::filesystem::path file);  ///< throws OutputError
@@ -19,30 +19,31 @@ public:
     OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();
 
-    /// For what writes by name instead of write(), before flush() or commit().
+    /// For code that opens the file by its name instead of calling write(). It must finish before flush() or commit().
     const std::filesystem::path& path() const { return written_; }
     void write(std::string_view bytes);  ///< throws OutputError
-    void flush();                        ///< so that only the renaming can still fail; throws OutputError
+    void flush();                        ///< after this, only the renaming can still fail; throws OutputError
     void commit();                       ///< throws OutputError
 
-    /// Gives all files their names, or none: what was there before comes back if one cannot have its own. Throws
+    /// Gives all files their names, or none. If a file cannot get its name, the old files come back. Throws
     /// OutputError.
     static void commit_together(std::span<OutputFile* const> files);
 
 private:
-    void keep_old();  ///< under another name, beside the one that is about to be replaced
+    void keep_old();  ///< moves the old file to another name beside it
     void put_old_back() noexcept;
     void forget_old() noexcept;
     [[noreturn]] void fail(const std::string& reason) const;
 
-    std::filesystem::path file_;     ///< as it was asked for
-    std::filesystem::path written_;  ///< what the stream writes
-    std::filesystem::path target_;   ///< what it becomes; empty if it is written directly
-    std::filesystem::path old_;      ///< what was there, while files are committed together; empty if there was nothing
+    std::filesystem::path file_;     ///< the name that the caller gave
+    std::filesystem::path written_;  ///< the file that the stream writes
+    std::filesystem::path target_;   ///< the name that it gets in commit(); empty if it is written directly
+    /// The other name of the old file, during commit_together(); empty if there was no old file.
+    std::filesystem::path old_;
     std::ofstream stream_;
 };
 
-/// All bytes of a file at once. Throws OutputError.
+/// Writes all bytes of a file at once. Throws OutputError.
 SPAWNFIELD_API void write_file_atomically(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace spawnfield

@@ -9,22 +9,23 @@
 
 namespace spawnfield {
 
-/// A folder that appears whole or not at all: filled beside its name, takes its place by commit(), removed if that
-/// never comes. Of a link to a folder, what it leads to is replaced. One thread at a time may use it.
+/// A folder that appears complete or not at all. It is filled beside its final name, and commit() puts it there.
+/// Without commit(), it is removed. If the name is a link to a folder, the target of the link is replaced. Only one
+/// thread at a time may use it.
 class SPAWNFIELD_API OutputFolder {
 public:
     using Path = std::filesystem::path;
 
-    /// An empty folder may be replaced; one that holds something only if `objection` to it is empty, else the error
-    /// names it. Throws OutputError, before anything is made.
+    /// An empty folder may be replaced. Another folder may be replaced only if `objection` returns an empty text for
+    /// it; otherwise that text is the reason in the error. Throws OutputError before anything is created.
     OutputFolder(const Path& target, const std::function<std::string(const Path&)>& objection);
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;
     ~OutputFolder();
 
-    const Path& path() const { return folder_; }  ///< where to write meanwhile
+    const Path& path() const { return folder_; }  ///< the folder to write to before commit()
 
-    /// `keep` may take out of the old folder, if there was one, what it wants before the rest of it goes. Throws
+    /// If there was an old folder, `keep` may move files from it to the new one before it is removed. Throws
     /// OutputError.
     void commit(const std::function<void(const Path& old, const Path& now)>& keep = {});
 
@@ -32,8 +33,8 @@ private:
     Path target_, folder_, old_;
 };
 
-/// Objection to a folder that holds anything but files of these names: so that only what was written by the same
-/// command is replaced. `kind` as "thesis result".
+/// Returns an objection to folders that contain anything except files of these names. So a command replaces only
+/// folders that the same command wrote. `kind` is in the message, for example "thesis result".
 SPAWNFIELD_API std::function<std::string(const std::filesystem::path&)> holds_only(std::span<const char* const> names,
                                                                                    const std::string& kind);
 

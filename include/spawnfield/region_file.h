@@ -7,19 +7,20 @@
 
 namespace spawnfield {
 
-/// What of a nav2 map is the region: its free cells, or as its keepout filter has it the occupied ones.
+/// The cells of a nav2 map that become the region: free cells, or occupied cells as in nav2's keepout filter.
 enum class MapCells { Free, Occupied };
 
-/// Reads GeoJSON (Polygon, MultiPolygon, Feature, FeatureCollection, GeometryCollection; coordinates are metres of the
-/// map), CSV (x,y in a row for each corner; an empty line, or another value in a column `polygon`, begins the next), or
-/// a nav2 map.yaml. By extension: .json, .geojson; .yaml, .yml; else CSV.
+/// Reads a region from a GeoJSON, CSV or nav2 file. The extension of the name decides: .json and .geojson are GeoJSON,
+/// .yaml and .yml are the map.yaml of a nav2 map, all others are CSV. GeoJSON may contain Polygon, MultiPolygon,
+/// Feature, FeatureCollection and GeometryCollection; its coordinates are metres of the map. CSV has x,y in a row for
+/// each corner. A new polygon begins after an empty line, or when the value in a column `polygon` changes.
 ///
-/// Throws FileError with line or element: rings that are not closed (GeoJSON), of fewer than 3 corners, numbers that
-/// are not finite, geometries without area.
+/// Throws FileError with line or element for rings that are not closed (GeoJSON), rings with fewer than 3 corners,
+/// numbers that are not finite, and geometries without area.
 SPAWNFIELD_API Region read_region(const std::filesystem::path& file, MapCells cells = MapCells::Free);
 
-/// The same for the text of a GeoJSON or CSV file; it is GeoJSON if it starts with a brace. `name` stands for the file
-/// in messages.
+/// The same for the text of a GeoJSON or CSV file. It is GeoJSON if it starts with a brace. Messages use `name` as the
+/// file's name.
 SPAWNFIELD_API Region parse_region(const std::string& text, const std::string& name);
 
 }  // namespace spawnfield

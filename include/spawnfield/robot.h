@@ -13,17 +13,17 @@ namespace spawnfield {
 /// One convex part of a robot, in the robot's frame.
 struct RobotPart {
     Shape shape;
-    std::vector<Vec3> hull_vertices;             ///< Hull only: corners in the robot's frame
-    std::vector<std::array<int, 3>> hull_faces;  ///< Hull only: triangles, counterclockwise from outside
+    std::vector<Vec3> hull_vertices;             ///< only for a Hull: corners in the robot's frame
+    std::vector<std::array<int, 3>> hull_faces;  ///< only for a Hull: triangles, counterclockwise seen from outside
     std::string name;                            ///< the link it belongs to, or its name in robot.yaml; may be empty
 
-    SPAWNFIELD_API Vec3 centre() const;  ///< a point inside, robot frame
+    SPAWNFIELD_API Vec3 centre() const;  ///< a point inside the part, in the robot's frame
     SPAWNFIELD_API Bounds bounds() const;
 };
 
 /// The convex hulls that replace a mesh collision of a robot. Their union contains the whole mesh.
 struct MeshFit {
-    std::string name;                   ///< name of the robot's parts that it became
+    std::string name;                   ///< name of the robot's parts that replace the mesh
     std::string file;                   ///< name of the mesh file, without folders
     std::size_t parts = 1;              ///< number of convex hulls; they do not overlap
     double volume = 0;                  ///< of all hulls together, m3
@@ -51,10 +51,10 @@ struct Robot {
 };
 
 struct RobotOptions {
-    std::vector<std::filesystem::path> model_paths =
-        {};  ///< folders that hold models or ROS packages, as SceneOptions::model_paths
-    std::vector<JointPosition> joints =
-        {};              ///< of a URDF or SDF model; all others are at 0, or where the joint that they mimic puts them
+    /// Folders that contain models or ROS packages; see SceneOptions::model_paths.
+    std::vector<std::filesystem::path> model_paths = {};
+    /// Positions of joints of a URDF or SDF model. All other joints are at 0, or follow the joint that they mimic.
+    std::vector<JointPosition> joints = {};
     int mesh_parts = 1;  ///< largest number of convex parts for each mesh collision, 1 .. 64; 1: its convex hull
 };
 
@@ -68,9 +68,9 @@ struct RobotOptions {
 /// for joints that are not in the file, cannot move or have limits that exclude the value.
 SPAWNFIELD_API Robot load_robot(const std::string& robot, const RobotOptions& options = {});
 
-/// The points at which the robot touches the ground, in its own frame. `given` is true if the robot's
-/// file has contacts that span an area. Otherwise the points are those that JudgeOptions::max_slope uses: the corners
-/// of the convex hull, seen from above, of everything within 2 cm of the robot's lowest point.
+/// The points at which the robot touches the ground, in its own frame. `given` is true if the robot's file has contacts
+/// that span an area. Otherwise the points are those that JudgeOptions::max_slope uses: the corners of the convex hull,
+/// seen from above, of everything within 2 cm of the robot's lowest point.
 struct RobotContacts {
     std::vector<Vec3> points;
     bool given = false;

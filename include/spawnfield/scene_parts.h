@@ -3,15 +3,15 @@
 #include <spawnfield/export.h>
 #include <spawnfield/scene.h>
 
-/// Scenes made in code. The parts go the same way as those of a scene file: equal vertices are welded, and watertight
-/// pieces are filled.
+/// Functions that make scenes in code. Parts are treated like those of a scene file: equal vertices are welded, and
+/// watertight pieces are filled.
 namespace spawnfield {
 
-/// Whether what a mesh encloses is solid.
+/// Whether the inside of a mesh is solid.
 enum class Solid : std::uint8_t {
-    Auto,  ///< each watertight piece is, unless only some of its faces are water
-    Yes,   ///< each piece is, also if it has holes
-    No     ///< its faces have no thickness
+    Auto,  ///< the inside of each watertight piece is solid, unless some of its faces are water and some are not
+    Yes,   ///< the inside of each piece is solid, even if the piece has holes
+    No     ///< the faces have no thickness
 };
 
 /// Adds a mesh as a part. Triangles index the vertices, counterclockwise as seen from outside; vertices are in the

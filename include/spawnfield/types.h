@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-/// Everything is in metres and radians, right-handed, x forward, y left, z up (REP-103).
+/// All lengths are in metres and angles in radians. Frames are right-handed with x forward, y left, z up (REP-103).
 namespace spawnfield {
 
 using Vec3 = Eigen::Vector3d;
@@ -29,13 +29,13 @@ struct ZRange {
     bool operator==(const ZRange&) const = default;
 };
 
-/// Heights in both ranges. Contains nothing if they are apart (low > high).
+/// Returns the heights that are in both ranges. If there are none, the result has low > high and contains nothing.
 inline ZRange overlap(const ZRange& a, const ZRange& b)
 {
     return {a.low > b.low ? a.low : b.low, a.high < b.high ? a.high : b.high};
 }
 
-/// Axis-aligned box, closed. Empty while min > max.
+/// Axis-aligned box, including its surface. Empty while min > max.
 struct Bounds {
     Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 max = Vec3::Constant(-std::numeric_limits<double>::infinity());
@@ -46,7 +46,7 @@ struct Bounds {
         return x >= min.x() - tolerance && x <= max.x() + tolerance && y >= min.y() - tolerance &&
                y <= max.y() + tolerance;
     }
-    /// Whether the closed boxes share a point, seen along the first axes alone.
+    /// Returns whether the boxes, including their surfaces, share a point. Only the first `axes` axes count.
     bool meets(const Bounds& other, int axes = 3) const
     {
         return (min.head(axes).array() <= other.max.head(axes).array()).all() &&
@@ -60,34 +60,34 @@ struct Bounds {
     }
 };
 
-/// Place of a body in a parent frame: parent_point = rotation * body_point + position.
+/// The place of a body in a parent frame: parent_point = rotation * body_point + position.
 struct Pose {
     Vec3 position = Vec3::Zero();
     Mat3 rotation = Mat3::Identity();
 };
 
-/// R = Rz(yaw) Ry(pitch) Rx(roll), as URDF's rpy.
+/// Returns Rz(yaw) Ry(pitch) Rx(roll), the rotation for URDF's rpy.
 SPAWNFIELD_API Mat3 rotation_from_rpy(double roll, double pitch, double yaw);
 
-/// outer_from_body where outer_from_inner and inner_from_body are given.
+/// Returns outer_from_body for outer_from_inner and inner_from_body.
 inline Pose operator*(const Pose& outer, const Pose& inner)
 {
     return {outer.rotation * inner.position + outer.position, outer.rotation * inner.rotation};
 }
 
-/// What a part of a scene is for a robot.
+/// The meaning of a surface for a robot.
 enum class Label : std::uint8_t { Terrain, Obstacle, Water, Ignore };
 
-/// Verdict on a pose: the first of these that applies.
+/// The verdict on a pose: the first of these that applies.
 enum class Verdict : std::uint8_t {
     Outside,     ///< beyond the map's bounds in x and y, or beyond its z limits
     Aerial,      ///< no ground below the origin, or more than JudgeOptions::max_height below it
     OffTerrain,  ///< the ground is an obstacle
-    Submerged,   ///< water stands above the ground, at most JudgeOptions::max_water_depth deep
+    Submerged,   ///< the ground is under water, at most JudgeOptions::max_water_depth deep
     Collision,   ///< the robot touches or overlaps something solid, or is inside it
-    Steep,       ///< only with JudgeOptions::max_slope: the ground under the contacts is too inclined
-    Unstable,    ///< only with JudgeOptions::max_slope: a contact hangs over an edge, or stands against a wall
-    Valid        ///< none of these
+    Steep,       ///< only with JudgeOptions::max_slope: the ground under the contacts is too steep
+    Unstable,    ///< only with JudgeOptions::max_slope: a contact hangs over an edge or stands against a wall
+    Valid        ///< none of the others applies
 };
 inline constexpr std::size_t verdict_count = 8;
 
@@ -119,13 +119,13 @@ private:
     std::array<std::uint64_t, verdict_count> counts_{};
 };
 
-/// "0, 0, 0 to 1, 2, 3 m", or of the first axes only; rounded to nine digits.
+/// Returns for example "0, 0, 0 to 1, 2, 3 m", rounded to nine digits. Only the first `axes` axes are included.
 SPAWNFIELD_API std::string to_string(const Bounds& bounds, int axes = 3);
 SPAWNFIELD_API const char* to_string(Label label);      ///< as in scene.yaml: "terrain", …
 SPAWNFIELD_API const char* to_string(Verdict verdict);  ///< as in CSV files: "off_terrain", …
 
-/// Called now and then during long work with the share done, 0 .. 1, from any thread, one call at a time.
-/// May throw to stop the work.
+/// Called from time to time during long work, with the share that is done (0 .. 1). The calls may come from any thread,
+/// but only one at a time. May throw to stop the work.
 using Progress = std::function<void(double)>;
 
 SPAWNFIELD_API std::string version();  ///< "0.2.0"

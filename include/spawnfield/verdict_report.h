@@ -5,23 +5,25 @@
 
 namespace spawnfield {
 
-/// Poses of a table with their judgements, and who judged them. Refers to all of it.
+/// The poses of a table, their judgements, and the judge that made them. Refers to all three.
 struct VerdictReport {
     const PoseTable& table;
     const std::vector<Judgement>& judgements;  ///< one for each pose of the table
     const Judge& judge;
 };
 
-/// Returns a name for each pose: the table's column `name`, or "pose N" (N from 1) where it has none. " (pose N)" is
-/// added to names that occur more than once.
+/// Returns a name for each pose: the text in the table's column `name`, or "pose N" if there is none; N begins with 1.
+/// If several poses have the same name, " (pose N)" is added to it.
 SPAWNFIELD_API std::vector<std::string> pose_names(const PoseTable& table);
 
-/// Writes JSON, format spawnfield-verdicts/1: what the poses were judged against, counts, and for each pose its row,
-/// name, pose, verdict, ground, hit and the fields of its row as text, on one line. `sink` gets the text in pieces.
+/// Writes JSON in the format spawnfield-verdicts/1: the map, robot and settings, and the counts. For each pose, it has
+/// one line with the row, name, pose, verdict, ground, hit and the fields of the row as text. Passes the text to `sink`
+/// in pieces.
 SPAWNFIELD_API void write_verdicts_json(const VerdictReport& report, const std::function<void(std::string_view)>& sink);
 
-/// Writes JUnit XML, as Jenkins and GitLab read it: one test case for each pose, which fails if the pose is not valid.
-/// Characters that XML cannot hold are replaced. All times are 0, so that the same report gives the same bytes.
+/// Writes JUnit XML that Jenkins and GitLab read, with one test case for each pose; the test case fails if the pose is
+/// not valid. Characters that XML cannot contain are replaced. All times are 0, so that the same report gives the same
+/// bytes.
 SPAWNFIELD_API void write_verdicts_junit(const VerdictReport& report,
                                          const std::function<void(std::string_view)>& sink);
 

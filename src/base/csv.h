@@ -10,7 +10,7 @@ namespace spawnfield {
 inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 /// Returns the fields of one line, which comes without its line end. Quotes follow RFC 4180: they enclose a field, and
-/// two of them stand for one. Spaces around a field are removed.
+/// two quotes within it mean one. Spaces around a field are removed.
 std::vector<std::string> csv_fields(std::string_view line);
 
 /// Returns whether all fields are numbers, as in a file without a header line. False if there are no fields.

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 struct ForeignKind {
     std::array<const char*, 4> extensions;
     const char* name;
-    const char* as_scene;  ///< the remedy if the user gave it as a scene; FILE stands for its name
+    const char* as_scene;  ///< the remedy if the user gave it as a scene; FILE is replaced by its name
     const char* as_robot;  ///< the remedy if the user gave it as a robot
 };
 

@@ -87,7 +87,7 @@ std::function<std::string(const fs::path&)> holds_only(std::span<const char* con
             const bool known = entry.is_regular_file() && std::find(names.begin(), names.end(), name) != names.end();
             if (!known && (foreign.empty() || name < foreign)) foreign = name;
         }
-        return foreign.empty() ? "" : "contains " + foreign + ", which is not part of a " + kind;
+        return foreign.empty() ? "" : "contains " + foreign + ", which is not part of any " + kind;
     };
 }
 

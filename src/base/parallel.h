@@ -23,17 +23,18 @@ inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info:
 template <class T>
 using PerThread = tbb::enumerable_thread_specific<T>;
 
-/// Calls body(i) for each i < count on at most `threads` threads (0: all cores), and no more than the process allows
-/// TBB, in an arena of their own: nothing changes for the rest of the process. Each i must write to its own slot only.
-/// `progress` is called after items; an exception from there or from body ends the loop and is thrown on.
+/// Calls body(i) for each i < count on at most `threads` threads (0: all cores), but not on more than TBB may use in
+/// this process. The threads have an arena of their own, so the rest of the process is not affected. Each i must write
+/// only to its own slot. `progress` is called after items. An exception from it or from body ends the loop and reaches
+/// the caller.
 template <class Body>
 void parallel_for(std::size_t count, int threads, const Progress& progress, const Body& body)
 {
     std::atomic<std::size_t> done{0};
     std::mutex reporting;
-    // TBB's own synchronisation already orders these, but the library is not instrumented: the flags show a thread
-    // sanitizer that what came before the loop comes before its parts, and that these come before what follows the
-    // loop, be it an exception.
+    // For the thread sanitizer, which cannot see the synchronisation inside TBB because TBB is not compiled for it. The
+    // flags show the order: first the code before the loop, then the calls of body, then the code after the loop, also
+    // after an exception.
     std::atomic<bool> started{false}, finished{false};
     struct AtEnd {
         std::atomic<bool>& flag;

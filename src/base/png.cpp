@@ -58,7 +58,8 @@ public:
         return true;
     }
 
-    /// Makes each sample whole bytes. In full: also converts palettes to colours, and transparency to alpha.
+    /// Sets up the conversion of each sample to whole bytes. With in_full, palettes become colours, and transparency
+    /// alpha.
     bool prepare(bool in_full)
     {
         if (setjmp(png_jmpbuf(png_))) return false;
@@ -177,7 +178,7 @@ PngBytes read_samples(PngReader& reader, const std::string& file)
     const std::size_t rows = std::size_t(reader.rows());
     const std::size_t row_bytes = std::size_t(reader.cols()) * std::size_t(reader.channels()) *
                                   (reader.bits() == 16 ? 2 : 1);
-    // The memory is not cleared: a damaged header that claims a giant image then costs nothing.
+    // The memory is not cleared, so that a damaged header with a giant image size costs almost nothing.
     PngBytes data = std::make_unique_for_overwrite<png_byte[]>(rows * row_bytes);
     const auto starts = std::make_unique_for_overwrite<png_bytep[]>(rows);
     for (std::size_t row = 0; row < rows; ++row) starts[row] = data.get() + row * row_bytes;

@@ -9,27 +9,29 @@
 
 namespace spawnfield {
 
-/// Heights of a tile: base + value * quantum, m. Value 0: nothing.
+/// The head of a tile. A 16-bit value means the height base + value * quantum, m. The value 0 means that there is
+/// nothing.
 struct BoundsHead {
     double base, quantum;
-    double slack;  ///< some solid point of the cell is within this of each upper end, m; infinite: not known
-    std::uint32_t bound_cells, bounds;  ///< cells that have intervals, and how many they have together
-    std::uint32_t solid_cells, solids;
+    double slack;  ///< m; each upper end is at most this far above a solid point of its cell; infinite if not known
+    std::uint32_t bound_cells, bounds;  ///< number of cells that have intervals, and number of these intervals
+    std::uint32_t solid_cells, solids;  ///< the same for BoundsTile::solids
 };
 
 struct QuantizedSpan {
     std::uint16_t bottom, top;
 };
 
-/// Intervals of those cells of a tile that have some.
+/// The intervals of a tile's cells. Most cells have none; the others are marked by a bit. The rank of a marked cell is
+/// the number of marked cells before it.
 struct CellIntervals {
-    const std::uint64_t* marks = nullptr;   ///< a bit for each cell that has some; nullptr: none has
-    const std::uint16_t* ranks = nullptr;   ///< marked cells before each 64 cells
-    const std::uint32_t* starts = nullptr;  ///< in spans, by rank of the cell, and the end
-    const QuantizedSpan* spans = nullptr;   ///< from the bottom up
+    const std::uint64_t* marks = nullptr;   ///< one bit for each cell; nullptr if no cell is marked
+    const std::uint16_t* ranks = nullptr;   ///< of each 64th cell, marked or not
+    const std::uint32_t* starts = nullptr;  ///< by rank: where the cell's intervals begin in `spans`; then their number
+    const QuantizedSpan* spans = nullptr;   ///< in each cell from the bottom up
 
     bool has(std::uint32_t cell) const { return marks != nullptr && (marks[cell / 64] >> (cell % 64) & 1) != 0; }
-    /// Returns the intervals of a cell that has some.
+    /// Returns the intervals of a marked cell.
     std::span<const QuantizedSpan> of(std::uint32_t cell) const
     {
         const std::uint64_t before = marks[cell / 64] & ((std::uint64_t{1} << (cell % 64)) - 1);
@@ -44,18 +46,21 @@ struct BoundsTile {
     static constexpr std::uint32_t cells = side * side;
 
     const BoundsHead* head = nullptr;
-    const std::uint16_t* tops = nullptr;  ///< of all that is solid in the cell, rounded up
-    CellIntervals
-        bounds;  ///< that hold all that is solid in the cell, where there is a gap; elsewhere all below the top may be
-    CellIntervals solids;  ///< certainly solid at the cell's centre, rounded inwards
+    const std::uint16_t* tops = nullptr;  ///< for each cell the height of its highest solid point, rounded up
+    /// All solid points of a marked cell lie in its intervals, which are rounded outwards. In other cells any point
+    /// below the top may be solid.
+    CellIntervals bounds;
+    /// Points at the cell's centre that are certainly solid, rounded inwards.
+    CellIntervals solids;
 
     BoundsTile() = default;
-    /// The arrays behind a head, whose counts must fit the bytes (bounds_tile_size).
+    /// Finds the arrays behind the head. The head's counts must fit the bytes (see bounds_tile_size).
     explicit BoundsTile(std::string_view bytes);
 
     double height(std::uint16_t value) const { return head->base + value * head->quantum; }
 };
 
+/// Returns the size of a tile with this head, bytes, without the padding at its end.
 std::uint64_t bounds_tile_size(const BoundsHead& head);
 
 struct SolidBounds::Impl {

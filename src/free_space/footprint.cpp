@@ -12,10 +12,11 @@ namespace {
 
 constexpr int disc_sides = 32, inner_disc_sides = 16;
 
-/// Corners of polyhedra that hold a part and that lie in it, in the robot's frame turned by `rotation`.
+/// Corners of two polyhedra, one around a part and one within it, in the robot's frame turned by `rotation`.
 struct PartCorners {
     std::vector<Vec3> around, within;
-    std::vector<std::pair<std::size_t, std::size_t>> edges;  ///< of `within`; empty: any two of them may be one
+    /// Edges of `within`. Empty: not known, so each pair of corners counts as an edge.
+    std::vector<std::pair<std::size_t, std::size_t>> edges;
 };
 
 /// Adds a circle of `radius` around `centre` in the plane of u and v, as corners of polygons around it and within it.
@@ -101,7 +102,7 @@ Polygon2 narrowed(const Polygon2& polygon, double reach)
     return out;
 }
 
-/// What the convex hull of the corners has at height z, seen from above.
+/// Returns the cross-section at height z of the polyhedron within the part, seen from above.
 Polygon2 slice(const PartCorners& corners, double z)
 {
     Polygon2 out;
@@ -119,7 +120,8 @@ Polygon2 slice(const PartCorners& corners, double z)
     return convex_hull(std::move(out));
 }
 
-/// A large upright prism in the convex hull of the corners: by convexity, what two slices share is also between them.
+/// Returns a large upright prism inside the polyhedron within the part. It is convex, so the area that two of its
+/// cross-sections share is inside it at all heights between them.
 Prism prism_within(const PartCorners& corners)
 {
     const std::vector<Vec3>& points = corners.within;
@@ -145,7 +147,7 @@ Prism prism_within(const PartCorners& corners)
             best = {std::move(polygon), bottom, top};
         }
     }
-    // Two margins, one for the rounding of slices.
+    // Twice the margin, because the cross-sections are rounded.
     best.polygon = narrowed(best.polygon, 2 * FreeSpace::margin);
     best.bottom += 2 * FreeSpace::margin;
     best.top -= 2 * FreeSpace::margin;
@@ -153,7 +155,7 @@ Prism prism_within(const PartCorners& corners)
     return best;
 }
 
-constexpr double reach = touch_margin * 2 + FreeSpace::margin;  // hulls grow by up to sqrt(3) times as much
+constexpr double reach = touch_margin * 2 + FreeSpace::margin;  // m; a hull grows by up to sqrt(3) touch_margin
 
 }  // namespace
 
@@ -202,8 +204,8 @@ std::vector<Footprint> yaw_free_footprints(const Robot& robot)
         for (const Vec2& p : footprint.outer.polygon) farthest = std::max(farthest, p.norm());
         footprint.outer.polygon = disc((farthest + reach) / std::cos(std::numbers::pi / disc_sides));
         Polygon2& inner = footprint.inner.polygon;
-        double nearest =
-            std::numeric_limits<double>::infinity();  // of its rim to the origin; below 0: the origin is outside
+        double nearest = std::numeric_limits<double>::infinity();  // distance of its rim from the origin; negative if
+                                                                   // the origin is outside
         for (std::size_t k = 0; k < inner.size(); ++k) {
             const Vec2 edge = inner[(k + 1) % inner.size()] - inner[k];
             if (edge.norm() > 0) nearest = std::min(nearest, cross(edge, -inner[k]) / edge.norm());

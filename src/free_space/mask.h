@@ -14,7 +14,7 @@ namespace spawnfield {
 struct FreeSpace::Impl {
     SolidBounds bounds;
     Robot robot;
-    std::vector<Footprint> ahead;  ///< upright, at yaw 0
+    std::vector<Footprint> ahead;  ///< upright robot, at yaw 0
     std::vector<Footprint> every_yaw;
 };
 
@@ -22,22 +22,23 @@ struct FreeSpace::Impl {
 /// and the cells that they cover from one row of poses (equal y).
 class Mask {
 public:
-    /// Upright at this yaw until another rotation is set.
+    /// The robot is upright at this yaw until another rotation is set.
     explicit Mask(const FreeSpace::Impl& space, double yaw = 0) : space_(space), raster_(space.bounds.impl())
     {
         set_rotation(yaw);
     }
 
-    void set_rotation(double yaw);            ///< upright
-    void set_rotation(const Mat3& rotation);  ///< any; poses of a tilted robot are never Blocked
-    void set_every_yaw();                     ///< upright: proofs hold for every yaw
+    void set_rotation(double yaw);            ///< upright robot
+    void set_rotation(const Mat3& rotation);  ///< any rotation; poses of a tilted robot are never Blocked
+    void set_every_yaw();                     ///< upright robot; proofs hold for every yaw
     Proof proof_of(const Vec3& position);
-    /// Returns whether something solid on the vertical line through the origin, whose spans these are, is certainly
-    /// inside a part.
+    /// Returns whether a solid on the vertical line through the origin is certainly inside a part. `spans` are the
+    /// spans of that line.
     bool is_pierced(std::span<const Span> spans, double z) const;
 
 private:
-    /// Cells of one row that a part covers, relative to the column of its origin; inner ones lie within it whole.
+    /// The cells of one row that a part covers (low .. high), and those completely under its inner prism (inner_low ..
+    /// inner_high). All four are x, in cells from the robot's origin.
     struct CoverRow {
         int row;
         double low, high, inner_low, inner_high;
@@ -55,14 +56,14 @@ private:
         std::size_t level;
         bool is_ready = false;
         std::vector<CoverRow> rows;        ///< in the order of their numbers
-        double low = 0, high = 0;          ///< of all rows
-        std::vector<CellRange> undecided;  ///< of each row: cells outside of this are proven free at the last pose
-        std::array<OpenTile, 4> tiles;     ///< the last ones that were looked at: all that a part straddles
+        double low = 0, high = 0;          ///< smallest low and largest high of all rows
+        std::vector<CellRange> undecided;  ///< for each row: all other cells are proven free at the last pose
+        std::array<OpenTile, 4> tiles;     ///< the tiles that were used last; a part may lie on four of them
     };
     struct Part {
         Footprint footprint;
         std::vector<Pass> passes;  ///< coarse to fine
-        bool is_around_origin;     ///< the inner prism, as seen from above
+        bool is_around_origin;     ///< the origin is inside the polygon of the inner prism
     };
     struct Heights;
 
@@ -80,7 +81,7 @@ private:
     const FreeSpace::Impl& space_;
     const SolidBounds::Impl& raster_;
     std::vector<Part> parts_;
-    double y_ = std::numeric_limits<double>::quiet_NaN();  ///< of the last pose, for which rows of cells are ready
+    double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose; pass.rows are computed for it
 };
 
 }  // namespace spawnfield

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double steps = 65500;         // quantized heights of a tile; fewer than 65535, so that rounding outwards fits
 constexpr double least_quantum = 1e-6;  // m
-constexpr double least_solid = 1e-4;    // m; thinner solids count as surfaces only, which are in the bounds
+constexpr double least_solid = 1e-4;    // m; a thinner solid is in the bounds, but not in the solids
 constexpr std::uint32_t side = BoundsTile::side;
 
 /// Intervals of heights in each cell of a tile, before they are packed. Those of cell c are spans[starts[c]] ..

@@ -15,7 +15,7 @@ namespace {
 constexpr double step = 0.01;             // m between counted heights
 constexpr double head_room = 1.5;         // m; least free height above ground; excludes the inside of hollow slabs
 constexpr int smoothing = 25;             // a height also counts up to this many steps above and below, but less
-constexpr double highest_valley = 0.5;    // share of the lower of two peaks; a lower density between separates floors
+constexpr double highest_valley = 0.5;    // share of the lower of two peaks; floors are separated by a lower density
 constexpr double flat_within = 0.25;      // m above and below a floor's height
 constexpr double least_flat_share = 0.5;  // share of a floor's ground that must be flat
 constexpr double least_share = 0.02;      // share of the map's ground that a floor must have

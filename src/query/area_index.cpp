@@ -19,7 +19,7 @@ double squared_distance(const Vec2& p, const Vec2& from, const Vec2& to)
     return (off - t * along).squaredNorm();
 }
 
-/// Calls visit(number of the polygon, from, to) for every edge, polygon after polygon.
+/// Calls visit(number of the polygon, start, end) for each edge, polygon after polygon.
 template <class Visit>
 void for_each_edge(const std::vector<Region>& regions, const Visit& visit)
 {
@@ -47,7 +47,7 @@ PolygonIndex::PolygonIndex(const std::vector<Region>& regions)
     if (count == 0) return;
     y0_ = low - near_edge;
     end_ = high + near_edge;
-    // Long upright edges stand in many rows: as many rows as do not need much memory.
+    // A long vertical edge lies in many rows. If there are too many entries, the number of rows is halved.
     std::size_t rows = std::min<std::size_t>(count, 8192), entries = 0;
     for (;; rows /= 2) {
         height_ = (end_ - y0_) / double(rows);
@@ -96,7 +96,7 @@ std::size_t PolygonIndex::row_of(double y) const
 bool PolygonIndex::holds(const Group& group, const Vec2& p) const
 {
     if (p.x() < group.low_x - on_edge || p.x() > group.high_x + on_edge)
-        return false;  // as many crossings on this side as none
+        return false;  // to the left or right of all its edges
     bool inside = false;
     for (std::uint32_t i = group.first; i < group.last; ++i) {
         const Vec2 &a = edges_[i].from, &b = edges_[i].to;

@@ -9,15 +9,15 @@
 
 namespace spawnfield {
 
-/// The union of some polygons, as Region defines it. Their edges are sorted into rows, so that a look-up meets only the
-/// edges beside it.
+/// The union of some polygons, as Region defines it. The edges are sorted into rows, so that a look-up examines only
+/// the edges of its row.
 class PolygonIndex {
 public:
     explicit PolygonIndex(const std::vector<Region>& regions);
 
     bool contains(const Vec2& point) const;
-    /// Return true only if it is certain that no polygon meets the closed rectangle, or that one polygon contains all
-    /// of it. False where edges come near.
+    /// Return true only if it is certain that no polygon meets the closed rectangle (misses), or that one polygon
+    /// contains all of it (covers). Both return false if an edge may be near the rectangle.
     bool misses(const Rect& rect) const;
     bool covers(const Rect& rect) const;
 
@@ -27,16 +27,16 @@ private:
     };
     /// The edges of one polygon in one row.
     struct Group {
-        std::uint32_t polygon, first, last;  ///< edges
-        double low_x, high_x;                ///< that they reach
+        std::uint32_t polygon, first, last;  ///< indices of the edges: first .. last - 1
+        double low_x, high_x;                ///< range of the edges' x
     };
     std::size_t row_of(double y) const;
     bool holds(const Group& group, const Vec2& point) const;
-    /// Returns whether an edge of the group comes within the slack of the rectangle.
+    /// Returns whether an edge of the group may be within near_edge of the rectangle.
     bool meets(const Group& group, const Rect& rect) const;
 
-    double y0_ = 0, height_ = 1, end_ = -1;  ///< of the rows; where the last one ends
-    std::vector<std::uint32_t> starts_;      ///< groups of each row, then their number
+    double y0_ = 0, height_ = 1, end_ = -1;  ///< start and height of the rows, end of the last one
+    std::vector<std::uint32_t> starts_;  ///< index of each row's first group; the last entry is the number of groups
     std::vector<Group> groups_;
     std::vector<Edge> edges_;
 };
@@ -50,12 +50,12 @@ public:
     bool contains(const Vec2& point) const;
     bool contains(const Vec2& point, double z) const;  ///< z to touch_tolerance
 
-    /// True only if no point of the closed rectangle is in the area at these heights. False where an edge of a region
-    /// runs through the rectangle, and where only several keep-outs together cover it.
+    /// Returns true only if no point of the closed rectangle is in the area at these heights. Returns false if an edge
+    /// of a region crosses the rectangle, or if only several keep-outs together cover it.
     bool misses(const Rect& rect, const ZRange& z = {}) const;
 
 private:
-    /// Regions that share their heights.
+    /// Regions with the same heights.
     struct Slab {
         ZRange z;
         PolygonIndex polygons;

@@ -6,13 +6,13 @@
 
 namespace spawnfield {
 
-/// The points of SearchOptions::avoid, ready for look-ups: a hash grid for each distance.
+/// The points of SearchOptions::avoid, prepared for look-ups: a hash grid for each distance.
 class AvoidIndex {
 public:
     /// Keeps only the points that are near enough to matter within the x and y of `box`.
     AvoidIndex(const std::vector<AvoidedPoints>& avoid, const Bounds& box)
     {
-        constexpr double slack = 1e-6;  // m, more than distances are rounded by
+        constexpr double slack = 1e-6;  // m; larger than the rounding of distances
         grids_.reserve(avoid.size());
         for (const AvoidedPoints& group : avoid) {
             SpacedPoints& grid = grids_.emplace_back(group.distance);
@@ -25,7 +25,7 @@ public:
         }
     }
 
-    /// Whether no avoided point is nearer than its group's distance.
+    /// Returns whether the distance to every avoided point is at least that of the point's group.
     bool is_clear(const Vec3& point) const
     {
         return std::all_of(grids_.begin(), grids_.end(),

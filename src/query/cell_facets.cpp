@@ -11,9 +11,9 @@ namespace spawnfield {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr std::size_t most_facets = 64;  // in a cell; beyond them only their heights count
+constexpr std::size_t most_facets = 64;  // in a cell; if there are more, only the heights of the terrain count
 
-/// m; narrower than any two lines that count as different.
+/// Returns whether a polygon is narrower than touch_tolerance (m), the distance at which two lines count as different.
 bool is_sliver(const SmallPolygon& polygon)
 {
     double longest = 0;
@@ -48,7 +48,7 @@ void Remainder::take(const SmallPolygon& polygon)
 {
     out_.clear();
     for (SmallPolygon& piece : left_) {
-        if (piece.size() + polygon.size() > SmallPolygon::most) {  // a piece of a piece of a piece: may well stay
+        if (piece.size() + polygon.size() > SmallPolygon::most) {  // too many corners for a cut: the piece is kept
             out_.push_back(piece);
             continue;
         }
@@ -80,7 +80,7 @@ CellFacets::CellFacets(const Geometry& geometry, const Rect& cell) : cell_(cell)
                                      add_primitive(tile, element);
                              });
     if (has_too_many || !has_filled_terrain_) return;
-    // Crossings of the same mesh that are not terrain count too, where they separate inside from outside.
+    // The other faces of filled meshes count too, because they separate the inside from the outside.
     geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y,
                              [&](const Tile& tile, std::uint32_t element) {
                                  has_too_many = has_too_many || all.size() >= most_facets;
@@ -124,7 +124,7 @@ void CellFacets::add_triangle(const Tile& tile, std::uint32_t element, bool othe
     const Interval limits{std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()})};
     const double longest = std::max({(b - a).head<2>().norm(), (c - a).head<2>().norm(), (c - b).head<2>().norm()});
     if (std::abs(normal.z()) <= touch_tolerance * longest) {
-        if (!out.filled) return;  // a sheet seen edge-on gives nothing
+        if (!out.filled) return;  // a vertical triangle of a sheet gives no interval
         out.z = limits;
         all.push_back(std::move(out));
         return;
@@ -154,7 +154,8 @@ void CellFacets::add_primitive(const Tile& tile, std::uint32_t element)
     out.water = label == Label::Water;
     const ElementBox& box = tile.boxes[element];
     out.z = {double(box.min[2]), double(box.max[2])};
-    // The upper surface of a convex body is concave: least at a corner, and below the point mirror image of that.
+    // The upper surface of a convex body is concave. So over the cell, its lowest point `least` is at a corner, and its
+    // highest point is at most as far above `middle` as `least` is below.
     double least = inf;
     const auto middle = vertical_interval(shape, cell_.centre_x(), cell_.centre_y());
     bool is_whole = middle.has_value();
@@ -170,7 +171,7 @@ void CellFacets::add_primitive(const Tile& tile, std::uint32_t element)
     all.push_back(std::move(out));
 }
 
-/// The sides that can be seen from above.
+/// Adds the sides of a box that are visible from above.
 void CellFacets::add_box(const Shape& box, Label label)
 {
     for (int axis = 0; axis < 3; ++axis) {

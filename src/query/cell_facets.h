@@ -13,9 +13,9 @@
 
 namespace spawnfield {
 
-constexpr double proof_slack = 1e-8;  ///< m that heights and distances of a cell are held away from their limits
+constexpr double proof_slack = 1e-8;  ///< m that heights and distances of a cell must keep from their limits
 
-/// A convex polygon of few corners, counterclockwise, without memory of its own.
+/// A convex polygon with few corners, counterclockwise. It allocates no memory.
 class SmallPolygon {
 public:
     static constexpr std::size_t most = 15;
@@ -40,13 +40,13 @@ private:
 
 SmallPolygon corners_of(const Rect& rect);
 
-/// Unit normal of the edge from p to q of a counterclockwise polygon, outwards.
+/// Returns the outward unit normal of the edge from p to q of a counterclockwise polygon.
 Vec2 outward_normal(const Vec2& p, const Vec2& q);
 
-/// Returns whether an edge of one polygon separates the other one from it; they may overlap by `by` m.
+/// Returns whether an edge of one polygon separates the other polygon from it. The polygons may overlap by `by` m.
 bool are_parted(const SmallPolygon& a, const SmallPolygon& b, double by);
 
-/// The rest of a rectangle from which convex polygons are taken away.
+/// The part of a rectangle that is left after convex polygons have been taken away.
 class Remainder {
 public:
     explicit Remainder(const Rect& rect) : left_{corners_of(rect)} {}
@@ -59,29 +59,30 @@ private:
     std::vector<SmallPolygon> left_, out_;
 };
 
-/// A flat piece of surface, or of what a primitive has above; its plane is height + slope * (x, y).
+/// A flat piece of a surface, or the upper surface of a primitive. With has_plane, its heights are height + slope * (x,
+/// y).
 struct Facet {
-    SmallPolygon polygon;  ///< seen from above; empty: upright, or not known
-    Interval z;            ///< within the cell, m
+    SmallPolygon polygon;  ///< seen from above; empty: the facet is vertical, or its outline is not known
+    Interval z;            ///< heights within the cell
     double height = 0;
     Vec2 slope = Vec2::Zero();
     bool has_plane = false;
     bool terrain = false, water = false;
-    bool filled = false;  ///< of a filled mesh: only some crossings are upper ends
+    bool filled = false;  ///< belongs to a filled mesh, so only some of its crossings are upper ends
     bool open = false;
-    bool crossed = false;  ///< by the line through the cell's centre
+    bool crossed = false;  ///< the vertical line through the cell's centre crosses it
     std::uint32_t piece = 0;
 
     double at(double x, double y) const { return height + slope.x() * x + slope.y() * y; }
 };
 
-/// Terrain and water in a cell, as flat pieces; also the other faces of filled meshes, which separate inside from
-/// outside.
+/// The terrain and water in a cell, as flat pieces. If a filled mesh has terrain, its other faces are included too,
+/// because they separate the inside from the outside.
 struct CellFacets {
     std::vector<Facet> all;
-    bool has_too_many = false;  ///< for planes: only `terrain` counts
+    bool has_too_many = false;  ///< `all` is incomplete, so only `terrain` may be used
     Interval terrain{std::numeric_limits<double>::infinity(),
-                     -std::numeric_limits<double>::infinity()};  ///< heights of all terrain
+                     -std::numeric_limits<double>::infinity()};  ///< range of the heights of all terrain
 
     CellFacets(const Geometry& geometry, const Rect& cell);
 

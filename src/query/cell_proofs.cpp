@@ -21,7 +21,7 @@ struct CellProofs::Prism {
     double bottom, top;
 };
 
-/// One cell under proof.
+/// The proofs about one cell.
 class CellProofs::Cell {
 public:
     Cell(const CellProofs& proofs, const Rect& rect)
@@ -44,7 +44,7 @@ public:
     }
 
 private:
-    /// Heights between which layers may lie, from the bottom up, and not elsewhere.
+    /// Computes the bands: intervals of heights, from the bottom up, that contain all layers of the cell.
     void find_bands()
     {
         if (facets_.has_too_many) {
@@ -57,8 +57,9 @@ private:
         join_intervals(bands_, 2 * layer_tolerance);
     }
 
-    /// Crossings of a filled mesh at which a line that goes down leaves it are no layers. Faces that overlap in height
-    /// are one cluster; between clusters all of the cell is inside, or outside, as its centre is.
+    /// Excludes lower ends, which are not layers: there, a line that goes down leaves a filled mesh. Faces whose
+    /// heights overlap form a cluster. Between two clusters, the cell is completely inside the mesh or completely
+    /// outside, like its centre.
     void drop_lower_ends()
     {
         std::vector<Facet*> filled;
@@ -69,7 +70,7 @@ private:
         });
         for (std::size_t i = 0; i < filled.size();) {
             const std::uint32_t piece = filled[i]->piece;
-            std::size_t above = 0;  // crossings of the centre line
+            std::size_t above = 0;  // crossings of the line through the centre, so far
             while (i < filled.size() && filled[i]->piece == piece) {
                 std::vector<Facet*> cluster;
                 for (double bottom = filled[i]->z.bottom;
@@ -87,7 +88,7 @@ private:
         }
     }
 
-    /// Whether lines cross it once at most.
+    /// Returns whether each vertical line crosses the cluster at most once.
     static bool is_single(const std::vector<Facet*>& cluster)
     {
         if (cluster.size() > most_in_cluster) return false;
@@ -112,14 +113,15 @@ private:
         return false;
     }
 
-    /// The part of a band whose layers are ground and whose poses are not outside.
+    /// Returns the part of a band whose layers are ground and whose poses are not outside.
     Interval ground_in(const Interval& band) const
     {
         return {std::max(band.bottom, proofs_.ground_z_.low - slack),
                 std::min(band.top, proofs_.ground_z_.high + slack)};
     }
 
-    /// Only the top layer is chosen, and there is one above that is ground.
+    /// Returns whether the band is not chosen, because only the top layer is chosen and the whole cell has a higher
+    /// layer that is ground.
     bool is_left_out(std::size_t b) const
     {
         const LayerChoice& layers = proofs_.options_.layers;
@@ -140,7 +142,7 @@ private:
                            [&](const SpacedPoints& points) { return is_covered(band, points); });
     }
 
-    /// Whether all poses of the band are too near to one of the points.
+    /// Returns whether all poses of the band are too near to one and the same point.
     bool is_covered(const Interval& band, const SpacedPoints& points) const
     {
         const double distance = points.distance();
@@ -158,8 +160,8 @@ private:
         const Interval& band = bands_[b];
         const double max_water_depth = proofs_.shared_.options.max_water_depth;
         const bool any_depth = std::isinf(max_water_depth);
-        // Whatever terrain is the ground of a pose must lie under the water: the layer, or one between that and the
-        // origin.
+        // All terrain that may be the ground of a pose must be under water: its layer, and the layers between that
+        // layer and the origin.
         double highest = band.top;
         for (std::size_t above = b + 1;
              above < bands_.size() && bands_[above].bottom <= band.top + proofs_.offset_ + slack; ++above)
@@ -175,12 +177,12 @@ private:
     {
         const Pose pose{{rect_.centre_x(), rect_.centre_y(), (band.bottom + band.top) / 2 + proofs_.offset_},
                         Mat3::Identity()};
-        for (const Eroded& eroded : proofs_.eroded_)  // from the largest robot on
+        for (const Eroded& eroded : proofs_.eroded_)  // the largest robot comes first
             if ((band.top - band.bottom) / 2 <= eroded.half_height) return !eroded.checker.is_free(pose);
         return false;
     }
 
-    /// Whether a point of the robot's inside is within one solid at every pose of the band.
+    /// Returns whether some point inside the robot is in the same solid at all poses of the band.
     bool is_in_solid(const Interval& band) const
     {
         return std::any_of(proofs_.prisms_.begin(), proofs_.prisms_.end(), [&](const Prism& prism) {
@@ -192,8 +194,8 @@ private:
         });
     }
 
-    /// Convex shapes hold a block if they hold its corners; so does the inside of a mesh that has the centre in it, and
-    /// no surface where the block is.
+    /// Returns whether one solid contains the whole block. A convex shape does if it contains the vertical edges of the
+    /// block. A mesh does if it contains the vertical line through the centre, and if the block meets no surface.
     bool is_solid(const Rect& rect, const Interval& z) const
     {
         const auto holds = [&](const Interval& span) { return span.bottom <= z.bottom && span.top >= z.top; };
@@ -219,7 +221,8 @@ private:
         });
     }
 
-    /// Whether some point of the robot's inside meets a terrain surface above or below it, at every pose of the band.
+    /// Returns whether a terrain surface passes through the robot at all poses of the band. Examines some vertical
+    /// lines of each prism, one after the other.
     bool is_in_ground(const Interval& band) const
     {
         if (facets_.has_too_many) return false;
@@ -253,7 +256,8 @@ private:
         });
     }
 
-    /// How much higher `to` is at the shift from where one stands on `from`, in the cell; nothing if they never meet.
+    /// Returns how much higher `to` is at (x, y) + shift than `from` is at (x, y), for all (x, y) of the cell where
+    /// both exist. If there are none, bottom > top.
     Interval rise_between(const Facet& from, const Facet& to, const Vec2& shift) const
     {
         Vec2 low(rect_.low_x, rect_.low_y), high(rect_.high_x, rect_.high_y);
@@ -288,7 +292,7 @@ CellProofs::CellProofs(const Judge::Impl& shared, const SampleOptions& options, 
                         ZRange{shared.map.z_limits.low - offset_, shared.map.z_limits.high - offset_})),
       layer_z_(overlap(shared.map.z_limits, options.z)), area_(area), taken_(taken), avoided_(avoided)
 {
-    if (shared.options.obstacles != Obstacles::Geometry) return;  // not what the proofs see
+    if (shared.options.obstacles != Obstacles::Geometry) return;  // the proofs use the geometry, not the voxels
     const std::vector<Footprint> prints = options.random_yaw
                                               ? yaw_free_footprints(shared.robot)
                                               : footprints(shared.robot, rotation_from_rpy(0, 0, options.yaw), true);
@@ -308,7 +312,7 @@ void CellProofs::set_half_cell(double half_x, double half_y)
     }
 }
 
-/// All of it is within the robot wherever that is moved by up to these lengths.
+/// Returns a robot that stays inside the real robot when it is moved by up to these lengths.
 Robot CellProofs::eroded(double half_x, double half_y, double half_height) const
 {
     Robot robot;
@@ -322,7 +326,7 @@ Robot CellProofs::eroded(double half_x, double half_y, double half_height) const
                        normal.dot(p) - half_x * std::abs(normal.x()) - half_y * std::abs(normal.y()) - slack);
         }
         const double bottom = prism.bottom + half_height, top = prism.top - half_height;
-        constexpr double least = 1e-3;  // m; flatter or thinner bodies are not worth it
+        constexpr double least = 1e-3;  // m; flatter or narrower parts would prove little
         rest = convex_hull(std::move(rest));
         if (rest.size() < 3 || area_of(rest) < least * least || !(top - bottom > least)) continue;
         std::vector<Vec3> corners;
@@ -333,7 +337,7 @@ Robot CellProofs::eroded(double half_x, double half_y, double half_height) const
         try {
             robot.parts.push_back(convex_hull(corners));
         } catch (const std::domain_error&) {
-            continue;  // too thin after all: it proves nothing
+            continue;  // the part is too thin for a hull, so it is left out
         }
     }
     return robot;

@@ -54,7 +54,7 @@ private:
     const SpacedPoints& taken_;
     const AvoidIndex& avoided_;
     std::vector<Prism> prisms_;   ///< relative to the origin; inside the robot at every yaw that is drawn
-    std::vector<Eroded> eroded_;  ///< by growing half_height
+    std::vector<Eroded> eroded_;  ///< sorted by half_height
 };
 
 }  // namespace spawnfield

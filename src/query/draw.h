@@ -4,8 +4,9 @@
 
 namespace spawnfield {
 
-/// Stream `index` of `seed`, the same numbers on every machine; std engines are portable, std distributions are not.
-/// Source: Steele, Lea, Flood, Fast splittable pseudorandom number generators, 2014 (SplitMix64).
+/// The random numbers of stream `index` for `seed`. They are the same on every machine, unlike those of the standard
+/// library's distributions. Source: Steele, Lea, Flood, Fast splittable pseudorandom number generators, 2014
+/// (SplitMix64).
 class Draw {
 public:
     Draw(std::uint64_t seed, std::uint64_t index) : state_{mix(seed + mix(index + golden))} {}

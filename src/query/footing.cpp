@@ -14,9 +14,9 @@
 namespace spawnfield {
 namespace {
 
-constexpr double step = 0.02;      // m by which the ground may rise or fall under any contact
-constexpr double evenness = 0.1;   // share of the range of heights by which a slope may be uneven
-constexpr double rounding = 1e-9;  // of gradients
+constexpr double step = 0.02;  // m by which the surface under a contact may always be higher or lower than the ground
+constexpr double evenness = 0.1;   // a slope may be uneven by this share of the range of its heights
+constexpr double rounding = 1e-9;  // tolerance of gradients
 
 /// Writes the solids of the column to `out`, from the bottom up; solids that touch count as one.
 void join_solids(const Column& column, std::vector<Interval>& out)
@@ -71,7 +71,7 @@ void Footing::set_rotation(const Mat3& rotation)
 void Footing::set_columns(double x, double y)
 {
     if (columns_at_ == Vec2(x, y)) return;
-    columns_at_.reset();  // stays so if a tile is damaged
+    columns_at_.reset();  // remains empty if column_at() throws because a tile is damaged
     for (Contact& contact : contacts_)
         join_solids(column_at(*geometry_, x + contact.shift.x(), y + contact.shift.y()), contact.solids);
     columns_at_ = Vec2(x, y);
@@ -103,11 +103,13 @@ Vec2 Footing::gradient() const
     return out;
 }
 
-/// Returns whether the surfaces and the pose's ground lie on that plane, as on a slope but not at an edge.
+/// Returns whether the surfaces and the pose's ground lie near the plane with this gradient. They do on a slope, but
+/// not at an edge.
 bool Footing::is_even(const Vec2& gradient) const
 {
     const double mean = std::accumulate(rises_.begin(), rises_.end(), 0.0) / double(rises_.size());
-    double farthest = std::abs(mean - gradient.dot(middle_)), lowest = 0, highest = 0;  // at the origin
+    // The ground at the origin counts too; its height is 0 here.
+    double farthest = std::abs(mean - gradient.dot(middle_)), lowest = 0, highest = 0;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         farthest = std::max(farthest, std::abs(mean + gradient.dot(contacts_[i].shift - middle_) - rises_[i]));
         lowest = std::min(lowest, rises_[i]);

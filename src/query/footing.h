@@ -10,10 +10,10 @@
 namespace spawnfield {
 
 /// Decides how a robot would stand at a pose, as JudgeOptions::max_slope describes, from the scene's geometry alone.
-/// One for each thread. Refers to the geometry and the robot.
+/// Each thread needs its own. Refers to the geometry and the robot.
 class Footing {
 public:
-    /// Upright at yaw 0 until another rotation is set.
+    /// The robot is upright at yaw 0 until set_rotation() is called.
     Footing(const Geometry& geometry, const Robot& robot, double max_slope);
 
     void set_rotation(const Mat3& rotation);
@@ -23,11 +23,11 @@ public:
 
 private:
     struct Contact {
-        Vec2 shift;                    ///< from the origin, turned
-        double level;                  ///< above the origin; what begins higher does not carry it
-        double reach;                  ///< of its surface above or below the pose's ground
-        Vec2 weight;                   ///< what 1 m there adds to the gradient of the plane
-        std::vector<Interval> solids;  ///< of its column, all that touches taken as one, from the bottom up
+        Vec2 shift;                    ///< horizontal distance from the origin, at the current rotation
+        double level;                  ///< height above the origin; solids that begin higher do not carry the contact
+        double reach;                  ///< largest distance of its surface above or below the pose's ground
+        Vec2 weight;                   ///< change of the plane's gradient if the surface is 1 m higher
+        std::vector<Interval> solids;  ///< of its column, from the bottom up; solids that touch are joined
     };
     void set_columns(double x, double y);
     Vec2 gradient() const;
@@ -35,12 +35,13 @@ private:
 
     const Geometry* geometry_;
     const Robot* robot_;
-    std::vector<Vec3> points_;        ///< contacts_of the robot
-    double lowest_, steepest_;        ///< z of the upright robot's lowest point; tangent of the limit
-    std::vector<Contact> contacts_;   ///< none: as the robot is turned, they span no area
-    Vec2 middle_ = Vec2::Zero();      ///< of the contacts
-    std::vector<double> rises_;       ///< of the surfaces under the contacts, above the pose's ground
-    std::optional<Vec2> columns_at_;  ///< where the contacts' columns were taken; poses above each other share them
+    std::vector<Vec3> points_;       ///< contacts_of the robot
+    double lowest_, steepest_;       ///< z of the upright robot's lowest point; tangent of the limit
+    std::vector<Contact> contacts_;  ///< empty: at this rotation, the contacts lie on one line
+    Vec2 middle_ = Vec2::Zero();     ///< of the contacts
+    std::vector<double> rises_;      ///< heights of the surfaces under the contacts above the pose's ground
+    /// x and y of the pose whose columns are in contacts_; poses above each other share them.
+    std::optional<Vec2> columns_at_;
 };
 
 }  // namespace spawnfield

@@ -9,7 +9,8 @@ namespace {
 
 using VerdictTally = std::array<std::uint8_t, verdict_count>;
 
-/// Valid if it was once, else the commonest; the first of the enumeration where several are.
+/// Returns Valid if the pose was valid at some heading. Otherwise returns the most frequent verdict; if there are
+/// several, the first of them in the enumeration.
 Verdict merged(const VerdictTally& tally)
 {
     if (tally[std::size_t(Verdict::Valid)] > 0) return Verdict::Valid;
@@ -32,7 +33,7 @@ HeadingRaster raster_at_headings(const Judge& judge, const RasterOptions& option
     out.headings = headings;
     std::vector<VerdictTally> tallies;
     std::uint64_t exact_checks = 0;
-    for (int k = headings - 1; k >= 0; --k) {  // yaw 0 comes last and stays
+    for (int k = headings - 1; k >= 0; --k) {  // yaw 0 comes last, so out.raster keeps its yaw
         RasterOptions turned = options;
         turned.yaw = 2 * std::numbers::pi * k / headings;
         turned.progress = part_of(options.progress, headings - 1 - k, headings);

@@ -58,7 +58,7 @@ bool is_submerged(const ColumnView& column, double ground, double max_water_dept
     });
 }
 
-/// Decides the verdict up to collisions. Returns true if those are to decide.
+/// Decides the verdicts that come before `collision`. Returns true if none of them applies.
 bool judge_ground(const Judge::Impl& shared, double max_height, const ColumnView& column, const Vec3& position,
                   Judgement& out)
 {
@@ -73,7 +73,7 @@ bool judge_ground(const Judge::Impl& shared, double max_height, const ColumnView
     return !is_submerged(column, out.ground->height, shared.options.max_water_depth);
 }
 
-/// Adds the time from its construction to its destruction, if there is something to add it to.
+/// Adds the time from its construction to its destruction to a total, unless the total is nullptr.
 class TimedPart {
 public:
     explicit TimedPart(ExactTime* total) : total_(total), start_(total ? Clock::now() : Clock::time_point{}) {}
@@ -90,8 +90,8 @@ private:
     const Clock::time_point start_;
 };
 
-/// Pose indices, sorted so that neighbours are adjacent and find each other's tiles in the cache. Counting sort over a
-/// grid around them.
+/// Returns indices of poses, sorted so that neighbouring poses are adjacent and use the same tiles in the cache.
+/// Counting sort over a grid around the poses.
 std::vector<std::uint32_t> in_neighbourhoods(std::span<const Pose> poses)
 {
     constexpr std::size_t side = 256;
@@ -100,8 +100,7 @@ std::vector<std::uint32_t> in_neighbourhoods(std::span<const Pose> poses)
     const auto bin_of = [&](const Vec3& p) {
         const auto along = [&](int axis) {
             const double share = (p[axis] - bounds.min[axis]) / (bounds.max[axis] - bounds.min[axis]);
-            return share > 0 ? std::size_t(std::min(share, 1.0) * (side - 1))
-                             : 0;  // also where the share is not a number
+            return share > 0 ? std::size_t(std::min(share, 1.0) * (side - 1)) : 0;  // also if the share is NaN
         };
         return along(1) * side + along(0);
     };
@@ -235,7 +234,7 @@ std::vector<Judgement> Judge::check(std::span<const Pose> poses, const RunOption
 
 namespace {
 
-/// Six digits are enough for people.
+/// Returns a number with six digits, which are enough for readers.
 std::string rounded(double value)
 {
     char text[32];

@@ -56,7 +56,7 @@ private:
     std::optional<Mask> mask_;        ///< empty: every pose is checked exactly
     std::optional<Footing> footing_;  ///< empty: footings are not examined
     Mat3 rotation_;
-    double yaw_;     ///< that set the rotation; NaN if a matrix set it
+    double yaw_;     ///< the yaw given to set_rotation(); NaN after a matrix
     Column column_;  ///< of the last pose that was judged without a column
 };
 

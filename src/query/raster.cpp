@@ -42,13 +42,13 @@ void check(const RasterOptions& options)
         throw ArgumentError(
             "raster", "without height check needs dims 3: a pose of a 2D raster stands on its layer by definition");
     if (options.dims == 3 && !has_no_z_limits(options.area))
-        throw ArgumentError("raster",
-                            "area has z limits, needs regions without any for dims 3: bounds has the heights");
+        throw ArgumentError(
+            "raster", "area has z limits, but with dims 3 its regions must have none; limit the heights with bounds");
     if (!options.snap) return;
     if (options.dims != 3)
         throw ArgumentError("raster", "snap needs dims 3: a pose of a 2D raster stands on its layer by definition");
     if (!options.height_check)
-        throw ArgumentError("raster", "snap needs the height check: collisions alone know no layers");
+        throw ArgumentError("raster", "snap needs the height check, because only it finds the layers");
 }
 
 double chosen_offset(const Judge& judge, const RasterOptions& options)
@@ -60,12 +60,12 @@ double chosen_offset(const Judge& judge, const RasterOptions& options)
     return offset;
 }
 
-/// Step numbers, each once.
+/// Numbers of steps, without duplicates.
 using Steps = std::vector<int>;
 
 bool contains(const Steps& steps, int k) { return std::find(steps.begin(), steps.end(), k) != steps.end(); }
 
-/// Steps that a column's snapped poses replace, and steps at their very places.
+/// Returns the steps that a column's snapped poses replace, and the steps at the same heights as these poses.
 Steps replaced_steps(const RasterGrid& grid, double offset, std::span<const RasterPose> column)
 {
     Steps out;
@@ -87,10 +87,10 @@ struct Row {
     std::uint64_t aerial = 0, exact_checks = 0;
 };
 
-/// Strips of rows, judged block by block so that neighbouring columns share their work.
+/// Judges strips of rows. In a strip, it goes from block to block, so that neighbouring columns share work.
 class RasterJudge {
 public:
-    static constexpr int most_rows = 32, block = 128;  ///< of a strip; columns of a block
+    static constexpr int most_rows = 32, block = 128;  ///< rows of a strip; columns of a block
 
     RasterJudge(const Judge::Impl& shared, const RasterOptions& options, const RasterGrid& grid, double offset,
                 double top)
@@ -99,7 +99,7 @@ public:
     {
     }
 
-    /// Rows first, first + 1, … of out.
+    /// Judges as many rows as `out` has entries, beginning with row `first`.
     void judge_rows(int first, std::span<Row> out) const
     {
         PoseJudge judge(shared_, options_.yaw, max_height());
@@ -169,8 +169,8 @@ private:
         }
     }
 
-    /// Returns the steps at which the ground may be near enough, those beyond the map's z limits, and the replaced
-    /// ones, from the top down. All other steps are certainly aerial.
+    /// Returns the steps that may be near enough to the ground, the steps beyond the map's z limits, and the replaced
+    /// steps, from the top down. All other steps are certainly aerial.
     const Steps& near_heights(const ColumnView& column, const Steps& replaced) const
     {
         thread_local Steps near;
@@ -212,13 +212,13 @@ private:
         }
     }
 
-    /// Judges a column in which every step is listed: outside the map, or for collisions alone.
+    /// Judges a column whose aerial poses are listed too: a column outside the map, or any column without height check.
     void all_heights(PoseJudge& judge, const Steps& replaced, double x, double y, Row& out) const
     {
         for (int k = grid_.heights - 1; k >= 0; --k) {
             if (contains(replaced, k)) continue;
             const double z = grid_.z_of(k);
-            Judgement judged;  // outside
+            Judgement judged;  // default: Verdict::Outside
             if (!options_.height_check) judged = judge.judge_collision({x, y, z});
             out.exact_checks += judged.exact_check;
             out.poses.push_back({x, y, z, -1, judged.verdict});
@@ -248,7 +248,7 @@ private:
     const RasterGrid& grid_;
     const double offset_;
     const double top_;       ///< upper limit of the bounds' z
-    const ZRange ground_z_;  ///< layers elsewhere are no ground
+    const ZRange ground_z_;  ///< layers beyond it are not ground
     const AreaIndex area_;
     const Steps outside_ = steps_outside();
 };
@@ -295,7 +295,7 @@ RasterResult raster(const Judge& judge, const RasterOptions& options)
     out.grid = raster_grid(bounds, options);
     const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z());
     std::vector<Row> rows(std::size_t(out.grid.rows));
-    // Without heights rows share nothing, and each takes long.
+    // Without the height check, rows share no work, and each row takes long.
     const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
     const std::size_t strip = std::clamp<std::size_t>(rows.size() / std::size_t(4 * thread_count(options.threads)), 1,
                                                       most_rows);

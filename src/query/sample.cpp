@@ -105,7 +105,7 @@ Bounds within(const Bounds& box, Bounds limits)
     return overlap(box, limits);
 }
 
-/// One pass of sampling with a fixed number of slots per column. Each slot of a column stands for one of its chosen
+/// One pass of sampling with a fixed number of slots per column. Each slot of a column belongs to one of its chosen
 /// layers or is empty. A draw chooses a random point and a random slot, and fails if the slot is empty. So all layers
 /// are drawn with the same density, no matter how many lie above each other.
 class Sampler {

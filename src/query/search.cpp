@@ -43,8 +43,8 @@ bool is_in_flat_ground(const Robot& robot, double offset) { return offset + robo
 
 namespace {
 
-/// Recognises poses so high above all that is solid that they are aerial whatever their column holds, by a coarse image
-/// of the highest solids.
+/// Recognises poses so far above all solid space that they are certainly aerial, without looking at their columns. Uses
+/// a coarse image of the highest solid points.
 class FarAbove {
 public:
     /// Without a map, `holds()` is always false.
@@ -63,7 +63,7 @@ public:
         const TileLevel& level = raster_->levels()[level_];
         const double u = (p.x() - raster_->x0) / level.cell, v = (p.y() - raster_->y0) / level.cell;
         const double col = std::floor(u), row = std::floor(v);
-        // Lines along a border between cells see what touches it from either side.
+        // A line along a border between cells may also meet solids of the other cell.
         const auto is_near_border = [](double in_cell) { return in_cell < 1e-6 || in_cell > 1 - 1e-6; };
         if (is_near_border(u - col) || is_near_border(v - row)) return false;
         if (!(col >= 0 && row >= 0 && col < double(raster_->whole_cols(level_)) &&
@@ -77,7 +77,7 @@ public:
     }
 
 private:
-    static constexpr double finest = 1.5;   // m; finer images miss the cache
+    static constexpr double finest = 1.5;   // m; finer images are too large for the cache
     static constexpr double margin = 1e-5;  // m
 
     const SolidBounds::Impl* raster_ = nullptr;

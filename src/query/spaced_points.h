@@ -8,22 +8,23 @@
 
 namespace spawnfield {
 
-/// Points in a hash grid whose cells are as large as the distance, so that a look-up meets 27 cells: nine rows of
-/// three neighbouring table entries. Cells that share an entry share its list too: distances decide, so that does no
-/// harm. Source: Bridson, Fast Poisson Disk Sampling in Arbitrary Dimensions, 2007 (the background grid).
+/// Points in a hash grid. The cells are as large as the distance, so a look-up examines 27 cells: nine rows of three
+/// adjacent table entries. Cells that share an entry also share its list of points. This is harmless, because the
+/// distances decide. Source: Bridson, Fast Poisson Disk Sampling in Arbitrary Dimensions, 2007 (the background grid).
 class SpacedPoints {
 public:
     explicit SpacedPoints(double distance) : distance_(distance) {}
 
     double distance() const { return distance_; }
 
-    /// Whether every point so far is at least the distance away. Always true for a distance of 0.
+    /// Returns whether all points are at least the distance away. Always true for a distance of 0.
     bool is_clear(const Vec3& point) const
     {
         return !any_near(point, [&](const Vec3& other) { return (other - point).norm() < distance_; });
     }
 
-    /// Whether `test` holds for any of some points, among them all that are nearer than the distance.
+    /// Returns whether `test` is true for a point near this one. It is called for all points nearer than the distance,
+    /// and for some others.
     template <class Test>
     bool any_near(const Vec3& point, const Test& test) const
     {
@@ -62,7 +63,7 @@ private:
     using Cell = std::array<std::uint64_t, 3>;
     struct Point {
         Vec3 position;
-        std::uint32_t next;  ///< of the same table entry
+        std::uint32_t next;  ///< index of the next point of the same table entry
     };
     static constexpr std::uint32_t none = 0xffffffff;
     static constexpr std::size_t smallest = 4096;
@@ -75,7 +76,7 @@ private:
 
     Cell cell_of(const Vec3& point) const
     {
-        constexpr double farthest = 9e18;  // cells; what lies beyond shares the outermost
+        constexpr double farthest = 9e18;  // cells; points farther away are put into the outermost cells
         Cell cell{};
         for (int axis = 0; axis < 3; ++axis)
             cell[axis] = std::uint64_t(
@@ -93,7 +94,7 @@ private:
 
     const double distance_;
     std::vector<Point> points_;
-    std::vector<std::uint32_t> heads_;  ///< last point of each table entry; a power of 2 of them
+    std::vector<std::uint32_t> heads_;  ///< index of the last point of each table entry; the size is a power of 2
     std::uint64_t mask_ = 0;
 };
 

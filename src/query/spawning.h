@@ -22,11 +22,11 @@ inline Bounds overlap(Bounds box, const Bounds& other)
     return box;
 }
 
-/// Throws ArgumentError unless the distance and the points are in their limits.
+/// Throws ArgumentError unless the distance and the points are within their limits.
 void check_avoided(const char* function, const AvoidedPoints& group);
 
-/// Throws ArgumentError unless count, distances and yaw are in their limits. `Options`, here and below: SearchOptions
-/// or SampleOptions.
+/// Throws ArgumentError unless count, distances and yaw are within their limits. Here and below, `Options` is
+/// SearchOptions or SampleOptions.
 template <class Options>
 void check_spawn_options(const char* function, const Options& options)
 {
@@ -45,9 +45,9 @@ double draw_yaw(const Options& options, Draw& draw)
     return options.random_yaw ? draw.uniform(-std::numbers::pi, std::numbers::pi) : options.yaw;
 }
 
-/// A draw that was looked at: judged only if it was clear of the points that stood before its batch.
+/// The result of one draw. It has a verdict only if it was far enough from the points that were taken before its batch.
 struct Candidate {
-    bool on_ground = false;  ///< whether the draw gave a pose at all
+    bool on_ground = false;  ///< the draw gave a pose; only set by sample()
     bool off_area = false;
     bool near_avoided = false;
     bool clear = false;
@@ -62,8 +62,9 @@ struct Candidate {
     }
 };
 
-/// Positions that others keep their distance from, when draws are looked at in batches: what was added since the batch
-/// began is all that a draw which was clear then is still to be held against.
+/// Positions from which later draws must keep a distance. Draws are examined in batches: first, several threads compare
+/// them with before(). Then is_still_clear() compares them, one after the other, with the positions that were taken
+/// since the batch began.
 class TakenPoints {
 public:
     explicit TakenPoints(double distance) : before_(distance), since_(distance) {}
@@ -75,7 +76,7 @@ public:
         since_.add(point);
         news_.push_back(point);
     }
-    /// To be called between batches.
+    /// Must be called between batches.
     void settle()
     {
         for (const Vec3& point : news_) before_.add(point);
@@ -88,7 +89,7 @@ private:
     std::vector<Vec3> news_;
 };
 
-/// Returns a progress that reports the share of the wanted spawns that were found, also while none are.
+/// Returns a progress function that reports the number of spawns found, as a share of the wanted ones.
 template <class Options>
 Progress share_found(const Options& options, const SpawnList& found)
 {
@@ -96,10 +97,10 @@ Progress share_found(const Options& options, const SpawnList& found)
     return [&](double) { options.progress(double(found.spawns.size()) / double(options.count)); };
 }
 
-/// Makes draws first, first + 1, … in batches that several threads judge ahead: look(index, judge) returns a Candidate.
-/// `take` gets them one by one in their order, and ends the work by returning false. `batch_size(draws)` returns how
-/// many to judge after so many; how far ahead they are judged never shows in the result. Returns the number of the next
-/// draw.
+/// Makes draws first, first + 1, … in batches. Several threads call look(index, judge), which returns a Candidate. Then
+/// take(candidate) is called for one draw after the other, in their order, until it returns false. batch_size(draws)
+/// returns the size of the next batch after so many draws; it does not change the result. Returns the number of the
+/// next draw.
 template <class Options, class BatchSize, class Look, class Take>
 std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, const Options& options,
                             const SpawnList& found, TakenPoints& taken, const BatchSize& batch_size, const Look& look,
@@ -123,7 +124,8 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
     }
 }
 
-/// Returns about as many draws as the spawns that are still wanted will take, by the share that gave one so far.
+/// Returns the size of the next batch: about as many draws as the missing spawns will need if the share of successful
+/// draws stays the same, but at most twice the draws so far, and within fixed limits.
 inline std::size_t batch_for(std::size_t wanted, std::size_t found, std::uint64_t draws)
 {
     constexpr double smallest = 256, largest = 16384;

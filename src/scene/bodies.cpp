@@ -159,8 +159,8 @@ private:
         }
         if (is_unlabelled)
             scene_.notices.push_back(file_.string() +
-                                     ": nothing in it is a plane, a heightmap or named as ground. As "
-                                     "parts of it are missing, none of it is made terrain");
+                                     ": nothing in it is a plane, a heightmap or named as ground. Because "
+                                     "parts of it are missing, none of it becomes terrain");
         scene_.rules = rules.take();
     }
 

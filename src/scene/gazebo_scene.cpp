@@ -67,7 +67,7 @@ Scene read_sdf_scene(const fs::path& file, const SceneOptions& options)
     const auto add_count_notice = [&](const char* element, std::size_t count, const char* what) {
         if (count > 0) scene.notices.push_back(file.string() + ": <" + element + ">: " + std::to_string(count) + what);
     };
-    add_count_notice("collision", world.hollow, " without a shape ignored");
+    add_count_notice("collision", world.hollow, " ignored, because they have no shape");
     add_count_notice("collision", world.untouchable,
                      " ignored, because nothing touches them (<collide_bitmask> or <collide_without_contact>)");
     add_count_notice("actor", world.actor_count, " ignored, because they move");

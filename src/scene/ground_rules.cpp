@@ -79,8 +79,7 @@ GroundRules::GroundRules(bool by_slope)
     for (const char* const word : ground_words)
         rules_.push_back({std::string("name ") + word + "*", Label::Terrain, 0});
     rules_.push_back({other_rule, Label::Obstacle, 0});
-    rules_.push_back(
-        {by_slope ? "all else, but for what --auto-label makes terrain," : "all else", Label::Obstacle, 0});
+    rules_.push_back({by_slope ? "all else, except what --auto-label makes terrain," : "all else", Label::Obstacle, 0});
 }
 
 std::optional<Label> GroundRules::label_of(const CollisionBody& body)

@@ -72,7 +72,7 @@ TerrainPatches terrain_patches(std::span<const Vec3> points, const TileGrid& gri
                 "terrain_patches",
                 "tile " + std::to_string(i / std::size_t(grid.cols)) + "," +
                     std::to_string(i % std::size_t(grid.cols)) +
-                    " (row, column, from 0) has no spawn, needs one in each; ask for more spawns or fewer tiles");
+                    " (row, column, from 0) has no spawn, but each tile needs one; ask for more spawns or fewer tiles");
         for (std::size_t n = 0; n < out.patches_per_tile; ++n) append(patches, tile[n % tile.size()]);
         append(origins, tile.empty() ? Vec3(Vec3::Constant(std::nan(""))) : tile.front());
     }

@@ -94,7 +94,8 @@ void check_names(const std::string& option, std::span<const std::string> names)
         if (name.empty()) fail(option, name, "is empty, needs a name");
         for (const char c : name)
             if (std::iscntrl(static_cast<unsigned char>(c)) != 0) fail(option, name, "has a control character");
-        if (!seen.insert(name).second) fail(option, name, "is the name of two robots, needs one each");
+        if (!seen.insert(name).second)
+            fail(option, name, "is the name of two robots; give each robot a name of its own");
     }
 }
 

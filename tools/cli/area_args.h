@@ -11,7 +11,7 @@
 
 namespace spawnfield::cli {
 
-/// Where poses are wanted: options of `sample`, `search`, `raster`, `heatmap` and `experiment`.
+/// Options about the places where poses are wanted, for `sample`, `search`, `raster`, `heatmap` and `experiment`.
 struct AreaArgs {
     std::vector<std::string> regions, keep_outs;
 };

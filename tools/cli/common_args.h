@@ -24,7 +24,7 @@ inline const std::string ground = "Poses and ground", region = "Region", robot =
                          picture = "Picture", simulator = "Files for simulators", run = "Output and run";
 }
 
-/// All options that are added from now on stand below this heading of --help.
+/// All options that are added after this call appear below this heading of --help.
 void start_group(CLI::App& command, const std::string& name);
 
 /// Adds --threads, --quiet and --summary.

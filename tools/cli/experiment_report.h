@@ -10,9 +10,9 @@ namespace spawnfield::cli {
 
 /// One raster or one random search of an experiment.
 struct ExperimentRun {
-    int number = 1;                      ///< among those of its step, from 1 on
-    std::optional<double> step, step_z;  ///< m; of rasters, step_z of 3D ones
-    std::optional<std::uint64_t> seed;   ///< of searches
+    int number = 1;                      ///< number among the runs of its step, beginning with 1
+    std::optional<double> step, step_z;  ///< m; only for rasters; step_z only for 3D rasters
+    std::optional<std::uint64_t> seed;   ///< only for searches
     VerdictCounts counts;
     std::uint64_t exact_checks = 0;
     double seconds = 0;  ///< of the query alone
@@ -25,12 +25,12 @@ struct Experiment {
     std::vector<ExperimentRun> runs;    ///< those of one step after each other
 };
 
-/// A row per run: run,step,step_z,poses, each verdict's count, exact_checks,seconds,seed; empty where it does not
-/// apply.
+/// Returns a CSV table with a row for each run: run,step,step_z,poses, the count of each verdict,
+/// exact_checks,seconds,seed. A field is empty if it does not apply.
 std::string experiment_csv(const std::vector<ExperimentRun>& runs);
 
-/// What was run where, and a table with a row per step: means over its runs, and the sample variance of their seconds
-/// (n - 1; empty for a single run).
+/// Returns a description of the experiment, and a table with a row for each step: the means over its runs, and the
+/// sample variance of their seconds (n - 1; empty for a single run).
 std::string experiment_markdown(const Experiment& experiment);
 
 }  // namespace spawnfield::cli

@@ -119,7 +119,7 @@ RasterResult shown_raster(const Session& session, const RasterOptions& options, 
 }
 
 /// Returns the part of the map that has ground at these heights, with 2 m around it. Returns nothing if that is the
-/// whole map, or if there is no such ground.
+/// whole map, or if it has no ground at these heights.
 std::optional<Bounds> ground_bounds(const Map& map, const TerrainMap& terrain, const ZRange& z)
 {
     constexpr double around = 2;  // m

@@ -104,7 +104,7 @@ Json scene_json(const Scene& scene)
     return out;
 }
 
-/// An infinite limit is null.
+/// Returns the two limits. An infinite limit becomes null.
 Json json_of(const ZRange& z)
 {
     const auto limit = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
@@ -371,21 +371,21 @@ std::string text_of(const fs::path& file)
     return read_file(file);
 }
 
-/// Whether the path is a folder. A link that leads back to itself is none.
+/// Returns whether the path is a folder. A link that leads back to itself is not a folder.
 bool is_folder(const fs::path& path)
 {
     std::error_code unreachable;
     return fs::is_directory(path, unreachable);
 }
 
-/// Whether the text is an SDF model that can move, not a world or a piece of scenery.
+/// Returns whether the text is an SDF model that can move, and not a world or a piece of scenery.
 bool is_moving_model(const std::string& text)
 {
     const auto has = [&](const char* what) { return text.find(what) != std::string::npos; };
     return has("<model") && !has("<world") && !has("<static>true") && !has("<static>1");
 }
 
-/// Whether the argument is a robot. For a URDF or SDF model that could also be a scene, the options decide.
+/// Returns whether the argument is a robot. For a URDF or SDF model that could also be a scene, the options decide.
 bool is_robot(const std::string& what, bool has_robot_options, bool has_scene_options)
 {
     const std::string extension = fs::path(what).extension().string();

@@ -72,7 +72,7 @@ std::string command_line(int argc, char** argv)
     return out;
 }
 
-/// Whether the first argument stands in the place of a command but is not the name of one.
+/// Returns whether the first argument is where a command should be, but is not the name of a command.
 bool has_unknown_command(const std::vector<std::string>& names, int argc, char** argv)
 {
     return argc > 1 && argv[1][0] != '-' && std::find(names.begin(), names.end(), argv[1]) == names.end();

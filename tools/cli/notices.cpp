@@ -28,7 +28,7 @@ std::vector<std::string> split_at_spaces(const std::string& text)
     return out;
 }
 
-/// Whether the word is a name, a path or a number. Notices of one kind differ only in such words.
+/// Returns whether the word is a name, a path or a number. Notices of one kind differ only in such words.
 bool is_detail(const std::string& word)
 {
     return word.find_first_of("\"/0123456789") != std::string::npos || word.find("::") != std::string::npos;

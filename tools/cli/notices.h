@@ -5,9 +5,9 @@
 
 namespace spawnfield::cli {
 
-/// Returns the notices with those of one kind as one text: the first of them, and in a second line how many more
-/// there are and what they are about. Two notices are of one kind if they differ only in words that are names, paths
-/// or numbers. In the order of the first of each.
+/// Returns the notices, but with one text for all notices of one kind: the first of them, and a second line with the
+/// number of the others and the things that they are about. Two notices are of one kind if they differ only in words
+/// that are names, paths or numbers. The order is that of the first notice of each kind.
 std::vector<std::string> grouped(const std::vector<std::string>& notices);
 
 }  // namespace spawnfield::cli

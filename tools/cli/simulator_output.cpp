@@ -169,7 +169,7 @@ SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& comma
     if (!is("isaaclab")) return;
     tiles_ = parse_tiles(args_.tiles);
     if (target_.out.empty() || target_.out == "-") throw ArgumentError("--format isaaclab needs -o FOLDER");
-    folder_ = std::make_unique<OutputFolder>(target_.out, holds_only(isaac_files, "isaaclab result"));
+    folder_ = std::make_unique<OutputFolder>(target_.out, holds_only(isaac_files, "Isaac Lab result"));
 }
 
 void SimulatorOutput::give_names(std::vector<RobotStart>& robots, const std::vector<std::string>& own) const

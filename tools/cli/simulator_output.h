@@ -42,7 +42,7 @@ public:
     /// may not be replaced.
     SimulatorOutput(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, Target target);
 
-    /// Whether the robots have names: in every format except csv without --name.
+    /// Returns whether the robots have names: in every format except csv without --name.
     bool has_names() const { return !is("csv") || !args_.name.empty(); }
 
     /// Gives the robots names and namespaces. Without --name their `own` names are used, if there are any.

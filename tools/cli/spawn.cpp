@@ -36,8 +36,8 @@ std::string upper_first(std::string text)
     return text;
 }
 
-/// Why fewer spawns than wanted were found, and what may give more. `Options`, here and below: SearchOptions or
-/// SampleOptions.
+/// Returns why fewer spawns than wanted were found, and what may give more. Here and below, `Options` is SearchOptions
+/// or SampleOptions.
 template <class Options>
 std::string shortfall(const Options& options, double max_slope, const SpawnList& list, const std::string& command)
 {

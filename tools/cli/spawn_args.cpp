@@ -17,7 +17,7 @@ void add_draws(CLI::App& command, DrawArgs& args)
 void add_max_failures(CLI::App& command, DrawArgs& args)
 {
     command.add_option("--max-failures", args.max_failures,
-                       "Stop after so many draws in a row without a spawn (default 100000)");
+                       "Stop after this many draws in a row without a spawn (default 100000)");
 }
 
 void check_draws(const DrawArgs& args)

@@ -45,7 +45,7 @@ bool was_given(const CLI::App& command, const std::string& name)
     return option != nullptr && option->count() > 0;
 }
 
-/// Whether the result goes to standard output by default.
+/// Returns whether the result goes to standard output by default.
 bool prints_by_default(const CLI::App& command)
 {
     if (command.get_name() == "info") return true;

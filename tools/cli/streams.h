@@ -6,7 +6,7 @@
 
 namespace spawnfield::cli {
 
-/// Whether an option's value means standard input or output.
+/// Returns whether an option's value means standard input or output.
 inline bool is_standard(const std::string& file) { return file == "-"; }
 
 /// Returns the name of an input file for messages.

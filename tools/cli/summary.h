@@ -12,7 +12,7 @@
 
 namespace spawnfield::cli {
 
-/// What a run did: a line on standard error and, with --summary, JSON (docs/commands.md).
+/// The summary of a run: a line on standard error and, with --summary, JSON (docs/commands.md).
 class Summary {
 public:
     /// Opens the JSON file before all work, so that a wrong name leaves nothing half done. Throws OutputError.
@@ -35,7 +35,7 @@ public:
         double undecided_area;  // m2
     };
     std::optional<Fullness> fullness;  ///< of a sample
-    /// Of a sample or search: the number of draws, and how many were dropped for each reason.
+    /// For a sample or search: the number of draws, and how many were dropped for each reason.
     std::vector<std::pair<std::string, std::uint64_t>> draws;
 
     void finish();  ///< prints the line and writes the JSON
