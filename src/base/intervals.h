@@ -1,6 +1,6 @@
 #pragma once
 
-#include <spawnfield/types.h>
+#include <spawnfield/shape.h>
 
 #include <algorithm>
 #include <vector>
