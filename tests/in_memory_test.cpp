@@ -153,7 +153,12 @@ TEST_CASE("a robot from code is the one of a file")
 TEST_CASE("parts of a robot that make no sense are refused")
 {
     CHECK_THROWS_WITH(make_robot("none", {}), "make_robot: parts is empty, needs at least one");
-    CHECK_THROWS_AS(shape_part(box_shape({1, 1, -1})), ArgumentError);
+    CHECK_THROWS_WITH(shape_part(box_shape({1, 1, -1})),
+                      "shape_part: the shape is a box of 1 x 1 x -1 m, needs finite sizes > 0 m");
+    CHECK_THROWS_WITH(shape_part(sphere_shape(NAN, {0, 0, 0}), "head"),
+                      "shape_part: part \"head\" is a sphere of nan m, needs finite sizes > 0 m");
+    CHECK_THROWS_WITH(shape_part(sphere_shape(1, {NAN, 0, 0}), "head"),
+                      "shape_part: part \"head\" has a pose with a number that is not finite");
     CHECK_THROWS_AS(shape_part({ShapeKind::Hull, Vec3::Zero(), {}}), ArgumentError);
     CHECK_THROWS_WITH(hull_part({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}),
                       Contains("hull_part: the hull of the points has no volume"));

@@ -524,17 +524,16 @@ TEST_CASE("a robot that is probably in millimetres, or larger than the map, gets
     arena.write("mm.yaml", "format: spawnfield-robot/1\nparts: [{box: [990, 670, 390]}]\n");
     const ProgramRun run = arena("check map --poses p.csv --robot mm.yaml");
     CHECK(run.status == 0);
-    CHECK_THAT(
-        run.err,
-        Contains(
-            "notice: mm.yaml: is 990 x 670 x 390 m; if it is in millimetres, divide lengths and positions by 1000, ") &&
-            Contains("notice: the robot is 990 x 670 m, larger than the map (20.2 x 20.2 m); "));
+    CHECK_THAT(run.err, Contains("notice: mm.yaml: is 990 x 670 x 390 m; if it is in millimetres or centimetres, "
+                                 "divide lengths and positions by 1000 "
+                                 "or 100, ") &&
+                            Contains("notice: the robot is 990 x 670 m, larger than the map (20.2 x 20.2 m); "));
     CHECK_THAT(arena("info mm.yaml").err, Contains("if it is in millimetres"));
     CHECK_THAT(arena("check map --poses p.csv --robot box:60,1,1").err,
-               Contains("if it is in millimetres, divide its lengths by 1000"));
+               Contains("if it is in millimetres or centimetres, divide its lengths by 1000 or 100"));
     CHECK_THAT(arena("check map --poses p.csv --robot box:20,20,1").err, !Contains("notice"));
     CHECK_THAT(arena("check map --poses p.csv --robot box:3000,1,1").err,
-               Contains("needs at most 1000 m; is it in millimetres?"));
+               Contains("needs at most 1000 m; is it in millimetres or centimetres?"));
 }
 
 // ---- spelling ----

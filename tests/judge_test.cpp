@@ -80,7 +80,7 @@ TEST_CASE("a judge says in words why a pose is refused, and names what was hit")
     CHECK(reason(-6.5, -5, 0.1) == "collision with thin_wall");
     CHECK(reason(7, -7, 0.1) == "submerged");
     CHECK(reason(0, 3, 2.5) == "aerial: 2.55 m above the ground, the limit is 1 m");
-    CHECK(reason(0, 3, -9) == "aerial: no ground below the origin");
+    CHECK(reason(0, 3, -9) == "aerial: no ground below the origin; the lowest ground is 8.95 m above it");
     CHECK(name_of(*judge.check({{-6.5, -5, 0.1}}).hit, judge.map()) == "thin_wall");
 }
 

@@ -453,7 +453,7 @@ TEST_CASE("a far too large robot is refused, a chain longer than the call stack 
 {
     CHECK_THROWS_WITH(load_robot("box:1e10,1,1"),
                       "box:1e10,1,1: reaches 5e+09 m from its origin, needs at most 1000 "
-                      "m; is it in millimetres? divide its lengths by 1000");
+                      "m; is it in millimetres or centimetres? divide its lengths by 1000 or 100");
     CHECK(load_robot("box:2000,1,1@0,0,0.5").parts.size() == 1);
     const TempFolder folder;
     const std::string box = "<collision><geometry><box size='1 1 1'/></geometry></collision>";

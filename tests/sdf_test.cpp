@@ -490,7 +490,7 @@ TEST_CASE("rules decide what is ground, and --label comes first")
     CHECK(has_notice(labelled, "label \"nothing*\" matches no model, link, collision, node or material"));
 
     const std::string furniture =
-        "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, "
+        "name of ground that also has ceiling, wall, roof, door, window, stair, lamp, light, sign, block, "
         "barrier, rail, cone, post or pole";
     const Scene street = load_world(folder, ground + model_of("street_light", unit_box) +
                                                 model_of("bridgeRailing", unit_box) +

@@ -1,4 +1,5 @@
-#include <spawnfield/shape.h>
+#include "base/number.h"
+#include "base/shape_fault.h"
 
 #include <algorithm>
 #include <cassert>
@@ -104,13 +105,24 @@ std::optional<Interval> local_interval(const Shape& shape, double x, double y)
     return std::nullopt;
 }
 
+/// Returns how many of Shape::size a shape has.
+int size_count(ShapeKind kind) { return kind == ShapeKind::Box ? 3 : kind == ShapeKind::Sphere ? 1 : 2; }
+
 }  // namespace
 
 bool has_extent(const Shape& shape)
 {
     if (!shape.pose.position.allFinite() || !shape.pose.rotation.allFinite()) return false;
-    const int sizes = shape.kind == ShapeKind::Box ? 3 : shape.kind == ShapeKind::Sphere ? 1 : 2;
-    return shape.size.allFinite() && (shape.size.head(sizes).array() > 0).all();
+    return shape.size.allFinite() && (shape.size.head(size_count(shape.kind)).array() > 0).all();
+}
+
+std::string shape_fault(const Shape& shape)
+{
+    if (!shape.pose.position.allFinite() || !shape.pose.rotation.allFinite())
+        return "has a pose with a number that is not finite";
+    std::string sizes;
+    for (int k = 0; k < size_count(shape.kind); ++k) sizes += (k > 0 ? " x " : "") + number(shape.size[k]);
+    return std::string("is a ") + to_string(shape.kind) + " of " + sizes + " m, needs finite sizes > 0 m";
 }
 
 const char* to_string(ShapeKind kind)

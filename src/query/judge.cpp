@@ -242,6 +242,15 @@ std::string rounded(double value)
     return text;
 }
 
+/// Returns a hint if all ground of a column is above the origin: the robot may have sunk into it.
+std::string ground_above(const Map& map, const Vec3& origin)
+{
+    const Column column = column_at(map.geometry, origin.x(), origin.y());
+    const std::span<const double> layers = heights_within(column.layers, map.z_limits);
+    if (layers.empty()) return {};
+    return "; the lowest ground is " + rounded(layers.back() - origin.z()) + " m above it";
+}
+
 }  // namespace
 
 std::string Judge::describe(const Pose& pose, const Judgement& judgement) const
@@ -250,7 +259,8 @@ std::string Judge::describe(const Pose& pose, const Judgement& judgement) const
     switch (judgement.verdict) {
     case Verdict::Outside: return verdict + " the map's bounds";
     case Verdict::Aerial:
-        if (!judgement.ground) return verdict + ": no ground below the origin";
+        if (!judgement.ground)
+            return verdict + ": no ground below the origin" + ground_above(impl_->map, pose.position);
         return verdict + ": " + rounded(pose.position.z() - judgement.ground->height) +
                " m above the ground, the limit is " + rounded(impl_->options.max_height) + " m";
     case Verdict::OffTerrain:

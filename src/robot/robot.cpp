@@ -172,15 +172,16 @@ Robot read_robot(const std::string& robot, const RobotOptions& options)
     return read_robot_yaml(file, options.mesh_parts);
 }
 
-/// Returns how to convert a robot from millimetres to metres. `text` is the robot as the user gave it.
-std::string millimetre_advice(const std::string& text)
+/// Returns how to convert a robot to metres. `text` is the robot as the user gave it.
+std::string unit_advice(const std::string& text)
 {
-    if (text.starts_with("box:")) return "divide its lengths by 1000";
-    return "divide lengths and positions by 1000, and give meshes scale: 0.001 (robot.yaml) or "
+    if (text.starts_with("box:")) return "divide its lengths by 1000 or 100";
+    return "divide lengths and positions by 1000 or 100, and give meshes scale: 0.001 or 0.01 (robot.yaml) or "
            "scale=\"0.001 0.001 0.001\" (URDF)";
 }
 
-/// Returns a notice if the robot is larger than 50 m, because its lengths are then likely in millimetres.
+/// Returns a notice if the robot is larger than 50 m, because its lengths are then likely in millimetres or
+/// centimetres.
 std::vector<std::string> size_notices(const Robot& robot, const std::string& text)
 {
     constexpr double usual = 50;  // m
@@ -188,9 +189,9 @@ std::vector<std::string> size_notices(const Robot& robot, const std::string& tex
     const Vec3 size = box.max - box.min;
     if (size.maxCoeff() <= usual) return {};
     char words[100];
-    std::snprintf(words, sizeof words, ": is %.6g x %.6g x %.6g m; if it is in millimetres, ", size.x(), size.y(),
-                  size.z());
-    return {text + words + millimetre_advice(text)};
+    std::snprintf(words, sizeof words, ": is %.6g x %.6g x %.6g m; if it is in millimetres or centimetres, ", size.x(),
+                  size.y(), size.z());
+    return {text + words + unit_advice(text)};
 }
 
 /// Throws FileError if the robot reaches more than farthest_robot_point from its origin.
@@ -200,7 +201,8 @@ void check_reach(const Robot& robot, const std::string& text)
     const double reach = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
     if (reach <= farthest_robot_point) return;
     throw FileError(text, "reaches " + number(reach) + " m from its origin, needs at most " +
-                              number(farthest_robot_point) + " m; is it in millimetres? " + millimetre_advice(text));
+                              number(farthest_robot_point) + " m; is it in millimetres or centimetres? " +
+                              unit_advice(text));
 }
 
 }  // namespace

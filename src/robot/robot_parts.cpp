@@ -1,4 +1,5 @@
 #include "base/number.h"
+#include "base/shape_fault.h"
 #include "robot/hull.h"
 
 #include <spawnfield/error.h>
@@ -12,7 +13,9 @@ namespace spawnfield {
 RobotPart shape_part(const Shape& shape, const std::string& name)
 {
     if (shape.kind == ShapeKind::Hull) throw ArgumentError("shape_part", "shape is a hull; use hull_part");
-    if (!has_extent(shape)) throw ArgumentError("shape_part", "the sizes of the shape need to be > 0 m and finite");
+    if (!has_extent(shape))
+        throw ArgumentError("shape_part",
+                            (name.empty() ? "the shape " : "part \"" + name + "\" ") + shape_fault(shape));
     RobotPart part;
     part.shape = shape;
     part.name = name;

@@ -22,7 +22,8 @@ constexpr std::array other_words{"ceiling",    "wall",      "roof",   "door",   
                                  "streetlamp", "floorlamp", "rampart"};
 
 constexpr const char* other_rule =
-    "name with ceiling, wall, roof, door, window, stair, lamp, light, sign, block, barrier, rail, cone, post or pole";
+    "name of ground that also has ceiling, wall, roof, door, window, stair, lamp, light, sign, block, barrier, rail, "
+    "cone, post or pole";
 
 /// The known words that a name contains.
 struct NameWords {

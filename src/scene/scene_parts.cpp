@@ -1,4 +1,5 @@
 #include "base/number.h"
+#include "base/shape_fault.h"
 #include "mesh/point_numbers.h"
 #include "scene/mesh.h"
 #include "scene/pieces.h"
@@ -59,7 +60,7 @@ void add_mesh(Scene& scene, const std::string& name, Label label, const std::vec
 void add_shape(Scene& scene, const std::string& name, Label label, const Shape& shape)
 {
     if (shape.kind == ShapeKind::Hull) refuse("add_shape", name, "is a hull, needs another shape or add_mesh");
-    if (!has_extent(shape)) refuse("add_shape", name, "its sizes need to be > 0 m and finite");
+    if (!has_extent(shape)) refuse("add_shape", name, shape_fault(shape));
     const Bounds bounds = bounds_of(shape);
     if (!is_within_reach(bounds.min) || !is_within_reach(bounds.max))
         refuse("add_shape", name, "reaches from " + to_string(bounds) + ", needs to lie within 1e7 m of 0, 0, 0");

@@ -18,8 +18,8 @@ void notice_if_larger_than_map(const CommonArgs& args, const Robot& robot, const
     char text[300];
     std::snprintf(
         text, sizeof text,
-        "the robot is %.6g x %.6g m, larger than the map (%.6g x %.6g m); is one of them not in metres? Correct it "
-        "with `scale` in robot.yaml or scene.yaml, or with bake --scale",
+        "the robot is %.6g x %.6g m, larger than the map (%.6g x %.6g m); is one of them not in metres? Correct the "
+        "robot's lengths, or bake the scene again with --scale or with `scale` for its meshes in scene.yaml",
         size.x(), size.y(), room.x(), room.y());
     notice(args, text);
 }
