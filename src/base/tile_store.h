@@ -37,7 +37,6 @@ public:
     TileStore(std::vector<TileLevel> levels, Bytes bytes, std::string file = {});
 
     const std::vector<TileLevel>& levels() const { return levels_; }
-    const std::string& file() const { return file_; }
     std::string_view bytes() const { return bytes_.view; }
 
     /// Returns the bytes of a tile. If is_consistent(bytes) is false for a tile of a file, or its checksum is wrong,
