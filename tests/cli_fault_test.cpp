@@ -272,19 +272,20 @@ TEST_CASE("every command refuses a damaged map and names the file")
     desk.write("map/geometry.bin", bad);
     for (const std::string& query : queries)
         desk.check({query,
-                    "spawnfield: map/geometry.bin: is damaged (the checksum of its head differs from map.yaml's); bake "
-                    "the map again"},
+                    "spawnfield: map/geometry.bin: is damaged (the checksum of its head differs from the one in "
+                    "map.yaml); bake the map again"},
                    4);
     bad = good;
     bad[bad.size() / 2] = char(bad[bad.size() / 2] ^ 4);
     desk.write("map/geometry.bin", bad);
     desk.check({"raster map -o out --dims 2 --step 1" + husky,
-                "spawnfield: map/geometry.bin: is damaged (the checksum of a tile differs); bake the map again"},
+                "spawnfield: map/geometry.bin: is damaged (tile 0 of level 0 has another checksum than the head of the "
+                "file lists); bake the map again"},
                4);
-    desk.check(
-        {"info map --verify",
-         "spawnfield: map/geometry.bin: differs from its checksum in map.yaml: it was altered; bake the map again"},
-        4);
+    desk.check({"info map --verify",
+                "spawnfield: map/geometry.bin: was altered: its checksum differs from the one in map.yaml; bake the "
+                "map again"},
+               4);
     desk.write("map/geometry.bin", good);
 
     const std::string tree = bytes_of(desk / "map/occupancy.bt");
@@ -292,7 +293,7 @@ TEST_CASE("every command refuses a damaged map and names the file")
     bad.back() = char(bad.back() ^ 1);
     desk.write("map/occupancy.bt", bad);
     const std::string altered =
-        "spawnfield: map/occupancy.bt: differs from its checksum in map.yaml: it was altered; bake the map again";
+        "spawnfield: map/occupancy.bt: was altered: its checksum differs from the one in map.yaml; bake the map again";
     desk.check({"check map --poses poses.csv -o out --collision octree" + husky, altered}, 4);
     desk.check({"info map --verify", altered}, 4);
     desk.write("map/occupancy.bt", tree);

@@ -1,6 +1,8 @@
 #include "catch.h"
 #include "geometry/tile.h"
 #include "base/checksum.h"
+#include "free_space/bounds_tile.h"
+#include "map/bounds_file.h"
 #include "map/geometry_file.h"
 #include "mesh_text.h"
 #include "scene_text.h"
@@ -348,8 +350,9 @@ TEST_CASE("a map folder that is cut short, altered, newer or not a map is refuse
     for (const char* const name : {"geometry.bin", "heightmap.png", "occupancy.bt", "preview.png", "terrain.tiff"}) {
         const std::string good = bytes_of(map / name), file = std::string("map/") + name;
         folder.write(file, good.substr(0, good.size() / 2));
-        const std::string cut = "@/" + file + ": has " + std::to_string(good.size() / 2) + " bytes, map.yaml lists " +
-                                std::to_string(good.size()) + ": it was cut short or altered; bake the map again";
+        const std::string cut = "@/" + file + ": has " + std::to_string(good.size() / 2) +
+                                " bytes, but map.yaml lists " + std::to_string(good.size()) +
+                                ": the file was cut short or altered; bake the map again";
         CHECK(read() == cut);
         CHECK(complaint(folder, [&] { verify_map(map); }) == cut);
         fs::remove(map / name);
@@ -358,12 +361,13 @@ TEST_CASE("a map folder that is cut short, altered, newer or not a map is refuse
         bad[bad.size() / 2] = char(bad[bad.size() / 2] ^ 1);
         folder.write(file, bad);
         const std::string altered = "@/" + file +
-                                    ": differs from its checksum in map.yaml: it was altered; bake the map again";
+                                    ": was altered: its checksum differs from the one in map.yaml; bake the map again";
         CHECK(complaint(folder, [&] { verify_map(map); }) == altered);
         if (std::string(name) == "geometry.bin") {
             const Map harmed = read_map(map);  // tiles that are not used are not read
             CHECK(complaint(folder, [&] { column_at(harmed.geometry, 0.1, 0.2); }) ==
-                  "@/map/geometry.bin: is damaged (the checksum of a tile differs); bake the map again");
+                  "@/map/geometry.bin: is damaged (tile 0 of level 0 has another checksum than the head of the file "
+                  "lists); bake the map again");
         }
         folder.write(file, good);
         const Map opened = read_map(map);
@@ -493,7 +497,8 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
         });
     };
     const auto at = [](const auto& item) -> char* { return const_cast<char*>(reinterpret_cast<const char*>(&item)); };
-    const std::string wanted = "@/geometry.bin: has counts or positions that do not fit together; bake the map again";
+    const std::string wanted =
+        "@/geometry.bin: is not a valid map file: its values contradict each other; bake the map again";
     CHECK(complaint_of([](auto&, char*, const Tile&) {}).empty());
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.triangles[1].corners[2]) = 4; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.triangles[0].label) = 7; }) == wanted);
@@ -507,4 +512,33 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.head->triangles) += 1; }) == wanted);
     CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].cell = 0; }) == wanted);
     CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].tiles.back().offset = 1 << 20; }) == wanted);
+    CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].tiles.back().offset += 8; }) == wanted);
+}
+
+TEST_CASE("a bounds file whose levels do not fit each other is refused, even if its checksums are right")
+{
+    const TempFolder folder;
+    const Scene scene = load_parts(folder, "  - {name: a, label: terrain, plane: [9, 9]}\n");
+    const auto complaint_of = [&](auto change) {
+        const SolidBounds bounds(Geometry(scene), scene.bounds(), 0.5);
+        auto changed = std::make_shared<SolidBounds::Impl>();
+        changed->x0 = bounds.impl().x0;
+        changed->y0 = bounds.impl().y0;
+        std::vector<TileLevel> levels = bounds.impl().levels();
+        REQUIRE(levels.size() > 2);
+        change(*changed, levels);
+        changed->tiles = TileStore(std::move(levels), spawnfield::bytes_of(std::string(bounds.impl().tiles.bytes())));
+        const fs::path file = folder / "bounds.bin";
+        return complaint(folder,
+                         [&] { open_bounds(file, write_bounds(file, SolidBounds(std::move(changed))).head_checksum); });
+    };
+    const std::string wanted =
+        "@/bounds.bin: is not a valid map file: its values contradict each other; bake the map "
+        "again";
+    CHECK(complaint_of([](auto&, auto&) {}).empty());
+    CHECK(complaint_of([](auto&, auto& levels) { --levels[1].cols; }) == wanted);
+    CHECK(complaint_of([](auto&, auto& levels) { ++levels[2].rows; }) == wanted);
+    CHECK(complaint_of([](auto&, auto& levels) { levels[1].cell *= 1.5; }) == wanted);
+    CHECK(complaint_of([](auto& impl, auto&) { impl.x0 = std::numeric_limits<double>::quiet_NaN(); }) == wanted);
+    CHECK(complaint_of([](auto& impl, auto&) { impl.y0 = std::numeric_limits<double>::infinity(); }) == wanted);
 }

@@ -156,7 +156,7 @@ TEST_CASE("parts of a robot that make no sense are refused")
     CHECK_THROWS_WITH(shape_part(box_shape({1, 1, -1})),
                       "shape_part: the shape is a box of 1 x 1 x -1 m, needs finite sizes > 0 m");
     CHECK_THROWS_WITH(shape_part(sphere_shape(NAN, {0, 0, 0}), "head"),
-                      "shape_part: part \"head\" is a sphere of nan m, needs finite sizes > 0 m");
+                      "shape_part: part \"head\" is a sphere of radius nan m, needs finite sizes > 0 m");
     CHECK_THROWS_WITH(shape_part(sphere_shape(1, {NAN, 0, 0}), "head"),
                       "shape_part: part \"head\" has a pose with a number that is not finite");
     CHECK_THROWS_AS(shape_part({ShapeKind::Hull, Vec3::Zero(), {}}), ArgumentError);

@@ -8,10 +8,11 @@
 namespace spawnfield {
 
 /// Sorts items from the bottom up, and joins those whose intervals overlap or lie within `tolerance` (m) of each other.
-/// z_of(item) returns a reference to the Interval of an item. merge(item, next) is called before `next`, which begins
-/// higher, is joined to `item`.
-template <class Item, class IntervalOf, class Merge>
-void join_intervals(std::vector<Item>& items, double tolerance, const IntervalOf& z_of, const Merge& merge)
+/// z_of(item) returns a reference to the Interval of an item. When `next` is joined to `item`, which begins at the same
+/// height or lower, merge(item, next) updates the other fields of `item`. It sees the old intervals; after it, the top
+/// of `item` becomes the larger top.
+template <class Item, class ZOf, class Merge>
+void join_intervals(std::vector<Item>& items, double tolerance, const ZOf& z_of, const Merge& merge)
 {
     std::sort(items.begin(), items.end(),
               [&](const Item& l, const Item& r) { return z_of(l).bottom < z_of(r).bottom; });

@@ -105,24 +105,33 @@ std::optional<Interval> local_interval(const Shape& shape, double x, double y)
     return std::nullopt;
 }
 
-/// Returns how many of Shape::size a shape has.
-int size_count(ShapeKind kind) { return kind == ShapeKind::Box ? 3 : kind == ShapeKind::Sphere ? 1 : 2; }
+/// Returns whether the elements of Shape::size that the kind of shape uses are finite and > 0.
+bool has_sizes(const Shape& shape)
+{
+    const auto used = shape.size.head(shape.kind == ShapeKind::Box ? 3 : shape.kind == ShapeKind::Sphere ? 1 : 2);
+    return used.allFinite() && (used.array() > 0).all();
+}
 
 }  // namespace
 
 bool has_extent(const Shape& shape)
 {
-    if (!shape.pose.position.allFinite() || !shape.pose.rotation.allFinite()) return false;
-    return shape.size.allFinite() && (shape.size.head(size_count(shape.kind)).array() > 0).all();
+    return shape.pose.position.allFinite() && shape.pose.rotation.allFinite() && shape.size.allFinite() &&
+           has_sizes(shape);
 }
 
 std::string shape_fault(const Shape& shape)
 {
     if (!shape.pose.position.allFinite() || !shape.pose.rotation.allFinite())
         return "has a pose with a number that is not finite";
-    std::string sizes;
-    for (int k = 0; k < size_count(shape.kind); ++k) sizes += (k > 0 ? " x " : "") + number(shape.size[k]);
-    return std::string("is a ") + to_string(shape.kind) + " of " + sizes + " m, needs finite sizes > 0 m";
+    if (has_sizes(shape)) return "has a size that its kind does not use and that is not finite; set it to 0";
+    const Vec3& size = shape.size;
+    std::string sizes = "radius " + number(size[0]) + " m";
+    if (shape.kind == ShapeKind::Box)
+        sizes = number(size[0]) + " x " + number(size[1]) + " x " + number(size[2]) + " m";
+    else if (shape.kind != ShapeKind::Sphere)
+        sizes += " and length " + number(size[1]) + " m";
+    return std::string("is a ") + to_string(shape.kind) + " of " + sizes + ", needs finite sizes > 0 m";
 }
 
 const char* to_string(ShapeKind kind)

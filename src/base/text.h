@@ -1,17 +1,17 @@
 #pragma once
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <string_view>
 
 namespace spawnfield {
 
-/// Returns the text with ASCII capitals in lower case. Other bytes do not change.
+/// Returns the text with ASCII capitals in lower case, in every locale. Other bytes do not change.
 inline std::string lower_case(std::string_view text)
 {
     std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    for (char& c : out)
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
     return out;
 }
 
@@ -24,7 +24,7 @@ inline std::string trimmed(std::string_view text)
                                            : std::string(text.substr(first, text.find_last_not_of(space) + 1 - first));
 }
 
-/// Returns the text with each control character replaced by a space, so that it fits on one line.
+/// Returns the text with each byte below 0x20 (line breaks, tabs) replaced by a space, so that it fits on one line.
 inline std::string one_line(std::string text)
 {
     std::replace_if(
@@ -32,7 +32,8 @@ inline std::string one_line(std::string text)
     return text;
 }
 
-/// Returns a text with XML's special characters escaped, for elements and for attributes in double quotes.
+/// Returns a text with XML's special characters escaped, for elements and for attributes in double quotes. The text
+/// must not contain control characters, which XML 1.0 does not allow (see one_line).
 inline std::string xml_escaped(std::string_view text)
 {
     std::string out;

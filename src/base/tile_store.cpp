@@ -22,15 +22,17 @@ TileStore::TileStore(std::vector<TileLevel> levels, Bytes bytes, std::string fil
         checked_.push_back(std::make_unique<std::atomic<std::uint8_t>[]>(level.tiles.size()));
 }
 
-void TileStore::verify_checksum(std::string_view bytes, const TileEntry& entry) const
+void TileStore::verify_checksum(std::size_t level, std::size_t tile) const
 {
-    if (XXH64(bytes.data(), bytes.size(), 0) != entry.checksum)
-        throw FileError(file_, "is damaged (the checksum of a tile differs); bake the map again");
+    const TileEntry& entry = levels_[level].tiles[tile];
+    if (XXH64(bytes_.view.data() + entry.offset, entry.size, 0) != entry.checksum)
+        throw FileError(file_, "is damaged (tile " + std::to_string(tile) + " of level " + std::to_string(level) +
+                                   " has another checksum than the head of the file lists); bake the map again");
 }
 
 void TileStore::fail_inconsistent() const
 {
-    throw FileError(file_, "has counts or positions that do not fit together; bake the map again");
+    throw FileError(file_, "is not a valid map file: its values contradict each other; bake the map again");
 }
 
 void TileStoreBuilder::add(TileLevel level, std::vector<std::string> tiles, int threads)
@@ -46,7 +48,7 @@ void TileStoreBuilder::add(TileLevel level, std::vector<std::string> tiles, int 
         level.tiles[t].offset = bytes_.size();
         level.tiles[t].size = tiles[t].size();
         bytes_ += tiles[t];
-        tiles[t] = {};  // frees its memory before the next tile is copied
+        std::string().swap(tiles[t]);  // frees its memory before the next tile is copied; `= {}` would keep it
     }
     levels_.push_back(std::move(level));
 }

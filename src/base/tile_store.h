@@ -9,12 +9,14 @@
 
 namespace spawnfield {
 
-constexpr std::size_t tile_alignment = 64;  // bytes: the size of a tile is a multiple of it
+constexpr std::size_t tile_alignment = 64;  // bytes: each tile starts at a multiple of it; zero bytes fill up its end
 
-/// The place of a tile in the bytes of its store, and the XXH64 hash of its bytes. An empty tile has size 0.
+/// The position of a tile in TileStore::bytes(), and the XXH64 hash of its bytes. An empty tile has size 0. Files
+/// contain this struct as it is.
 struct TileEntry {
     std::uint64_t offset = 0, size = 0, checksum = 0;
 };
+static_assert(sizeof(TileEntry) == 24);
 
 /// A grid of square cells, cut into square tiles. Row 0 of the cells and of the tiles is the smallest y.
 struct TileLevel {
@@ -24,7 +26,8 @@ struct TileLevel {
     std::vector<TileEntry> tiles;  ///< row after row
 
     TileLevel() = default;
-    /// All tiles are empty. `tile_side` is the number of cells along the side of a tile.
+    /// Computes the numbers of tiles. `tiles` has no entries yet. `tile_side` is the number of cells along the side of
+    /// a tile.
     TileLevel(double cell, std::uint32_t cols, std::uint32_t rows, std::uint32_t tile_side);
 };
 
@@ -33,31 +36,33 @@ struct TileLevel {
 class TileStore {
 public:
     TileStore() = default;
-    /// `file` is the name of the mapped file that contains the bytes; it is empty for bytes in memory.
+    /// `file` is the name of the mapped file that contains the bytes. It is empty for bytes in memory, whose tiles are
+    /// not checked.
     TileStore(std::vector<TileLevel> levels, Bytes bytes, std::string file = {});
 
     const std::vector<TileLevel>& levels() const { return levels_; }
     std::string_view bytes() const { return bytes_.view; }
 
-    /// Returns the bytes of a tile. If is_consistent(bytes) is false for a tile of a file, or its checksum is wrong,
-    /// this throws FileError.
+    /// Returns the bytes of a tile; none for an empty tile. The first call for a tile of a file checks its checksum,
+    /// and then is_consistent(bytes). If one of them is wrong, it throws FileError.
     template <class IsConsistent>
     std::string_view open(std::size_t level, std::size_t tile, const IsConsistent& is_consistent) const
     {
         const TileEntry& entry = levels_[level].tiles[tile];
         const std::string_view bytes = bytes_.view.substr(entry.offset, entry.size);
         if (checked_.empty() || checked_[level][tile].load(std::memory_order_acquire) != 0) return bytes;
-        verify_checksum(bytes, entry);
+        if (entry.size == 0) return {};
+        verify_checksum(level, tile);
         if (!is_consistent(bytes)) fail_inconsistent();
         checked_[level][tile].store(1, std::memory_order_release);
         return bytes;
     }
 
-    /// Throws FileError for a file whose checksums are right but whose values cannot be.
+    /// Throws FileError: the checksums of the file are right, but its values contradict each other.
     [[noreturn]] void fail_inconsistent() const;
 
 private:
-    void verify_checksum(std::string_view bytes, const TileEntry& entry) const;
+    void verify_checksum(std::size_t level, std::size_t tile) const;
 
     std::vector<TileLevel> levels_;
     Bytes bytes_;
@@ -74,14 +79,14 @@ public:
 
     const std::vector<TileLevel>& levels() const { return levels_; }
 
-    /// Returns the bytes of a tile of the level that was added last.
-    std::string_view last(std::size_t tile) const
+    /// Returns the bytes of a tile of the level that was added last. They are valid until the next call of add().
+    std::string_view tile_of_last_level(std::size_t tile) const
     {
         const TileEntry& entry = levels_.back().tiles[tile];
         return std::string_view(bytes_).substr(entry.offset, entry.size);
     }
 
-    /// Adds a level. `tiles` has the bytes of each of its tiles.
+    /// Adds a level. `tiles` has the bytes of each tile, row after row; an empty text is an empty tile.
     void add(TileLevel level, std::vector<std::string> tiles, int threads);
 
     TileStore build();

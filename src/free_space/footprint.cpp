@@ -136,7 +136,7 @@ Prism prism_within(const PartCorners& corners)
         const Polygon2 other = slice(corners, top);
         if (polygon.size() < 3 || other.size() < 3) continue;
         for (std::size_t k = 0; k < other.size() && polygon.size() >= 3; ++k) {
-            const Vec2 normal = normal_of(other[k], other[(k + 1) % other.size()]);
+            const Vec2 normal = edge_normal(other[k], other[(k + 1) % other.size()]);
             polygon = cut(polygon, normal, normal.dot(other[k]));
         }
         polygon = convex_hull(std::move(polygon));

@@ -186,7 +186,7 @@ LooseTile pooled(const TileStoreBuilder& finer, std::uint32_t tile_col, std::uin
         const std::uint32_t col = 2 * tile_col + t % 2, row = 2 * tile_row + t / 2;
         const TileLevel& fine = finer.levels().back();
         if (col >= fine.tile_cols || row >= fine.tile_rows) continue;
-        const std::string_view bytes = finer.last(std::size_t{row} * fine.tile_cols + col);
+        const std::string_view bytes = finer.tile_of_last_level(std::size_t{row} * fine.tile_cols + col);
         if (bytes.empty()) continue;
         tiles[t] = BoundsTile(bytes);
         out.slack = std::max(out.slack, tiles[t].head->slack);

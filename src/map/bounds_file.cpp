@@ -3,10 +3,24 @@
 #include "free_space/bounds_tile.h"
 #include "map/tiled_file.h"
 
+#include <cmath>
+
 namespace spawnfield {
 namespace {
 
 constexpr TiledFormat bounds_format{"SPAWNBND", 1};
+
+/// Returns whether each level has cells of twice the size of the level before it, and as many as needed. The mask
+/// relies on this.
+bool are_halved(const std::vector<TileLevel>& levels)
+{
+    for (std::size_t l = 1; l < levels.size(); ++l) {
+        const TileLevel &finer = levels[l - 1], &level = levels[l];
+        if (level.cell != 2 * finer.cell || level.cols != (finer.cols + 1) / 2 || level.rows != (finer.rows + 1) / 2)
+            return false;
+    }
+    return true;
+}
 
 }  // namespace
 
@@ -30,6 +44,8 @@ SolidBounds open_bounds(const std::filesystem::path& file, const std::string& he
         impl->is_whole = head.get<std::uint32_t>() != 0;
         return get_levels(head, BoundsTile::side);
     });
+    if (!are_halved(impl->levels()) || !std::isfinite(impl->x0) || !std::isfinite(impl->y0))
+        impl->tiles.fail_inconsistent();
     return SolidBounds(std::move(impl));
 }
 

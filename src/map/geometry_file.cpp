@@ -4,6 +4,7 @@
 #include "map/tiled_file.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace spawnfield {
 namespace {
@@ -73,6 +74,7 @@ Geometry open_geometry(const std::filesystem::path& file, const std::string& hea
         read_parts(head, *impl);
         return levels;
     }));
+    if (!std::isfinite(impl->x0) || !std::isfinite(impl->y0)) impl->tiles().fail_inconsistent();
     return Geometry(std::move(impl));
 }
 

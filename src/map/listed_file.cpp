@@ -10,29 +10,31 @@ namespace spawnfield {
 
 namespace fs = std::filesystem;
 
-ListedFile list_file(const fs::path& file)
+ListedFile entry_of(const fs::path& file)
 {
     const Bytes bytes = map_file(file);
     return {file.filename().string(), checksum(bytes.view), {}, bytes.view.size()};
 }
 
-void check_size(const fs::path& folder, const ListedFile& file)
+void check_size(const fs::path& folder, const ListedFile& entry)
 {
+    const fs::path file = folder / entry.name;
     std::error_code error;
-    if (fs::exists(folder / file.name, error)) require_file(folder / file.name);
-    const auto bytes = fs::file_size(folder / file.name, error);
-    if (error) throw FileError((folder / file.name).string(), "is missing; bake the map again");
-    if (bytes != file.bytes)
-        throw FileError((folder / file.name).string(), "has " + std::to_string(bytes) + " bytes, map.yaml lists " +
-                                                           std::to_string(file.bytes) +
-                                                           ": it was cut short or altered; bake the map again");
+    if (fs::exists(file, error)) require_file(file);
+    const auto size = fs::file_size(file, error);
+    if (error == std::errc::no_such_file_or_directory) throw FileError(file.string(), "is missing; bake the map again");
+    if (error) throw FileError(file.string(), "cannot be read: " + error.message());
+    if (size != entry.bytes)
+        throw FileError(file.string(), "has " + std::to_string(size) + " bytes, but map.yaml lists " +
+                                           std::to_string(entry.bytes) +
+                                           ": the file was cut short or altered; bake the map again");
 }
 
-void check_checksum(const fs::path& folder, const ListedFile& file)
+void check_checksum(const fs::path& folder, const ListedFile& entry)
 {
-    if (list_file(folder / file.name).checksum != file.checksum)
-        throw FileError((folder / file.name).string(),
-                        "differs from its checksum in map.yaml: it was altered; bake the map again");
+    if (entry_of(folder / entry.name).checksum != entry.checksum)
+        throw FileError((folder / entry.name).string(),
+                        "was altered: its checksum differs from the one in map.yaml; bake the map again");
 }
 
 }  // namespace spawnfield

@@ -68,7 +68,7 @@ std::string file_lines(const fs::path& folder, const std::vector<ListedFile>& wr
     for (const char* const name : map_files) {
         const auto known = std::find_if(written.begin(), written.end(),
                                         [&](const ListedFile& file) { return file.name == name; });
-        const ListedFile file = known != written.end() ? *known : list_file(folder / name);
+        const ListedFile file = known != written.end() ? *known : entry_of(folder / name);
         out += "  " + file.name + ": {bytes: " + std::to_string(file.bytes) + ", xxh64: \"" + file.checksum + "\"";
         if (!file.head_checksum.empty()) out += ", head_xxh64: \"" + file.head_checksum + "\"";
         out += "}\n";

@@ -6,23 +6,25 @@
 #include <spawnfield/output_file.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace spawnfield {
 namespace {
 
-constexpr std::size_t fixed_size = 24;  // bytes: magic, version, 0, size of the head
+constexpr std::size_t prefix_size = 24;  // bytes: magic word, version, 0, size of the head
 
-/// Returns whether the levels are valid and every tile lies within the bytes. A file with correct checksums may still
-/// come from another program.
-bool is_consistent(const TileStore& store)
+/// Returns whether each level is valid by itself and every tile lies within the bytes. A file with correct checksums
+/// may still come from another program.
+bool has_valid_levels(const TileStore& store)
 {
-    constexpr std::uint32_t most = 1u << 30;  // cells along one side
+    constexpr std::uint32_t max_cells = 1u << 30;  // along one side
     const auto is_within = [&](const TileEntry& tile) {
         const std::size_t size = store.bytes().size();
-        return tile.offset % 8 == 0 && tile.offset <= size && tile.size <= size - tile.offset;
+        return tile.offset % tile_alignment == 0 && tile.offset <= size && tile.size <= size - tile.offset;
     };
     const auto is_valid = [&](const TileLevel& level) {
-        return level.cell > 0 && level.cols > 0 && level.cols <= most && level.rows > 0 && level.rows <= most &&
+        return level.cell > 0 && std::isfinite(level.cell) && level.cols > 0 && level.cols <= max_cells &&
+               level.rows > 0 && level.rows <= max_cells &&
                level.tiles.size() == std::uint64_t{level.tile_cols} * level.tile_rows &&
                std::all_of(level.tiles.begin(), level.tiles.end(), is_within);
     };
@@ -31,72 +33,77 @@ bool is_consistent(const TileStore& store)
 
 }  // namespace
 
-void put_levels(BinaryWriter& head, const std::vector<TileLevel>& levels)
+void put_levels(BinaryWriter& content, const std::vector<TileLevel>& levels)
 {
-    head.put(std::uint32_t(levels.size()));
+    content.put(std::uint32_t(levels.size()));
     for (const TileLevel& level : levels) {
-        head.put(level.cell);
-        head.put(level.cols);
-        head.put(level.rows);
-        head.put_array(level.tiles);
+        content.put(level.cell);
+        content.put(level.cols);
+        content.put(level.rows);
+        content.put_array(level.tiles);
     }
 }
 
-std::vector<TileLevel> get_levels(BinaryReader& head, std::uint32_t tile_side)
+std::vector<TileLevel> get_levels(BinaryReader& content, std::uint32_t tile_side)
 {
     std::vector<TileLevel> levels;
-    for (auto count = head.get<std::uint32_t>(); count > 0; --count) {
-        const auto cell = head.get<double>();
-        const auto cols = head.get<std::uint32_t>(), rows = head.get<std::uint32_t>();
-        levels.emplace_back(cell, cols, rows, tile_side).tiles = head.get_array<TileEntry>();
+    for (auto count = content.get<std::uint32_t>(); count > 0; --count) {
+        const auto cell = content.get<double>();
+        const auto cols = content.get<std::uint32_t>(), rows = content.get<std::uint32_t>();
+        TileLevel level(cell, cols, rows, tile_side);
+        level.tiles = content.get_array<TileEntry>();
+        levels.push_back(std::move(level));
     }
     return levels;
 }
 
-ListedFile write_tiled(const std::filesystem::path& file, const TiledFormat& format, const std::string& head,
+ListedFile write_tiled(const std::filesystem::path& file, const TiledFormat& format, const std::string& content,
                        const TileStore& tiles)
 {
-    BinaryWriter fixed;
-    fixed.put(format.version);
-    fixed.put(std::uint32_t{0});
-    const std::size_t size = (fixed_size + head.size() + tile_alignment - 1) / tile_alignment * tile_alignment;
-    fixed.put(std::uint64_t(size));
-    std::string start = std::string(format.magic) + fixed.take() + head;
-    start.resize(size, '\0');
+    BinaryWriter prefix;  // without the magic word
+    prefix.put(format.version);
+    prefix.put(std::uint32_t{0});
+    const std::size_t size = (prefix_size + content.size() + tile_alignment - 1) / tile_alignment * tile_alignment;
+    prefix.put(std::uint64_t(size));
+    std::string head = std::string(format.magic) + prefix.take() + content;
+    head.resize(size, '\0');
     OutputFile out(file);
-    out.write(start);
+    out.write(head);
     out.write(tiles.bytes());
     out.commit();
-    return {file.filename().string(), checksum({start, tiles.bytes()}), checksum(start),
-            start.size() + tiles.bytes().size()};
+    return {file.filename().string(), checksum({head, tiles.bytes()}), checksum(head),
+            head.size() + tiles.bytes().size()};
 }
 
 TileStore open_tiled(const std::filesystem::path& file, const TiledFormat& format, const std::string& head_checksum,
-                     const std::function<std::vector<TileLevel>(BinaryReader&)>& read_head)
+                     const std::function<std::vector<TileLevel>(BinaryReader&)>& read_content)
 {
     const Bytes bytes = map_file(file);
-    if (!bytes.view.starts_with(format.magic) || bytes.view.size() < fixed_size)
-        throw FileError(file.string(), "is not the file that map.yaml lists (it does not start with " +
-                                           std::string(format.magic) + "); bake the map again");
-    BinaryReader fixed(bytes.view.substr(format.magic.size()));
-    if (const auto found = fixed.get<std::uint32_t>(); found != format.version)
-        throw FileError(file.string(), "has format version " + std::to_string(found) + ", this program reads " +
-                                           std::to_string(format.version) + "; bake the map again");
-    fixed.get<std::uint32_t>();
-    const auto size = fixed.get<std::uint64_t>();
-    if (size < fixed_size || size > bytes.view.size())
-        throw FileError(file.string(), "is cut short; bake the map again");
+    const auto fail = [&](const std::string& what) { throw FileError(file.string(), what + "; bake the map again"); };
+    if (!bytes.view.starts_with(format.magic))
+        fail("is not the file that map.yaml lists (it does not start with " + std::string(format.magic) + ")");
+    if (bytes.view.size() < prefix_size) fail("is cut short");
+    BinaryReader prefix(bytes.view.substr(format.magic.size()));
+    if (const auto version = prefix.get<std::uint32_t>(); version != format.version)
+        fail("has format version " + std::to_string(version) + ", this program reads " +
+             std::to_string(format.version));
+    prefix.get<std::uint32_t>();  // always 0
+    const auto size = prefix.get<std::uint64_t>();
+    if (size < prefix_size || size % tile_alignment != 0) fail("has an invalid size of its head");
+    if (size > bytes.view.size()) fail("is cut short");
     if (checksum(bytes.view.substr(0, size)) != head_checksum)
-        throw FileError(file.string(),
-                        "is damaged (the checksum of its head differs from map.yaml's); bake the map again");
-    BinaryReader head(bytes.view.substr(fixed_size, size - fixed_size));
+        fail("is damaged (the checksum of its head differs from the one in map.yaml)");
+    BinaryReader content(bytes.view.substr(prefix_size, size - prefix_size));
+    const Bytes tiles = bytes.part(size, bytes.view.size() - size);
+    std::vector<TileLevel> levels;
     try {
-        TileStore store(read_head(head), bytes.part(size, bytes.view.size() - size), file.string());
-        if (!is_consistent(store)) store.fail_inconsistent();
-        return store;
+        levels = read_content(content);
     } catch (const std::out_of_range&) {
-        throw FileError(file.string(), "is cut short; bake the map again");
+        TileStore({}, tiles, file.string()).fail_inconsistent();
     }
+    TileStore store(std::move(levels), tiles, file.string());
+    if (!has_valid_levels(store)) store.fail_inconsistent();
+    return store;
 }
 
 }  // namespace spawnfield

@@ -23,7 +23,7 @@ bool is_sliver(const SmallPolygon& polygon)
 
 }  // namespace
 
-Vec2 outward_normal(const Vec2& p, const Vec2& q) { return normal_of(p, q).normalized(); }
+Vec2 unit_edge_normal(const Vec2& p, const Vec2& q) { return edge_normal(p, q).normalized(); }
 
 SmallPolygon corners_of(const Rect& r)
 {
@@ -34,7 +34,7 @@ bool are_parted(const SmallPolygon& a, const SmallPolygon& b, double by)
 {
     const auto parts = [&](const SmallPolygon& from, const SmallPolygon& other) {
         for (std::size_t k = 0; k < from.size(); ++k) {
-            const Vec2 normal = outward_normal(from[k], from[k + 1 < from.size() ? k + 1 : 0]);
+            const Vec2 normal = unit_edge_normal(from[k], from[k + 1 < from.size() ? k + 1 : 0]);
             const double rim = normal.dot(from[k]) - by;
             if (std::all_of(other.begin(), other.end(), [&](const Vec2& p) { return normal.dot(p) >= rim; }))
                 return true;
@@ -54,7 +54,7 @@ void Remainder::take(const SmallPolygon& polygon)
         }
         for (std::size_t k = 0; k < polygon.size() && !piece.empty(); ++k) {
             const Vec2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-            const Vec2 normal = outward_normal(p, q);
+            const Vec2 normal = unit_edge_normal(p, q);
             const SmallPolygon beyond = cut(piece, -normal, -normal.dot(p));
             if (!is_sliver(beyond)) out_.push_back(beyond);
             piece = cut(piece, normal, normal.dot(p));

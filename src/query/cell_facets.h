@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 #include <vector>
 
@@ -30,7 +31,11 @@ public:
     const Vec2& operator[](std::size_t k) const { return corners_[k]; }
     const Vec2* begin() const { return corners_.data(); }
     const Vec2* end() const { return corners_.data() + size_; }
-    void push_back(const Vec2& p) { corners_[size_++] = p; }
+    void push_back(const Vec2& p)
+    {
+        assert(size_ < most);
+        corners_[size_++] = p;
+    }
     void turn_round() { std::reverse(corners_.begin(), corners_.begin() + std::ptrdiff_t(size_)); }
 
 private:
@@ -41,7 +46,7 @@ private:
 SmallPolygon corners_of(const Rect& rect);
 
 /// Returns the outward unit normal of the edge from p to q of a counterclockwise polygon.
-Vec2 outward_normal(const Vec2& p, const Vec2& q);
+Vec2 unit_edge_normal(const Vec2& p, const Vec2& q);
 
 /// Returns whether an edge of one polygon separates the other polygon from it. The polygons may overlap by `by` m.
 bool are_parted(const SmallPolygon& a, const SmallPolygon& b, double by);

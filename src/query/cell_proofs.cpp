@@ -321,7 +321,7 @@ Robot CellProofs::eroded(double half_x, double half_y, double half_height) const
         Polygon2 rest = prism.polygon;
         for (std::size_t k = 0; k < prism.polygon.size() && !rest.empty(); ++k) {
             const Vec2 &p = prism.polygon[k], &q = prism.polygon[(k + 1) % prism.polygon.size()];
-            const Vec2 normal = outward_normal(p, q);
+            const Vec2 normal = unit_edge_normal(p, q);
             rest = cut(rest, normal,
                        normal.dot(p) - half_x * std::abs(normal.x()) - half_y * std::abs(normal.y()) - slack);
         }
