@@ -49,6 +49,15 @@ inline std::optional<double> obstacle_above(const ColumnView& column, std::span<
     return std::nullopt;
 }
 
+/// Which surfaces of a scene the columns contain: all, or only those of solids.
+enum class Surfaces { All, Filled };
+
+/// Returns whether columns of these surfaces contain an element of a tile.
+bool counts(const Tile& tile, std::uint32_t element, Surfaces surfaces);
+
+/// Finds the hits of the vertical line through (x, y), in the order of their elements.
+void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, std::vector<SurfaceHit>& hits);
+
 /// A grid of columns at x = x0 + (col + shift) * step, y = y0 + (row + shift) * step.
 struct ColumnGrid {
     double x0 = 0, y0 = 0, step = 1;
@@ -58,9 +67,6 @@ struct ColumnGrid {
     double x_of(int col) const { return x0 + (col + shift) * step; }
     double y_of(int row) const { return y0 + (row + shift) * step; }
 };
-
-/// Which surfaces of a scene the columns contain: all, or only those of solids.
-enum class Surfaces { All, Filled };
 
 /// The columns of a block of a grid. They are identical to those that column_at returns one by one.
 ///
@@ -74,27 +80,40 @@ public:
     /// Returns the column in column grid.first_col + i and row grid.first_row + j of the grid.
     ColumnView at(int i, int j) const
     {
-        const std::size_t column = std::size_t(j) * std::size_t(cols_) + std::size_t(i);
-        const Start &from = starts_[column], &to = starts_[column + 1];
+        const Slot& slot = slots_[std::size_t(j) * std::size_t(cols_) + std::size_t(i)];
+        switch (slot.content) {
+        case Content::Nothing: return {};
+        case Content::Terrain: return {{&slot.span, 1}, {&slot.span.top, 1}, {}};
+        case Content::Obstacle: return {{&slot.span, 1}, {}, {}};
+        case Content::Water: return {{}, {}, {&slot.span.top, 1}};
+        case Content::Several: break;
+        }
+        const Start &from = starts_[slot.index], &to = starts_[slot.index + 1];
         return {std::span(column_.spans).subspan(from.span, to.span - from.span),
                 std::span(column_.layers).subspan(from.layer, to.layer - from.layer),
                 std::span(column_.water).subspan(from.water, to.water - from.water)};
     }
 
 private:
+    class Scan;
+    /// What a column contains. Most columns contain nothing, or one surface of a sheet: it is `span`. All others are
+    /// `Several`: they are one after the other in column_.
+    enum class Content : std::uint8_t { Nothing, Terrain, Obstacle, Water, Several };
+    struct Slot {
+        Span span;
+        std::uint32_t index = 0;  ///< Several: the number among such columns. Otherwise the element, while scanning
+        Content content = Content::Nothing;
+    };
     struct Start {
         std::uint32_t span = 0, layer = 0, water = 0;
     };
-    void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
-    void end_column()
-    {
-        starts_.push_back({std::uint32_t(column_.spans.size()), std::uint32_t(column_.layers.size()),
-                           std::uint32_t(column_.water.size())});
-    }
+    void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
+    void end_column(Slot& slot);
 
     int cols_ = 0;
-    Column column_;  ///< the contents of all columns, one after the other
+    std::vector<Slot> slots_;
+    Column column_;
     std::vector<Start> starts_;
 };
 

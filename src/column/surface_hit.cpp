@@ -97,7 +97,7 @@ void SeenTriangle::prepare()
     const TileTriangle& from = tile_.triangles[triangle_];
     const TilePiece& piece = tile_.pieces[from.piece];
     const bool filled = piece.solid != 0, looks_up = twice_area_ > 0;
-    within_ = {.element = tile_.ids[triangle_],
+    common_ = {.element = tile_.ids[triangle_],
                .piece = piece.piece,
                .part = piece.part,
                .is_primitive = false,
@@ -113,11 +113,11 @@ void SeenTriangle::prepare()
     is_prepared_ = true;
 }
 
-std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x, double y)
+std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x)
 {
+    const double y = y_;
     if (!may_meet(corners_, x, y)) return std::nullopt;
-    if (!is_prepared_) prepare();
-    SurfaceHit out = within_;
+    SurfaceHit out = common();
     out.crosses = out.filled && is_crossed(corners_, x, y);
     if (out.crosses) out.crossing = height_at_rim(x, y);
     const double longest = std::max({edges_[0].squared_length, edges_[1].squared_length, edges_[2].squared_length});

@@ -26,73 +26,83 @@ struct SurfaceHit {
 class SeenTriangle {
 public:
     SeenTriangle(const Tile& tile, std::uint32_t triangle)
-        : tile_(tile), triangle_(triangle), corners_(tile.corners(triangle))
+        : tile_(tile), triangle_(triangle),
+          corners_(tile.corners(triangle)), edges_{Edge(corners_[0], corners_[1]), Edge(corners_[1], corners_[2]),
+                                                   Edge(corners_[2], corners_[0])}
     {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 &p = corners_[k], &q = corners_[k < 2 ? k + 1 : 0];
-            Edge& edge = edges_[k];
-            edge.x = q.x() - p.x();
-            edge.y = q.y() - p.y();
-            edge.squared_length = edge.x * edge.x + edge.y * edge.y;
-            edge.rim = edge.squared_length > 0 ? 16 * touch_tolerance * touch_tolerance * edge.squared_length : -1;
-        }
     }
 
-    /// Sets y, m, for the following `meet()` calls.
+    /// Sets y, m, for the calls that follow.
     void set_y(double y)
     {
         y_ = y;
-        for (std::size_t k = 0; k < 3; ++k) edges_[k].across = edges_[k].x * (y - corners_[k].y());
+        for (Edge& edge : edges_) edge.across = edge.x * (y - edge.from_y);
     }
 
-    /// Returns whether the vertical line through (x, y) meets the triangle. If it does, the hit is written to the
-    /// SurfaceHit& that new_hit() returns. A vertical triangle of a sheet is never met.
-    template <class NewHit>
-    bool meet(double x, const NewHit& new_hit)
+    /// Where a vertical line passes a triangle. Rim: so near to an edge that only hit_at_rim() can decide.
+    enum class Side { Outside, Inside, Rim };
+    Side side_of(double x) const
     {
         // Clear lines are far from all edges, so that neither rounding nor a tolerance decides. If a clear line is on
         // the same side of all edges, it goes through the triangle.
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        bool is_clear = true;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double cross = edges_[k].across - edges_[k].y * (x - corners_[k].x());
-            is_clear = is_clear & (cross * cross > edges_[k].rim);
-            low = std::min(low, cross);
-            high = std::max(high, cross);
-        }
-        if (is_clear && low < 0 && high > 0) return false;
-        if (!is_clear || (low <= 0 && high >= 0)) {
-            const auto hit = hit_at_rim(x, y_);
-            if (hit) new_hit() = *hit;
-            return hit.has_value();
-        }
-        if (!is_prepared_) prepare();
-        SurfaceHit& hit = new_hit();
-        hit = within_;
-        hit.crossing = hit.z.bottom = hit.z.top = height(x, y_);
-        return true;
+        const double a = edges_[0].cross(x), b = edges_[1].cross(x), c = edges_[2].cross(x);
+        const bool is_clear = (a * a > edges_[0].rim) & (b * b > edges_[1].rim) & (c * c > edges_[2].rim);
+        if (!is_clear) return Side::Rim;
+        const double low = std::min(std::min(a, b), c), high = std::max(std::max(a, b), c);
+        if (low < 0 && high > 0) return Side::Outside;
+        return low <= 0 && high >= 0 ? Side::Rim : Side::Inside;
     }
+
+    /// Returns the hit of a line inside the triangle, without its heights.
+    const SurfaceHit& common()
+    {
+        if (!is_prepared_) prepare();
+        return common_;
+    }
+    /// Returns the height of the triangle at a line that is inside. common() must have been called.
+    double height_at(double x) const { return height(x, y_); }
+    /// Returns the hit of a line that is inside.
+    SurfaceHit hit_inside(double x)
+    {
+        SurfaceHit hit = common();
+        hit.crossing = hit.z.bottom = hit.z.top = height_at(x);
+        return hit;
+    }
+    /// Returns the hit of a line at the rim, if it meets the triangle. A vertical triangle of a sheet is never met.
+    std::optional<SurfaceHit> hit_at_rim(double x);
 
     /// Returns the hit of the vertical line through (x, y), if it meets the triangle.
     std::optional<SurfaceHit> hit(double x, double y)
     {
-        std::optional<SurfaceHit> out;
         set_y(y);
-        meet(x, [&]() -> SurfaceHit& { return out.emplace(); });
-        return out;
+        switch (side_of(x)) {
+        case Side::Outside: return std::nullopt;
+        case Side::Inside: return hit_inside(x);
+        case Side::Rim: break;
+        }
+        return hit_at_rim(x);
     }
 
 private:
+    /// An edge, seen from above.
     struct Edge {
-        double x, y;            ///< m
-        double squared_length;  ///< seen from above, m2
+        double from_x, from_y;
+        double x, y;            ///< from its first corner to the next, m
+        double squared_length;  ///< m2
         double
-            rim;  ///< a line is well off the edge if the squared cross product exceeds this; -1 if the edge is vertical
+            rim;  ///< a line is clear of the edge if the squared cross product exceeds this; -1: the edge is vertical
         double across;  ///< the part of that cross product which depends on y, m2
+
+        Edge(const Vec3& from, const Vec3& to)
+            : from_x(from.x()), from_y(from.y()), x(to.x() - from.x()), y(to.y() - from.y()),
+              squared_length(x * x + y * y),
+              rim(squared_length > 0 ? 16 * touch_tolerance * touch_tolerance * squared_length : -1), across(0)
+        {
+        }
+        double cross(double line_x) const { return across - y * (line_x - from_x); }
     };
 
     void prepare();
-    std::optional<SurfaceHit> hit_at_rim(double x, double y);
     /// Returns the height of the triangle's plane, limited to the triangle's own heights. At a corner it is exactly the
     /// corner's height, so that all triangles at that corner agree.
     double height_at_rim(double x, double y) const
@@ -110,37 +120,17 @@ private:
     const Tile& tile_;
     const std::uint32_t triangle_;
     const std::array<Vec3, 3> corners_;
-    std::array<Edge, 3> edges_;  ///< from corner k to the next
+    std::array<Edge, 3> edges_;
     double y_ = 0;
 
     // Set by prepare(), for triangles that are hit:
     bool is_prepared_ = false;
     double twice_area_ = 0;  ///< seen from above, m2; > 0 if the triangle faces upwards
     double slope_x_ = 0, slope_y_ = 0, low_ = 0, high_ = 0;
-    SurfaceHit within_;  ///< the hit of a line that is well inside, without the heights
+    SurfaceHit common_;
 };
 
 /// Returns where the vertical line through (x, y) meets an element of a tile, if it does.
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y);
-
-/// A primitive with the same functions as SeenTriangle.
-class SeenPrimitive {
-public:
-    SeenPrimitive(const Tile& tile, std::uint32_t element) : tile_(tile), element_(element) {}
-
-    void set_y(double y) { y_ = y; }
-    template <class NewHit>
-    bool meet(double x, const NewHit& new_hit) const
-    {
-        const auto hit = hit_of(tile_, element_, x, y_);
-        if (hit) new_hit() = *hit;
-        return hit.has_value();
-    }
-
-private:
-    const Tile& tile_;
-    const std::uint32_t element_;
-    double y_ = 0;
-};
 
 }  // namespace spawnfield

@@ -18,9 +18,9 @@ int floor_of(double value)
 int ceil_of(double value) { return -floor_of(-value); }
 
 /// Returns the largest quantized height of a tile that is below z; 0 if there is none.
-int values_below(const BoundsHead& head, double inverse_quantum, double z)
+std::uint32_t values_below(const BoundsHead& head, double inverse_quantum, double z)
 {
-    return std::max(0, ceil_of(std::clamp((z - head.base) * inverse_quantum, 0.0, 65536.0)) - 1);
+    return std::uint32_t(std::max(0, ceil_of(std::clamp((z - head.base) * inverse_quantum, 0.0, 65536.0)) - 1));
 }
 
 /// Returns the lowest interval of a cell for which the test is true; nullptr if there is none. If the test is true for
@@ -165,44 +165,71 @@ void Mask::cover(const Part& part, Pass& pass) const
         pass.low = std::min(pass.low, row.low);
         pass.high = std::max(pass.high, row.high);
     }
+    pass.known_cols = int(raster_.whole_cols(pass.level));
+    pass.has_known_rows = first >= 0 && last < int(raster_.whole_rows(pass.level));
+    pass.first_row = std::uint32_t(std::max(first, 0));
+    pass.last_row = std::uint32_t(std::max(last, 0));
     pass.is_ready = true;
 }
 
 /// Returns tile (col, row) of the pass's level. Up to four adjacent tiles stay open, because a part may lie on the
 /// corner of four tiles.
-const Mask::OpenTile& Mask::tile_of(Pass& pass, int col, int row) const
+Mask::OpenTile& Mask::tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const
 {
-    OpenTile& open = pass.tiles[std::size_t(row % 2 * 2 + col % 2)];
-    if (col == open.col && row == open.row) return open;
-    open.col = open.row = -1;  // remains -1 if open() throws because the tile is damaged
-    open.tile = raster_.open(pass.level, std::uint32_t(col), std::uint32_t(row));
-    if (open.tile.head != nullptr) open.inverse_quantum = 1 / open.tile.head->quantum;
-    open.col = col;
-    open.row = row;
+    OpenTile& open = pass.tiles[row % 2 * 2 + col % 2];
+    if (col != open.col || row != open.row) open_tile(pass.level, col, row, open);
     return open;
+}
+
+void Mask::open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, OpenTile& out) const
+{
+    out.col = out.row = OpenTile::none;  // remains so if open() throws because the tile is damaged
+    out.tile = raster_.open(level, col, row);
+    if (out.tile.head != nullptr) out.inverse_quantum = 1 / out.tile.head->quantum;
+    out.col = col;
+    out.row = row;
+    out.first_row = OpenTile::none;
+}
+
+/// Sets `highest` for these rows of the tile. Does nothing if it has been set for them already: poses of one row of a
+/// raster share it.
+void Mask::OpenTile::set_rows(std::uint32_t first, std::uint32_t last)
+{
+    if (first == first_row && last == last_row) return;
+    first_row = first;
+    last_row = last;
+    std::array<std::uint16_t, BoundsTile::side> maxima{};  // a local array, so that the compiler uses vectors
+    for (std::uint32_t row = first; row <= last; ++row) {
+        const std::uint16_t* const tops = tile.tops + row * BoundsTile::side;
+        for (std::size_t col = 0; col < BoundsTile::side; ++col)
+            maxima[col] = maxima[col] < tops[col] ? tops[col] : maxima[col];
+    }
+    highest = maxima;
 }
 
 /// Returns whether nothing in the rectangle of cells around a part reaches up to its lowest point. This fast test is
 /// true for most poses on open ground.
 bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
 {
-    constexpr int side = BoundsTile::side;
     const double u = (x - raster_.x0) / raster_.levels()[pass.level].cell;
-    const int low = floor_of(u + pass.low), high = floor_of(u + pass.high), first = pass.rows.front().row,
-              last = pass.rows.back().row;
-    const int known_cols = int(raster_.whole_cols(pass.level)), known_rows = int(raster_.whole_rows(pass.level));
-    if (low < 0 || first < 0 || high >= known_cols || last >= known_rows) return false;
+    const int low = floor_of(u + pass.low), high = floor_of(u + pass.high);
+    if (!pass.has_known_rows || low < 0 || high >= pass.known_cols) return false;
+    constexpr std::uint32_t side = BoundsTile::side;
     const double bottom = z + part.footprint.outer.bottom;
-    for (int tile_row = first / side; tile_row <= last / side; ++tile_row)
-        for (int tile_col = low / side; tile_col <= high / side; ++tile_col) {
-            const OpenTile& open = tile_of(pass, tile_col, tile_row);
+    for (std::uint32_t col = std::uint32_t(low) / side; col <= std::uint32_t(high) / side; ++col) {
+        const std::uint32_t from = std::max(std::uint32_t(low), col * side) % side,
+                            to = std::min(std::uint32_t(high), col * side + side - 1) % side;
+        for (std::uint32_t row = pass.first_row / side; row <= pass.last_row / side; ++row) {
+            OpenTile& open = tile_of(pass, col, row);
             if (open.tile.head == nullptr) continue;
-            const int from = std::max(low - tile_col * side, 0), to = std::min(high - tile_col * side, side - 1);
-            int highest = 0;
-            for (int j = std::max(first - tile_row * side, 0); j <= std::min(last - tile_row * side, side - 1); ++j)
-                for (int i = from; i <= to; ++i) highest = std::max<int>(highest, open.tile.tops[j * side + i]);
+            open.set_rows(std::max(pass.first_row, row * side) % side,
+                          std::min(pass.last_row, row * side + side - 1) % side);
+            std::uint32_t highest = 0;
+            for (std::uint32_t cell = from; cell <= to; ++cell)
+                highest = std::max<std::uint32_t>(highest, open.highest[cell]);
             if (highest > values_below(*open.tile.head, open.inverse_quantum, bottom)) return false;
         }
+    }
     return true;
 }
 
@@ -215,7 +242,7 @@ struct Mask::Heights {
     void set_tile(const BoundsHead& head, double inverse_quantum)
     {
         const auto value = [&](double z) { return std::clamp((z - head.base) * inverse_quantum, 0.0, 65536.0); };
-        below = std::uint32_t(values_below(head, inverse_quantum, bottom));
+        below = values_below(head, inverse_quantum, bottom);
         hit_low = std::uint32_t(std::max(1, ceil_of(value(inner_bottom + head.slack))));
         hit_high = std::uint32_t(floor_of(value(inner_top)));
     }
@@ -305,8 +332,9 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
             inner = {ceil_of(u + cover.inner_low), floor_of(u + cover.inner_high) - 1};
         for (int col = first; col <= last;) {
             const int end = std::min(last, col / side * side + side - 1);
-            if (open == nullptr || col / side != open->col || cover.row / side != open->row) {
-                open = &tile_of(pass, col / side, cover.row / side);
+            const auto tile_col = std::uint32_t(col / side), tile_row = std::uint32_t(cover.row / side);
+            if (open == nullptr || tile_col != open->col || tile_row != open->row) {
+                open = &tile_of(pass, tile_col, tile_row);
                 if (open->tile.head != nullptr) heights.set_tile(*open->tile.head, open->inverse_quantum);
             }
             const BoundsTile& tile = open->tile;

@@ -45,8 +45,14 @@ private:
     };
     struct OpenTile {
         BoundsTile tile;
-        int col = -1, row = -1;
+        static constexpr std::uint32_t none = 0xffffffff;
+        std::uint32_t col = none, row = none;
         double inverse_quantum = 0;  ///< of the tile
+        /// For each column of the tile's cells, the highest top in the rows first_row .. last_row of the tile.
+        std::array<std::uint16_t, BoundsTile::side> highest{};
+        std::uint32_t first_row = none, last_row = 0;
+
+        void set_rows(std::uint32_t first, std::uint32_t last);
     };
     struct CellRange {
         int first, last;  ///< columns, inclusive
@@ -55,8 +61,12 @@ private:
     struct Pass {
         std::size_t level;
         bool is_ready = false;
-        std::vector<CoverRow> rows;        ///< in the order of their numbers
-        double low = 0, high = 0;          ///< smallest low and largest high of all rows
+        std::vector<CoverRow> rows;   ///< in the order of their numbers
+        double low = 0, high = 0;     ///< smallest low and largest high of all rows
+        bool has_known_rows = false;  ///< all rows lie completely on the finest raster
+        int known_cols = 0;           ///< number of columns that lie completely on it
+        std::uint32_t first_row = 0,
+                      last_row = 0;        ///< numbers of the first and the last of the rows, if they are known
         std::vector<CellRange> undecided;  ///< for each row: all other cells are proven free at the last pose
         std::array<OpenTile, 4> tiles;     ///< the tiles that were used last; a part may lie on four of them
     };
@@ -71,7 +81,8 @@ private:
     void choose_passes(Part& part) const;
     void set_y(double y);
     void cover(const Part& part, Pass& pass) const;
-    const OpenTile& tile_of(Pass& pass, int col, int row) const;
+    OpenTile& tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const;
+    void open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, OpenTile& out) const;
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
     bool is_clear(const Part& part, Pass& pass, double x, double z) const;
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);

@@ -186,6 +186,15 @@ struct Geometry::Impl {
         visit_if(low.x(), low.y(), high.x(), high.y(), Interval{low.z(), high.z()}, meets, visit);
     }
 
+    /// Calls visit(tile, element) once for each element whose box fulfils meets(box). For boxes outside the closed
+    /// rectangle, meets(box) must be false, but need not be so within a margin of rounding.
+    template <class Meets, class Visit>
+    void visit_in(double low_x, double low_y, double high_x, double high_y, const Meets& meets,
+                  const Visit& visit) const
+    {
+        visit_if(low_x, low_y, high_x, high_y, AnyHeight(), meets, visit);
+    }
+
     /// Estimates how many elements lie in a rectangle, from the sizes of the tiles that it meets. Each tile counts by
     /// the share of its area in the rectangle.
     double elements_near(double low_x, double low_y, double high_x, double high_y) const;

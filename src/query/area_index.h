@@ -46,6 +46,8 @@ class AreaIndex {
 public:
     explicit AreaIndex(const Area& area);
 
+    /// Returns whether the area has no regions, so that it contains every point.
+    bool is_everywhere() const { return within_.empty() && keep_out_.empty(); }
     /// Returns whether the area contains the point at some height.
     bool contains(const Vec2& point) const;
     bool contains(const Vec2& point, double z) const;  ///< z to touch_tolerance

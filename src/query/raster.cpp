@@ -95,7 +95,8 @@ public:
     RasterJudge(const Judge::Impl& shared, const RasterOptions& options, const RasterGrid& grid, double offset,
                 double top)
         : shared_(shared), options_(options), grid_(grid), offset_(offset), top_(top),
-          ground_z_(overlap(shared.map.z_limits, options.dims == 2 ? options.z : ZRange{})), area_(options.area)
+          ground_z_(overlap(shared.map.z_limits, options.dims == 2 ? options.z : ZRange{})), area_(options.area),
+          is_everywhere_(area_.is_everywhere())
     {
     }
 
@@ -103,6 +104,8 @@ public:
     void judge_rows(int first, std::span<Row> out) const
     {
         PoseJudge judge(shared_, options_.yaw, max_height());
+        if (options_.dims == 2)
+            for (Row& row : out) row.poses.reserve(std::size_t(grid_.cols));  // one layer for each column, mostly
         for (int col = 0; col < grid_.cols; col += block) {
             const int cols = std::min(block, grid_.cols - col);
             if (area_.misses({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
@@ -115,7 +118,8 @@ public:
             for (int j = 0; j < int(out.size()); ++j)
                 for (int i = 0; i < cols; ++i) {
                     const double x = grid_.x_of(col + i), y = grid_.y_of(first + j);
-                    if (area_.contains({x, y})) judge_column(judge, columns, i, j, x, y, out[std::size_t(j)]);
+                    if (is_everywhere_ || area_.contains({x, y}))
+                        judge_column(judge, columns, i, j, x, y, out[std::size_t(j)]);
                 }
         }
     }
@@ -160,7 +164,7 @@ private:
         for (int layer = 0; layer < count; ++layer) {
             const double height = heights[std::size_t(layer)];
             if (!options_.layers.includes(layer, count)) continue;
-            if (options_.dims == 2 && !area_.contains({x, y}, height)) continue;
+            if (options_.dims == 2 && !is_everywhere_ && !area_.contains({x, y}, height)) continue;
             if (options_.snap && !(height >= grid_.z0 - touch_tolerance && height <= top_ + touch_tolerance)) continue;
             const double z = height + offset_;
             const Judgement judged = judge.judge(column, {x, y, z});
@@ -250,6 +254,7 @@ private:
     const double top_;       ///< upper limit of the bounds' z
     const ZRange ground_z_;  ///< layers beyond it are not ground
     const AreaIndex area_;
+    const bool is_everywhere_;
     const Steps outside_ = steps_outside();
 };
 
