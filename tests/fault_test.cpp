@@ -384,14 +384,14 @@ TEST_CASE("a map folder that is cut short, altered, newer or not a map is refuse
     folder.write("map/map.yaml", bad);
     CHECK(read() == "@/map/map.yaml: differs from the hash in its last line: it was altered; bake the map again");
     bad = good;
-    bad.replace(0, bad.find('\n'), "format: spawnfield-map/4");
+    bad.replace(0, bad.find('\n'), "format: spawnfield-map/5");
     folder.write("map/map.yaml", bad);
     CHECK(read() ==
-          "@/map/map.yaml: has format version 4, this program reads 2 and 3; bake the map again or use a newer "
+          "@/map/map.yaml: has format version 5, this program reads 2 to 4; bake the map again or use a newer "
           "spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
     CHECK(read() ==
-          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/3`)");
+          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/4`)");
     fs::remove(map / "map.yaml");
     CHECK(read() == "@/map: is not a map: it has no map.yaml; make a map with `spawnfield bake SCENE -o MAP`");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");

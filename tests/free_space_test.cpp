@@ -32,7 +32,7 @@ CellAt cell_at(const SolidBounds& bounds, std::size_t level, double x, double y)
 /// Returns whether z may be solid according to the bounds.
 bool may_be_solid(const CellAt& at, double z)
 {
-    if (at.tile.head == nullptr || z > at.tile.height(at.tile.tops[at.cell])) return false;
+    if (at.tile.is_empty() || z > at.tile.height(at.tile.tops[at.cell])) return false;
     if (!at.tile.bounds.has(at.cell)) return at.tile.tops[at.cell] > 0;
     for (const QuantizedSpan& span : at.tile.bounds.of(at.cell))
         if (z >= at.tile.height(span.bottom) && z <= at.tile.height(span.top)) return true;
@@ -94,7 +94,7 @@ TEST_CASE("the top of a cell is as high as a ball over it, at most one height st
             const CellAt at = cell_at(map.solid_bounds, 0, x, y);
             const double top = at.tile.height(at.tile.tops[at.cell]);
             CHECK(top >= std::sqrt(rest) - 1e-9);
-            CHECK(top <= std::sqrt(rest) + 1e-6 + at.tile.head->slack);
+            CHECK(top <= std::sqrt(rest) + 1e-6 + at.tile.slack);
         }
 }
 

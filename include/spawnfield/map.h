@@ -51,6 +51,6 @@ SPAWNFIELD_API void verify_map(const std::filesystem::path& folder);
 
 /// Version 3 added z_limits and floors. A map of version 2 has no z limits, and its floors are computed from
 /// terrain.tiff.
-inline constexpr int map_format_version = 3;
+inline constexpr int map_format_version = 4;
 
 }  // namespace spawnfield

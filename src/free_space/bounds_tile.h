@@ -2,6 +2,7 @@
 
 #include "base/tile_store.h"
 
+#include <spawnfield/shape.h>
 #include <spawnfield/solid_bounds.h>
 
 #include <bit>
@@ -10,25 +11,31 @@
 namespace spawnfield {
 
 /// The head of a tile. A 16-bit value means the height base + value * quantum, m. The value 0 means that there is
-/// nothing.
+/// nothing. Tiles of bounds.bin version 1 have a head without the last four fields.
 struct BoundsHead {
     double base, quantum;
     double slack;  ///< m; each upper end is at most this far above a solid point of its cell; infinite if not known
-    std::uint32_t bound_cells, bounds;  ///< number of cells that have intervals, and number of these intervals
+    std::uint32_t bound_cells, bounds;  ///< number of cells that have intervals, and number of the stored intervals
     std::uint32_t solid_cells, solids;  ///< the same for BoundsTile::solids
+    std::uint32_t bound_lists, solid_lists;  ///< numbers of the stored lists; 0: each cell has its own list
+    std::uint32_t is_uniform;                ///< 1: all cells are the same, and only one is stored
+    std::uint32_t unused;
 };
 
 struct QuantizedSpan {
     std::uint16_t bottom, top;
+
+    bool operator==(const QuantizedSpan&) const = default;
 };
 
 /// The intervals of a tile's cells. Most cells have none; the others are marked by a bit. The rank of a marked cell is
-/// the number of marked cells before it.
+/// the number of marked cells before it. Neighbouring cells often share a list of intervals.
 struct CellIntervals {
     const std::uint64_t* marks = nullptr;   ///< one bit for each cell; nullptr if no cell is marked
     const std::uint16_t* ranks = nullptr;   ///< of each 64th cell, marked or not
-    const std::uint32_t* starts = nullptr;  ///< by rank: where the cell's intervals begin in `spans`; then their number
-    const QuantizedSpan* spans = nullptr;   ///< in each cell from the bottom up
+    const std::uint16_t* lists = nullptr;   ///< by rank: the number of the cell's list; nullptr: it is the rank
+    const std::uint32_t* starts = nullptr;  ///< where each list begins in `spans`; then their number
+    const QuantizedSpan* spans = nullptr;   ///< in each list from the bottom up
 
     bool has(std::uint32_t cell) const { return marks != nullptr && (marks[cell / 64] >> (cell % 64) & 1) != 0; }
     /// Returns the intervals of a marked cell.
@@ -36,7 +43,8 @@ struct CellIntervals {
     {
         const std::uint64_t before = marks[cell / 64] & ((std::uint64_t{1} << (cell % 64)) - 1);
         const std::size_t rank = std::size_t{ranks[cell / 64]} + std::size_t(std::popcount(before));
-        return {spans + starts[rank], spans + starts[rank + 1]};
+        const std::size_t list = lists == nullptr ? rank : lists[rank];
+        return {spans + starts[list], spans + starts[list + 1]};
     }
 };
 
@@ -44,9 +52,10 @@ struct CellIntervals {
 struct BoundsTile {
     static constexpr std::uint32_t side = 64;
     static constexpr std::uint32_t cells = side * side;
+    static constexpr std::uint32_t version = 2;  ///< of the bytes that pack() returns, and of bounds.bin
 
-    const BoundsHead* head = nullptr;
-    const std::uint16_t* tops = nullptr;  ///< for each cell the height of its highest solid point, rounded up
+    double base = 0, quantum = 0, slack = 0;  ///< as in BoundsHead
+    const std::uint16_t* tops = nullptr;      ///< for each cell the height of its highest solid point, rounded up
     /// All solid points of a marked cell lie in its intervals, which are rounded outwards. In other cells any point
     /// below the top may be solid.
     CellIntervals bounds;
@@ -54,19 +63,43 @@ struct BoundsTile {
     CellIntervals solids;
 
     BoundsTile() = default;
-    /// Finds the arrays behind the head. The head's counts must fit the bytes (see bounds_tile_size).
-    explicit BoundsTile(std::string_view bytes);
+    /// Finds the arrays behind the head. The head's counts must fit the bytes (see is_consistent). Without bytes, the
+    /// tile is empty.
+    explicit BoundsTile(std::string_view bytes, std::uint32_t bytes_version = version);
 
-    double height(std::uint16_t value) const { return head->base + value * head->quantum; }
+    bool is_empty() const { return tops == nullptr; }
+    double height(std::uint16_t value) const { return base + value * quantum; }
+
+    /// Returns whether all counts and indices of a tile fit its bytes.
+    static bool is_consistent(std::string_view bytes, std::uint32_t bytes_version = version);
 };
 
-/// Returns the size of a tile with this head, bytes, without the padding at its end.
-std::uint64_t bounds_tile_size(const BoundsHead& head);
+/// Intervals of heights in each cell of a tile, before they are packed. Those of cell c are spans[starts[c]] ..
+/// spans[starts[c + 1] - 1].
+struct CellList {
+    std::array<std::uint32_t, BoundsTile::cells + 1> starts{};
+    std::vector<Interval> spans;  ///< from the bottom up, with gaps between them
+
+    /// Gives all cells the spans that the first cell has.
+    void repeat_first();
+};
+
+/// A tile before it is packed.
+struct LooseTile {
+    CellList bounds, solids;  ///< as in BoundsTile
+    double slack = 0;         ///< as in BoundsHead, before the heights are rounded
+    bool is_empty() const { return bounds.spans.empty(); }
+};
+
+/// Packs a tile into bytes: heights become 16-bit numbers. A cell with one interval of bounds has only its top in the
+/// tile; only cells with two or more have their intervals. Returns no bytes for an empty tile.
+std::string packed(const LooseTile& tile);
 
 struct SolidBounds::Impl {
     double x0 = 0, y0 = 0;  ///< lower left corner of all levels, m
     bool is_whole = false;  ///< nothing solid is beyond the raster
-    TileStore tiles;        ///< level 0 is the finest; each next level has cells of twice the size
+    std::uint32_t tile_version = BoundsTile::version;
+    TileStore tiles;  ///< level 0 is the finest; each next level has cells of twice the size
 
     const std::vector<TileLevel>& levels() const { return tiles.levels(); }
 
@@ -75,17 +108,16 @@ struct SolidBounds::Impl {
     std::uint32_t whole_cols(std::size_t level) const { return levels()[0].cols >> level; }
     std::uint32_t whole_rows(std::size_t level) const { return levels()[0].rows >> level; }
 
-    /// Returns a tile. It has no head if nothing in it is solid. Throws FileError for a damaged tile of a file.
+    /// Returns a tile. It is empty if nothing in it is solid. Throws FileError for a damaged tile of a file.
     BoundsTile open(std::size_t level, std::uint32_t col, std::uint32_t row) const
     {
         const std::size_t number = std::size_t{row} * levels()[level].tile_cols + col;
         if (levels()[level].tiles[number].size == 0) return {};
-        return BoundsTile(tiles.open(level, number, is_consistent));
+        const auto is_consistent = [&](std::string_view bytes) {
+            return BoundsTile::is_consistent(bytes, tile_version);
+        };
+        return BoundsTile(tiles.open(level, number, is_consistent), tile_version);
     }
-
-private:
-    /// Returns whether all counts and indices of a tile fit its bytes.
-    static bool is_consistent(std::string_view bytes);
 };
 
 }  // namespace spawnfield

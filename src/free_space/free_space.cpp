@@ -18,9 +18,9 @@ int floor_of(double value)
 int ceil_of(double value) { return -floor_of(-value); }
 
 /// Returns the largest quantized height of a tile that is below z; 0 if there is none.
-std::uint32_t values_below(const BoundsHead& head, double inverse_quantum, double z)
+std::uint32_t values_below(const BoundsTile& tile, double inverse_quantum, double z)
 {
-    return std::uint32_t(std::max(0, ceil_of(std::clamp((z - head.base) * inverse_quantum, 0.0, 65536.0)) - 1));
+    return std::uint32_t(std::max(0, ceil_of(std::clamp((z - tile.base) * inverse_quantum, 0.0, 65536.0)) - 1));
 }
 
 /// Returns the lowest interval of a cell for which the test is true; nullptr if there is none. If the test is true for
@@ -185,7 +185,7 @@ void Mask::open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, Op
 {
     out.col = out.row = OpenTile::none;  // remains so if open() throws because the tile is damaged
     out.tile = raster_.open(level, col, row);
-    if (out.tile.head != nullptr) out.inverse_quantum = 1 / out.tile.head->quantum;
+    if (!out.tile.is_empty()) out.inverse_quantum = 1 / out.tile.quantum;
     out.col = col;
     out.row = row;
     out.first_row = OpenTile::none;
@@ -221,13 +221,13 @@ bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
                             to = std::min(std::uint32_t(high), col * side + side - 1) % side;
         for (std::uint32_t row = pass.first_row / side; row <= pass.last_row / side; ++row) {
             OpenTile& open = tile_of(pass, col, row);
-            if (open.tile.head == nullptr) continue;
+            if (open.tile.is_empty()) continue;
             open.set_rows(std::max(pass.first_row, row * side) % side,
                           std::min(pass.last_row, row * side + side - 1) % side);
             std::uint32_t highest = 0;
             for (std::uint32_t cell = from; cell <= to; ++cell)
                 highest = std::max<std::uint32_t>(highest, open.highest[cell]);
-            if (highest > values_below(*open.tile.head, open.inverse_quantum, bottom)) return false;
+            if (highest > values_below(open.tile, open.inverse_quantum, bottom)) return false;
         }
     }
     return true;
@@ -239,11 +239,11 @@ struct Mask::Heights {
     std::uint32_t below = 0;                      ///< cells whose top is at most this value are below the part
     std::uint32_t hit_low = 1, hit_high = 0;      ///< an upper end in this range means a hit inside the part
 
-    void set_tile(const BoundsHead& head, double inverse_quantum)
+    void set_tile(const BoundsTile& tile, double inverse_quantum)
     {
-        const auto value = [&](double z) { return std::clamp((z - head.base) * inverse_quantum, 0.0, 65536.0); };
-        below = values_below(head, inverse_quantum, bottom);
-        hit_low = std::uint32_t(std::max(1, ceil_of(value(inner_bottom + head.slack))));
+        const auto value = [&](double z) { return std::clamp((z - tile.base) * inverse_quantum, 0.0, 65536.0); };
+        below = values_below(tile, inverse_quantum, bottom);
+        hit_low = std::uint32_t(std::max(1, ceil_of(value(inner_bottom + tile.slack))));
         hit_high = std::uint32_t(floor_of(value(inner_top)));
     }
     bool is_hit(std::uint32_t value) const { return value >= hit_low && value <= hit_high; }
@@ -335,10 +335,10 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
             const auto tile_col = std::uint32_t(col / side), tile_row = std::uint32_t(cover.row / side);
             if (open == nullptr || tile_col != open->col || tile_row != open->row) {
                 open = &tile_of(pass, tile_col, tile_row);
-                if (open->tile.head != nullptr) heights.set_tile(*open->tile.head, open->inverse_quantum);
+                if (!open->tile.is_empty()) heights.set_tile(open->tile, open->inverse_quantum);
             }
             const BoundsTile& tile = open->tile;
-            for (; col <= end && tile.head != nullptr; ++col) {
+            for (; col <= end && !tile.is_empty(); ++col) {
                 const auto cell = std::uint32_t(cover.row % side * side + col % side);
                 if (tile.tops[cell] <= heights.below) continue;
                 if (col >= inner.first && col <= inner.last && is_hit(tile, cell, heights)) return Proof::Blocked;

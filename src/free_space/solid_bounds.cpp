@@ -1,6 +1,7 @@
 #include "base/intervals.h"
 #include "base/parallel.h"
 #include "column/cell_clip.h"
+#include "column/uniform_column.h"
 #include "free_space/bounds_tile.h"
 
 #include <xxhash.h>
@@ -10,24 +11,8 @@
 namespace spawnfield {
 namespace {
 
-constexpr double steps = 65500;         // quantized heights of a tile; fewer than 65535, so that rounding outwards fits
-constexpr double least_quantum = 1e-6;  // m
-constexpr double least_solid = 1e-4;    // m; a thinner solid is in the bounds, but not in the solids
+constexpr double least_solid = 1e-4;  // m; a thinner solid is in the bounds, but not in the solids
 constexpr std::uint32_t side = BoundsTile::side;
-
-/// Intervals of heights in each cell of a tile, before they are packed. Those of cell c are spans[starts[c]] ..
-/// spans[starts[c + 1] - 1].
-struct CellList {
-    std::array<std::uint32_t, BoundsTile::cells + 1> starts{};
-    std::vector<Interval> spans;  ///< from the bottom up, with gaps between them
-};
-
-/// A tile before it is packed.
-struct LooseTile {
-    CellList bounds, solids;  ///< as in BoundsTile
-    double slack = 0;         ///< as in BoundsHead, before the heights are rounded
-    bool is_empty() const { return bounds.spans.empty(); }
-};
 
 /// Adds one cell to a tile. `surfaces` has the surfaces anywhere in the cell; `inside` has the spans of solids on the
 /// vertical line through its centre.
@@ -53,6 +38,16 @@ void add_cell(const CellSpans& surfaces, std::uint32_t cell, std::span<const Spa
     out.solids.spans.insert(out.solids.spans.end(), solids.begin(), solids.end());
 }
 
+/// Returns a tile whose cells all have this column everywhere. Its spans are those of sheets.
+LooseTile uniform_tile(const ColumnView& column)
+{
+    LooseTile out;
+    out.bounds.spans = solid_intervals(column);
+    out.bounds.starts[1] = std::uint32_t(out.bounds.spans.size());
+    out.bounds.repeat_first();
+    return out;
+}
+
 /// Returns one tile of the finest level. Its cells beyond the raster stay empty.
 LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, const TileLevel& level,
                      std::uint32_t tile_col, std::uint32_t tile_row)
@@ -60,6 +55,10 @@ LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, 
     const int col0 = int(tile_col * side), row0 = int(tile_row * side);
     const int cols = std::min(int(side), int(level.cols) - col0), rows = std::min(int(side), int(level.rows) - row0);
     const CellBlock block{raster.x0 + col0 * level.cell, raster.y0 + row0 * level.cell, level.cell, cols, rows};
+    if (cols == int(side) && rows == int(side))
+        if (const auto same = uniform_column(
+                geometry, {block.x0, block.y0, block.x0 + side * block.cell, block.y0 + side * block.cell}))
+            return uniform_tile(*same);
     const CellSpans surfaces(geometry, block);
     const Columns centres(geometry, {raster.x0, raster.y0, level.cell, col0, row0, cols, rows, 0.5}, Surfaces::Filled);
     LooseTile out;
@@ -75,107 +74,6 @@ LooseTile rasterized(const Geometry& geometry, const SolidBounds::Impl& raster, 
     return out;
 }
 
-std::uint32_t count_of(const CellList& list, std::size_t cell) { return list.starts[cell + 1] - list.starts[cell]; }
-
-/// Packs a tile into bytes: heights become 16-bit numbers. A cell with one interval of bounds has only its top in the
-/// tile; only cells with two or more have their intervals.
-class TilePacker {
-public:
-    explicit TilePacker(const LooseTile& tile) : tile_(tile)
-    {
-        double low = tile.bounds.spans[0].bottom, high = tile.bounds.spans[0].top;
-        for (const Interval& span : tile.bounds.spans) {
-            low = std::min(low, span.bottom);
-            high = std::max(high, span.top);
-        }
-        head_.quantum = std::max(least_quantum, (high - low) / steps);
-        head_.base = low - 2 * head_.quantum;
-        head_.slack = tile.slack + head_.quantum;
-        count(tile.bounds, 2, head_.bound_cells, head_.bounds);
-        count(tile.solids, 1, head_.solid_cells, head_.solids);
-    }
-
-    std::string pack()
-    {
-        out_.reserve(bounds_tile_size(head_) + tile_alignment);
-        put(head_);
-        put_list(tile_.bounds, 2, head_.bound_cells, [&](const Interval& span) {
-            return QuantizedSpan{down(span.bottom), up(span.top)};
-        });
-        put_list(tile_.solids, 1, head_.solid_cells, [&](const Interval& span) {
-            return QuantizedSpan{up(span.bottom), down(span.top)};
-        });
-        std::array<std::uint16_t, BoundsTile::cells> tops;
-        for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) {
-            const std::uint32_t end = tile_.bounds.starts[cell + 1];
-            tops[cell] = end > tile_.bounds.starts[cell] ? up(tile_.bounds.spans[end - 1].top) : std::uint16_t{0};
-        }
-        put(tops);
-        return std::move(out_);
-    }
-
-private:
-    double height(double value) const { return head_.base + value * head_.quantum; }
-    std::uint16_t down(double z) const
-    {
-        double value = std::floor((z - head_.base) / head_.quantum);
-        while (height(value) > z) --value;
-        return std::uint16_t(std::clamp(value, 1.0, 65535.0));
-    }
-    std::uint16_t up(double z) const
-    {
-        double value = std::ceil((z - head_.base) / head_.quantum);
-        while (height(value) < z) ++value;
-        return std::uint16_t(std::clamp(value, 1.0, 65535.0));
-    }
-
-    template <class T>
-    void put(const T& value)
-    {
-        out_.append(reinterpret_cast<const char*>(&value), sizeof value);
-    }
-
-    /// Counts the cells with at least `least` intervals, and the intervals of these cells.
-    static void count(const CellList& list, std::uint32_t least, std::uint32_t& cells, std::uint32_t& spans)
-    {
-        for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell)
-            if (const std::uint32_t n = count_of(list, cell); n >= least) {
-                ++cells;
-                spans += n;
-            }
-    }
-
-    template <class Quantize>
-    void put_list(const CellList& list, std::uint32_t least, std::uint32_t cells, const Quantize& quantize)
-    {
-        if (cells == 0) return;
-        std::array<std::uint64_t, BoundsTile::cells / 64> marks{};
-        std::array<std::uint16_t, BoundsTile::cells / 64> ranks{};
-        std::vector<std::uint32_t> starts{0};
-        std::vector<QuantizedSpan> spans;
-        for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) {
-            if (cell % 64 == 0) ranks[cell / 64] = std::uint16_t(starts.size() - 1);
-            if (count_of(list, cell) < least) continue;
-            marks[cell / 64] |= std::uint64_t{1} << (cell % 64);
-            for (std::uint32_t k = list.starts[cell]; k < list.starts[cell + 1]; ++k)
-                spans.push_back(quantize(list.spans[k]));
-            starts.push_back(std::uint32_t(spans.size()));
-        }
-        put(marks);
-        for (const std::uint32_t start : starts) put(start);
-        for (const QuantizedSpan& span : spans) put(span);
-        // Padding, so that the next marks begin at a multiple of 8 bytes.
-        if ((starts.size() + spans.size()) % 2 == 1) put(std::uint32_t{0});
-        put(ranks);
-    }
-
-    const LooseTile& tile_;
-    BoundsHead head_{};
-    std::string out_;
-};
-
-std::string packed(const LooseTile& tile) { return tile.is_empty() ? std::string() : TilePacker(tile).pack(); }
-
 /// Returns a tile of the next coarser level. Each of its cells is the union of four finer cells, so a gap remains only
 /// where all four have a gap. Solids are not kept.
 LooseTile pooled(const TileStoreBuilder& finer, std::uint32_t tile_col, std::uint32_t tile_row)
@@ -189,7 +87,7 @@ LooseTile pooled(const TileStoreBuilder& finer, std::uint32_t tile_col, std::uin
         const std::string_view bytes = finer.tile_of_last_level(std::size_t{row} * fine.tile_cols + col);
         if (bytes.empty()) continue;
         tiles[t] = BoundsTile(bytes);
-        out.slack = std::max(out.slack, tiles[t].head->slack);
+        out.slack = std::max(out.slack, tiles[t].slack);
     }
     out.bounds.spans.reserve(BoundsTile::cells);
     std::vector<Interval> joined;
@@ -198,7 +96,7 @@ LooseTile pooled(const TileStoreBuilder& finer, std::uint32_t tile_col, std::uin
             joined.clear();
             const BoundsTile& tile = tiles[(row >= side / 2 ? 2 : 0) + (col >= side / 2 ? 1 : 0)];
             std::uint16_t highest = 0;  // top of the finer cells without gaps, which may be solid all the way down
-            for (std::uint32_t k = 0; k < 4 && tile.head != nullptr; ++k) {
+            for (std::uint32_t k = 0; k < 4 && !tile.is_empty(); ++k) {
                 const std::uint32_t cell = (2 * row + k / 2) % side * side + (2 * col + k % 2) % side;
                 if (!tile.bounds.has(cell)) {
                     highest = std::max(highest, tile.tops[cell]);
@@ -216,55 +114,6 @@ LooseTile pooled(const TileStoreBuilder& finer, std::uint32_t tile_col, std::uin
 }
 
 }  // namespace
-
-std::uint64_t bounds_tile_size(const BoundsHead& head)
-{
-    const auto list = [](std::uint64_t cells, std::uint64_t spans) {
-        return cells == 0 ? 0 : BoundsTile::cells / 64 * 10 + (cells + 1 + spans + 1) / 2 * 8;
-    };
-    return sizeof(BoundsHead) + list(head.bound_cells, head.bounds) + list(head.solid_cells, head.solids) +
-           std::uint64_t{BoundsTile::cells} * sizeof(std::uint16_t);
-}
-
-BoundsTile::BoundsTile(std::string_view bytes) : head(reinterpret_cast<const BoundsHead*>(bytes.data()))
-{
-    const char* at = bytes.data() + sizeof(BoundsHead);
-    const auto list = [&](std::size_t marked, std::size_t count, CellIntervals& out) {
-        if (marked == 0) return;
-        out.marks = reinterpret_cast<const std::uint64_t*>(at);
-        out.starts = reinterpret_cast<const std::uint32_t*>(out.marks + cells / 64);
-        out.spans = reinterpret_cast<const QuantizedSpan*>(out.starts + marked + 1);
-        at += cells / 64 * 8 + (marked + 1 + count + 1) / 2 * 8;
-        out.ranks = reinterpret_cast<const std::uint16_t*>(at);
-        at += cells / 64 * 2;
-    };
-    list(head->bound_cells, head->bounds, bounds);
-    list(head->solid_cells, head->solids, solids);
-    tops = reinterpret_cast<const std::uint16_t*>(at);
-}
-
-bool SolidBounds::Impl::is_consistent(std::string_view bytes)
-{
-    if (bytes.size() < sizeof(BoundsHead)) return false;
-    BoundsHead head;
-    std::memcpy(&head, bytes.data(), sizeof head);
-    const std::uint64_t size = bounds_tile_size(head);
-    if (bytes.size() < size || bytes.size() >= size + tile_alignment) return false;
-    if (!(head.quantum > 0) || !std::isfinite(head.base) || !(head.slack >= 0)) return false;
-    const BoundsTile tile(bytes);
-    const auto counts_up = [](const CellIntervals& list, std::uint32_t cells, std::uint32_t spans) {
-        if (cells == 0) return true;
-        std::uint32_t marked = 0;
-        for (std::size_t word = 0; word < BoundsTile::cells / 64; ++word) {
-            if (list.ranks[word] != marked) return false;
-            marked += std::uint32_t(std::popcount(list.marks[word]));
-        }
-        return marked == cells && list.starts[0] == 0 && list.starts[cells] == spans &&
-               std::is_sorted(list.starts, list.starts + cells + 1);
-    };
-    return counts_up(tile.bounds, head.bound_cells, head.bounds) &&
-           counts_up(tile.solids, head.solid_cells, head.solids);
-}
 
 SolidBounds::SolidBounds() : impl_(std::make_shared<const Impl>()) {}
 

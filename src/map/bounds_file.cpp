@@ -8,7 +8,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr TiledFormat bounds_format{"SPAWNBND", 1};
+constexpr TiledFormat bounds_format{"SPAWNBND", BoundsTile::version, 1};
 
 /// Returns whether each level has cells of twice the size of the level before it, and as many as needed. The mask
 /// relies on this.
@@ -38,7 +38,8 @@ ListedFile write_bounds(const std::filesystem::path& file, const SolidBounds& bo
 SolidBounds open_bounds(const std::filesystem::path& file, const std::string& head_checksum)
 {
     auto impl = std::make_shared<SolidBounds::Impl>();
-    impl->tiles = open_tiled(file, bounds_format, head_checksum, [&](BinaryReader& head) {
+    impl->tiles = open_tiled(file, bounds_format, head_checksum, [&](BinaryReader& head, std::uint32_t version) {
+        impl->tile_version = version;
         impl->x0 = head.get<double>();
         impl->y0 = head.get<double>();
         impl->is_whole = head.get<std::uint32_t>() != 0;

@@ -9,7 +9,7 @@
 namespace spawnfield {
 namespace {
 
-constexpr TiledFormat geometry_format{"SPAWNGEO", 2};
+constexpr TiledFormat geometry_format{"SPAWNGEO", 2, 2};
 
 std::string written_head(const Geometry::Impl& geometry)
 {
@@ -63,7 +63,7 @@ ListedFile write_geometry(const std::filesystem::path& file, const Geometry& geo
 Geometry open_geometry(const std::filesystem::path& file, const std::string& head_checksum)
 {
     auto impl = std::make_shared<Geometry::Impl>();
-    impl->set_tiles(open_tiled(file, geometry_format, head_checksum, [&](BinaryReader& head) {
+    impl->set_tiles(open_tiled(file, geometry_format, head_checksum, [&](BinaryReader& head, std::uint32_t) {
         impl->x0 = head.get<double>();
         impl->y0 = head.get<double>();
         impl->elements = head.get<std::uint64_t>();

@@ -177,10 +177,10 @@ int version_of(const fs::path& file, const std::string& text)
                                            format_prefix + std::to_string(map_format_version) + "`)");
     const std::string found = text.substr(prefix + format_prefix.size(),
                                           text.find('\n') - prefix - format_prefix.size());
-    if (found == std::to_string(map_format_version)) return map_format_version;
-    if (found == std::to_string(oldest_format)) return oldest_format;
+    for (int version = oldest_format; version <= map_format_version; ++version)
+        if (found == std::to_string(version)) return version;
     throw FileError(file.string(), "has format version " + found + ", this program reads " +
-                                       std::to_string(oldest_format) + " and " + std::to_string(map_format_version) +
+                                       std::to_string(oldest_format) + " to " + std::to_string(map_format_version) +
                                        "; bake the map again or use a newer spawnfield");
 }
 

@@ -1,6 +1,7 @@
 #include "base/number.h"
 #include "base/parallel.h"
 #include "column/cell_clip.h"
+#include "column/uniform_column.h"
 #include "geometry/tile.h"
 #include "map/occupancy_impl.h"
 #include "scene/octomap_file.h"
@@ -152,9 +153,12 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
                         int rows)
 {
     const CellBlock block{(box.low[0] + i0) * resolution, (box.low[1] + j0) * resolution, resolution, cols, rows};
-    const CellSpans surfaces(geometry, block);
+    const std::optional<Column> same = uniform_column(
+        geometry, {block.x0, block.y0, block.x0 + cols * resolution, block.y0 + rows * resolution});
+    std::optional<CellSpans> surfaces;
+    if (!same) surfaces.emplace(geometry, block);
     Columns centres;
-    const bool may_be_filled = geometry.impl().has_filled_meshes;
+    const bool may_be_filled = !same && geometry.impl().has_filled_meshes;
     if (may_be_filled) centres = Columns(geometry, {block.x0, block.y0, resolution, 0, 0, cols, rows, 0.5});
     const auto voxel = [](double value) { return int(std::clamp(value, -1e6, 1e6)); };
     struct Run {
@@ -171,8 +175,15 @@ Profiles voxel_profiles(const Geometry& geometry, const VoxelBox& box, double re
     Profile profile;
     for (int j = 0; j < rows; ++j)
         for (int i = 0; i < cols; ++i) {
+            if (same && (i > 0 || j > 0)) {
+                out.add(profile);
+                continue;
+            }
             runs.clear();
-            surfaces.get(block.id(i, j), touching);
+            if (same)
+                touching = solid_intervals(*same);
+            else
+                surfaces->get(block.id(i, j), touching);
             for (const Interval& span : touching)  // all voxels that it touches; they are closed boxes
                 add(voxel(std::ceil((span.bottom - touch_tolerance) / resolution) - 1),
                     voxel(std::floor((span.top + touch_tolerance) / resolution)));

@@ -2,6 +2,7 @@
 #include "base/number.h"
 #include "base/parallel.h"
 #include "column/columns.h"
+#include "column/uniform_column.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/terrain.h>
@@ -46,6 +47,14 @@ public:
         for (int j0 = 0; j0 < rows_; j0 += part)  // upwards in y, like the rows of Columns
             for (int i0 = 0; i0 < cols_; i0 += part) {
                 const int rows = std::min(part, rows_ - j0), cols = std::min(part, cols_ - i0);
+                const double x0 = frame_.x0 + (col0_ + i0) * frame_.cell,
+                             y0 = frame_.y0 + (first_row + j0) * frame_.cell;
+                if (const auto same = uniform_column(geometry_,
+                                                     {x0, y0, x0 + cols * frame_.cell, y0 + rows * frame_.cell})) {
+                    for (int j = 0; j < rows; ++j)
+                        for (int i = 0; i < cols; ++i) add_cell(rows_ - 1 - j0 - j, i0 + i, *same);
+                    continue;
+                }
                 const Columns centres(geometry_,
                                       {frame_.x0, frame_.y0, frame_.cell, col0_ + i0, first_row + j0, cols, rows, 0.5});
                 for (int j = 0; j < rows; ++j)

@@ -76,7 +76,7 @@ ListedFile write_tiled(const std::filesystem::path& file, const TiledFormat& for
 }
 
 TileStore open_tiled(const std::filesystem::path& file, const TiledFormat& format, const std::string& head_checksum,
-                     const std::function<std::vector<TileLevel>(BinaryReader&)>& read_content)
+                     const std::function<std::vector<TileLevel>(BinaryReader&, std::uint32_t)>& read_content)
 {
     const Bytes bytes = map_file(file);
     const auto fail = [&](const std::string& what) { throw FileError(file.string(), what + "; bake the map again"); };
@@ -84,7 +84,8 @@ TileStore open_tiled(const std::filesystem::path& file, const TiledFormat& forma
         fail("is not the file that map.yaml lists (it does not start with " + std::string(format.magic) + ")");
     if (bytes.view.size() < prefix_size) fail("is cut short");
     BinaryReader prefix(bytes.view.substr(format.magic.size()));
-    if (const auto version = prefix.get<std::uint32_t>(); version != format.version)
+    const auto version = prefix.get<std::uint32_t>();
+    if (version < format.oldest_version || version > format.version)
         fail("has format version " + std::to_string(version) + ", this program reads " +
              std::to_string(format.version));
     prefix.get<std::uint32_t>();  // always 0
@@ -97,7 +98,7 @@ TileStore open_tiled(const std::filesystem::path& file, const TiledFormat& forma
     const Bytes tiles = bytes.part(size, bytes.view.size() - size);
     std::vector<TileLevel> levels;
     try {
-        levels = read_content(content);
+        levels = read_content(content, version);
     } catch (const std::out_of_range&) {
         TileStore({}, tiles, file.string()).fail_inconsistent();
     }

@@ -14,7 +14,8 @@ namespace spawnfield {
 /// each at a multiple of 64 bytes. map.yaml contains the checksum of the head (docs/map-format.md).
 struct TiledFormat {
     std::string_view magic;
-    std::uint32_t version;
+    std::uint32_t version;         ///< that is written
+    std::uint32_t oldest_version;  ///< that is read
 };
 
 /// Appends the levels of a store to the content of a head.
@@ -28,10 +29,10 @@ std::vector<TileLevel> get_levels(BinaryReader& content, std::uint32_t tile_side
 ListedFile write_tiled(const std::filesystem::path& file, const TiledFormat& format, const std::string& content,
                        const TileStore& tiles);
 
-/// Opens a file. read_content(content) reads what write_tiled() got, and returns the levels. Checks the head: throws
-/// FileError for a file that is cut short, of another kind or of another version, or whose head was altered. Each tile
-/// is checked when it is opened for the first time.
+/// Opens a file. read_content(content, version) reads what write_tiled() got, and returns the levels. Checks the head:
+/// throws FileError for a file that is cut short, of another kind or of another version, or whose head was altered.
+/// Each tile is checked when it is opened for the first time.
 TileStore open_tiled(const std::filesystem::path& file, const TiledFormat& format, const std::string& head_checksum,
-                     const std::function<std::vector<TileLevel>(BinaryReader&)>& read_content);
+                     const std::function<std::vector<TileLevel>(BinaryReader&, std::uint32_t)>& read_content);
 
 }  // namespace spawnfield

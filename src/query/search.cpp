@@ -71,7 +71,7 @@ public:
             return false;
         const auto c = std::uint32_t(col), r = std::uint32_t(row);
         const BoundsTile tile = raster_->open(level_, c / BoundsTile::side, r / BoundsTile::side);
-        if (tile.head == nullptr) return true;
+        if (tile.is_empty()) return true;
         const std::uint16_t top = tile.tops[r % BoundsTile::side * BoundsTile::side + c % BoundsTile::side];
         return top == 0 || p.z() - max_height_ > tile.height(top) + margin;
     }

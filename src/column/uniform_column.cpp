@@ -1,0 +1,69 @@
+#include "column/uniform_column.h"
+
+#include "base/polygon2.h"
+#include "column/column_builder.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+/// Returns whether an edge of the triangle, seen from above, separates it from the rectangle, with a gap between them
+/// of more than 4 * touch_tolerance.
+bool misses(const std::array<Vec3, 3>& corners, const Rect& rect)
+{
+    const std::array<Vec2, 3> p{corners[0].head<2>(), corners[1].head<2>(), corners[2].head<2>()};
+    const double turn = cross(p[1] - p[0], p[2] - p[0]) < 0 ? -1 : 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2 edge = p[(k + 1) % 3] - p[k];
+        const double gap = 4 * touch_tolerance * edge.norm();
+        const auto is_outside = [&](double x, double y) { return turn * cross(edge, Vec2(x, y) - p[k]) < -gap; };
+        if (is_outside(rect.low_x, rect.low_y) && is_outside(rect.low_x, rect.high_y) &&
+            is_outside(rect.high_x, rect.low_y) && is_outside(rect.high_x, rect.high_y))
+            return true;
+    }
+    return false;
+}
+
+/// Returns the hit of every line in the rectangle with this triangle, if they are certainly all the same.
+std::optional<SurfaceHit> uniform_hit(const Tile& tile, std::uint32_t triangle, const Rect& rect)
+{
+    if (tile.pieces[tile.triangles[triangle].piece].solid != 0) return std::nullopt;
+    const auto [a, b, c] = tile.corners(triangle);
+    // Computed heights of a triangle at -0 m may be 0 or -0.
+    if (a.z() != b.z() || a.z() != c.z() || (a.z() == 0 && std::signbit(a.z()))) return std::nullopt;
+    SeenTriangle seen(tile, triangle);
+    for (const double y : {rect.low_y, rect.high_y}) {
+        seen.set_y(y);
+        for (const double x : {rect.low_x, rect.high_x})
+            if (seen.side_of(x) != SeenTriangle::Side::Inside) return std::nullopt;
+    }
+    return seen.hit_inside(rect.high_x);
+}
+
+}  // namespace
+
+std::optional<Column> uniform_column(const Geometry& geometry, const Rect& rect)
+{
+    constexpr double reach = 2 * touch_tolerance;
+    const Rect wider{rect.low_x - reach, rect.low_y - reach, rect.high_x + reach, rect.high_y + reach};
+    std::vector<SurfaceHit> hits;
+    bool is_uniform = true;
+    geometry.impl().visit_in(wider.low_x, wider.low_y, wider.high_x, wider.high_y,
+                             [&](const Tile& tile, std::uint32_t element) {
+                                 if (!is_uniform) return;
+                                 is_uniform = tile.is_triangle(element);
+                                 if (!is_uniform || misses(tile.corners(element), wider)) return;
+                                 const auto hit = uniform_hit(tile, element, wider);
+                                 is_uniform = hit.has_value();
+                                 if (hit) hits.push_back(*hit);
+                             });
+    if (!is_uniform) return std::nullopt;
+    std::sort(hits.begin(), hits.end(), [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
+    Column out;
+    ColumnBuilder().build(hits, out);
+    return out;
+}
+
+}  // namespace spawnfield
