@@ -2,7 +2,7 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS spawnfield EXPORT spawnfield-targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS spawnfield_sdf spawnfield_crs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS ${spawnfield_modules} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY src/sdf/models/ DESTINATION ${CMAKE_INSTALL_LIBDIR}/spawnfield-models)
 install(TARGETS spawnfield_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY include/spawnfield DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

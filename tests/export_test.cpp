@@ -1,7 +1,7 @@
 #include "arena.h"
 #include "base/tiff.h"
 #include "hard_scene.h"
-#include "picture/relief.h"
+#include "picture/gradient.h"
 #include "shared_scenes.h"
 #include "test_map.h"
 

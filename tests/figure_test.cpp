@@ -1,6 +1,6 @@
 #include "catch.h"
 #include "figure_text.h"
-#include "picture/figure.h"
+#include "drawing/figure.h"
 #include "program.h"
 
 #include <spawnfield/error.h>

@@ -1,6 +1,6 @@
 #include "base/deflate.h"
 #include "picture/palette.h"
-#include "picture/relief.h"
+#include "drawing/relief.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>

@@ -1,6 +1,6 @@
 #include "catch.h"
 #include "mesh_text.h"
-#include "mesh/obj_text.h"
+#include "mesh_reader/obj_text.h"
 #include "scene_text.h"
 #include "temp_folder.h"
 

@@ -1,4 +1,4 @@
-#include "picture/ticks.h"
+#include "drawing/ticks.h"
 
 #include "catch.h"
 

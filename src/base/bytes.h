@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -20,6 +22,6 @@ struct Bytes {
 Bytes bytes_of(std::string bytes);
 
 /// Maps a whole file into memory, read-only (mmap): the system reads a page when it is first used. Throws FileError.
-Bytes map_file(const std::filesystem::path& file);
+SPAWNFIELD_MODULE_API Bytes map_file(const std::filesystem::path& file);
 
 }  // namespace spawnfield

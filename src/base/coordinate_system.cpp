@@ -11,9 +11,7 @@ namespace spawnfield {
 
 std::optional<CoordinateSystem> coordinate_system(const std::string& definition)
 {
-    static const auto* const functions = static_cast<const crs_module::Functions*>(
-        module_symbol(SPAWNFIELD_CRS_MODULE, crs_module::symbol, "coordinate systems cannot be looked up"));
-    return functions->find(definition);
+    return module_functions<crs_module::Functions>().find(definition);
 }
 
 void add_unit_notice(const std::string& file, const std::string& what, double unit, std::vector<std::string>& notices)

@@ -47,9 +47,9 @@ std::optional<CoordinateSystem> find_system(const std::string& definition);
 
 /// The module's functions. Its only exported symbol has this type.
 struct Functions {
+    static constexpr const char *module = "crs", *failure = "coordinate systems cannot be looked up";
     decltype(&find_system) find;
 };
-inline constexpr const char* symbol = "spawnfield_crs_functions";
 
 }  // namespace crs_module
 

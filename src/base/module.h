@@ -1,16 +1,30 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 namespace spawnfield {
 
 /// Returns the folder that contains this library's file; empty if the system does not know it.
 std::filesystem::path library_folder();
 
-/// Returns the address of `symbol` in a module: a shared library `file_name` in the folder of this library, which is
-/// loaded at the first call and never unloaded. Throws std::runtime_error if that fails; its text begins with `failure`
-/// ("SDF cannot be read").
-const void* module_symbol(const char* file_name, const char* symbol, const std::string& failure);
+/// Returns the address of the symbol spawnfield_NAME_functions in a module: the shared library libspawnfield_NAME.so in
+/// the folder of this library, which is loaded at the first call and never unloaded. Throws std::runtime_error if that
+/// fails; its text begins with `failure` ("SDF cannot be read").
+const void* module_symbol(const char* name, const char* failure);
+
+/// Returns the functions of a module, and loads it at the first call. The type Functions is the module's interface: it
+/// has pointers to functions, and the constants `module` and `failure`, the arguments of module_symbol(). The module
+/// exports one object of this type, and no other symbol.
+///
+/// A module contains all code that uses a foreign library which takes long to load. Objects that its functions take and
+/// return are plain values, or their code is inline or exported by this library, so that both sides share it. Throws
+/// std::runtime_error as module_symbol().
+template <class Functions>
+const Functions& module_functions()
+{
+    static const auto* const functions = static_cast<const Functions*>(
+        module_symbol(Functions::module, Functions::failure));
+    return *functions;
+}
 
 }  // namespace spawnfield

@@ -2,6 +2,8 @@
 
 #include "base/grey_image.h"
 
+#include <spawnfield/export.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -31,10 +33,11 @@ ColourImage read_colour_png(const std::filesystem::path& file, std::uint64_t mos
 
 /// Returns the bytes of a PNG file. `pixels` are 8-bit blue, green, red. Equal pixels give equal bytes. Throws
 /// OutputError, which begins with `name`.
-std::string bgr_png(const std::string& name, int rows, int cols, const std::uint8_t* pixels);
+SPAWNFIELD_MODULE_API std::string bgr_png(const std::string& name, int rows, int cols, const std::uint8_t* pixels);
 
 /// Writes the bytes of bgr_png() to a file. Throws OutputError.
-void write_bgr_png(const std::filesystem::path& file, int rows, int cols, const std::uint8_t* pixels);
+SPAWNFIELD_MODULE_API void write_bgr_png(const std::filesystem::path& file, int rows, int cols,
+                                         const std::uint8_t* pixels);
 
 /// Writes 16-bit grey pixels. Equal pixels give equal bytes. Throws OutputError.
 void write_grey_png(const std::filesystem::path& file, int rows, int cols, const std::uint16_t* pixels);

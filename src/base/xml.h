@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <tinyxml2.h>
 
 #include <filesystem>
@@ -16,9 +18,9 @@ std::unique_ptr<tinyxml2::XMLDocument> read_xml(const std::filesystem::path& fil
 
 /// Returns the trimmed text of the first child with this name; "" if there is none.
 std::string text_of(const Xml& parent, const char* name);
-std::string line_of(const Xml& element);                         ///< "line 3: "
-std::string attribute_of(const Xml& element, const char* name);  ///< "" if it is missing
-bool is_named(const Xml& element, const char* name);
+std::string line_of(const Xml& element);                                               ///< "line 3: "
+SPAWNFIELD_MODULE_API std::string attribute_of(const Xml& element, const char* name);  ///< "" if it is missing
+SPAWNFIELD_MODULE_API bool is_named(const Xml& element, const char* name);
 
 /// Calls visit(child) for each child element with this name, or for each child element if `name` is null.
 template <class Visit>

@@ -75,7 +75,7 @@ struct ColumnGrid {
 class Columns {
 public:
     Columns() = default;
-    Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces = Surfaces::All);
+    SPAWNFIELD_MODULE_API Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces = Surfaces::All);
 
     /// Returns the column in column grid.first_col + i and row grid.first_row + j of the grid.
     ColumnView at(int i, int j) const

@@ -1,5 +1,7 @@
 #include "base/coordinate_system.h"
 
+#include <spawnfield/export.h>
+
 #include <proj.h>
 
 #include <memory>
@@ -111,5 +113,5 @@ std::optional<CoordinateSystem> crs_module::find_system(const std::string& defin
 
 }  // namespace spawnfield
 
-extern "C" const spawnfield::crs_module::Functions spawnfield_crs_functions;
+extern "C" SPAWNFIELD_API const spawnfield::crs_module::Functions spawnfield_crs_functions;
 const spawnfield::crs_module::Functions spawnfield_crs_functions{&spawnfield::crs_module::find_system};

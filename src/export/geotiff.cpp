@@ -4,7 +4,7 @@
 #include "base/tiff.h"
 #include "column/columns.h"
 #include "export/words.h"
-#include "picture/relief.h"
+#include "picture/gradient.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/map_export.h>

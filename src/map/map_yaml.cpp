@@ -6,11 +6,11 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/yaml_map.h"
+#include "mesh/mesh_file.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/output_file.h>
 
-#include <assimp/version.h>
 #include <fcl/config.h>
 #include <octomap/octomap_types.h>
 #include <opencv2/core/version.hpp>
@@ -46,9 +46,7 @@ std::string list_of(std::initializer_list<double> values)
 
 std::string libraries()
 {
-    const std::string assimp = std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) + "." +
-                               std::to_string(aiGetVersionPatch());
-    return "{assimp: \"" + assimp + "\", fcl: \"" FCL_VERSION "\", opencv: \"" CV_VERSION "\"}";
+    return "{assimp: \"" + mesh_reader_version() + "\", fcl: \"" FCL_VERSION "\", opencv: \"" CV_VERSION "\"}";
 }
 
 /// Returns a line with the numbers of triangles and primitives for each label.

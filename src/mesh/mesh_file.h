@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace spawnfield {
@@ -26,8 +27,11 @@ struct FileMesh {
 
 /// Reads a mesh in any format that assimp reads. Throws FileError for a file that is missing, malformed or without
 /// triangles, that has coordinates which are not finite, or for a glTF that assimp would read wrongly
-/// (mesh/gltf_file.h).
+/// (mesh_reader/gltf_file.h).
 FileMesh read_mesh(const std::filesystem::path& file);
+
+/// Returns the version of assimp, for example "5.2.4".
+std::string mesh_reader_version();
 
 /// Reads each file once for all parts that use it, and keeps it in memory until the last of them has read it.
 class MeshFiles {

@@ -13,9 +13,9 @@ JointedModel read_model(const std::filesystem::path& file, ModelPaths& paths, co
 
 /// The module's functions. Its only exported symbol has this type.
 struct Functions {
+    static constexpr const char *module = "sdf", *failure = "SDF cannot be read";
     decltype(&read_file) file;
     decltype(&read_model) model;
 };
-inline constexpr const char* symbol = "spawnfield_sdf_functions";
 
 }  // namespace spawnfield::sdf_module

@@ -14,6 +14,6 @@ struct ViewAxes {
 inline const ViewAxes view_from_above{Vec3::UnitX(), Vec3::UnitY()};
 
 /// Returns the outline of a part in a view, m. Circles are replaced by polygons of 64 corners around them.
-Polygon2 silhouette(const RobotPart& part, const ViewAxes& axes);
+SPAWNFIELD_MODULE_API Polygon2 silhouette(const RobotPart& part, const ViewAxes& axes);
 
 }  // namespace spawnfield

@@ -1,5 +1,5 @@
-# Checks that docs/library.md shows the programs of this folder as they are. Then installs into an empty prefix, builds
-# them against the package there, runs them and checks what they print.
+# Checks that docs/library.md shows the programs of this folder as they are, except errors.cpp. Then installs into an
+# empty prefix, builds them against the package there, runs them and checks what they print.
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 function(run)
@@ -49,3 +49,19 @@ expect(0 "collision: 49\nvalid: 1632\n" ${program}/scene)
 expect(0 "5 spawns, 0 m above the ground\n" ${program}/robot ${WORK}/map)
 expect(0 "valid: [0-9]+ and [0-9]+ of 20000; [0-9.]+ us per pose and thread\n"
   ${program}/planner ${WORK}/map ${husky} 20000)
+
+# The modules' errors have the types of the library.
+file(WRITE ${WORK}/damaged.ply "ply\n")
+expect(0 "${WORK}/damaged.ply: [^\n]*\nwrite_heatmap: pixels is 199, needs 200 .. 16000\nmissing/a.png: [^\n]*\n"
+  ${program}/errors ${WORK}/damaged.ply)
+
+# The program starts without the libraries of the modules, and a missing module is named when it is needed.
+execute_process(COMMAND ldd ${WORK}/prefix/bin/spawnfield OUTPUT_VARIABLE libraries COMMAND_ERROR_IS_FATAL ANY)
+if(libraries MATCHES "assimp|hpdf|opencv|libproj|sdformat|not found")
+  message(FATAL_ERROR "spawnfield must start without the libraries of its modules, but needs\n${libraries}")
+endif()
+file(GLOB modules ${WORK}/prefix/lib*/libspawnfield_*.so ${WORK}/prefix/lib/*/libspawnfield_*.so)
+file(REMOVE ${modules})
+expect(0 "[^\n]+\n.*" ${WORK}/prefix/bin/spawnfield info ${WORK}/map)
+expect(1 "another error: mesh files cannot be read: [^\n]*libspawnfield_mesh_reader.so cannot be loaded: [^\n]*\n"
+  ${program}/errors ${WORK}/damaged.ply)

@@ -1,6 +1,6 @@
-#include "picture/quantities.h"
+#include "drawing/quantities.h"
 
-#include "picture/relief.h"
+#include "drawing/relief.h"
 
 #include <opencv2/imgproc.hpp>
 

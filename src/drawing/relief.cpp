@@ -1,4 +1,4 @@
-#include "picture/relief.h"
+#include "drawing/relief.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,24 +104,6 @@ int cell_index(double distance, int n)
     constexpr double tolerance = 1e-6;  // of a cell; for the rounding of coordinates
     if (!(distance >= -tolerance && distance <= n + tolerance)) return -1;
     return std::clamp(static_cast<int>(std::floor(distance)), 0, n - 1);
-}
-
-Eigen::Vector2d gradient(const HeightImage& heights, int row, int col, double cell)
-{
-    const double here = heights(row, col);
-    if (!std::isfinite(here)) return {nan, nan};
-    const auto change = [&](int row_step, int col_step) {
-        const auto height = [&](int r, int c) {
-            const bool inside = r >= 0 && r < heights.rows && c >= 0 && c < heights.cols;
-            return inside && std::isfinite(heights(r, c)) ? static_cast<double>(heights(r, c)) : nan;
-        };
-        double after = height(row + row_step, col + col_step), before = height(row - row_step, col - col_step);
-        const int steps = (std::isfinite(after) ? 1 : 0) + (std::isfinite(before) ? 1 : 0);
-        if (!std::isfinite(after)) after = here;
-        if (!std::isfinite(before)) before = here;
-        return (after - before) / (std::max(steps, 1) * cell);
-    };
-    return {change(0, 1), change(-1, 0)};  // rows run against y
 }
 
 cv::Mat_<float> relief(const GridFrame& frame, const HeightImage& heights, const View& view, cv::Size pixels)

@@ -1,4 +1,4 @@
-#include "picture/canvas.h"
+#include "drawing/canvas.h"
 
 #include "base/png.h"
 

@@ -1,6 +1,6 @@
 #include "base/png.h"
 #include "base/text.h"
-#include "picture/figure.h"
+#include "drawing/figure.h"
 
 #include <charconv>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "picture/spawn_marks.h"
+#include "drawing/spawn_marks.h"
 
 #include "picture/silhouette.h"
 

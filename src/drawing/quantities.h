@@ -1,6 +1,6 @@
 #pragma once
 
-#include "picture/shown_columns.h"
+#include "drawing/shown_columns.h"
 
 namespace spawnfield {
 

@@ -1,9 +1,9 @@
-#include "mesh/collada_check.h"
+#include "mesh_reader/collada_check.h"
 
 #include "base/number.h"
 #include "base/text.h"
 #include "base/xml.h"
-#include "mesh/collada_numbers.h"
+#include "mesh_reader/collada_numbers.h"
 
 #include <spawnfield/error.h>
 

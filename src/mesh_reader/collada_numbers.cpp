@@ -1,4 +1,4 @@
-#include "mesh/collada_numbers.h"
+#include "mesh_reader/collada_numbers.h"
 
 #include "base/number.h"
 #include "base/text.h"

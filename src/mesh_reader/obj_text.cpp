@@ -1,4 +1,4 @@
-#include "mesh/obj_text.h"
+#include "mesh_reader/obj_text.h"
 
 #include "base/text.h"
 

@@ -1,4 +1,4 @@
-#include "picture/shown_columns.h"
+#include "drawing/shown_columns.h"
 
 #include <spawnfield/error.h>
 

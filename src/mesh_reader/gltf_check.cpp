@@ -1,4 +1,4 @@
-#include "mesh/gltf_check.h"
+#include "mesh_reader/gltf_check.h"
 
 #include <spawnfield/error.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "picture/palette.h"
-#include "picture/picture.h"
+#include "drawing/picture.h"
 
 #include <spawnfield/heatmap.h>
 

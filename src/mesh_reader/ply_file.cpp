@@ -1,4 +1,4 @@
-#include "mesh/ply_file.h"
+#include "mesh_reader/ply_file.h"
 
 #include "base/number.h"
 #include "base/text.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "picture/canvas.h"
+#include "drawing/canvas.h"
 
 #include <spawnfield/picture_format.h>
 

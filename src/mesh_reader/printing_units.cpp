@@ -1,4 +1,4 @@
-#include "mesh/printing_units.h"
+#include "mesh_reader/printing_units.h"
 
 #include "base/input_file.h"
 #include "base/text.h"

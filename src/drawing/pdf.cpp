@@ -1,4 +1,4 @@
-#include "picture/figure.h"
+#include "drawing/figure.h"
 
 #include <hpdf.h>
 

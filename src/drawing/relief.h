@@ -1,6 +1,7 @@
 #pragma once
 
-#include "picture/picture.h"
+#include "drawing/picture.h"
+#include "picture/gradient.h"
 
 #include <spawnfield/terrain.h>
 
@@ -9,10 +10,6 @@ namespace spawnfield {
 /// Returns the index of the cell that contains `distance` from the beginning of a row of n cells with side 1, both ends
 /// included; -1 if it is beyond the row.
 int cell_index(double distance, int n);
-
-/// Returns the change of height with x and with y at a cell. It is one-sided if one neighbour has no height, 0 if both
-/// have none, and NaN if the cell itself has no height.
-Eigen::Vector2d gradient(const HeightImage& heights, int row, int col, double cell);
 
 /// Returns how much brighter or darker than level ground each pixel of a view is in light from the north-west: -1 to 1,
 /// and 0 where there is no height. Gentle relief is exaggerated. O(cells in the view + pixels).

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "picture/figure.h"
-#include "picture/ticks.h"
+#include "drawing/figure.h"
+#include "drawing/ticks.h"
 
 #include <functional>
 #include <optional>

@@ -1,7 +1,7 @@
-#include "mesh/gltf_file.h"
+#include "mesh_reader/gltf_file.h"
 
 #include "base/bytes.h"
-#include "mesh/gltf_check.h"
+#include "mesh_reader/gltf_check.h"
 
 #include <spawnfield/error.h>
 

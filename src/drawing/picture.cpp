@@ -1,4 +1,4 @@
-#include "picture/picture.h"
+#include "drawing/picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/polygon2.h"
-#include "picture/picture.h"
+#include "drawing/picture.h"
 
 #include <spawnfield/query.h>
 

@@ -1,4 +1,4 @@
-#include "picture/obstacle_mask.h"
+#include "drawing/obstacle_mask.h"
 
 #include "base/parallel.h"
 #include "column/columns.h"

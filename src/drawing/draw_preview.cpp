@@ -1,6 +1,7 @@
 #include "base/number.h"
 #include "column/columns.h"
-#include "picture/relief.h"
+#include "drawing/relief.h"
+#include "picture/drawing_module.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/heatmap.h>
@@ -275,7 +276,7 @@ Image floor_pictures(const Map& map, const std::vector<Floor>& floors)
 
 }  // namespace
 
-void write_preview(const Map& map, const TerrainMap& terrain, const std::filesystem::path& file)
+void drawing_module::write_preview(const Map& map, const TerrainMap& terrain, const std::filesystem::path& file)
 {
     if (terrain.frame.rows < 1 || terrain.frame.cols < 1)
         throw ArgumentError("write_preview", "terrain.frame.rows * cols", 0, ">= 1");

@@ -1,10 +1,10 @@
-#include "mesh/mesh_checks.h"
+#include "mesh_reader/mesh_checks.h"
 
 #include "base/bytes.h"
 #include "base/text.h"
-#include "mesh/collada_check.h"
-#include "mesh/gltf_check.h"
-#include "mesh/ply_file.h"
+#include "mesh_reader/collada_check.h"
+#include "mesh_reader/gltf_check.h"
+#include "mesh_reader/ply_file.h"
 
 #include <spawnfield/error.h>
 

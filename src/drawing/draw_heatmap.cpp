@@ -1,0 +1,395 @@
+#include "drawing/obstacle_mask.h"
+#include "drawing/quantities.h"
+#include "drawing/relief.h"
+#include "drawing/spawn_marks.h"
+#include "picture/drawing_module.h"
+
+#include <spawnfield/error.h>
+#include <spawnfield/heatmap.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace spawnfield {
+namespace {
+
+// ---------------------------------------------------------------- colours and words
+
+const Colour not_valid = rgb(0x9a9a9a), beyond = rgb(0xffffff);
+
+std::string name_of(Kind kind, const HeatmapOptions& options)
+{
+    if (kind == obstacle) return "obstacle";
+    if (kind == some_headings) return "valid at some headings";
+    if (kind == kind_of(Verdict::Valid) && options.headings > 1)
+        return "valid at all " + std::to_string(options.headings) + " headings";
+    std::string name = to_string(static_cast<Verdict>(kind));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+}
+
+std::string counted(std::uint64_t count, const std::string& noun)
+{
+    return with_commas(count) + ' ' + noun + (count == 1 ? "" : "s");
+}
+
+/// Returns a count with its share of the total: "1,234   5.6 %".
+std::string count_and_share(std::uint64_t count, std::uint64_t total)
+{
+    std::string text = with_commas(count);
+    if (count == 0) return text;
+    const double percent = 100 * static_cast<double>(count) / static_cast<double>(total);
+    return text + "   " + (percent < 0.05 ? "< 0.1" : fixed(percent, 1)) + " %";
+}
+
+void check_size(const char* what, std::size_t size, std::size_t wanted, const char* limit)
+{
+    if (size != 0 && size != wanted)
+        throw ArgumentError("write_heatmap", std::string("size of ") + what, static_cast<double>(size), limit);
+}
+
+void check(const RasterResult& raster, const HeatmapOptions& options)
+{
+    const RasterGrid& grid = raster.grid;
+    if (options.pixels < 200 || options.pixels > 16000)
+        throw ArgumentError("write_heatmap", "pixels", options.pixels, "200 .. 16000");
+    if (!(grid.step > 0) || !std::isfinite(grid.step))
+        throw ArgumentError("write_heatmap", "raster.grid.step", grid.step, "> 0 m");
+    if (grid.cols < 1) throw ArgumentError("write_heatmap", "raster.grid.cols", grid.cols, ">= 1");
+    if (grid.rows < 1) throw ArgumentError("write_heatmap", "raster.grid.rows", grid.rows, ">= 1");
+    if (options.headings < 1 || options.headings > 255)
+        throw ArgumentError("write_heatmap", "headings", options.headings, "1 .. 255");
+    check_size("spawn_verdicts", options.spawn_verdicts.size(), options.spawns.size(), "as many as spawns, or none");
+    check_size("spawn_names", options.spawn_names.size(), options.spawns.size(), "as many as spawns, or none");
+    check_size("valid_headings", options.valid_headings.size(), raster.poses.size(),
+               "as many as the raster's poses, or none");
+}
+
+// ---------------------------------------------------------------- obstacles
+
+/// Returns a frame of cells over the view. A cell is as large as a pixel, or larger if there would be too many.
+GridFrame fine_frame(const View& view, cv::Size pixels)
+{
+    constexpr double most = 2000;
+    const double cell = std::max(view.width / pixels.width, std::max(view.width, view.height) / most);
+    return {view.x0, view.y0, cell, static_cast<int>(std::ceil(view.height / cell)),
+            static_cast<int>(std::ceil(view.width / cell))};
+}
+
+ObstacleSearch obstacle_search(const ShownPoses& shown, const RasterResult& raster, const HeatmapOptions& options)
+{
+    const RasterGrid& grid = raster.grid;
+    const View view = view_of(grid);
+    const double above_layer = raster.dims == 2 ? raster.offset
+                                                : 0;  // a pose of a 3D raster is taken at its own height
+    ObstacleSearch search;
+    if (options.robot) search.robot = {options.robot->bounds().min.z(), options.robot->bounds().max.z()};
+    search.robot.low += above_layer;
+    search.robot.high += above_layer;
+    search.reach = raster.dims == 2 ? 2 * grid.step : 0;
+    search.without_layer = raster.dims == 2 && raster.area.is_everywhere();
+    search.threads = options.threads;
+    search.layer_near = [=, &shown](double x, double y) -> std::optional<double> {
+        const int col = cell_index((x - view.x0) / grid.step, grid.cols),
+                  from_below = cell_index((y - view.y0) / grid.step, grid.rows);
+        const RasterPose* const pose = col < 0 || from_below < 0 ? nullptr : shown.at(grid.rows - 1 - from_below, col);
+        return pose ? std::optional(pose->z - above_layer) : std::nullopt;
+    };
+    return search;
+}
+
+/// Returns the scale of a quantity. Clearances and slopes begin at 0, heights at the lowest value; all end at the
+/// largest value.
+ColourScale scale_for(const cv::Mat_<float>& values, HeatmapQuantity quantity)
+{
+    const bool from_zero = quantity != HeatmapQuantity::Height;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const float value : values)
+        if (std::isfinite(value)) {
+            low = std::min<double>(low, value);
+            high = std::max<double>(high, value);
+        }
+    if (from_zero || low > high) low = 0;
+    if (high < low) high = 1;
+    if (from_zero && high == 0) high = 1;
+    const char* heading = quantity == HeatmapQuantity::Height      ? "height of the pose, m"
+                          : quantity == HeatmapQuantity::Clearance ? "clearance, m"
+                                                                   : "slope, degrees";
+    return scale_between(heading, low, high, viridis());
+}
+
+// ---------------------------------------------------------------- legend
+
+using KindCounts = std::array<std::uint64_t, kind_count>;
+
+KindCounts counts_of(const Kinds& kinds)
+{
+    KindCounts counts{};
+    for (const Kind kind : kinds) ++counts[kind];
+    return counts;
+}
+
+/// Returns the number of columns that have a verdict. Shares are relative to this number.
+std::uint64_t answered(const KindCounts& counts)
+{
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}) - counts[no_pose];
+}
+
+std::string columns_heading(const RasterResult& raster, std::uint64_t columns)
+{
+    char step[32];
+    std::snprintf(step, sizeof step, "%.3g", raster.grid.step);
+    return counted(columns, "column") + (columns > 1 ? std::string(", ") + step + " m apart" : "");
+}
+
+/// Adds the legend entry for columns without a pose, if there are any.
+void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend& legend)
+{
+    if (counts[no_pose] == 0) return;
+    const bool lower_layer = !raster.poses.empty() &&
+                             std::all_of(raster.poses.begin(), raster.poses.end(),
+                                         [](const RasterPose& pose) { return pose.layer > 0; });
+    const std::string name = !raster.area.is_everywhere() ? "off the region, or no terrain"
+                             : raster.dims == 3           ? "no pose"
+                             : lower_layer                ? "no such layer"
+                             : raster.z.is_unlimited()    ? "no terrain"
+                                                          : "no terrain at these heights";
+    legend.entries.push_back({colour_of(no_pose), name, counted(counts[no_pose], "column")});
+}
+
+/// Returns a legend of the kinds that occur or are usual, with the number of columns of each kind.
+Legend verdict_legend(const RasterResult& raster, const Kinds& kinds, const HeatmapOptions& options)
+{
+    constexpr std::array order{kind_of(Verdict::Valid),     some_headings,
+                               kind_of(Verdict::Steep),     kind_of(Verdict::Unstable),
+                               kind_of(Verdict::Collision), obstacle,
+                               kind_of(Verdict::Submerged), kind_of(Verdict::OffTerrain),
+                               kind_of(Verdict::Aerial),    kind_of(Verdict::Outside)};
+    constexpr std::array always{kind_of(Verdict::Valid), kind_of(Verdict::Collision), kind_of(Verdict::Submerged),
+                                kind_of(Verdict::OffTerrain)};
+    const KindCounts counts = counts_of(kinds);
+    const std::uint64_t columns = answered(counts);
+    Legend legend;
+    legend.heading = columns_heading(raster, columns);
+    for (const Kind kind : order) {
+        const bool possible = std::find(always.begin(), always.end(), kind) != always.end() ||
+                              (kind == some_headings && options.headings > 1) ||
+                              (kind == kind_of(Verdict::Aerial) && raster.dims == 3);
+        if (counts[kind] > 0 || possible)
+            legend.entries.push_back({colour_of(kind), name_of(kind, options), count_and_share(counts[kind], columns)});
+    }
+    append_no_pose(raster, counts, legend);
+    return legend;
+}
+
+Legend quantity_legend(const RasterResult& raster, const Kinds& kinds, const ColourScale& scale,
+                       const HeatmapOptions& options)
+{
+    const KindCounts counts = counts_of(kinds);
+    const std::uint64_t columns = answered(counts);
+    const std::uint64_t valid = counts[kind_of(Verdict::Valid)], others = columns - valid - counts[obstacle];
+    Legend legend;
+    legend.heading = columns_heading(raster, columns);
+    legend.scale = scale;
+    legend.scale->detail = "valid   " + count_and_share(valid, columns);
+    legend.entries.push_back({not_valid, options.headings > 1 ? "not valid at all headings" : "not valid",
+                              count_and_share(others, columns)});
+    if (counts[obstacle] > 0)
+        legend.entries.push_back({colour_of(obstacle), "obstacle", count_and_share(counts[obstacle], columns)});
+    append_no_pose(raster, counts, legend);
+    return legend;
+}
+
+// ---------------------------------------------------------------- plot
+
+Image kind_colours(const Kinds& kinds)
+{
+    Image colours(kinds.size());
+    std::transform(kinds.begin(), kinds.end(), colours.begin(), colour_of);
+    return colours;
+}
+
+Image quantity_colours(const Kinds& kinds, const cv::Mat_<float>& values, const ColourScale& scale)
+{
+    Image colours(kinds.size());
+    for (int row = 0; row < kinds.rows; ++row)
+        for (int col = 0; col < kinds.cols; ++col) {
+            const float value = values(row, col);
+            const Kind kind = kinds(row, col);
+            colours(row, col) = std::isfinite(value)                  ? scale.colour(value)
+                                : kind == obstacle || kind == no_pose ? colour_of(kind)
+                                                                      : not_valid;
+        }
+    return colours;
+}
+
+/// Draws each pixel in the colour of its nearest column.
+Image draw_columns(const Image& colours, const View& columns, const View& view, cv::Size pixels)
+{
+    Image plot(pixels, beyond);
+    std::vector<int> across;
+    for (int col = 0; col < pixels.width; ++col) {
+        const double x = view.x0 + (col + 0.5) / pixels.width * view.width;
+        across.push_back(cell_index((x - columns.x0) / columns.width * colours.cols, colours.cols));
+    }
+    for (int row = 0; row < pixels.height; ++row) {
+        const double y = view.y0 + view.height - (row + 0.5) / pixels.height * view.height;
+        const int from = cell_index((columns.y0 + columns.height - y) / columns.height * colours.rows, colours.rows);
+        if (from < 0) continue;
+        for (int col = 0; col < pixels.width; ++col)
+            if (const int column = across[static_cast<std::size_t>(col)]; column >= 0)
+                plot(row, col) = colours(from, column);
+    }
+    return plot;
+}
+
+void shade(Image& plot, const cv::Mat_<float>& light, float depth)
+{
+    for (int row = 0; row < plot.rows; ++row)
+        for (int col = 0; col < plot.cols; ++col)
+            if (plot(row, col) != beyond) plot(row, col) = shaded(plot(row, col), light(row, col), depth);
+}
+
+/// Draws obstacles over the shaded plot, because the relief shows the ground below them. The white room around thin
+/// views remains white.
+void draw_obstacles(Image& plot, const cv::Mat_<std::uint8_t>& obstacles, const GridFrame& frame, const View& columns,
+                    const View& view)
+{
+    for (int row = 0; row < plot.rows; ++row) {
+        const double y = view.y0 + view.height - (row + 0.5) / plot.rows * view.height;
+        const int from_below = cell_index((y - frame.y0) / frame.cell, frame.rows);
+        if (from_below < 0 || cell_index((y - columns.y0) / columns.height, 1) < 0) continue;
+        for (int col = 0; col < plot.cols; ++col) {
+            const double x = view.x0 + (col + 0.5) / plot.cols * view.width;
+            const int cell = cell_index((x - frame.x0) / frame.cell, frame.cols);
+            if (cell >= 0 && cell_index((x - columns.x0) / columns.width, 1) >= 0 &&
+                obstacles(frame.rows - 1 - from_below, cell))
+                plot(row, col) = colour_of(obstacle);
+        }
+    }
+}
+
+// ---------------------------------------------------------------- spawns
+
+/// The spawns whose origin is in the view, with their places in the picture.
+struct VisibleSpawns {
+    std::vector<std::size_t> indices;
+    std::vector<cv::Point2d> places;
+};
+
+VisibleSpawns visible_spawns(const std::vector<Spawn>& spawns, const View& view, const cv::Rect& plot)
+{
+    VisibleSpawns visible;
+    for (std::size_t i = 0; i < spawns.size(); ++i) {
+        const double across = (spawns[i].position.x() - view.x0) / view.width,
+                     down = (view.y0 + view.height - spawns[i].position.y()) / view.height;
+        if (!(across >= 0 && across <= 1 && down >= 0 && down <= 1)) continue;
+        visible.indices.push_back(i);
+        visible.places.emplace_back(plot.x + across * plot.width, plot.y + down * plot.height);
+    }
+    return visible;
+}
+
+Colour spawn_colour(const HeatmapOptions& options, std::size_t spawn)
+{
+    return options.spawn_verdicts.empty() ? white : colour_of(kind_of(options.spawn_verdicts[spawn]));
+}
+
+/// Adds the text "12 of 30 spawns in view", with the symbols of their verdicts. The symbols draw nothing until
+/// draw_spawns() sets their look.
+void append_spawns(const HeatmapOptions& options, const VisibleSpawns& visible, Legend& legend)
+{
+    const std::size_t all = options.spawns.size(), seen = visible.indices.size();
+    if (all == 0) return;
+    const std::string text = seen == all ? counted(all, "spawn")
+                                         : with_commas(seen) + " of " + counted(all, "spawn") + " in view";
+    const auto later = [](Figure&, cv::Point2d) {};
+    if (options.spawn_verdicts.empty()) {
+        legend.symbols.push_back({text, later});
+        return;
+    }
+    legend.symbols.push_back({text});
+    for (std::size_t v = verdict_count; v-- > 0;) {
+        const auto count = std::count_if(visible.indices.begin(), visible.indices.end(), [&](std::size_t i) {
+            return options.spawn_verdicts[i] == static_cast<Verdict>(v);
+        });
+        if (count > 0)
+            legend.symbols.push_back(
+                {with_commas(static_cast<std::uint64_t>(count)) + ' ' + name_of(static_cast<Kind>(v), {}), later,
+                 colour_of(static_cast<Kind>(v))});
+    }
+}
+
+void draw_spawns(Figure& figure, const HeatmapOptions& options, const VisibleSpawns& visible, const SpawnLook& look,
+                 const Layout& layout, Legend& legend)
+{
+    for (LegendSymbol& symbol : legend.symbols)
+        if (symbol.draw)
+            symbol.draw = [=, colour = symbol.colour](Figure& into, cv::Point2d centre) {
+                draw_spawn_symbol(into, look, centre, colour);
+            };
+    clip(figure, layout.plot);
+    for (std::size_t k = 0; k < visible.indices.size(); ++k)
+        draw_spawn(figure, look, visible.places[k], options.spawns[visible.indices[k]].yaw,
+                   spawn_colour(options, visible.indices[k]));
+    clip(figure, {});
+    if (options.spawn_names.empty()) return;
+    std::vector<std::string> names;
+    for (const std::size_t i : visible.indices) names.push_back(options.spawn_names[i]);
+    const std::size_t written = write_names(figure, look, visible.places, names, layout.plot);
+    if (written < names.size())
+        legend.symbols.back().name = with_commas(written) + " of " + counted(names.size(), "name") + " shown: no room";
+    else
+        legend.symbols.pop_back();
+}
+
+}  // namespace
+
+void drawing_module::write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult& raster,
+                                   const HeatmapOptions& options, const std::filesystem::path& file)
+{
+    check(raster, options);
+    const PictureFormat format = options.format ? *options.format : picture_format(file);
+    const ShownPoses shown = shown_poses(raster, options);
+    const ObstacleSearch search = obstacle_search(shown, raster, options);
+    Kinds kinds = column_kinds(shown, raster, options);
+    mark_obstacles(kinds, obstacle_mask(map.geometry, frame_of(raster.grid), search));
+    const View columns = view_of(raster.grid);
+    PictureFrame frame{
+        with_room(columns), options.pixels, options.title.empty() ? map.name : options.title, {}, options.caption};
+
+    Image colours;
+    if (options.quantity == HeatmapQuantity::Verdict) {
+        colours = kind_colours(kinds);
+        frame.legend = verdict_legend(raster, kinds, options);
+    } else {
+        const cv::Mat_<float> values = quantity_values(shown, raster, terrain, options);
+        const ColourScale scale = scale_for(values, options.quantity);
+        colours = quantity_colours(kinds, values, scale);
+        frame.legend = quantity_legend(raster, kinds, scale, options);
+    }
+    append_spawns(options, visible_spawns(options.spawns, frame.view, {0, 0, 1, 1}), frame.legend);
+    if (!options.spawn_names.empty())
+        frame.legend.symbols.push_back({"names: no room for all of them"});  // reserves a line in the layout
+
+    const Layout layout = lay_out(frame);
+    Image plot = draw_columns(colours, columns, frame.view, layout.plot.size());
+    const float depth = options.quantity == HeatmapQuantity::Verdict
+                            ? 1
+                            : 0.5f;  // half: users read values from the lightness
+    shade(plot, relief(terrain.frame, highest_within(terrain, raster.z), frame.view, plot.size()), depth);
+    const GridFrame fine = fine_frame(frame.view, plot.size());
+    draw_obstacles(plot, obstacle_mask(map.geometry, fine, search), fine, columns, frame.view);
+    const VisibleSpawns visible = visible_spawns(options.spawns, frame.view, layout.plot);
+    const SpawnLook look = spawn_look(options.robot, layout, plot.cols / frame.view.width, visible.indices.size());
+
+    Figure figure{layout.size, {}};
+    draw_image(figure, layout.plot.tl(), plot);
+    draw_spawns(figure, options, visible, look, layout, frame.legend);
+    draw_surroundings(figure, frame, layout);
+    write_figure(figure, format, file);
+}
+
+}  // namespace spawnfield
