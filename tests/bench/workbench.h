@@ -110,6 +110,8 @@ private:
 
     spawnfield::RasterOptions options_2d(const RasterWork& work) const;
     spawnfield::RasterOptions options_3d() const;
+    /// Returns the options of the 3D raster with only every `thinning`-th row and column.
+    spawnfield::RasterOptions thinned_options_3d() const;
     spawnfield::SampleOptions sample_options() const;
     spawnfield::SearchOptions search_options() const;
 
