@@ -72,7 +72,8 @@ Setting town(Extent extent)
     out.rasters = {{"raster2d@0.1", 2, 0.1},
                    {"raster2d@1.0", 2, 1.0},
                    {"raster2d-top@0.1", 2, 0.1, top()},
-                   {"raster2d-top@1.0", 2, 1.0, top()}};
+                   {"raster2d-top@1.0", 2, 1.0, top()},
+                   {"raster2d-2.5m-top@0.1", 2.5, 0.1, top()}};
     if (extent == Extent::Quick) {
         out.make = [] { return small_town_scene(); };
         make_quick(out);
