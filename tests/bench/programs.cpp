@@ -103,9 +103,9 @@ std::vector<std::string> sample_args(const std::filesystem::path& map, bool quic
 void measure_bake_and_sample(const TargetOptions& options, const TempFolder& folder, const OnRow& on_row)
 {
     const Bake bake = bake_by_process("hills", folder, options);
-    on_row(at_most(5, row("hills", "bake at 0.1 m", bake.seconds, "s", bake.peak_memory)));
+    on_row(at_most(4, row("hills", "bake at 0.1 m", bake.seconds, "s", bake.peak_memory)));
     on_row(at_most(1000, row("hills", "bake at 0.1 m, peak memory", bake.peak_memory / mega, "MB", bake.peak_memory)));
-    on_row(at_most(250, row("hills", "bake at 0.1 m, on disk", double(bake.map.bytes) / mega, "MB", 0)));
+    on_row(at_most(200, row("hills", "bake at 0.1 m, on disk", double(bake.map.bytes) / mega, "MB", 0)));
     if (spawnfield_program().empty()) return;
     const Query sample = query_by_process(sample_args(bake.map.folder, options.quick), folder, options.rounds);
     on_row(at_most(
