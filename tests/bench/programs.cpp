@@ -54,6 +54,7 @@ Bake bake_by_process(const std::string& scene, const TempFolder& folder, const T
 
 struct Query {
     double seconds = 0, query = 0;  ///< medians of the whole process, and of its query alone
+    double cpu_seconds = 0;         ///< median of the whole process
     double peak_memory = 0;         ///< bytes
 };
 
@@ -64,18 +65,32 @@ Query query_by_process(std::vector<std::string> args, const TempFolder& folder, 
     args.insert(args.end(),
                 {"--robot", "box:0.99,0.67,0.39", "-o", "/dev/null", "--quiet", "--summary", summary.string()});
     Query out;
-    std::vector<double> seconds, query;
+    std::vector<double> seconds, cpu_seconds, query;
     for (int round = -1; round < rounds; ++round) {
         const ProcessRun run = run_process(program, args);
         if (run.status != 0 && run.status != 3) fail(program, run);
         if (round < 0) continue;
         seconds.push_back(run.seconds);
+        cpu_seconds.push_back(run.cpu_seconds);
         query.push_back(nlohmann::json::parse(bytes_of(summary))["seconds"]["query"].get<double>());
         out.peak_memory = std::max(out.peak_memory, double(run.peak_memory));
     }
     out.seconds = median(seconds);
+    out.cpu_seconds = median(cpu_seconds);
     out.query = median(query);
     return out;
+}
+
+/// Returns the median time of `info` on a map, s. It is short, so it runs often; the first run is untimed.
+double info_seconds(const std::filesystem::path& map, int rounds)
+{
+    std::vector<double> seconds;
+    for (int round = -1; round < std::max(rounds, 20); ++round) {
+        const ProcessRun run = run_process(spawnfield_program(), {"info", map.string()});
+        if (run.status != 0) fail(spawnfield_program(), run);
+        if (round >= 0) seconds.push_back(run.seconds);
+    }
+    return median(seconds);
 }
 
 TargetRow row(const std::string& scene, const std::string& work, double measured, const char* unit, double memory)
@@ -100,18 +115,31 @@ std::vector<std::string> sample_args(const std::filesystem::path& map, bool quic
     return {"sample", map.string(), "-n", quick ? "20" : "2000", "--min-distance", "2.5"};
 }
 
-void measure_bake_and_sample(const TargetOptions& options, const TempFolder& folder, const OnRow& on_row)
+std::filesystem::path measure_bake(const TargetOptions& options, const TempFolder& folder, const OnRow& on_row)
 {
     const Bake bake = bake_by_process("hills", folder, options);
     on_row(at_most(4, row("hills", "bake at 0.1 m", bake.seconds, "s", bake.peak_memory)));
     on_row(at_most(1000, row("hills", "bake at 0.1 m, peak memory", bake.peak_memory / mega, "MB", bake.peak_memory)));
     on_row(at_most(200, row("hills", "bake at 0.1 m, on disk", double(bake.map.bytes) / mega, "MB", 0)));
-    if (spawnfield_program().empty()) return;
-    const Query sample = query_by_process(sample_args(bake.map.folder, options.quick), folder, options.rounds);
-    on_row(at_most(
-        100, row("hills", "2,000 samples 2.5 m apart, whole process", sample.seconds * 1e3, "ms", sample.peak_memory)));
-    on_row(at_most(
-        10, row("hills", "2,000 samples 2.5 m apart, query alone", sample.query * 1e3, "ms", sample.peak_memory)));
+    return bake.map.folder;
+}
+
+/// Measures samples on the map of hills: few that are far apart, and many.
+void measure_samples(const std::filesystem::path& map, const TargetOptions& options, const TempFolder& folder,
+                     const OnRow& on_row)
+{
+    const auto report = [&](double limit, const char* work, double measured, const char* unit, double memory) {
+        on_row(at_most(limit, row("hills", work, measured, unit, memory)));
+    };
+    const Query few = query_by_process(sample_args(map, options.quick), folder, options.rounds);
+    report(100, "2,000 samples 2.5 m apart, whole process", few.seconds * 1e3, "ms", few.peak_memory);
+    report(10, "2,000 samples 2.5 m apart, query alone", few.query * 1e3, "ms", few.peak_memory);
+    report(64, "2,000 samples 2.5 m apart, peak memory", few.peak_memory / mega, "MB", few.peak_memory);
+    const Query many = query_by_process(
+        {"sample", map.string(), "-n", options.quick ? "1000" : "1000000", "--min-distance", "0"}, folder,
+        options.rounds);
+    report(1, "1,000,000 samples, CPU time of the process", many.cpu_seconds, "s", many.peak_memory);
+    on_row(row("hills", "1,000,000 samples, whole process", many.seconds, "s", many.peak_memory));
 }
 
 /// The cost of a tiled landscape.
@@ -137,15 +165,15 @@ void report_growth(const AreaCost& one, const AreaCost& many, const OnRow& on_ro
 {
     const std::string scene = "hills-" + std::to_string(many.area) + "x";
     const auto growth = [&](double of_many, double of_one) { return of_many / many.area / of_one; };
-    const auto report_growth_of = [&](const char* work, double times, double memory) {
-        on_row(at_most(1.15, row(scene, work, times, "times", memory)));
+    const auto report = [&](double limit, const char* work, double times, double memory) {
+        on_row(at_most(limit, row(scene, work, times, "times", memory)));
     };
-    report_growth_of("bake at 0.5 m, time for each tile", growth(many.bake.seconds, one.bake.seconds),
-                     many.bake.peak_memory);
-    report_growth_of("2D raster, step 1 m, query for each tile", growth(many.raster.query, one.raster.query),
-                     many.raster.peak_memory);
-    report_growth_of("2,000 samples, memory of the process", many.sample.peak_memory / one.sample.peak_memory,
-                     many.sample.peak_memory);
+    report(1.15, "bake at 0.5 m, time for each tile", growth(many.bake.seconds, one.bake.seconds),
+           many.bake.peak_memory);
+    report(1.15, "2D raster, step 1 m, query for each tile", growth(many.raster.query, one.raster.query),
+           many.raster.peak_memory);
+    report(2, "2,000 samples, memory of the process", many.sample.peak_memory / one.sample.peak_memory,
+           many.sample.peak_memory);
     on_row(row(scene, "2,000 samples, whole process", many.sample.seconds * 1e3, "ms", many.sample.peak_memory));
 }
 
@@ -180,8 +208,11 @@ std::string to_line(const BakedMap& map)
 void measure_programs(const TargetOptions& options, const OnRow& on_row)
 {
     const TempFolder folder;
-    measure_bake_and_sample(options, folder, on_row);
-    if (!spawnfield_program().empty()) measure_growth(options, folder, on_row);
+    const std::filesystem::path hills = measure_bake(options, folder, on_row);
+    if (spawnfield_program().empty()) return;
+    measure_samples(hills, options, folder, on_row);
+    on_row(at_most(8, row("hills", "info, whole process", info_seconds(hills, options.rounds) * 1e3, "ms", 0)));
+    measure_growth(options, folder, on_row);
 }
 
 }  // namespace bench
