@@ -1,5 +1,6 @@
 #include "workbench.h"
 
+#include "city.h"
 #include "floors.h"
 #include "hills.h"
 #include "town.h"
@@ -81,6 +82,19 @@ Setting town(Extent extent)
     return out;
 }
 
+Setting city(Extent extent)
+{
+    Setting out{.name = "city", .make = [] { return city_scene(); }, .robot = husky_box, .has_rivals = false};
+    out.cell = extent == Extent::Full ? 0.1 : 0.5;
+    out.step_3d = 2;
+    out.rasters = {{"raster2d@0.1", extent == Extent::Full ? 0.5 : 1, 0.1}};
+    if (extent == Extent::Quick) {
+        out.make = [] { return small_city_scene(); };
+        make_quick(out);
+    }
+    return out;
+}
+
 Setting floors(Extent extent)
 {
     Setting out{.name = "floors", .make = [] { return floors_scene(); }, .robot = husky_box};
@@ -151,8 +165,8 @@ std::vector<Setting> tiled_settings(Extent extent)
 
 std::vector<Setting> settings(Extent extent)
 {
-    return {training(extent),    hills(extent),      town(extent), floors(extent),
-            grid(false, extent), grid(true, extent), empty(extent)};
+    return {training(extent), hills(extent),       town(extent),       city(extent),
+            floors(extent),   grid(false, extent), grid(true, extent), empty(extent)};
 }
 
 }  // namespace bench

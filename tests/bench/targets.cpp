@@ -49,6 +49,7 @@ constexpr Target in_process[] = {
      .work = "2D raster, step 2.5 m, offset 0.1 m, top layer",
      .threads = 1,
      .seconds = 0.04},
+    {.scene = "city", .stage = "raster2d@0.1", .work = "2D raster, step 0.5 m, offset 0.1 m, all layers"},
     {.scene = "floors", .stage = "raster2d@0.1", .work = "2D raster, step 0.1 m, offset 0.1 m, all layers"},
     {.scene = "floors", .stage = "raster2d-top@0.1", .work = "2D raster, step 0.1 m, offset 0.1 m, top layer"},
     {.scene = "grid-box", .stage = "raster3d", .work = "50,000 collisions, box robot", .ms_per_1000 = 0.25},
