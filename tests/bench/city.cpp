@@ -22,6 +22,7 @@ struct Extents {
 
 // Lengths in m. A block reaches to the middle of the streets around it.
 constexpr double block_x = 55, block_y = 54, street = 8, pavement = 2.5, kerb = 0.15;
+constexpr int kerb_stones = 14;    // along each side of a pavement
 constexpr double sheet = 0.06;     // height of the second ground above the plane
 constexpr double sheet_cell = 2;   // side of the squares of which the sheet consists
 constexpr double middle_y = 14.5;  // distance of the houses' middle from that of the block
@@ -118,13 +119,23 @@ void City::add_ground()
     scene_.parts.back().name = "sheet";
 }
 
+/// Returns the edges of a pavement along one axis: the pavement on both sides, and between them kerb stones.
+std::vector<double> kerb_lines(double length)
+{
+    const double inner = length / 2 - pavement;
+    std::vector<double> lines = {-length / 2};
+    for (int i = 0; i <= kerb_stones; ++i) lines.push_back(inner * (2.0 * i / kerb_stones - 1));
+    lines.push_back(length / 2);
+    return lines;
+}
+
 void City::add_pavement(const Vec2& centre)
 {
-    const double x = (block_x - street) / 2, y = (block_y - street) / 2;
-    const BlockGrid ring = {{-x, -x + pavement, x - pavement, x},
-                            {-y, -y + pavement, y - pavement, y},
-                            {-1, sheet + kerb},
-                            [](int i, int j, int) { return i != 1 || j != 1; }};
+    const auto is_edge = [](int i) { return i == 0 || i == kerb_stones + 1; };
+    const BlockGrid ring = {
+        kerb_lines(block_x - street), kerb_lines(block_y - street), {-1, sheet + kerb}, [is_edge](int i, int j, int) {
+            return is_edge(i) || is_edge(j);
+        }};
     add_thing(scene_, "pavement", Label::Terrain, {blocks(ring)}, {{centre.x(), centre.y(), 0}, Mat3::Identity()});
 }
 
@@ -133,7 +144,8 @@ void City::add_house(const Vec2& centre, int place)
 {
     const Vec2 at = centre + Vec2((place % 3 - 1) * 15.5, place < 3 ? -middle_y : middle_y);
     if (place > 0) {
-        add("house", {apartments(random_)}, at, sheet, place < 3 ? 0 : std::numbers::pi);
+        const hand::Mesh house = apartments(random_);
+        add("house", {house}, at, sheet, place < 3 ? 0 : std::numbers::pi);
         return;
     }
     const double length = random_.between(10, 14), depth = random_.between(8, 10), height = random_.between(5, 12);
@@ -150,18 +162,21 @@ void City::add_trees(const Vec2& centre)
     for (int i = 0; i < 4; ++i) {
         const double x = -18 + 12 * i + random_.between(-4, 4), y = random_.between(3.5, 6.5);
         const double turn = random_.between(-3, 3);
-        add("tree", tree(random_), centre + Vec2(x, i % 2 == 0 ? y : -y), sheet, turn);
+        const Pieces pieces = tree(random_);
+        add("tree", pieces, centre + Vec2(x, i % 2 == 0 ? y : -y), sheet, turn);
     }
-    for (int i = 0; i < 4; ++i)
-        add("tree", tree(random_), centre + Vec2(-18 + 12 * i, -(block_y - street) / 2 + 0.7), sheet + kerb);
+    for (int i = 0; i < 4; ++i) {
+        const Pieces pieces = tree(random_);
+        add("tree", pieces, centre + Vec2(-18.0 + 12 * i, -(block_y - street) / 2 + 0.7), sheet + kerb);
+    }
 }
 
 void City::add_cars(const Vec2& centre)
 {
     for (int i = 0; i < 4; ++i) {
         const double x = -18 + 12 * i + random_.between(-3, 3);
-        add("car", car(random_), centre + Vec2(x, -(block_y - street) / 2 - 1.2), sheet,
-            i % 2 == 0 ? 0 : std::numbers::pi);
+        const Pieces pieces = car(random_);
+        add("car", pieces, centre + Vec2(x, -(block_y - street) / 2 - 1.2), sheet, i % 2 == 0 ? 0 : std::numbers::pi);
     }
 }
 
@@ -185,9 +200,11 @@ void City::add_car_park(const Vec2& centre)
     for (const double x : {-15.0, -5.0, 5.0, 15.0})
         for (const double y : {-11.0, 0.0, 11.0})
             add("pillar", {box_from({-0.25, -0.25, -0.5}, {0.25, 0.25, deck - 0.1})}, centre + Vec2(x, y), sheet);
-    for (int i = 0; i < 8; ++i)
-        add("car", car(random_), centre + Vec2(-10 + 5 * (i / 2), i % 2 == 0 ? -6 : 6), sheet + (i < 4 ? 0 : deck),
-            std::numbers::pi / 2);
+    for (int i = 0; i < 8; ++i) {
+        const Pieces pieces = car(random_);
+        const Vec2 place(-10.0 + 5 * (i / 2), i % 2 == 0 ? -6.0 : 6.0);
+        add("car", pieces, centre + place, sheet + (i < 4 ? 0 : deck), std::numbers::pi / 2);
+    }
 }
 
 /// Adds a foot bridge from the yard of a block over the street to that of the next block in x.
