@@ -17,7 +17,7 @@ namespace {
 /// The differences between two lists of verdicts.
 struct Differences {
     std::size_t poses = 0, wrong = 0;
-    std::size_t inside = 0;  ///< plain FCL does not see that the robot is inside a closed mesh
+    std::size_t inside = 0;  ///< the alternative does not see that the robot is inside a closed mesh
     std::size_t missed = 0;  ///< a ray misses an edge of the ground
 
     void add(const PlainFcl& fcl, const Vec3& centre, Verdict ours, Verdict theirs)
@@ -28,9 +28,9 @@ struct Differences {
         ++(hidden ? inside : wrong);
         if (!hidden) ++pairs[std::string(to_string(ours)) + " but " + to_string(theirs)];
     }
-    std::string text() const
+    std::string text(const std::string& rival) const
     {
-        std::string out = formatted("%zu poses, %zu verdicts of plain FCL differ", poses, wrong);
+        std::string out = formatted("%zu poses, %zu verdicts of %s differ", poses, wrong, rival.c_str());
         for (const auto& [pair, count] : pairs) out += formatted(", %zu %s", count, pair.c_str());
         return out +
                formatted(
@@ -40,6 +40,26 @@ struct Differences {
     }
     std::map<std::string, std::size_t> pairs;  ///< "<ours> but <theirs>", and how often
 };
+
+/// Returns where an alternative differs from our raster of top layers. `centre` is a point inside the robot.
+Differences differences_of(const RasterResult& ours, const TopRaster& theirs, const PlainFcl& fcl, const Vec3& centre)
+{
+    Differences out;
+    std::size_t extra = theirs.size() - std::size_t(std::count(theirs.begin(), theirs.end(), std::nullopt));
+    for (const RasterPose& pose : ours.poses) {
+        const int row = int(std::lround((pose.y - ours.grid.y0) / ours.grid.step)),
+                  col = int(std::lround((pose.x - ours.grid.x0) / ours.grid.step));
+        const auto& other = theirs[std::size_t(row) * std::size_t(ours.grid.cols) + std::size_t(col)];
+        if (other) --extra;
+        if (!other || std::abs(other->z - pose.z) > 1e-3) {
+            ++out.poses, ++out.missed;
+            continue;
+        }
+        out.add(fcl, Vec3(pose.x, pose.y, pose.z) + centre, pose.verdict, other->verdict);
+    }
+    out.wrong += extra;
+    return out;
+}
 
 }  // namespace
 
@@ -51,7 +71,7 @@ std::vector<std::string> Workbench::comparisons(const std::string& only)
     };
     if (has_plain_fcl()) {
         for (const RasterWork& work : setting_.rasters)
-            if (is_top_raster(work) && wanted(work.name)) out.push_back(compare_2d(work));
+            if (is_top_raster(work) && wanted(work.name)) compare_2d(work, out);
         if (wanted("raster3d")) out.push_back(compare_3d());
         if (setting_.has_ground && wanted("check")) out.push_back(compare_checks());
     }
@@ -59,28 +79,18 @@ std::vector<std::string> Workbench::comparisons(const std::string& only)
     return out;
 }
 
-std::string Workbench::compare_2d(const RasterWork& work)
+void Workbench::compare_2d(const RasterWork& work, std::vector<std::string>& out)
 {
     RasterOptions options = options_2d(work);
     options.layers = {.kind = LayerChoice::Kind::Top};
     const RasterResult ours = spawnfield::raster(judge(), options);
-    const auto theirs = plain_fcl().raster_top(ours.grid, work.offset, 0);
     const Vec3 centre = setting_.robot().parts.front().centre();
-    Differences differences;
-    std::size_t extra = theirs.size() - std::size_t(std::count(theirs.begin(), theirs.end(), std::nullopt));
-    for (const RasterPose& pose : ours.poses) {
-        const int row = int(std::lround((pose.y - ours.grid.y0) / ours.grid.step)),
-                  col = int(std::lround((pose.x - ours.grid.x0) / ours.grid.step));
-        const auto& other = theirs[std::size_t(row) * std::size_t(ours.grid.cols) + std::size_t(col)];
-        if (other) --extra;
-        if (!other || std::abs(other->z - pose.z) > 1e-3) {
-            ++differences.poses, ++differences.missed;
-            continue;
-        }
-        differences.add(plain_fcl(), Vec3(pose.x, pose.y, pose.z) + centre, pose.verdict, other->verdict);
-    }
-    differences.wrong += extra;
-    return setting_.name + " " + work.name + ": " + differences.text();
+    const auto add = [&](const char* rival, const TopRaster& theirs) {
+        const Differences differences = differences_of(ours, theirs, plain_fcl(), centre);
+        out.push_back(setting_.name + " " + work.name + ": " + differences.text(rival));
+    };
+    add("plain FCL", plain_fcl().raster_top(ours.grid, work.offset, 0));
+    if (has_embree_only()) add("Embree alone", embree_only().raster_top(ours.grid, work.offset, 0));
 }
 
 std::string Workbench::compare_3d()
@@ -105,7 +115,7 @@ std::string Workbench::compare_checks()
     Differences differences;
     for (std::size_t i = 0; i < ours.size(); ++i)
         differences.add(plain_fcl(), poses()[i].rotation * centre + poses()[i].position, ours[i].verdict, theirs[i]);
-    return setting_.name + " check: " + differences.text();
+    return setting_.name + " check: " + differences.text("plain FCL");
 }
 
 /// Returns the share of collisions among the points of Recast, first as they are drawn and then on the nearest layer

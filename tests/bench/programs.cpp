@@ -18,9 +18,13 @@ namespace {
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 constexpr double mega = 1e6;
 
-[[noreturn]] void fail(const std::filesystem::path& program, const ProcessRun& run)
+/// Runs a program. Throws std::runtime_error if it fails; status 3 (fewer spawns than wanted) is no failure.
+ProcessRun checked_run(const std::filesystem::path& program, const std::vector<std::string>& args)
 {
-    throw std::runtime_error(program.string() + " ended with status " + std::to_string(run.status) + ", needs 0");
+    ProcessRun run = run_process(program, args);
+    if (run.status != 0 && run.status != 3)
+        throw std::runtime_error(program.string() + " ended with status " + std::to_string(run.status) + ", needs 0");
+    return run;
 }
 
 /// Reads a line that this program prints with --write-maps.
@@ -37,16 +41,19 @@ struct Bake {
     double peak_memory = 0;  ///< bytes, including the scene and making it
 };
 
+/// Returns the file of triangles that is written beside a map.
+std::filesystem::path triangles_of(std::filesystem::path map) { return map += ".triangles"; }
+
 /// Bakes a scene in a separate process, so that its memory can be measured.
-Bake bake_by_process(const std::string& scene, const TempFolder& folder, const TargetOptions& options)
+Bake bake_by_process(const std::string& scene, const TempFolder& folder, const TargetOptions& options,
+                     int most_rounds = 3)
 {
     std::vector<std::string> args = {"--write-maps", folder.path().string(), "--scene", scene};
     args.push_back(options.quick ? "--quick" : "--full");
     Bake out;
     std::vector<double> seconds;
-    for (int round = 0; round < std::min(options.rounds, 3); ++round) {
-        const ProcessRun run = run_process(this_program(), args);
-        if (run.status != 0) fail(this_program(), run);
+    for (int round = 0; round < std::min(options.rounds, most_rounds); ++round) {
+        const ProcessRun run = checked_run(this_program(), args);
         out.map = baked_map_of(run.output);
         seconds.push_back(out.map.seconds);
         out.peak_memory = std::max(out.peak_memory, double(run.peak_memory));
@@ -70,8 +77,7 @@ Query query_by_process(std::vector<std::string> args, const TempFolder& folder, 
     Query out;
     std::vector<double> seconds, cpu_seconds, query;
     for (int round = -1; round < rounds; ++round) {
-        const ProcessRun run = run_process(program, args);
-        if (run.status != 0 && run.status != 3) fail(program, run);
+        const ProcessRun run = checked_run(program, args);
         if (round < 0) continue;
         seconds.push_back(run.seconds);
         cpu_seconds.push_back(run.cpu_seconds);
@@ -89,8 +95,7 @@ double info_seconds(const std::filesystem::path& map, int rounds)
 {
     std::vector<double> seconds;
     for (int round = -1; round < std::max(rounds, 20); ++round) {
-        const ProcessRun run = run_process(spawnfield_program(), {"info", map.string()});
-        if (run.status != 0) fail(spawnfield_program(), run);
+        const ProcessRun run = checked_run(spawnfield_program(), {"info", map.string()});
         if (round >= 0) seconds.push_back(run.seconds);
     }
     return median(seconds);
@@ -155,6 +160,58 @@ void measure_samples(const std::filesystem::path& map, const TargetOptions& opti
     on_row(row("hills", "1,000,000 samples, whole process", many.seconds, "s", many.peak_memory));
 }
 
+/// A raster of top layers by whole programs: spawnfield on a baked map, and EmbreeOnly on the triangles.
+struct Race {
+    const char *scene, *work;
+    double step, offset;  ///< m
+};
+
+/// Returns a text with the counts by verdict of both: "hills whole process: spawnfield outside,0 … valid,80; Embree
+/// alone outside,0 … valid,80".
+std::string race_counts(const Race& race, const std::filesystem::path& summary, std::string theirs)
+{
+    const nlohmann::json ours = nlohmann::json::parse(bytes_of(summary));
+    std::string text = std::string(race.scene) + " whole process: spawnfield";
+    for (const auto& [verdict, count] : ours["counts"].items())
+        text += " " + verdict + "," + std::to_string(count.get<std::uint64_t>());
+    std::replace(theirs.begin(), theirs.end(), '\n', ' ');
+    return text + "; Embree alone " + theirs;
+}
+
+/// Measures the two programs of a race in turns.
+void measure_race(const Race& race, const std::filesystem::path& map, const TargetOptions& options,
+                  const TempFolder& folder, const OnRow& on_row)
+{
+    const std::filesystem::path summary = folder / "race.json";
+    const std::string step = formatted("%g", options.quick ? 4 : race.step), offset = formatted("%g", race.offset);
+    const std::vector<std::string> ours = {"raster",    map.string(),    "--robot", "box:0.99,0.67,0.39", "--dims",
+                                           "2",         "--step",        step,      "--offset",           offset,
+                                           "--layers",  "top",           "-o",      "/dev/null",          "--quiet",
+                                           "--summary", summary.string()};
+    const std::vector<std::string> theirs = {
+        "--embree-process", triangles_of(map).string(), "--step", step, "--offset", offset};
+    std::vector<double> our_seconds, their_seconds;
+    double memory = 0;
+    std::string their_counts;
+    for (int round = -1; round < options.rounds; ++round) {
+        const ProcessRun run = checked_run(spawnfield_program(), ours);
+        if (round >= 0) our_seconds.push_back(run.seconds);
+        memory = std::max(memory, double(run.peak_memory));
+        if (!EmbreeOnly::is_available()) continue;
+        const ProcessRun other = checked_run(this_program(), theirs);
+        if (round >= 0) their_seconds.push_back(other.seconds);
+        their_counts = other.output;
+    }
+    TargetRow out = row(race.scene, race.work, median(our_seconds), "s", memory);
+    if (!their_seconds.empty()) {
+        out.over_embree = median(their_seconds) / out.measured;
+        out.target = ">= 2 x (d)";
+        out.reached = *out.over_embree >= 2;
+    }
+    on_row(out);
+    if (!their_counts.empty()) options.on_comparison(race_counts(race, summary, their_counts));
+}
+
 /// The cost of a tiled landscape.
 struct AreaCost {
     int area;  ///< number of tiles
@@ -206,6 +263,10 @@ BakedMap bake_setting(const Setting& setting, const std::filesystem::path& paren
 {
     BakedMap out{parent / setting.name};
     Scene scene = setting.make();
+    std::filesystem::create_directories(parent);
+    if (has_top_raster(setting))
+        write_triangles(triangles_of(out.folder),
+                        triangle_scene_of(scene, setting.bounds.is_empty() ? scene.bounds() : setting.bounds));
     const Workbench workbench(setting);
     const auto start = std::chrono::steady_clock::now();
     out.bytes = workbench.bake_into(out.folder, std::move(scene), threads).bytes;
@@ -227,6 +288,12 @@ void measure_programs(const TargetOptions& options, const OnRow& on_row)
     if (spawnfield_program().empty()) return;
     measure_samples(hills, options, folder, on_row);
     on_row(at_most(8, row("hills", "info, whole process", info_seconds(hills, options.rounds) * 1e3, "ms", 0)));
+    measure_race({"hills", "2D raster, step 1 m, offset 0.5 m, whole process", 1, 0.5}, hills, options, folder, on_row);
+    std::filesystem::remove_all(hills);
+    const std::filesystem::path town = bake_by_process("town", folder, options, 1).map.folder;
+    measure_race({"town", "2D raster, 2.5 m, offset 0.1 m, top, whole process", 2.5, 0.1}, town, options, folder,
+                 on_row);
+    std::filesystem::remove_all(town);
     measure_growth(options, folder, on_row);
 }
 

@@ -58,6 +58,12 @@ Walker walker_of(const Robot& robot, double offset)
 
 }  // namespace
 
+bool has_top_raster(const Setting& setting)
+{
+    return std::any_of(setting.rasters.begin(), setting.rasters.end(),
+                       [&](const RasterWork& work) { return is_top_raster(setting, work); });
+}
+
 Workbench::Workbench(const Setting& setting) : setting_(setting) {}
 
 // ---- Stages ----
@@ -82,6 +88,36 @@ void Workbench::add_bakes(std::vector<Stage>& out)
     out.push_back({"read_map", false, [this](int) { return read_map(); }});
 }
 
+template <class Make>
+Measurement Workbench::rival_raster_2d(const RasterWork& work, const Make& make)
+{
+    const RasterGrid grid = raster_grid(map().bounds, options_2d(work));
+    const auto judged = timed([&] { return make(grid); });
+    Digest digest;
+    std::uint64_t count = 0;
+    for (const auto& pose : judged.result) {
+        if (!pose) continue;
+        ++count;
+        digest.add(pose->z).add(pose->verdict);
+    }
+    return {count, judged.seconds, digest.value(), count};
+}
+
+/// Adds the alternatives that answer a raster of top layers.
+void Workbench::add_top_rivals(const RasterWork& work, Stage& stage)
+{
+    const auto add = [&](const char* name, const auto& peer) {
+        stage.rivals.push_back({name, [this, work, peer](int threads) {
+                                    const auto& ready = peer();  // is built before the clock starts
+                                    return rival_raster_2d(work, [&](const RasterGrid& grid) {
+                                        return ready.raster_top(grid, work.offset, threads);
+                                    });
+                                }});
+    };
+    if (has_plain_fcl()) add("fcl", [this]() -> const PlainFcl& { return plain_fcl(); });
+    if (has_embree_only()) add("embree", [this]() -> const EmbreeOnly& { return embree_only(); });
+}
+
 void Workbench::add_rasters(std::vector<Stage>& out)
 {
     const auto stage = [this](const std::string& name, const RasterOptions& options) {
@@ -95,8 +131,7 @@ void Workbench::add_rasters(std::vector<Stage>& out)
     };
     for (const RasterWork& work : setting_.rasters) {
         out.push_back(stage(work.name, options_2d(work)));
-        if (has_plain_fcl() && is_top_raster(work))
-            out.back().rivals.push_back({"fcl", [this, work](int threads) { return fcl_raster_2d(work, threads); }});
+        if (is_top_raster(work)) add_top_rivals(work, out.back());
     }
     out.push_back(stage("raster3d", options_3d()));
     if (has_plain_fcl()) out.back().rivals.push_back({"fcl", [this](int threads) { return fcl_raster_3d(threads); }});
@@ -128,6 +163,15 @@ void Workbench::add_set_ups(std::vector<Stage>& out)
         out.push_back({"fcl set-up", false, [this](int) {
                            const auto made = timed(
                                [&] { return std::make_unique<PlainFcl>(scene(), setting_.robot()); });
+                           return Measurement{elements(scene()), made.seconds, 0};
+                       }});
+    if (has_embree_only())
+        out.push_back({"embree set-up", false, [this](int) {
+                           TriangleScene triangles = triangle_scene_of(scene(), map().bounds);
+                           const auto made = timed([&] {
+                               return std::make_unique<EmbreeOnly>(std::move(triangles), setting_.robot(),
+                                                                   EmbreeOnly::Use::Often);
+                           });
                            return Measurement{elements(scene()), made.seconds, 0};
                        }});
     if (has_nav_mesh())
@@ -223,6 +267,19 @@ const NavMesh& Workbench::nav_mesh()
 {
     if (!nav_mesh_) nav_mesh_ = std::make_unique<NavMesh>(scene(), walker_of(setting_.robot(), 0.1));
     return *nav_mesh_;
+}
+
+bool Workbench::has_embree_only() const
+{
+    return setting_.has_rivals && has_top_raster(setting_) && EmbreeOnly::is_available();
+}
+
+const EmbreeOnly& Workbench::embree_only()
+{
+    if (!embree_only_)
+        embree_only_ = std::make_unique<EmbreeOnly>(triangle_scene_of(scene(), map().bounds), setting_.robot(),
+                                                    EmbreeOnly::Use::Often);
+    return *embree_only_;
 }
 
 const std::vector<Pose>& Workbench::poses()
@@ -332,21 +389,6 @@ Measurement Workbench::search(const Judge& judge, const SearchOptions& options)
 }
 
 // ---- The alternatives ----
-
-Measurement Workbench::fcl_raster_2d(const RasterWork& work, int threads)
-{
-    const RasterGrid grid = raster_grid(map().bounds, options_2d(work));
-    const PlainFcl& ready = plain_fcl();
-    const auto judged = timed([&] { return ready.raster_top(grid, work.offset, threads); });
-    Digest digest;
-    std::uint64_t count = 0;
-    for (const auto& pose : judged.result) {
-        if (!pose) continue;
-        ++count;
-        digest.add(pose->z).add(pose->verdict);
-    }
-    return {count, judged.seconds, digest.value(), count};
-}
 
 Measurement Workbench::fcl_raster_3d(int threads)
 {
