@@ -51,7 +51,8 @@ Setting hills(Extent extent)
     out.rasters = {{"raster2d@0.1", step, 0.1},
                    {"raster2d@0.3", step, 0.3},
                    {"raster2d@1.0", step, 1.0},
-                   {"raster2d-1m@0.5", 1, 0.5}};
+                   {"raster2d-1m@0.5", 1, 0.5},
+                   {"raster2d-16-headings@0.5", 1, 0.5, {}, 16}};
     if (extent == Extent::Full) {
         out.cell = 0.1;
         out.poses = 1000000;

@@ -27,6 +27,18 @@ Options with_threads(Options options, int threads)
     return options;
 }
 
+/// Returns the same raster at yaws spread evenly over a full turn. A faster way to get these would replace only this
+/// function.
+std::vector<RasterResult> rasters_at_headings(const Judge& judge, RasterOptions options, int headings)
+{
+    std::vector<RasterResult> out;
+    for (int k = 0; k < headings; ++k) {
+        options.yaw = k * 2 * std::numbers::pi / headings;
+        out.push_back(raster(judge, options));
+    }
+    return out;
+}
+
 /// Returns poses that are up to 1 m above a random layer of a random column.
 std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
 {
@@ -118,6 +130,18 @@ void Workbench::add_top_rivals(const RasterWork& work, Stage& stage)
     if (has_embree_only()) add("embree", [this]() -> const EmbreeOnly& { return embree_only(); });
 }
 
+/// Adds a raster at several headings, and beside it the same raster at one heading.
+void Workbench::add_headings(const RasterWork& work, std::vector<Stage>& out)
+{
+    const auto run = [&](int headings) {
+        return [this, options = options_2d(work), headings](int threads) {
+            return raster_headings(with_threads(options, threads), headings);
+        };
+    };
+    out.push_back({work.name, true, run(work.headings)});
+    out.back().rivals.push_back({"one-heading", run(1)});
+}
+
 void Workbench::add_rasters(std::vector<Stage>& out)
 {
     const auto stage = [this](const std::string& name, const RasterOptions& options) {
@@ -130,6 +154,10 @@ void Workbench::add_rasters(std::vector<Stage>& out)
         return made;
     };
     for (const RasterWork& work : setting_.rasters) {
+        if (work.headings > 1) {
+            add_headings(work, out);
+            continue;
+        }
         out.push_back(stage(work.name, options_2d(work)));
         if (is_top_raster(work)) add_top_rivals(work, out.back());
     }
@@ -365,6 +393,21 @@ Measurement Workbench::raster(const Judge& judge, const RasterOptions& options)
 {
     const auto result = timed([&] { return spawnfield::raster(judge, options); });
     return {result.result.counts.total(), result.seconds, digest_of(result.result), result.result.exact_checks};
+}
+
+Measurement Workbench::raster_headings(const RasterOptions& options, int headings)
+{
+    const Judge& ready = judge();
+    const auto results = timed([&] { return rasters_at_headings(ready, options, headings); });
+    Measurement out{0, results.seconds, 0, 0};
+    Digest digest;
+    for (const RasterResult& result : results.result) {
+        out.items += result.counts.total();
+        out.exact_checks += result.exact_checks;
+        digest.add(digest_of(result));
+    }
+    out.hash = digest.value();
+    return out;
 }
 
 Measurement Workbench::check(const Judge& judge, int threads)

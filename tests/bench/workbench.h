@@ -19,6 +19,7 @@ struct RasterWork {
     std::string name;
     double step, offset;  ///< m
     spawnfield::LayerChoice layers = {};
+    int headings = 1;  ///< the same raster at this many yaws, spread evenly over a full turn
 };
 
 /// A scene, and the amount of work for each stage.
@@ -43,10 +44,10 @@ struct Setting {
     std::size_t nav_points = 100000;
 };
 
-/// Returns whether a raster has top layers only. Alternatives (b) and (d) can answer these.
+/// Returns whether a raster has top layers and one heading only. Alternatives (b) and (d) can answer these.
 inline bool is_top_raster(const Setting& setting, const RasterWork& work)
 {
-    return setting.one_layer || work.layers.kind == spawnfield::LayerChoice::Kind::Top;
+    return work.headings == 1 && (setting.one_layer || work.layers.kind == spawnfield::LayerChoice::Kind::Top);
 }
 bool has_top_raster(const Setting& setting);
 
@@ -98,6 +99,7 @@ private:
     void add_bakes(std::vector<Stage>& out);
     void add_rasters(std::vector<Stage>& out);
     void add_top_rivals(const RasterWork& work, Stage& stage);
+    void add_headings(const RasterWork& work, std::vector<Stage>& out);
     void add_spawns(std::vector<Stage>& out);
     void add_set_ups(std::vector<Stage>& out);
 
@@ -108,6 +110,7 @@ private:
     Measurement bake(int threads);
     Measurement read_map();
     Measurement raster(const spawnfield::Judge& judge, const spawnfield::RasterOptions& options);
+    Measurement raster_headings(const spawnfield::RasterOptions& options, int headings);
     Measurement check(const spawnfield::Judge& judge, int threads);
     Measurement sample(const spawnfield::Judge& judge, const spawnfield::SampleOptions& options);
     Measurement search(const spawnfield::Judge& judge, const spawnfield::SearchOptions& options);
