@@ -170,7 +170,7 @@ struct Race {
 /// alone outside,0 … valid,80".
 std::string race_counts(const Race& race, const std::filesystem::path& summary, std::string theirs)
 {
-    const nlohmann::json ours = nlohmann::json::parse(bytes_of(summary));
+    const nlohmann::ordered_json ours = nlohmann::ordered_json::parse(bytes_of(summary));
     std::string text = std::string(race.scene) + " whole process: spawnfield";
     for (const auto& [verdict, count] : ours["counts"].items())
         text += " " + verdict + "," + std::to_string(count.get<std::uint64_t>());
