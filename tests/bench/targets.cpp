@@ -167,7 +167,7 @@ std::vector<TargetRow> measure_targets(const TargetOptions& options)
 
 std::string target_head()
 {
-    return formatted("%-9s %-46s %7s %-38s %10s %-12s %7s %7s %7s %-8s %8s %8s\n", "scene", "work", "threads", "target",
+    return formatted("%-9s %-52s %7s %-38s %10s %-12s %7s %7s %7s %-8s %8s %8s\n", "scene", "work", "threads", "target",
                      "measured", "", "/ (a)", "/ (b)", "/ (d)", "reached", "MB", "exact %");
 }
 
@@ -176,7 +176,7 @@ std::string target_line(const TargetRow& row)
     const std::string threads = row.threads == 0 ? "" : std::to_string(row.threads);
     const std::string memory = row.memory > 0 ? formatted("%.0f", row.memory / mega) : "-";
     const std::string share = row.exact_share ? formatted("%.2f", 100 * *row.exact_share) : "-";
-    return formatted("%-9s %-46s %7s %-38s %10.4g %-12s %7s %7s %7s %-8s %8s %8s\n", row.scene.c_str(),
+    return formatted("%-9s %-52s %7s %-38s %10.4g %-12s %7s %7s %7s %-8s %8s %8s\n", row.scene.c_str(),
                      row.work.c_str(), threads.c_str(), row.target.c_str(), row.measured, row.unit.c_str(),
                      ratio(row.over_exhaustive).c_str(), ratio(row.over_fcl).c_str(), ratio(row.over_embree).c_str(),
                      !row.reached   ? ""
