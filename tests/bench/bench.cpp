@@ -1,5 +1,7 @@
 #include "targets.h"
 
+#include "query/raster_grid.h"
+
 #include <spawnfield/output_file.h>
 
 #include <CLI/CLI.hpp>
@@ -15,7 +17,8 @@ using namespace spawnfield;
 struct BenchArgs {
     int rounds = 5;
     std::vector<int> threads;
-    std::string csv, maps, scene, only;
+    std::string csv, maps, scene, only, triangles;
+    double step = 1, offset = 0.5;
     bool quick = false, full = false, targets = false;
 };
 
@@ -31,11 +34,22 @@ void add_options(CLI::App& app, BenchArgs& args)
     app.add_option("--csv", args.csv,
                    "Write a table with the columns scene,stage,threads,items,ms,per_second,hash,median_ms,exact_checks "
                    "to this file; ms is the minimum");
-    app.add_option("--write-maps", args.maps, "Only bake the scenes into this folder; prints map,seconds,bytes")
+    app.add_option(
+           "--write-maps", args.maps,
+           "Only bake the scenes into this folder; prints map,seconds,bytes. Also writes NAME.triangles, a file for "
+           "--embree-process, for each scene of which alternative (d) makes a raster")
         ->excludes(app.add_flag(
             "--targets", args.targets,
             "Measure the table of targets for speed and memory: first whole programs, then stages and alternatives"));
     app.add_option("--scene", args.scene, "With --write-maps: bake only this scene, for example hills or hills-4x");
+    app.add_option("--embree-process", args.triangles,
+                   "Only make a 2D raster of top layers of this .triangles file with alternative (d), Embree alone; "
+                   "prints verdict,count")
+        ->excludes("--targets")
+        ->excludes("--write-maps");
+    app.add_option("--step", args.step, "With --embree-process: m between columns (default 1)")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--offset", args.offset, "With --embree-process: m above the terrain (default 0.5)");
     auto* quick = app.add_flag(
         "--quick", args.quick,
         "Small scenes, one round, 1 and 2 threads: only shows that all stages work and compute the same");
@@ -95,7 +109,8 @@ std::vector<Row> run_all(const BenchArgs& args)
 std::string missing_alternatives()
 {
     std::string text;
-    if (!PlainFcl::is_available()) text += "built without Embree: alternative (b), plain FCL, is left out\n";
+    if (!PlainFcl::is_available())
+        text += "built without Embree: the alternatives (b), plain FCL, and (d), Embree alone, are left out\n";
     if (!NavMesh::is_available()) text += "built without Recast: alternative (c), a navigation mesh, is left out\n";
     return text;
 }
@@ -111,6 +126,20 @@ void write_maps(const BenchArgs& args)
         if (wanted.empty()) throw std::runtime_error("--scene: unknown scene \"" + args.scene + "\"");
     }
     for (const Setting& setting : wanted) std::cout << to_line(bake_setting(setting, args.maps, 0)) << std::flush;
+}
+
+/// Does with Embree alone what `spawnfield raster` does as a whole program, except writing the poses.
+void run_embree(const BenchArgs& args)
+{
+    if (!EmbreeOnly::is_available())
+        throw std::runtime_error("--embree-process needs Embree, but this program was built without it");
+    TriangleScene triangles = read_triangles(args.triangles);
+    const RasterGrid grid = raster_grid(triangles.bounds, {.step = args.step});
+    const EmbreeOnly embree(std::move(triangles), husky_box(), EmbreeOnly::Use::Once);
+    VerdictCounts counts;
+    for (const auto& pose : embree.raster_top(grid, args.offset, 0))
+        if (pose) ++counts[pose->verdict];
+    for (const Verdict verdict : all_verdicts) std::cout << to_string(verdict) << "," << counts[verdict] << "\n";
 }
 
 void reach_targets(const BenchArgs& args)
@@ -153,6 +182,8 @@ int main(int argc, char** argv)
     try {
         if (args.targets)
             reach_targets(args);
+        else if (!args.triangles.empty())
+            run_embree(args);
         else if (args.maps.empty())
             measure(args);
         else

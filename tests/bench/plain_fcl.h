@@ -1,9 +1,8 @@
 #pragma once
 
-#include <spawnfield/query.h>
+#include "top_raster.h"
 
 #include <memory>
-#include <optional>
 
 namespace bench {
 
@@ -22,14 +21,7 @@ public:
     PlainFcl(const spawnfield::Scene& scene, const spawnfield::Robot& robot);
     ~PlainFcl();
 
-    /// A pose of the 2D raster of top layers, with its verdict.
-    struct TopPose {
-        double z = 0;
-        spawnfield::Verdict verdict{};
-    };
-    /// Returns a pose for each column, row by row as in RasterResult; nothing where there is no terrain. Yaw is 0.
-    std::vector<std::optional<TopPose>> raster_top(const spawnfield::RasterGrid& grid, double offset,
-                                                   int threads) const;
+    TopRaster raster_top(const spawnfield::RasterGrid& grid, double offset, int threads) const;  ///< yaw is 0
 
     /// Returns the counts by verdict. Checks one pose after the other, each with its own ray unless `height_check` is
     /// false. Yaw is 0.

@@ -31,6 +31,8 @@ std::string read_all(int file)
     return text;
 }
 
+double seconds_of(const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); }
+
 }  // namespace
 
 ProcessRun run_process(const std::filesystem::path& program, const std::vector<std::string>& args)
@@ -49,6 +51,7 @@ ProcessRun run_process(const std::filesystem::path& program, const std::vector<s
     rusage usage{};
     wait4(child, &status, 0, &usage);
     out.seconds = watch.lap();
+    out.cpu_seconds = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
     out.peak_memory = std::uint64_t(usage.ru_maxrss) * 1024;
     out.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return out;

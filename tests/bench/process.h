@@ -10,6 +10,7 @@ namespace bench {
 /// A run of a program from its start to its end.
 struct ProcessRun {
     double seconds = 0;
+    double cpu_seconds = 0;         ///< user and system time of all its threads
     std::uint64_t peak_memory = 0;  ///< bytes; never less than this process had when it started the program
     int status = 0;                 ///< exit status; -1 if a signal ended it
     std::string output;             ///< its standard output

@@ -17,6 +17,12 @@ std::string hex(std::uint64_t hash) { return formatted("%016llx", static_cast<un
 
 }  // namespace
 
+double median(std::vector<double> values)
+{
+    std::sort(values.begin(), values.end());
+    return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+}
+
 Row row_of(const std::string& scene, const std::string& stage, int threads, const std::vector<Measurement>& rounds)
 {
     Row row{scene, stage, threads, rounds.front().items, rounds.front().hash, rounds.front().exact_checks};
@@ -26,9 +32,8 @@ Row row_of(const std::string& scene, const std::string& stage, int threads, cons
         if (round.hash != row.hash) fail_differing(row, round.hash, "in another round");
         seconds.push_back(round.seconds);
     }
-    std::sort(seconds.begin(), seconds.end());
-    row.least = seconds.front();
-    row.median = (seconds[(seconds.size() - 1) / 2] + seconds[seconds.size() / 2]) / 2;
+    row.least = *std::min_element(seconds.begin(), seconds.end());
+    row.median = median(seconds);
     row.peak_memory = peak_memory_bytes();
     return row;
 }

@@ -37,6 +37,8 @@ struct Row {
 /// the others.
 Row row_of(const std::string& scene, const std::string& stage, int threads, const std::vector<Measurement>& rounds);
 
+double median(std::vector<double> values);  ///< of at least one value
+
 /// Returns how many times as long as `row` the other row takes for an item (medians).
 inline double times_slower(const Row& other, const Row& row)
 {

@@ -1,5 +1,6 @@
 #include "workbench.h"
 
+#include "city.h"
 #include "floors.h"
 #include "hills.h"
 #include "town.h"
@@ -50,7 +51,8 @@ Setting hills(Extent extent)
     out.rasters = {{"raster2d@0.1", step, 0.1},
                    {"raster2d@0.3", step, 0.3},
                    {"raster2d@1.0", step, 1.0},
-                   {"raster2d-1m@0.5", 1, 0.5}};
+                   {"raster2d-1m@0.5", 1, 0.5},
+                   {"raster2d-16-headings@0.5", 1, 0.5, {}, 16}};
     if (extent == Extent::Full) {
         out.cell = 0.1;
         out.poses = 1000000;
@@ -72,9 +74,23 @@ Setting town(Extent extent)
     out.rasters = {{"raster2d@0.1", 2, 0.1},
                    {"raster2d@1.0", 2, 1.0},
                    {"raster2d-top@0.1", 2, 0.1, top()},
-                   {"raster2d-top@1.0", 2, 1.0, top()}};
+                   {"raster2d-top@1.0", 2, 1.0, top()},
+                   {"raster2d-2.5m-top@0.1", 2.5, 0.1, top()}};
     if (extent == Extent::Quick) {
         out.make = [] { return small_town_scene(); };
+        make_quick(out);
+    }
+    return out;
+}
+
+Setting city(Extent extent)
+{
+    Setting out{.name = "city", .make = [] { return city_scene(); }, .robot = husky_box, .has_rivals = false};
+    out.cell = extent == Extent::Full ? 0.1 : 0.5;
+    out.step_3d = 2;
+    out.rasters = {{"raster2d@0.1", extent == Extent::Full ? 0.5 : 1, 0.1}};
+    if (extent == Extent::Quick) {
+        out.make = [] { return small_city_scene(); };
         make_quick(out);
     }
     return out;
@@ -150,8 +166,8 @@ std::vector<Setting> tiled_settings(Extent extent)
 
 std::vector<Setting> settings(Extent extent)
 {
-    return {training(extent),    hills(extent),      town(extent), floors(extent),
-            grid(false, extent), grid(true, extent), empty(extent)};
+    return {training(extent), hills(extent),       town(extent),       city(extent),
+            floors(extent),   grid(false, extent), grid(true, extent), empty(extent)};
 }
 
 }  // namespace bench

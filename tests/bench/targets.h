@@ -13,6 +13,7 @@ struct TargetRow {
     std::string unit = {};                       ///< of `measured`: "s", "ms", "ms per 1,000", "MB", "times"
     std::optional<double> over_exhaustive = {};  ///< time per item of (a), the exhaustive query, divided by ours
     std::optional<double> over_fcl = {};         ///< time per item of (b), PlainFcl, divided by ours
+    std::optional<double> over_embree = {};      ///< time per item of (d), EmbreeOnly, divided by ours
     std::optional<bool> reached = {};
     double memory = 0;  ///< bytes of the whole process, or bytes that a query needed in addition to scene and map
     std::optional<double> exact_share = {};  ///< share of the items that FCL decided

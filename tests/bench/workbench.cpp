@@ -1,14 +1,13 @@
 #include "workbench.h"
 
 #include "../random_scene.h"
-#include "base/stopwatch.h"
 #include "digest.h"
 #include "query/raster_grid.h"
+#include "timed.h"
 #include "world.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <stdexcept>
 
@@ -16,21 +15,6 @@ using namespace spawnfield;
 
 namespace bench {
 namespace {
-
-template <class Result>
-struct Timed {
-    double seconds;
-    Result result;
-};
-
-template <class Work>
-auto timed(const Work& work)
-{
-    Stopwatch watch;
-    auto result = work();
-    const double seconds = watch.lap();
-    return Timed<decltype(result)>{seconds, std::move(result)};
-}
 
 std::uint64_t elements(const Scene& scene) { return scene.triangles.size() + scene.primitives.size(); }
 
@@ -41,6 +25,18 @@ Options with_threads(Options options, int threads)
 {
     options.threads = threads;
     return options;
+}
+
+/// Returns the same raster at yaws spread evenly over a full turn. A faster way to get these would replace only this
+/// function.
+std::vector<RasterResult> rasters_at_headings(const Judge& judge, RasterOptions options, int headings)
+{
+    std::vector<RasterResult> out;
+    for (int k = 0; k < headings; ++k) {
+        options.yaw = k * 2 * std::numbers::pi / headings;
+        out.push_back(raster(judge, options));
+    }
+    return out;
 }
 
 /// Returns poses that are up to 1 m above a random layer of a random column.
@@ -59,41 +55,6 @@ std::vector<Pose> poses_near_ground(const Map& map, std::size_t count)
     return poses;
 }
 
-/// Returns the options with only every `thinning`-th row and column.
-RasterOptions thinned(RasterOptions options, int thinning)
-{
-    options.step_z = options.step;
-    options.step *= thinning;
-    return options;
-}
-
-/// The differences between two lists of verdicts.
-struct Differences {
-    std::size_t poses = 0, wrong = 0;
-    std::size_t inside = 0;  ///< plain FCL does not see that the robot is inside a closed mesh
-    std::size_t missed = 0;  ///< a ray misses an edge of the ground
-
-    void add(const PlainFcl& fcl, const Vec3& centre, Verdict ours, Verdict theirs)
-    {
-        ++poses;
-        if (ours == theirs) return;
-        const bool hidden = ours == Verdict::Collision && theirs == Verdict::Valid && fcl.is_inside(centre);
-        ++(hidden ? inside : wrong);
-        if (!hidden) ++pairs[std::string(to_string(ours)) + " but " + to_string(theirs)];
-    }
-    std::string text() const
-    {
-        std::string out = formatted("%zu poses, %zu verdicts of plain FCL differ", poses, wrong);
-        for (const auto& [pair, count] : pairs) out += formatted(", %zu %s", count, pair.c_str());
-        return out +
-               formatted(
-                   "; %zu more where the robot is completely inside closed meshes, %zu where the ray of Embree misses "
-                   "an edge of the ground",
-                   inside, missed);
-    }
-    std::map<std::string, std::size_t> pairs;  ///< "<ours> but <theirs>", and how often
-};
-
 /// Returns an agent with the circle around the robot. Its climb and slope are as large as its level underside can stay
 /// clear of the ground.
 Walker walker_of(const Robot& robot, double offset)
@@ -108,6 +69,12 @@ Walker walker_of(const Robot& robot, double offset)
 }
 
 }  // namespace
+
+bool has_top_raster(const Setting& setting)
+{
+    return std::any_of(setting.rasters.begin(), setting.rasters.end(),
+                       [&](const RasterWork& work) { return is_top_raster(setting, work); });
+}
 
 Workbench::Workbench(const Setting& setting) : setting_(setting) {}
 
@@ -133,6 +100,48 @@ void Workbench::add_bakes(std::vector<Stage>& out)
     out.push_back({"read_map", false, [this](int) { return read_map(); }});
 }
 
+template <class Make>
+Measurement Workbench::rival_raster_2d(const RasterWork& work, const Make& make)
+{
+    const RasterGrid grid = raster_grid(map().bounds, options_2d(work));
+    const auto judged = timed([&] { return make(grid); });
+    Digest digest;
+    std::uint64_t count = 0;
+    for (const auto& pose : judged.result) {
+        if (!pose) continue;
+        ++count;
+        digest.add(pose->z).add(pose->verdict);
+    }
+    return {count, judged.seconds, digest.value(), count};
+}
+
+/// Adds the alternatives that answer a raster of top layers.
+void Workbench::add_top_rivals(const RasterWork& work, Stage& stage)
+{
+    const auto add = [&](const char* name, const auto& peer) {
+        stage.rivals.push_back({name, [this, work, peer](int threads) {
+                                    const auto& ready = peer();  // is built before the clock starts
+                                    return rival_raster_2d(work, [&](const RasterGrid& grid) {
+                                        return ready.raster_top(grid, work.offset, threads);
+                                    });
+                                }});
+    };
+    if (has_plain_fcl()) add("fcl", [this]() -> const PlainFcl& { return plain_fcl(); });
+    if (has_embree_only()) add("embree", [this]() -> const EmbreeOnly& { return embree_only(); });
+}
+
+/// Adds a raster at several headings, and beside it the same raster at one heading.
+void Workbench::add_headings(const RasterWork& work, std::vector<Stage>& out)
+{
+    const auto run = [&](int headings) {
+        return [this, options = options_2d(work), headings](int threads) {
+            return raster_headings(with_threads(options, threads), headings);
+        };
+    };
+    out.push_back({work.name, true, run(work.headings)});
+    out.back().rivals.push_back({"one-heading", run(1)});
+}
+
 void Workbench::add_rasters(std::vector<Stage>& out)
 {
     const auto stage = [this](const std::string& name, const RasterOptions& options) {
@@ -145,9 +154,12 @@ void Workbench::add_rasters(std::vector<Stage>& out)
         return made;
     };
     for (const RasterWork& work : setting_.rasters) {
+        if (work.headings > 1) {
+            add_headings(work, out);
+            continue;
+        }
         out.push_back(stage(work.name, options_2d(work)));
-        if (has_plain_fcl() && is_top_raster(work))
-            out.back().rivals.push_back({"fcl", [this, work](int threads) { return fcl_raster_2d(work, threads); }});
+        if (is_top_raster(work)) add_top_rivals(work, out.back());
     }
     out.push_back(stage("raster3d", options_3d()));
     if (has_plain_fcl()) out.back().rivals.push_back({"fcl", [this](int threads) { return fcl_raster_3d(threads); }});
@@ -179,6 +191,15 @@ void Workbench::add_set_ups(std::vector<Stage>& out)
         out.push_back({"fcl set-up", false, [this](int) {
                            const auto made = timed(
                                [&] { return std::make_unique<PlainFcl>(scene(), setting_.robot()); });
+                           return Measurement{elements(scene()), made.seconds, 0};
+                       }});
+    if (has_embree_only())
+        out.push_back({"embree set-up", false, [this](int) {
+                           TriangleScene triangles = triangle_scene_of(scene(), map().bounds);
+                           const auto made = timed([&] {
+                               return std::make_unique<EmbreeOnly>(std::move(triangles), setting_.robot(),
+                                                                   EmbreeOnly::Use::Often);
+                           });
                            return Measurement{elements(scene()), made.seconds, 0};
                        }});
     if (has_nav_mesh())
@@ -276,6 +297,19 @@ const NavMesh& Workbench::nav_mesh()
     return *nav_mesh_;
 }
 
+bool Workbench::has_embree_only() const
+{
+    return setting_.has_rivals && has_top_raster(setting_) && EmbreeOnly::is_available();
+}
+
+const EmbreeOnly& Workbench::embree_only()
+{
+    if (!embree_only_)
+        embree_only_ = std::make_unique<EmbreeOnly>(triangle_scene_of(scene(), map().bounds), setting_.robot(),
+                                                    EmbreeOnly::Use::Often);
+    return *embree_only_;
+}
+
 const std::vector<Pose>& Workbench::poses()
 {
     if (poses_.empty()) poses_ = poses_near_ground(map(), setting_.poses);
@@ -337,6 +371,14 @@ RasterOptions Workbench::options_3d() const
     return {.dims = 3, .step = setting_.step_3d, .height_check = setting_.height_check};
 }
 
+RasterOptions Workbench::thinned_options_3d() const
+{
+    RasterOptions options = options_3d();
+    options.step_z = options.step;
+    options.step *= setting_.thinning;
+    return options;
+}
+
 SampleOptions Workbench::sample_options() const
 {
     return {.count = setting_.samples, .min_distance = setting_.sample_distance, .random_yaw = true};
@@ -351,6 +393,21 @@ Measurement Workbench::raster(const Judge& judge, const RasterOptions& options)
 {
     const auto result = timed([&] { return spawnfield::raster(judge, options); });
     return {result.result.counts.total(), result.seconds, digest_of(result.result), result.result.exact_checks};
+}
+
+Measurement Workbench::raster_headings(const RasterOptions& options, int headings)
+{
+    const Judge& ready = judge();
+    const auto results = timed([&] { return rasters_at_headings(ready, options, headings); });
+    Measurement out{0, results.seconds, 0, 0};
+    Digest digest;
+    for (const RasterResult& result : results.result) {
+        out.items += result.counts.total();
+        out.exact_checks += result.exact_checks;
+        digest.add(digest_of(result));
+    }
+    out.hash = digest.value();
+    return out;
 }
 
 Measurement Workbench::check(const Judge& judge, int threads)
@@ -376,24 +433,9 @@ Measurement Workbench::search(const Judge& judge, const SearchOptions& options)
 
 // ---- The alternatives ----
 
-Measurement Workbench::fcl_raster_2d(const RasterWork& work, int threads)
-{
-    const RasterGrid grid = raster_grid(map().bounds, options_2d(work));
-    const PlainFcl& ready = plain_fcl();
-    const auto judged = timed([&] { return ready.raster_top(grid, work.offset, threads); });
-    Digest digest;
-    std::uint64_t count = 0;
-    for (const auto& pose : judged.result) {
-        if (!pose) continue;
-        ++count;
-        digest.add(pose->z).add(pose->verdict);
-    }
-    return {count, judged.seconds, digest.value(), count};
-}
-
 Measurement Workbench::fcl_raster_3d(int threads)
 {
-    const RasterGrid grid = raster_grid(map().bounds, thinned(options_3d(), setting_.thinning));
+    const RasterGrid grid = raster_grid(map().bounds, thinned_options_3d());
     const PlainFcl& ready = plain_fcl();
     const auto counts = timed([&] { return ready.raster_3d(grid, 1.0, setting_.height_check, threads); });
     Digest digest;
@@ -414,125 +456,6 @@ Measurement Workbench::nav_draw()
     const NavMesh& ready = nav_mesh();
     const auto points = timed([&] { return ready.draw(setting_.nav_points, 0); });
     return {points.result.size(), points.seconds, Digest().add_all(points.result).value()};
-}
-
-// ---- Comparisons ----
-
-std::vector<std::string> Workbench::comparisons(const std::string& only)
-{
-    std::vector<std::string> out;
-    const auto wanted = [&](const std::string& stage) {
-        return (setting_.name + " " + stage).find(only) != std::string::npos;
-    };
-    if (has_plain_fcl()) {
-        for (const RasterWork& work : setting_.rasters)
-            if (is_top_raster(work) && wanted(work.name)) out.push_back(compare_2d(work));
-        if (wanted("raster3d")) out.push_back(compare_3d());
-        if (setting_.has_ground && wanted("check")) out.push_back(compare_checks());
-    }
-    if (has_nav_mesh() && wanted("sample")) out.push_back(compare_nav_mesh());
-    return out;
-}
-
-std::string Workbench::compare_2d(const RasterWork& work)
-{
-    RasterOptions options = options_2d(work);
-    options.layers = {.kind = LayerChoice::Kind::Top};
-    const RasterResult ours = spawnfield::raster(judge(), options);
-    const auto theirs = plain_fcl().raster_top(ours.grid, work.offset, 0);
-    const Vec3 centre = setting_.robot().parts.front().centre();
-    Differences differences;
-    std::size_t extra = theirs.size() - std::size_t(std::count(theirs.begin(), theirs.end(), std::nullopt));
-    for (const RasterPose& pose : ours.poses) {
-        const int row = int(std::lround((pose.y - ours.grid.y0) / ours.grid.step)),
-                  col = int(std::lround((pose.x - ours.grid.x0) / ours.grid.step));
-        const auto& other = theirs[std::size_t(row) * std::size_t(ours.grid.cols) + std::size_t(col)];
-        if (other) --extra;
-        if (!other || std::abs(other->z - pose.z) > 1e-3) {
-            ++differences.poses, ++differences.missed;
-            continue;
-        }
-        differences.add(plain_fcl(), Vec3(pose.x, pose.y, pose.z) + centre, pose.verdict, other->verdict);
-    }
-    differences.wrong += extra;
-    return setting_.name + " " + work.name + ": " + differences.text();
-}
-
-std::string Workbench::compare_3d()
-{
-    const RasterResult ours = spawnfield::raster(judge(), thinned(options_3d(), setting_.thinning));
-    const VerdictCounts theirs = plain_fcl().raster_3d(ours.grid, 1.0, setting_.height_check, 0);
-    std::string text = setting_.name +
-                       formatted(" raster3d: of %llu poses", static_cast<unsigned long long>(ours.counts.total()));
-    for (const Verdict verdict : all_verdicts)
-        if (ours.counts[verdict] + theirs[verdict] > 0)
-            text += formatted(", %s %llu (plain FCL %llu)", to_string(verdict),
-                              static_cast<unsigned long long>(ours.counts[verdict]),
-                              static_cast<unsigned long long>(theirs[verdict]));
-    return text;
-}
-
-std::string Workbench::compare_checks()
-{
-    const std::vector<Judgement> ours = judge().check(poses());
-    const std::vector<Verdict> theirs = plain_fcl().check(poses(), 1.0, 0);
-    const Vec3 centre = setting_.robot().parts.front().centre();
-    Differences differences;
-    for (std::size_t i = 0; i < ours.size(); ++i)
-        differences.add(plain_fcl(), poses()[i].rotation * centre + poses()[i].position, ours[i].verdict, theirs[i]);
-    return setting_.name + " check: " + differences.text();
-}
-
-/// Returns the share of collisions among the points of Recast, first as they are drawn and then on the nearest layer
-/// above or below.
-std::string Workbench::compare_nav_mesh()
-{
-    Random random(23);
-    std::vector<Pose> drawn, snapped;
-    const NavMesh& mesh = nav_mesh();
-    const auto points = timed([&] { return mesh.draw(setting_.nav_points, 0); });
-    for (const Vec3& point : points.result) {
-        const Mat3 rotation = rotation_from_rpy(0, 0, random.between(-std::numbers::pi, std::numbers::pi));
-        drawn.push_back({point + Vec3(0, 0, 0.1), rotation});
-        const std::vector<double> layers = column_at(map().geometry, point.x(), point.y()).layers;
-        const auto nearer = [&](double a, double b) { return std::abs(a - point.z()) < std::abs(b - point.z()); };
-        const double ground = layers.empty() ? point.z() : *std::min_element(layers.begin(), layers.end(), nearer);
-        snapped.push_back({{point.x(), point.y(), ground + 0.1}, rotation});
-    }
-    return setting_.name +
-           formatted(" recast: %d tiles, %d polygons, %zu points, %.3g/s: ", mesh.tiles(), mesh.polygons(),
-                     drawn.size(), double(drawn.size()) / points.seconds) +
-           shares(drawn) + " as drawn; " + shares(snapped) + " at 0.1 m above the true ground; " + coverage();
-}
-
-/// Returns how many of our samples lie on ground that the mesh of Recast covers.
-std::string Workbench::coverage()
-{
-    const SpawnList ours = spawnfield::sample(judge(), sample_options());
-    const auto covered = std::count_if(ours.spawns.begin(), ours.spawns.end(),
-                                       [&](const Spawn& s) { return nav_mesh().covers(s.position); });
-    return formatted("its mesh covers %.1f %% of our %zu samples", 100.0 * double(covered) / double(ours.spawns.size()),
-                     ours.spawns.size());
-}
-
-/// Returns text such as "4.7 % collide (4.0 % with their centre inside closed meshes), 94.8 % valid".
-std::string Workbench::shares(const std::vector<Pose>& asked)
-{
-    const std::vector<Judgement> judged = judge().check(asked);
-    const Vec3 centre = setting_.robot().parts.front().centre();
-    std::size_t collide = 0, inside = 0, valid = 0;
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-        valid += judged[i].verdict == Verdict::Valid;
-        if (judged[i].verdict != Verdict::Collision) continue;
-        ++collide;
-        if (has_plain_fcl()) inside += plain_fcl().is_inside(asked[i].rotation * centre + asked[i].position);
-    }
-    const double percent = 100.0 / double(asked.size());
-    const std::string hidden = has_plain_fcl() ? formatted(" (%.2f %% with their centre inside closed meshes)",
-                                                           percent * double(inside))
-                                               : "";
-    return formatted("%.2f %% collide", percent * double(collide)) + hidden +
-           formatted(", %.2f %% valid", percent * double(valid));
 }
 
 }  // namespace bench

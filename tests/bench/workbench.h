@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../temp_folder.h"
+#include "embree_only.h"
 #include "nav_mesh.h"
 #include "plain_fcl.h"
 #include "report.h"
@@ -18,6 +19,7 @@ struct RasterWork {
     std::string name;
     double step, offset;  ///< m
     spawnfield::LayerChoice layers = {};
+    int headings = 1;  ///< the same raster at this many yaws, spread evenly over a full turn
 };
 
 /// A scene, and the amount of work for each stage.
@@ -29,7 +31,7 @@ struct Setting {
     bool one_layer = false;          ///< all terrain is in the top layer, the only one that plain FCL can handle
     bool has_ground = true;          ///< false: the scene has only a 3D raster
     bool height_check = true;        ///< of the 3D raster
-    bool has_rivals = true;          ///< whether alternatives (b) and (c) run on this scene
+    bool has_rivals = true;          ///< whether alternatives (b), (c) and (d) run on this scene
     double cell = 0.5;               ///< m, of the terrain raster; a voxel is 2.5 cells
     std::vector<RasterWork> rasters = {};
     double step_3d = 1;          ///< m
@@ -41,6 +43,13 @@ struct Setting {
     double search_distance = 2.5;  ///< m
     std::size_t nav_points = 100000;
 };
+
+/// Returns whether a raster has top layers and one heading only. Alternatives (b) and (d) can answer these.
+inline bool is_top_raster(const Setting& setting, const RasterWork& work)
+{
+    return work.headings == 1 && (setting.one_layer || work.layers.kind == spawnfield::LayerChoice::Kind::Top);
+}
+bool has_top_raster(const Setting& setting);
 
 enum class Extent { Quick, Usual, Full };
 std::vector<Setting> settings(Extent extent);
@@ -80,16 +89,17 @@ private:
     const spawnfield::Judge& exhaustive_judge();  ///< alternative (a): every pose decided by FCL, none by the mask
     const PlainFcl& plain_fcl();
     const NavMesh& nav_mesh();
+    const EmbreeOnly& embree_only();
     const std::vector<spawnfield::Pose>& poses();
-    bool is_top_raster(const RasterWork& work) const
-    {
-        return setting_.one_layer || work.layers.kind == spawnfield::LayerChoice::Kind::Top;
-    }
+    bool is_top_raster(const RasterWork& work) const { return bench::is_top_raster(setting_, work); }
+    bool has_embree_only() const;  ///< whether alternative (d) runs on this scene
     bool has_plain_fcl() const { return setting_.has_rivals && PlainFcl::is_available(); }
     bool has_nav_mesh() const { return setting_.has_rivals && setting_.has_ground && NavMesh::is_available(); }
 
     void add_bakes(std::vector<Stage>& out);
     void add_rasters(std::vector<Stage>& out);
+    void add_top_rivals(const RasterWork& work, Stage& stage);
+    void add_headings(const RasterWork& work, std::vector<Stage>& out);
     void add_spawns(std::vector<Stage>& out);
     void add_set_ups(std::vector<Stage>& out);
 
@@ -100,20 +110,25 @@ private:
     Measurement bake(int threads);
     Measurement read_map();
     Measurement raster(const spawnfield::Judge& judge, const spawnfield::RasterOptions& options);
+    Measurement raster_headings(const spawnfield::RasterOptions& options, int headings);
     Measurement check(const spawnfield::Judge& judge, int threads);
     Measurement sample(const spawnfield::Judge& judge, const spawnfield::SampleOptions& options);
     Measurement search(const spawnfield::Judge& judge, const spawnfield::SearchOptions& options);
-    Measurement fcl_raster_2d(const RasterWork& work, int threads);
+    /// Measures a 2D raster of an alternative: `make(grid)` returns a TopRaster.
+    template <class Make>
+    Measurement rival_raster_2d(const RasterWork& work, const Make& make);
     Measurement fcl_raster_3d(int threads);
     Measurement fcl_check(int threads);
     Measurement nav_draw();
 
     spawnfield::RasterOptions options_2d(const RasterWork& work) const;
     spawnfield::RasterOptions options_3d() const;
+    /// Returns the options of the 3D raster with only every `thinning`-th row and column.
+    spawnfield::RasterOptions thinned_options_3d() const;
     spawnfield::SampleOptions sample_options() const;
     spawnfield::SearchOptions search_options() const;
 
-    std::string compare_2d(const RasterWork& work);
+    void compare_2d(const RasterWork& work, std::vector<std::string>& out);
     std::string compare_3d();
     std::string compare_checks();
     std::string compare_nav_mesh();
@@ -127,6 +142,7 @@ private:
     std::optional<spawnfield::Judge> judge_, exhaustive_judge_;
     std::unique_ptr<const PlainFcl> plain_fcl_;
     std::unique_ptr<const NavMesh> nav_mesh_;
+    std::unique_ptr<const EmbreeOnly> embree_only_;
     std::vector<spawnfield::Pose> poses_;
 };
 
