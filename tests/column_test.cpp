@@ -1,4 +1,6 @@
 #include "catch.h"
+#include "column/columns.h"
+#include "hard_scene.h"
 #include "test_map.h"
 #include "worlds/hand_scene.h"
 
@@ -25,7 +27,56 @@ std::optional<Ground> ground(const Scene& scene, const Vec3& p)
     return ground_below(column(scene, p.x(), p.y()), p.z());
 }
 
+bool is_same(const ColumnView& l, const ColumnView& r)
+{
+    const auto same_span = [](const Span& a, const Span& b) {
+        return a.bottom == b.bottom && a.top == b.top && a.part == b.part && a.terrain == b.terrain &&
+               a.sealed == b.sealed;
+    };
+    return std::ranges::equal(l.layers, r.layers) && std::ranges::equal(l.water, r.water) &&
+           std::ranges::equal(l.spans, r.spans, same_span);
+}
+
+/// Returns how many columns of a grid over the scene, computed as one block, differ from those of column_at.
+int different_columns(const Scene& scene, int cols)
+{
+    const Geometry geometry(scene);
+    const Bounds bounds = scene.bounds();
+    const Vec3 size = bounds.max - bounds.min;
+    ColumnGrid grid;
+    grid.x0 = bounds.min.x() - 0.1;
+    grid.y0 = bounds.min.y();
+    grid.step = std::max(size.x(), size.y()) / (cols - 1);
+    grid.cols = cols + 1;
+    grid.rows = cols;
+    const Columns block(geometry, grid);
+    int out = 0;
+    for (int j = 0; j < grid.rows; ++j)
+        for (int i = 0; i < grid.cols; ++i)
+            out += !is_same(block.at(i, j), column_at(geometry, grid.x_of(i), grid.y_of(j)));
+    return out;
+}
+
 }  // namespace
+
+TEST_CASE("the columns of a block are those that are computed one by one")
+{
+    int different = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed)
+        for (const int cols : {3, 40, 97}) {
+            different += different_columns(random_scene(seed), cols);
+            different += different_columns(hard_case(seed).scene, cols);
+        }
+    CHECK(different == 0);
+
+    // A sheet of water in a filled mesh, which is the first piece of the scene.
+    Scene scene;
+    hand::add_mesh(scene, Label::Terrain, hand::box({4, 4, 2}));
+    hand::add_mesh(scene, Label::Water, hand::moved(hand::rectangle(3, 3), {{0, 0, 1.5}, Mat3::Identity()}));
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(3, 3), {{0, 0, 0.5}, Mat3::Identity()}));
+    CHECK(different_columns(scene, 20) == 0);
+    CHECK(column(scene, 0.2, 0.3).water == Heights{1.5});
+}
 
 TEST_CASE("a bridge has a layer on it and one under it")
 {

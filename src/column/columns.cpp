@@ -171,6 +171,7 @@ private:
         if (hit.solid != none) return solids_[hit.solid];
         SurfaceHit out{};
         out.element = hit.element;
+        out.piece = none;  // so that it is no part of the filled piece whose hit is before it
         out.part = hit.span.part;
         out.open = !hit.span.sealed;
         out.terrain = hit.span.terrain;
