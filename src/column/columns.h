@@ -1,5 +1,6 @@
 #pragma once
 
+#include "column/column_builder.h"
 #include "column/surface_hit.h"
 
 #include <optional>
@@ -68,6 +69,11 @@ struct ColumnGrid {
     double y_of(int row) const { return y0 + (row + shift) * step; }
 };
 
+/// Columns and rows of a block, counted from its first ones; the last ones are included.
+struct ColumnRange {
+    int first_col, last_col, first_row, last_row;
+};
+
 /// The columns of a block of a grid. They are identical to those that column_at returns one by one.
 ///
 /// If there are many more elements than columns, column after column is looked up in the geometry. Otherwise each
@@ -76,6 +82,9 @@ class Columns {
 public:
     Columns() = default;
     SPAWNFIELD_MODULE_API Columns(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces = Surfaces::All);
+
+    /// Computes the columns of another block in the same memory, which is faster than fresh memory for each block.
+    void set(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces = Surfaces::All);
 
     /// Returns the column in column grid.first_col + i and row grid.first_row + j of the grid.
     ColumnView at(int i, int j) const
@@ -95,7 +104,6 @@ public:
     }
 
 private:
-    class Scan;
     /// What a column contains. Most columns contain nothing, or one surface of a sheet: it is `span`. All others are
     /// `Several`: they are one after the other in column_.
     enum class Content : std::uint8_t { Nothing, Terrain, Obstacle, Water, Several };
@@ -107,14 +115,32 @@ private:
     struct Start {
         std::uint32_t span = 0, layer = 0, water = 0;
     };
-    void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
+    /// A hit of a column with several hits.
+    struct ListedHit {
+        SurfaceHit hit;
+        std::uint32_t next;  ///< index in listed_ of another hit of the column, or `none`
+    };
+    static constexpr std::uint32_t none = 0xffffffff;
+
     void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
+    void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
+    void add_triangle(const Tile& tile, std::uint32_t triangle, const ColumnGrid& grid, const ColumnRange& range);
+    void add_primitive(const Tile& tile, std::uint32_t element, const ColumnGrid& grid, const ColumnRange& range);
+    void add_sheet(Slot& slot, const SurfaceHit& hit, double z);
+    void add(Slot& slot, const SurfaceHit& hit);
+    void complete(Slot& slot);
     void end_column(Slot& slot);
+    Slot& slot_at(int i, int j) { return slots_[std::size_t(j) * std::size_t(cols_) + std::size_t(i)]; }
 
     int cols_ = 0;
     std::vector<Slot> slots_;
     Column column_;
     std::vector<Start> starts_;
+
+    // Only used while the columns are computed:
+    std::vector<ListedHit> listed_;
+    std::vector<SurfaceHit> hits_;
+    ColumnBuilder builder_;
 };
 
 }  // namespace spawnfield

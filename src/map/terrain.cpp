@@ -44,6 +44,7 @@ public:
     {
         constexpr int part = 64;  // cells; the columns of part x part cells stay in a core's cache
         const int first_row = frame_.rows - row0_ - rows_;
+        Columns centres;
         for (int j0 = 0; j0 < rows_; j0 += part)  // upwards in y, like the rows of Columns
             for (int i0 = 0; i0 < cols_; i0 += part) {
                 const int rows = std::min(part, rows_ - j0), cols = std::min(part, cols_ - i0);
@@ -55,8 +56,8 @@ public:
                         for (int i = 0; i < cols; ++i) add_cell(rows_ - 1 - j0 - j, i0 + i, *same);
                     continue;
                 }
-                const Columns centres(geometry_,
-                                      {frame_.x0, frame_.y0, frame_.cell, col0_ + i0, first_row + j0, cols, rows, 0.5});
+                centres.set(geometry_,
+                            {frame_.x0, frame_.y0, frame_.cell, col0_ + i0, first_row + j0, cols, rows, 0.5});
                 for (int j = 0; j < rows; ++j)
                     for (int i = 0; i < cols; ++i) add_cell(rows_ - 1 - j0 - j, i0 + i, centres.at(i, j));
             }

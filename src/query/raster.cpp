@@ -106,15 +106,14 @@ public:
         PoseJudge judge(shared_, options_.yaw, max_height());
         if (options_.dims == 2)
             for (Row& row : out) row.poses.reserve(std::size_t(grid_.cols));  // one layer for each column, mostly
+        Columns columns;
         for (int col = 0; col < grid_.cols; col += block) {
             const int cols = std::min(block, grid_.cols - col);
             if (area_.misses({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
                               grid_.y_of(first + int(out.size()) - 1)}))
                 continue;
-            Columns columns;
             if (options_.height_check)
-                columns = Columns(shared_.map.geometry,
-                                  {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
+                columns.set(shared_.map.geometry, {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
             for (int j = 0; j < int(out.size()); ++j)
                 for (int i = 0; i < cols; ++i) {
                     const double x = grid_.x_of(col + i), y = grid_.y_of(first + j);
