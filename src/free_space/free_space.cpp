@@ -199,10 +199,9 @@ void Mask::OpenTile::set_rows(std::uint32_t first, std::uint32_t last)
     first_row = first;
     last_row = last;
     std::array<std::uint16_t, BoundsTile::side> maxima{};  // a local array, so that the compiler uses vectors
-    for (std::uint32_t row = first; row <= last; ++row) {
-        const std::uint16_t* const tops = tile.tops + row * BoundsTile::side;
-        for (std::size_t col = 0; col < BoundsTile::side; ++col)
-            maxima[col] = maxima[col] < tops[col] ? tops[col] : maxima[col];
+    for (std::uint32_t r = first; r <= last; ++r) {
+        const std::uint16_t* const tops = tile.tops + r * BoundsTile::side;
+        for (std::size_t c = 0; c < BoundsTile::side; ++c) maxima[c] = maxima[c] < tops[c] ? tops[c] : maxima[c];
     }
     highest = maxima;
 }
