@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "column/cell_clip.h"
 #include "column/uniform_column.h"
 #include "free_space/bounds_tile.h"
 #include "random_scene.h"
@@ -33,6 +34,23 @@ bool is_same(const Column& l, const Column& r)
 }
 
 Rect around(double x, double y, double half) { return {x - half, y - half, x + half, y + half}; }
+
+/// Returns whether all cells of the rectangle have exactly the surfaces of a column, as the mask and the OctoMap
+/// assume.
+bool has_surfaces_of(const Geometry& geometry, const Rect& rect, const Column& column)
+{
+    const CellBlock block{rect.low_x, rect.low_y, (rect.high_x - rect.low_x) / 3, 3, 3};
+    const CellSpans surfaces(geometry, block);
+    const auto same_interval = [](const Interval& l, const Interval& r) {
+        return l.bottom == r.bottom && l.top == r.top;
+    };
+    std::vector<Interval> found;
+    for (std::uint32_t cell = 0; cell < 9; ++cell) {
+        surfaces.get(cell, found);
+        if (!std::ranges::equal(found, solid_intervals(column), same_interval)) return false;
+    }
+    return true;
+}
 
 /// Some lists of intervals, shared by many cells.
 CellList random_list(Random& random, int patterns, std::size_t most)
@@ -85,7 +103,7 @@ void check_packed(const LooseTile& loose)
         const auto bounds = spans_of(loose.bounds, cell), solids = spans_of(loose.solids, cell);
         const double top = tile.height(tile.tops[cell]);
         wrong += bounds.empty() ? tile.tops[cell] != 0 : top < bounds.back().top || top > bounds.back().top + step;
-        wrong += tile.bounds.has(cell) != (bounds.size() >= 2) && !(tile.bounds.has(cell) && bounds.size() == 1);
+        wrong += tile.bounds.has(cell) != (bounds.size() >= 2);
         wrong += tile.solids.has(cell) == solids.empty();
         if (tile.bounds.has(cell)) {
             const auto found = tile.bounds.of(cell);
@@ -138,11 +156,45 @@ TEST_CASE(
         const auto same = uniform_column(geometry, rect);
         if (!same) continue;
         ++found;
+        wrong += !has_surfaces_of(geometry, rect, *same);
         for (int k = 0; k < 5; ++k)
             wrong += !is_same(*same, column_at(geometry, random.between(rect.low_x, rect.high_x),
                                                random.between(rect.low_y, rect.high_y)));
     }
     CHECK(found > 500);
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("a rectangle that a vertical wall crosses is not uniform, however its corners are rounded")
+{
+    Random random(11);
+    int crossed = 0, wrong = 0;
+    for (int n = 0; n < 400; ++n) {
+        // Half a wall from `from` to `to`, 5 m high there. Its upper corner is up to 2 ulp beside the lower one.
+        const Eigen::Vector2d from = random.chance(0.5)
+                                         ? Eigen::Vector2d(0, 0)
+                                         : Eigen::Vector2d(random.between(-50, 50), random.between(-50, 50));
+        const Eigen::Vector2d to(random.between(-110, 110), random.between(-110, 110));
+        const auto noisy = [&](double value) {
+            for (int k = random.below(3); k > 0; --k) value = std::nextafter(value, random.chance(0.5) ? 1e9 : -1e9);
+            return value;
+        };
+        const double x = noisy(to.x()), y = noisy(to.y());
+        Scene scene;
+        hand::add_mesh(scene, Label::Terrain, hand::rectangle(400, 400));
+        hand::add_mesh(scene, Label::Obstacle,
+                       {{{from.x(), from.y(), 0}, {to.x(), to.y(), 0}, {x, y, 5}}, {{0, 1, 2}}});
+        const Geometry geometry(scene);
+        for (int k = 0; k < 20; ++k) {
+            const Eigen::Vector2d at = from + random.between(0.02, 0.98) * (to - from);
+            const double half = random.between(0.01, 3);
+            const Eigen::Vector2d centre = at +
+                                           Eigen::Vector2d(random.between(-half, half), random.between(-half, half));
+            ++crossed;
+            wrong += uniform_column(geometry, around(centre.x(), centre.y(), half)).has_value();
+        }
+    }
+    CHECK(crossed == 8000);
     CHECK(wrong == 0);
 }
 
@@ -204,6 +256,8 @@ TEST_CASE("tiles with shared lists take less memory, and damaged ones are refuse
     CHECK(is_refused([](BoundsHead& h, std::string&) { --h.bounds; }));
     CHECK(is_refused([](BoundsHead& h, std::string&) { h.is_uniform = 1; }));
     CHECK(is_refused([](BoundsHead& h, std::string&) { h.quantum = 0; }));
+    CHECK(is_refused([](BoundsHead& h, std::string&) { h.quantum = std::numeric_limits<double>::infinity(); }));
+    CHECK(is_refused([](BoundsHead& h, std::string&) { h.quantum = 1e-310; }));
     CHECK(is_refused([&](BoundsHead&, std::string& bad) {  // the number of the last cell's list
         const std::size_t end = bytes.size() - BoundsTile::cells * sizeof(std::uint16_t);
         for (std::size_t at = end - 16; at < end; ++at) bad[at] = char(0xff);

@@ -109,7 +109,8 @@ private:
     enum class Content : std::uint8_t { Nothing, Terrain, Obstacle, Water, Several };
     struct Slot {
         Span span;
-        std::uint32_t index = 0;  ///< Several: the number among such columns. Otherwise the element, while scanning
+        std::uint32_t index =
+            0;  ///< of the element, while scanning, or for Several in listed_; then, for Several, in starts_
         Content content = Content::Nothing;
     };
     struct Start {

@@ -46,7 +46,9 @@ public:
         // Clear lines are far from all edges, so that neither rounding nor a tolerance decides. If a clear line is on
         // the same side of all edges, it goes through the triangle.
         const double a = edges_[0].cross(x), b = edges_[1].cross(x), c = edges_[2].cross(x);
-        const bool is_clear = (a * a > edges_[0].rim) & (b * b > edges_[1].rim) & (c * c > edges_[2].rim);
+        bool is_clear = a * a > edges_[0].rim;
+        is_clear &= b * b > edges_[1].rim;  // not &&: three comparisons cost less than a branch
+        is_clear &= c * c > edges_[2].rim;
         if (!is_clear) return Side::Rim;
         const double low = std::min(std::min(a, b), c), high = std::max(std::max(a, b), c);
         if (low < 0 && high > 0) return Side::Outside;

@@ -10,18 +10,18 @@ namespace spawnfield {
 namespace {
 
 /// Returns whether an edge of the triangle, seen from above, separates it from the rectangle, with a gap between them
-/// of more than 4 * touch_tolerance.
+/// of more than 4 * touch_tolerance. The third corner decides on which side of the edge the triangle is, because the
+/// sign of the area of a vertical triangle is only rounding.
 bool misses(const std::array<Vec3, 3>& corners, const Rect& rect)
 {
     const std::array<Vec2, 3> p{corners[0].head<2>(), corners[1].head<2>(), corners[2].head<2>()};
-    const double turn = cross(p[1] - p[0], p[2] - p[0]) < 0 ? -1 : 1;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec2 edge = p[(k + 1) % 3] - p[k];
-        const double gap = 4 * touch_tolerance * edge.norm();
-        const auto is_outside = [&](double x, double y) { return turn * cross(edge, Vec2(x, y) - p[k]) < -gap; };
-        if (is_outside(rect.low_x, rect.low_y) && is_outside(rect.low_x, rect.high_y) &&
-            is_outside(rect.high_x, rect.low_y) && is_outside(rect.high_x, rect.high_y))
-            return true;
+        const auto side_of = [&](double x, double y) { return cross(edge, Vec2(x, y) - p[k]); };
+        const double third = cross(edge, p[(k + 2) % 3] - p[k]), gap = 4 * touch_tolerance * edge.norm();
+        const auto [low, high] = std::minmax({side_of(rect.low_x, rect.low_y), side_of(rect.low_x, rect.high_y),
+                                              side_of(rect.high_x, rect.low_y), side_of(rect.high_x, rect.high_y)});
+        if ((high < -gap && third >= 0) || (low > gap && third <= 0)) return true;
     }
     return false;
 }

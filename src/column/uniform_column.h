@@ -8,9 +8,10 @@
 
 namespace spawnfield {
 
-/// Returns the column of all points of a closed rectangle if they certainly have the same one: each element that
-/// reaches within 2 * touch_tolerance of the rectangle is a level triangle of a sheet that covers all of it, or there
-/// is none. Large parts of many worlds are level planes.
+/// Returns the column that all points of a closed rectangle have; nothing if that is not certain. It is certain if
+/// every element within 2 * touch_tolerance of the rectangle is a level triangle of a sheet and covers the whole
+/// rectangle, or if there is no such element. Vertical sheets count as elements, although they have no spans:
+/// SolidBounds and the OctoMap rely on it. Large parts of many worlds are level planes.
 std::optional<Column> uniform_column(const Geometry& geometry, const Rect& rect);
 
 }  // namespace spawnfield

@@ -106,8 +106,10 @@ const char* read_list(const char* at, const ListSizes& sizes, CellIntervals& out
 bool is_consistent(const CellIntervals& list, const ListSizes& sizes)
 {
     if (sizes.cells == 0) return true;
+    // Each list has intervals, and the next one begins after it.
+    const auto* const end = list.starts + sizes.lists + 1;
     if (list.starts[0] != 0 || list.starts[sizes.lists] != sizes.spans ||
-        !std::is_sorted(list.starts, list.starts + sizes.lists + 1))
+        std::adjacent_find(list.starts, end, std::greater_equal<>()) != end)
         return false;
     if (sizes.is_uniform) return sizes.cells == BoundsTile::cells;
     std::uint32_t marked = 0;
@@ -301,7 +303,9 @@ bool BoundsTile::is_consistent(std::string_view bytes, std::uint32_t bytes_versi
     if (head.is_uniform > 1) return false;
     const std::size_t size = tile_size(head, bytes_version);
     if (bytes.size() < size || bytes.size() >= size + tile_alignment) return false;
-    if (!(head.quantum > 0) || !std::isfinite(head.base) || !(head.slack >= 0)) return false;
+    if (!std::isnormal(head.quantum) || !(head.quantum > 0) || !(head.slack >= 0) || !std::isfinite(head.base) ||
+        !std::isfinite(head.base + 65535 * head.quantum))
+        return false;
     const BoundsTile tile(bytes, bytes_version);
     return spawnfield::is_consistent(tile.bounds, bound_sizes(head)) &&
            spawnfield::is_consistent(tile.solids, solid_sizes(head));

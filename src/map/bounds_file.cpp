@@ -10,10 +10,12 @@ namespace {
 
 constexpr TiledFormat bounds_format{"SPAWNBND", BoundsTile::version, 1};
 
-/// Returns whether each level has cells of twice the size of the level before it, and as many as needed. The mask
-/// relies on this.
+/// Returns whether each level has cells of twice the size of the level before it, and as many as needed, down to at
+/// most 4 x 4 cells. The mask relies on this.
 bool are_halved(const std::vector<TileLevel>& levels)
 {
+    constexpr std::size_t most = 31;  // levels: more than a raster of 2^30 cells along a side needs
+    if (levels.size() > most) return false;
     for (std::size_t l = 1; l < levels.size(); ++l) {
         const TileLevel &finer = levels[l - 1], &level = levels[l];
         if (level.cell != 2 * finer.cell || level.cols != (finer.cols + 1) / 2 || level.rows != (finer.rows + 1) / 2)

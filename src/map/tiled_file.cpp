@@ -87,6 +87,7 @@ TileStore open_tiled(const std::filesystem::path& file, const TiledFormat& forma
     const auto version = prefix.get<std::uint32_t>();
     if (version < format.oldest_version || version > format.version)
         fail("has format version " + std::to_string(version) + ", this program reads " +
+             (format.oldest_version < format.version ? std::to_string(format.oldest_version) + " to " : "") +
              std::to_string(format.version));
     prefix.get<std::uint32_t>();  // always 0
     const auto size = prefix.get<std::uint64_t>();

@@ -104,7 +104,7 @@ public:
     void judge_rows(int first, std::span<Row> out) const
     {
         PoseJudge judge(shared_, options_.yaw, max_height());
-        if (options_.dims == 2)
+        if (options_.dims == 2 && is_everywhere_)
             for (Row& row : out) row.poses.reserve(std::size_t(grid_.cols));  // one layer for each column, mostly
         Columns columns;
         for (int col = 0; col < grid_.cols; col += block) {
