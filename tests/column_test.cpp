@@ -29,12 +29,8 @@ std::optional<Ground> ground(const Scene& scene, const Vec3& p)
 
 bool is_same(const ColumnView& l, const ColumnView& r)
 {
-    const auto same_span = [](const Span& a, const Span& b) {
-        return a.bottom == b.bottom && a.top == b.top && a.part == b.part && a.terrain == b.terrain &&
-               a.sealed == b.sealed;
-    };
     return std::ranges::equal(l.layers, r.layers) && std::ranges::equal(l.water, r.water) &&
-           std::ranges::equal(l.spans, r.spans, same_span);
+           std::ranges::equal(l.spans, r.spans);
 }
 
 /// Returns how many columns of a grid over the scene, computed as one block, differ from those of column_at.

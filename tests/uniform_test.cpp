@@ -24,15 +24,6 @@ Scene planes()
     return scene;
 }
 
-bool is_same(const Column& l, const Column& r)
-{
-    const auto same_span = [](const Span& a, const Span& b) {
-        return a.bottom == b.bottom && a.top == b.top && a.part == b.part && a.terrain == b.terrain &&
-               a.sealed == b.sealed;
-    };
-    return l.layers == r.layers && l.water == r.water && std::ranges::equal(l.spans, r.spans, same_span);
-}
-
 Rect around(double x, double y, double half) { return {x - half, y - half, x + half, y + half}; }
 
 /// Returns whether all cells of the rectangle have exactly the surfaces of a column, as the mask and the OctoMap
@@ -41,13 +32,10 @@ bool has_surfaces_of(const Geometry& geometry, const Rect& rect, const Column& c
 {
     const CellBlock block{rect.low_x, rect.low_y, (rect.high_x - rect.low_x) / 3, 3, 3};
     const CellSpans surfaces(geometry, block);
-    const auto same_interval = [](const Interval& l, const Interval& r) {
-        return l.bottom == r.bottom && l.top == r.top;
-    };
     std::vector<Interval> found;
     for (std::uint32_t cell = 0; cell < 9; ++cell) {
         surfaces.get(cell, found);
-        if (!std::ranges::equal(found, solid_intervals(column), same_interval)) return false;
+        if (found != solid_intervals(column)) return false;
     }
     return true;
 }
@@ -74,17 +62,12 @@ CellList random_list(Random& random, int patterns, std::size_t most)
     return out;
 }
 
-std::span<const Interval> spans_of(const CellList& list, std::uint32_t cell)
-{
-    return std::span(list.spans).subspan(list.starts[cell], list.starts[cell + 1] - list.starts[cell]);
-}
-
 /// Returns the lowest interval of each cell that has several, as solids are inside the bounds.
 CellList lowest_of(const CellList& bounds)
 {
     CellList out;
     for (std::uint32_t cell = 0; cell < BoundsTile::cells; ++cell) {
-        const auto spans = spans_of(bounds, cell);
+        const auto spans = bounds.of(cell);
         if (spans.size() > 1) out.spans.push_back(spans.front());
         out.starts[cell + 1] = std::uint32_t(out.spans.size());
     }
@@ -100,7 +83,7 @@ void check_packed(const LooseTile& loose)
     const double step = tile.quantum * (1 + 1e-6);
     std::size_t wrong = 0;
     for (std::uint32_t cell = 0; cell < BoundsTile::cells; ++cell) {
-        const auto bounds = spans_of(loose.bounds, cell), solids = spans_of(loose.solids, cell);
+        const auto bounds = loose.bounds.of(cell), solids = loose.solids.of(cell);
         const double top = tile.height(tile.tops[cell]);
         wrong += bounds.empty() ? tile.tops[cell] != 0 : top < bounds.back().top || top > bounds.back().top + step;
         wrong += tile.bounds.has(cell) != (bounds.size() >= 2);
@@ -137,7 +120,7 @@ TEST_CASE(
         const auto same = uniform_column(geometry, around(x, y, 1));
         CAPTURE(x, y);
         REQUIRE(same.has_value());
-        CHECK(is_same(*same, column_at(geometry, x, y)));
+        CHECK(*same == column_at(geometry, x, y));
     }
     CHECK(uniform_column(geometry, around(30, 30, 1))->spans.empty());
     CHECK(uniform_column(geometry, around(-15, -8, 1))->layers == std::vector<double>{0.06, 0});
@@ -158,8 +141,8 @@ TEST_CASE(
         ++found;
         wrong += !has_surfaces_of(geometry, rect, *same);
         for (int k = 0; k < 5; ++k)
-            wrong += !is_same(*same, column_at(geometry, random.between(rect.low_x, rect.high_x),
-                                               random.between(rect.low_y, rect.high_y)));
+            wrong += *same != column_at(geometry, random.between(rect.low_x, rect.high_x),
+                                        random.between(rect.low_y, rect.high_y));
     }
     CHECK(found > 500);
     CHECK(wrong == 0);

@@ -12,6 +12,8 @@ struct Span {
     bool terrain = false;  ///< a robot may stand on its top
     /// False: the piece is a mesh with holes that the user asked to fill, so its inside is a guess.
     bool sealed = true;
+
+    bool operator==(const Span&) const = default;
 };
 
 /// What stands on the vertical line through (x, y).
@@ -19,6 +21,8 @@ struct Column {
     std::vector<Span> spans;     ///< one for each piece, terrain and obstacles, not joined; the highest top first
     std::vector<double> layers;  ///< upper ends of joined terrain, from the top down
     std::vector<double> water;   ///< water surfaces, from the top down
+
+    bool operator==(const Column&) const = default;
 };
 
 /// Layers closer than this are one, and intervals closer than this are joined, m.

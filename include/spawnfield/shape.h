@@ -39,6 +39,8 @@ SPAWNFIELD_API const char* to_string(ShapeKind kind);  ///< as in scene.yaml: "b
 /// The interval of heights in which a vertical line runs through a solid, m.
 struct Interval {
     double bottom, top;
+
+    bool operator==(const Interval&) const = default;
 };
 
 /// Returns the interval in which the vertical line through (x, y) runs through the shape, including its surface (to

@@ -17,11 +17,6 @@ void add(const Interval& z, const SurfaceHit& hit, bool terrain, Column& out)
         out.spans.push_back({z.bottom, z.top, hit.part, terrain, !hit.open});
 }
 
-bool is_same(const Span& l, const Span& r)
-{
-    return l.bottom == r.bottom && l.top == r.top && l.part == r.part && l.terrain == r.terrain && l.sealed == r.sealed;
-}
-
 }  // namespace
 
 void ColumnBuilder::build(std::span<const SurfaceHit> hits, Column& out)
@@ -57,6 +52,8 @@ void ColumnBuilder::add_piece(std::span<const SurfaceHit> hits, Column& out)
     for (const Solid& solid : intervals_) add(solid.z, hits.front(), solid.terrain, out);
 }
 
+/// Completes a column whose spans and water were appended to `out`, unsorted, from these places on: sorts them from the
+/// top down, drops duplicates, and adds the layers.
 void ColumnBuilder::finish(std::size_t first_span, std::size_t first_water, Column& out)
 {
     const auto first = out.spans.begin() + std::ptrdiff_t(first_span);
@@ -67,7 +64,7 @@ void ColumnBuilder::finish(std::size_t first_span, std::size_t first_water, Colu
             return std::tie(l.part, l.bottom, l.sealed) < std::tie(r.part, r.bottom, r.sealed);
         });
         // A line through a corner or an edge of a sheet hits several of its triangles.
-        out.spans.erase(std::unique(first, out.spans.end(), is_same), out.spans.end());
+        out.spans.erase(std::unique(first, out.spans.end()), out.spans.end());
     }
     if (out.water.size() - first_water > 1) {
         std::sort(out.water.begin() + std::ptrdiff_t(first_water), out.water.end(), std::greater<>());

@@ -13,16 +13,13 @@ public:
     /// Appends one column to `out`. The hits must be in the order of their elements.
     void build(std::span<const SurfaceHit> hits, Column& out);
 
-    /// Completes a column whose spans and water were appended to `out`, unsorted, from these places on: sorts them from
-    /// the top down, drops duplicates, and adds the layers.
-    void finish(std::size_t first_span, std::size_t first_water, Column& out);
-
 private:
     struct Solid {
         Interval z;
         bool terrain;
     };
     void add_piece(std::span<const SurfaceHit> hits, Column& out);
+    void finish(std::size_t first_span, std::size_t first_water, Column& out);
     static void pair_crossings(std::vector<Solid>& crossings, double piece_bottom, std::vector<Solid>& intervals);
     static void join(std::vector<Solid>& intervals, double tolerance);
 

@@ -103,7 +103,7 @@ void Columns::add_triangle(const Tile& tile, std::uint32_t triangle, const Colum
             const double x = grid.x_of(grid.first_col + i);
             const SeenTriangle::Side side = seen.side_of(x);
             if (side == SeenTriangle::Side::Outside) continue;
-            Slot& slot = slot_at(i, j);
+            Slot& slot = slots_[number(i, j)];
             const SurfaceHit& common = seen.common();
             if (side == SeenTriangle::Side::Inside && !common.filled)
                 add_sheet(slot, common, seen.height_at(x));
@@ -120,7 +120,7 @@ void Columns::add_primitive(const Tile& tile, std::uint32_t element, const Colum
     for (int j = range.first_row; j <= range.last_row; ++j)
         for (int i = range.first_col; i <= range.last_col; ++i)
             if (const auto hit = hit_of(tile, element, grid.x_of(grid.first_col + i), grid.y_of(grid.first_row + j)))
-                add(slot_at(i, j), *hit);
+                add(slots_[number(i, j)], *hit);
 }
 
 /// Adds the hit of a sheet at height z, unless the column has no other hit than the same: triangles share corners and

@@ -89,7 +89,7 @@ public:
     /// Returns the column in column grid.first_col + i and row grid.first_row + j of the grid.
     ColumnView at(int i, int j) const
     {
-        const Slot& slot = slots_[std::size_t(j) * std::size_t(cols_) + std::size_t(i)];
+        const Slot& slot = slots_[number(i, j)];
         switch (slot.content) {
         case Content::Nothing: return {};
         case Content::Terrain: return {{&slot.span, 1}, {&slot.span.top, 1}, {}};
@@ -109,8 +109,9 @@ private:
     enum class Content : std::uint8_t { Nothing, Terrain, Obstacle, Water, Several };
     struct Slot {
         Span span;
-        std::uint32_t index =
-            0;  ///< of the element, while scanning, or for Several in listed_; then, for Several, in starts_
+        /// While scanning: the element, or for Several, the column's first hit in listed_. Then, for Several: the place
+        /// in starts_.
+        std::uint32_t index = 0;
         Content content = Content::Nothing;
     };
     struct Start {
@@ -131,7 +132,7 @@ private:
     void add(Slot& slot, const SurfaceHit& hit);
     void complete(Slot& slot);
     void end_column(Slot& slot);
-    Slot& slot_at(int i, int j) { return slots_[std::size_t(j) * std::size_t(cols_) + std::size_t(i)]; }
+    std::size_t number(int i, int j) const { return std::size_t(j) * std::size_t(cols_) + std::size_t(i); }
 
     int cols_ = 0;
     std::vector<Slot> slots_;

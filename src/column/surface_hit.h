@@ -91,8 +91,8 @@ private:
         double from_x, from_y;
         double x, y;            ///< from its first corner to the next, m
         double squared_length;  ///< m2
-        double
-            rim;  ///< a line is clear of the edge if the squared cross product exceeds this; -1: the edge is vertical
+        /// A line is clear of the edge if the squared cross product exceeds this; -1: the edge is vertical.
+        double rim;
         double across;  ///< the part of that cross product which depends on y, m2
 
         Edge(const Vec3& from, const Vec3& to)

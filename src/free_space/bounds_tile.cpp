@@ -122,22 +122,13 @@ bool is_consistent(const CellIntervals& list, const ListSizes& sizes)
                                               [&](std::uint16_t number) { return number < sizes.lists; }));
 }
 
-std::uint32_t count_of(const CellList& list, std::size_t cell) { return list.starts[cell + 1] - list.starts[cell]; }
-
-std::span<const Interval> spans_of(const CellList& list, std::size_t cell)
-{
-    return std::span(list.spans).subspan(list.starts[cell], count_of(list, cell));
-}
-
-bool is_same(const Interval& l, const Interval& r) { return l.bottom == r.bottom && l.top == r.top; }
-
 /// Returns whether all cells have the same intervals.
 bool is_uniform(const CellList& list)
 {
-    const std::span<const Interval> first = spans_of(list, 0);
+    const std::span<const Interval> first = list.of(0);
     if (list.spans.size() != first.size() * BoundsTile::cells) return false;
     for (std::size_t cell = 1; cell < BoundsTile::cells; ++cell)
-        if (!std::ranges::equal(spans_of(list, cell), first, is_same)) return false;
+        if (!std::ranges::equal(list.of(cell), first)) return false;
     return true;
 }
 
@@ -205,8 +196,8 @@ private:
     {
         std::array<std::uint16_t, BoundsTile::cells> tops;
         for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) {
-            const std::uint32_t end = tile_.bounds.starts[cell + 1];
-            tops[cell] = end > tile_.bounds.starts[cell] ? up(tile_.bounds.spans[end - 1].top) : std::uint16_t{0};
+            const std::span<const Interval> spans = tile_.bounds.of(cell);
+            tops[cell] = spans.empty() ? std::uint16_t{0} : up(spans.back().top);
         }
         put(tops);
     }
@@ -226,9 +217,9 @@ private:
         const std::size_t stored_cells = head_.is_uniform != 0 ? 1 : BoundsTile::cells;
         for (std::size_t cell = 0; cell < stored_cells; ++cell) {
             if (cell % 64 == 0) ranks[cell / 64] = std::uint16_t(numbers.size());
-            if (count_of(list, cell) < least) continue;
+            if (list.of(cell).size() < least) continue;
             own.clear();
-            for (const Interval& span : spans_of(list, cell)) own.push_back(quantize(span));
+            for (const Interval& span : list.of(cell)) own.push_back(quantize(span));
             all_spans += own.size();
             // Most cells have the list of the cell before them, or of the cell in the row before.
             const auto has_list_of = [&](std::size_t other) {
@@ -258,8 +249,8 @@ private:
             starts.assign(1, 0);
             spans.clear();
             for (std::size_t cell = 0; cell < BoundsTile::cells; ++cell) {
-                if (count_of(list, cell) < least) continue;
-                for (const Interval& span : spans_of(list, cell)) spans.push_back(quantize(span));
+                if (list.of(cell).size() < least) continue;
+                for (const Interval& span : list.of(cell)) spans.push_back(quantize(span));
                 starts.push_back(std::uint32_t(spans.size()));
             }
         }

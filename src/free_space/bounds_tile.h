@@ -80,6 +80,11 @@ struct CellList {
     std::array<std::uint32_t, BoundsTile::cells + 1> starts{};
     std::vector<Interval> spans;  ///< from the bottom up, with gaps between them
 
+    std::span<const Interval> of(std::size_t cell) const
+    {
+        return std::span(spans).subspan(starts[cell], starts[cell + 1] - starts[cell]);
+    }
+
     /// Gives all cells the spans that the first cell has.
     void repeat_first();
 };

@@ -89,12 +89,7 @@ hand::Mesh apartments(Random& random)
     const double storey = random.between(2.8, 3.2), front = random.between(0.15, 0.6);
     const int storeys = 4 + random.below(5);
     BlockGrid grid;
-    grid.x = {-length / 2};
-    for (int i = 0; i < windows; ++i) {
-        const double middle = -length / 2 + (i + 0.5) * length / windows;
-        grid.x.insert(grid.x.end(), {middle - 0.5, middle + 0.5});
-    }
-    grid.x.push_back(length / 2);
+    grid.x = window_borders(length, windows, 0.5);
     grid.y = {-depth / 2, -depth / 2 + front, depth / 2 - 0.2, depth / 2};
     grid.z = {-1};
     for (int i = 0; i < storeys; ++i)

@@ -204,18 +204,24 @@ Pieces house(Random& random, double foundation)
     return out;
 }
 
+std::vector<double> window_borders(double length, int windows, double half_width)
+{
+    std::vector<double> out = {-length / 2};
+    for (int i = 0; i < windows; ++i) {
+        const double middle = -length / 2 + (i + 0.5) * length / windows;
+        out.insert(out.end(), {middle - half_width, middle + half_width});
+    }
+    out.push_back(length / 2);
+    return out;
+}
+
 hand::Mesh recessed_house(Random& random, const RecessedHouse& plan)
 {
     const double length = random.between(10, 14), depth = random.between(8, 10), storey = random.between(2.7, 3.2);
     const int windows = 3, storeys = plan.least_storeys + random.below(plan.most_storeys - plan.least_storeys + 1);
     const int door = random.below(windows);
     BlockGrid grid;
-    grid.x = {-length / 2};
-    for (int i = 0; i < windows; ++i) {
-        const double middle = -length / 2 + (i + 0.5) * length / windows;
-        grid.x.insert(grid.x.end(), {middle - 0.6, middle + 0.6});
-    }
-    grid.x.push_back(length / 2);
+    grid.x = window_borders(length, windows, 0.6);
     const double recess = random.between(0.15, 1.2);
     grid.y = {-depth / 2, -depth / 2 + recess, depth / 2 - 0.2, depth / 2};
     grid.z = {-plan.foundation};

@@ -28,6 +28,10 @@ hand::Mesh blocks(const BlockGrid& grid);
 /// reaches `foundation` m into the ground.
 Pieces house(Random& random, double foundation);
 
+/// Returns the x of both ends of a wall of this length around 0, and of both sides of each of its evenly spaced
+/// windows.
+std::vector<double> window_borders(double length, int windows, double half_width);
+
 struct RecessedHouse {
     double foundation = 1;  ///< m below the ground
     int least_storeys = 1, most_storeys = 3;
