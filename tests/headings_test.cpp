@@ -1,4 +1,5 @@
 #include "arena.h"
+#include "hard_scene.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>
@@ -46,6 +47,33 @@ TEST_CASE("a raster at 16 headings counts valid headings; if none is valid, the 
     CHECK(wrong == 0);
     CHECK(some > 20);
     CHECK(counts == result.raster.counts);
+}
+
+TEST_CASE("a raster at headings is the rasters at each yaw, with every kind of judge")
+{
+    for (std::uint64_t seed = 0; seed < 12; ++seed)
+        for (const bool steep : {false, true}) {
+            const HardCase hard = hard_case(seed);
+            CAPTURE(seed, steep);
+            const TestMap map = map_of(hard.scene, hard.resolution, hard.map_bounds);
+            JudgeOptions judging{.max_height = hard.max_height, .exhaustive = seed % 4 == 3};
+            if (steep) judging.max_slope = 0.3;
+            const Judge judge(map, hard.robot, judging);
+            const double width = (map.bounds.max - map.bounds.min).head<2>().maxCoeff();
+            RasterOptions options{.step = width / 23.3, .offset = hard.offset};
+            const HeadingRaster all = raster_at_headings(judge, options, 5);
+            std::vector<int> valid(all.raster.poses.size());
+            std::uint64_t exact_checks = 0;
+            for (int k = 0; k < 5; ++k) {
+                options.yaw = 2 * std::numbers::pi * k / 5;
+                const RasterResult one = raster(judge, options);
+                REQUIRE(one.poses.size() == valid.size());
+                exact_checks += one.exact_checks;
+                for (std::size_t p = 0; p < valid.size(); ++p) valid[p] += one.poses[p].verdict == Verdict::Valid;
+            }
+            CHECK(std::equal(valid.begin(), valid.end(), all.valid_headings.begin(), all.valid_headings.end()));
+            CHECK(all.raster.exact_checks == exact_checks);
+        }
 }
 
 TEST_CASE("a raster at headings refuses counts out of range and 3D rasters")

@@ -1,6 +1,8 @@
 #include "paths.h"
 #include "program.h"
 
+#include <catch2/catch.hpp>
+
 #include <poll.h>
 #include <pty.h>
 #include <sys/wait.h>
@@ -29,8 +31,11 @@ ProgramRun run(const TempFolder& folder, const std::string& before, const std::s
 {
     const std::filesystem::path err = folder / ".err";
     const std::string command = "exec 2>'" + err.string() + "'; " + command_for(folder, before, arguments);
-    const int status = std::system(command.c_str());
-    return {exit_status(status), taken(folder / ".out"), taken(err)};
+    const int status = exit_status(std::system(command.c_str()));
+    ProgramRun out{status, taken(folder / ".out"), taken(err)};
+    // Printed if the next check fails: without it, nobody would know what, for example, a sanitizer found.
+    UNSCOPED_INFO("spawnfield " << arguments << "\nended with status " << status << " and printed:\n" << out.err);
+    return out;
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs the checks of .ci/run from a fresh clone: the format, the layers, the golden digests of debug and clang builds,
 # the tests under the address, undefined behaviour and thread sanitizers, and at last all tests of the release. Each
-# step prints its time. The script stops at the first step that fails and prints the end of its log. All logs are in
-# build/ci.
+# step prints its time. The script stops at the first step that fails and prints the end and the faults of its log. All
+# logs are in build/ci.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 mkdir -p build/ci
@@ -12,6 +12,8 @@ step() {
   shift
   if ! "$@" >"$log" 2>&1; then
     tail -n 60 "$log"
+    echo "ci.sh: what failed in it:"
+    grep -A 12 -E '(FAILED|error|ERROR|SUMMARY|WARNING):|^spawnfield .*ended with status' "$log" | tail -n 80 || true
     echo "ci.sh: step $name failed after $((SECONDS - began)) s; the whole log is $log"
     exit 1
   fi

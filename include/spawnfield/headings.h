@@ -14,8 +14,9 @@ struct HeadingRaster {
     std::vector<std::uint8_t> valid_headings;  ///< for each pose: the number of headings at which it is valid
 };
 
-/// Returns the raster at yaws 2 pi k / headings. options.yaw is not used. Takes as long as `headings` rasters. Throws
-/// ArgumentError unless headings is in 1 .. 255 and options.dims is 2, and everything that raster() throws.
+/// Returns the raster at yaws 2 pi k / headings. options.yaw is not used. Columns are computed once for all yaws, so
+/// this takes much less time than `headings` rasters. Throws ArgumentError unless headings is in 1 .. 255 and
+/// options.dims is 2, and everything that raster() throws.
 SPAWNFIELD_API HeadingRaster raster_at_headings(const Judge& judge, const RasterOptions& options, int headings = 16);
 
 }  // namespace spawnfield

@@ -58,21 +58,6 @@ bool is_submerged(const ColumnView& column, double ground, double max_water_dept
     });
 }
 
-/// Decides the verdicts that come before `collision`. Returns true if none of them applies.
-bool judge_ground(const Judge::Impl& shared, double max_height, const ColumnView& column, const Vec3& position,
-                  Judgement& out)
-{
-    out.ground = ground_below(column, position.z());
-    out.verdict = Verdict::Outside;
-    if (!is_within(shared.map, position)) return false;
-    out.verdict = Verdict::Aerial;
-    if (!out.ground || position.z() - out.ground->height > max_height + touch_tolerance) return false;
-    out.verdict = Verdict::OffTerrain;
-    if (!out.ground->terrain) return false;
-    out.verdict = Verdict::Submerged;
-    return !is_submerged(column, out.ground->height, shared.options.max_water_depth);
-}
-
 /// Adds the time from its construction to its destruction to a total, unless the total is nullptr.
 class TimedPart {
 public:
@@ -151,9 +136,28 @@ void PoseJudge::set_rotation(const Mat3& rotation)
 Judgement PoseJudge::judge(const ColumnView& column, const Vec3& position, bool with_hit)
 {
     Judgement out;
-    if (judge_ground(shared_, max_height_, column, position, out)) decide(column, position, with_hit, out);
-    if (footing_ && out.verdict == Verdict::Valid) out.verdict = footing_->judge(position, out.ground->height);
+    if (!judge_ground(column, position, out)) return out;
+    judge_collision(column, position, with_hit, out);
+    judge_footing(position, out);
     return out;
+}
+
+bool PoseJudge::judge_ground(const ColumnView& column, const Vec3& position, Judgement& out) const
+{
+    out.ground = ground_below(column, position.z());
+    out.verdict = Verdict::Outside;
+    if (!is_within(shared_.map, position)) return false;
+    out.verdict = Verdict::Aerial;
+    if (!out.ground || position.z() - out.ground->height > max_height_ + touch_tolerance) return false;
+    out.verdict = Verdict::OffTerrain;
+    if (!out.ground->terrain) return false;
+    out.verdict = Verdict::Submerged;
+    return !is_submerged(column, out.ground->height, shared_.options.max_water_depth);
+}
+
+void PoseJudge::judge_footing(const Vec3& position, Judgement& out)
+{
+    if (footing_ && out.verdict == Verdict::Valid) out.verdict = footing_->judge(position, out.ground->height);
 }
 
 Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
@@ -165,11 +169,11 @@ Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
 Judgement PoseJudge::judge_collision(const Vec3& position)
 {
     Judgement out;
-    decide({}, position, false, out);
+    judge_collision({}, position, false, out);
     return out;
 }
 
-void PoseJudge::decide(const ColumnView& column, const Vec3& position, bool with_hit, Judgement& out)
+void PoseJudge::judge_collision(const ColumnView& column, const Vec3& position, bool with_hit, Judgement& out)
 {
     Proof proof = Proof::Candidate;
     if (mask_ && mask_->is_pierced(column.spans, position.z()))

@@ -47,8 +47,15 @@ public:
     /// Returns Valid or Collision. Does not look at ground and footing.
     Judgement judge_collision(const Vec3& position);
 
+    // The steps of judge():
+    /// Sets the ground, and decides the verdicts that come before `collision`. Returns true if none of them applies.
+    bool judge_ground(const ColumnView& column, const Vec3& position, Judgement& out) const;
+    /// Sets Valid or Collision.
+    void judge_collision(const ColumnView& column, const Vec3& position, bool with_hit, Judgement& out);
+    /// Changes Valid to Steep or Unstable, if the footing of the pose is.
+    void judge_footing(const Vec3& position, Judgement& out);
+
 private:
-    void decide(const ColumnView& column, const Vec3& position, bool with_hit, Judgement& out);
     void check_exactly(const Vec3& position, bool with_hit, Judgement& out) const;
 
     const Judge::Impl& shared_;

@@ -1,6 +1,6 @@
 #include "base/chosen_bounds.h"
 #include "query/area_index.h"
-#include "query/pose_judge.h"
+#include "query/headings_judge.h"
 #include "query/raster_grid.h"
 
 #include <spawnfield/error.h>
@@ -84,6 +84,7 @@ Steps replaced_steps(const RasterGrid& grid, double offset, std::span<const Rast
 /// The listed poses of one row of columns, and the counts of those that are not listed.
 struct Row {
     std::vector<RasterPose> poses;
+    std::vector<VerdictTally> tallies;  ///< of the poses, if they are judged at several headings
     std::uint64_t aerial = 0, exact_checks = 0;
 };
 
@@ -93,17 +94,18 @@ public:
     static constexpr int most_rows = 32, block = 128;  ///< rows of a strip; columns of a block
 
     RasterJudge(const Judge::Impl& shared, const RasterOptions& options, const RasterGrid& grid, double offset,
-                double top)
+                double top, int headings)
         : shared_(shared), options_(options), grid_(grid), offset_(offset), top_(top),
           ground_z_(overlap(shared.map.z_limits, options.dims == 2 ? options.z : ZRange{})), area_(options.area),
-          is_everywhere_(area_.is_everywhere())
+          is_everywhere_(area_.is_everywhere()), headings_(headings)
     {
     }
 
     /// Judges as many rows as `out` has entries, beginning with row `first`.
     void judge_rows(int first, std::span<Row> out) const
     {
-        PoseJudge judge(shared_, options_.yaw, max_height());
+        Judges judges{PoseJudge(shared_, options_.yaw, max_height()), {}};
+        if (headings_ > 0) judges.at_headings.emplace(shared_, headings_, max_height());
         if (options_.dims == 2 && is_everywhere_)
             for (Row& row : out) row.poses.reserve(std::size_t(grid_.cols));  // one layer for each column, mostly
         Columns columns;
@@ -118,33 +120,38 @@ public:
                 for (int i = 0; i < cols; ++i) {
                     const double x = grid_.x_of(col + i), y = grid_.y_of(first + j);
                     if (is_everywhere_ || area_.contains({x, y}))
-                        judge_column(judge, columns, i, j, x, y, out[std::size_t(j)]);
+                        judge_column(judges, columns, i, j, x, y, out[std::size_t(j)]);
                 }
         }
     }
 
 private:
+    struct Judges {
+        PoseJudge one;                             ///< at options.yaw
+        std::optional<HeadingsJudge> at_headings;  ///< empty: only one yaw is judged
+    };
+
     /// A pose of a 2D raster is `offset` above its layer by definition.
     double max_height() const
     {
         return options_.dims == 2 ? std::numeric_limits<double>::infinity() : shared_.options.max_height;
     }
 
-    void judge_column(PoseJudge& judge, const Columns& columns, int i, int j, double x, double y, Row& out) const
+    void judge_column(Judges& judges, const Columns& columns, int i, int j, double x, double y, Row& out) const
     {
         const ColumnView column = options_.height_check ? columns.at(i, j) : ColumnView();
         if (options_.dims == 2) {
-            layers(judge, column, x, y, out);
+            layers(judges, column, x, y, out);
             return;
         }
         const std::size_t first = out.poses.size();
-        if (options_.snap) layers(judge, column, x, y, out);
+        if (options_.snap) layers(judges, column, x, y, out);
         const std::size_t steps = out.poses.size();
         const Steps replaced = replaced_steps(grid_, offset_, std::span(out.poses).subspan(first));
         if (options_.height_check && shared_.map.bounds.contains_xy(x, y, touch_tolerance))
-            heights(judge, column, replaced, x, y, out);
+            heights(judges.one, column, replaced, x, y, out);
         else
-            all_heights(judge, replaced, x, y, out);
+            all_heights(judges.one, replaced, x, y, out);
         if (steps > first)
             std::inplace_merge(out.poses.begin() + std::ptrdiff_t(first), out.poses.begin() + std::ptrdiff_t(steps),
                                out.poses.end(), [](const RasterPose& a, const RasterPose& b) { return a.z > b.z; });
@@ -156,7 +163,7 @@ private:
         return heights_within(column.layers, ground_z_);
     }
 
-    void layers(PoseJudge& judge, const ColumnView& column, double x, double y, Row& out) const
+    void layers(Judges& judges, const ColumnView& column, double x, double y, Row& out) const
     {
         const std::span<const double> heights = ground_layers(column);
         const int count = int(heights.size());
@@ -166,9 +173,16 @@ private:
             if (options_.dims == 2 && !is_everywhere_ && !area_.contains({x, y}, height)) continue;
             if (options_.snap && !(height >= grid_.z0 - touch_tolerance && height <= top_ + touch_tolerance)) continue;
             const double z = height + offset_;
-            const Judgement judged = judge.judge(column, {x, y, z});
-            out.exact_checks += judged.exact_check;
-            out.poses.push_back({x, y, z, layer, judged.verdict, options_.snap});
+            Verdict verdict;
+            if (judges.at_headings) {
+                out.tallies.push_back(judges.at_headings->judge(column, {x, y, z}, out.exact_checks));
+                verdict = merged(out.tallies.back());
+            } else {
+                const Judgement judged = judges.one.judge(column, {x, y, z});
+                out.exact_checks += judged.exact_check;
+                verdict = judged.verdict;
+            }
+            out.poses.push_back({x, y, z, layer, verdict, options_.snap});
         }
     }
 
@@ -254,6 +268,7 @@ private:
     const ZRange ground_z_;  ///< layers beyond it are not ground
     const AreaIndex area_;
     const bool is_everywhere_;
+    const int headings_;  ///< 0: only options.yaw
     const Steps outside_ = steps_outside();
 };
 
@@ -287,6 +302,12 @@ int RasterGrid::step_above(double height) const
 
 RasterResult raster(const Judge& judge, const RasterOptions& options)
 {
+    return raster_with(judge, options, 0, nullptr);
+}
+
+RasterResult raster_with(const Judge& judge, const RasterOptions& options, int headings,
+                         std::vector<VerdictTally>* tallies)
+{
     check(options);
     const Map& map = judge.map();
     RasterResult out;
@@ -297,7 +318,7 @@ RasterResult raster(const Judge& judge, const RasterOptions& options)
     if (options.dims == 2) out.z = overlap(map.z_limits, options.z);
     const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
     out.grid = raster_grid(bounds, options);
-    const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z());
+    const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z(), headings);
     std::vector<Row> rows(std::size_t(out.grid.rows));
     // Without the height check, rows share no work, and each row takes long.
     const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
@@ -315,6 +336,7 @@ RasterResult raster(const Judge& judge, const RasterOptions& options)
         out.counts[Verdict::Aerial] += row.aerial;
         out.exact_checks += row.exact_checks;
         out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
+        if (tallies != nullptr) tallies->insert(tallies->end(), row.tallies.begin(), row.tallies.end());
         row = {};
     }
     return out;

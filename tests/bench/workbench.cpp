@@ -6,6 +6,8 @@
 #include "timed.h"
 #include "world.h"
 
+#include <spawnfield/headings.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -25,18 +27,6 @@ Options with_threads(Options options, int threads)
 {
     options.threads = threads;
     return options;
-}
-
-/// Returns the same raster at yaws spread evenly over a full turn. A faster way to get these would replace only this
-/// function.
-std::vector<RasterResult> rasters_at_headings(const Judge& judge, RasterOptions options, int headings)
-{
-    std::vector<RasterResult> out;
-    for (int k = 0; k < headings; ++k) {
-        options.yaw = k * 2 * std::numbers::pi / headings;
-        out.push_back(raster(judge, options));
-    }
-    return out;
 }
 
 /// Returns poses that are up to 1 m above a random layer of a random column.
@@ -398,16 +388,11 @@ Measurement Workbench::raster(const Judge& judge, const RasterOptions& options)
 Measurement Workbench::raster_headings(const RasterOptions& options, int headings)
 {
     const Judge& ready = judge();
-    const auto results = timed([&] { return rasters_at_headings(ready, options, headings); });
-    Measurement out{0, results.seconds, 0, 0};
-    Digest digest;
-    for (const RasterResult& result : results.result) {
-        out.items += result.counts.total();
-        out.exact_checks += result.exact_checks;
-        digest.add(digest_of(result));
-    }
-    out.hash = digest.value();
-    return out;
+    if (headings == 1) return raster(ready, options);
+    const auto result = timed([&] { return raster_at_headings(ready, options, headings); });
+    const HeadingRaster& made = result.result;
+    return {made.raster.poses.size() * std::uint64_t(headings), result.seconds,
+            Digest().add(digest_of(made.raster)).add_all(made.valid_headings).value(), made.raster.exact_checks};
 }
 
 Measurement Workbench::check(const Judge& judge, int threads)

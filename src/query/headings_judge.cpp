@@ -1,0 +1,53 @@
+#include "query/headings_judge.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace spawnfield {
+
+Verdict merged(const VerdictTally& tally)
+{
+    if (tally[std::size_t(Verdict::Valid)] > 0) return Verdict::Valid;
+    return Verdict(std::max_element(tally.begin(), tally.end()) - tally.begin());
+}
+
+HeadingsJudge::HeadingsJudge(const Judge::Impl& shared, int headings, double max_height)
+    : has_footing_(shared.footing.has_value())
+{
+    for (int k = 0; k < headings; ++k)
+        at_heading_.emplace_back(shared, 2 * std::numbers::pi * k / headings, max_height);
+    if (!shared.space) return;
+    every_yaw_.emplace(shared.space->impl());
+    every_yaw_->set_every_yaw();
+}
+
+VerdictTally HeadingsJudge::judge(const ColumnView& column, const Vec3& position, std::uint64_t& exact_checks)
+{
+    VerdictTally out{};
+    const auto add = [&](Verdict verdict, std::size_t count) {
+        out[std::size_t(verdict)] = std::uint8_t(out[std::size_t(verdict)] + count);
+    };
+    Judgement on_ground;
+    if (!at_heading_.front().judge_ground(column, position, on_ground)) {
+        add(on_ground.verdict, at_heading_.size());
+        return out;
+    }
+    const bool is_free = every_yaw_ && every_yaw_->proof_of(position) == Proof::Free;
+    if (is_free && !has_footing_) {
+        add(Verdict::Valid, at_heading_.size());
+        return out;
+    }
+    for (PoseJudge& judge : at_heading_) {
+        Judgement judged = on_ground;
+        if (is_free)
+            judged.verdict = Verdict::Valid;
+        else
+            judge.judge_collision(column, position, false, judged);
+        judge.judge_footing(position, judged);
+        add(judged.verdict, 1);
+        exact_checks += judged.exact_check;
+    }
+    return out;
+}
+
+}  // namespace spawnfield
