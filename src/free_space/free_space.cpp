@@ -59,6 +59,10 @@ void Mask::set_footprints(const std::vector<Footprint>& footprints, double cosin
         to.inner.bottom = footprints[p].inner.bottom;
         to.inner.top = footprints[p].inner.top;
         parts_[p].is_around_origin = contains(to.inner.polygon, Vec2::Zero());
+        Rect& reach = parts_[p].reach = {inf, inf, -inf, -inf};
+        for (const Vec2& corner : to.outer.polygon)
+            reach = {std::min(reach.low_x, corner.x()), std::min(reach.low_y, corner.y()),
+                     std::max(reach.high_x, corner.x()), std::max(reach.high_y, corner.y())};
         choose_passes(parts_[p]);
     }
 }
@@ -77,12 +81,8 @@ void Mask::set_rotation(const Mat3& rotation)
 /// part's width, or else the finest level. A pass with the same level as the one before is left out.
 void Mask::choose_passes(Part& part) const
 {
-    Vec2 low(inf, inf), high(-inf, -inf);
-    for (const Vec2& p : part.footprint.outer.polygon) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    const double width = (high - low).minCoeff();
+    const Rect& reach = part.reach;
+    const double width = std::min(reach.high_x - reach.low_x, reach.high_y - reach.low_y);
     std::size_t count = 0;
     for (const double cells : cells_along) {
         std::size_t level = 0;
@@ -123,12 +123,8 @@ void Mask::cover(const Part& part, Pass& pass) const
         }
     };
     const Polygon2& outer = part.footprint.outer.polygon;
-    double low = inf, high = -inf;
-    for (const Vec2& p : outer) {
-        low = std::min(low, p.y());
-        high = std::max(high, p.y());
-    }
-    const int first = int(std::floor(v + low / cell)), last = int(std::floor(v + high / cell));
+    const int first = int(std::floor(v + part.reach.low_y / cell)),
+              last = int(std::floor(v + part.reach.high_y / cell));
     pass.rows.assign(std::size_t(last - first + 1), {0, inf, -inf, inf, -inf});
     pass.undecided.resize(pass.rows.size());
     for (int row = first; row <= last; ++row) pass.rows[std::size_t(row - first)].row = row;
@@ -159,16 +155,6 @@ void Mask::cover(const Part& part, Pass& pass) const
             pass.rows[k].inner_high = std::min(lines[k][1], lines[k + 1][1]);
         }
     }
-    pass.low = inf;
-    pass.high = -inf;
-    for (const CoverRow& row : pass.rows) {
-        pass.low = std::min(pass.low, row.low);
-        pass.high = std::max(pass.high, row.high);
-    }
-    pass.known_cols = int(raster_.whole_cols(pass.level));
-    pass.has_known_rows = first >= 0 && last < int(raster_.whole_rows(pass.level));
-    pass.first_row = std::uint32_t(std::max(first, 0));
-    pass.last_row = std::uint32_t(std::max(last, 0));
     pass.is_ready = true;
 }
 
@@ -208,21 +194,27 @@ void Mask::OpenTile::set_rows(std::uint32_t first, std::uint32_t last)
 
 /// Returns whether nothing in the rectangle of cells around a part reaches up to its lowest point. This fast test is
 /// true for most poses on open ground.
-bool Mask::is_clear(const Part& part, Pass& pass, double x, double z) const
+bool Mask::is_clear(const Part& part, Pass& pass, const Vec3& position) const
 {
-    const double u = (x - raster_.x0) / raster_.levels()[pass.level].cell;
-    const int low = floor_of(u + pass.low), high = floor_of(u + pass.high);
-    if (!pass.has_known_rows || low < 0 || high >= pass.known_cols) return false;
+    const double per_cell = 1 / raster_.levels()[pass.level].cell;
+    const double x = position.x() - raster_.x0, y = position.y() - raster_.y0;
+    const Rect& reach = part.reach;
+    const int low_col = floor_of((x + reach.low_x) * per_cell), high_col = floor_of((x + reach.high_x) * per_cell),
+              low_row = floor_of((y + reach.low_y) * per_cell), high_row = floor_of((y + reach.high_y) * per_cell);
+    if (low_col < 0 || high_col >= int(raster_.whole_cols(pass.level)) || low_row < 0 ||
+        high_row >= int(raster_.whole_rows(pass.level)))
+        return false;
+    const auto first_col = std::uint32_t(low_col), last_col = std::uint32_t(high_col),
+               first_row = std::uint32_t(low_row), last_row = std::uint32_t(high_row);
     constexpr std::uint32_t side = BoundsTile::side;
-    const double bottom = z + part.footprint.outer.bottom;
-    for (std::uint32_t col = std::uint32_t(low) / side; col <= std::uint32_t(high) / side; ++col) {
-        const std::uint32_t from = std::max(std::uint32_t(low), col * side) % side,
-                            to = std::min(std::uint32_t(high), col * side + side - 1) % side;
-        for (std::uint32_t row = pass.first_row / side; row <= pass.last_row / side; ++row) {
+    const double bottom = position.z() + part.footprint.outer.bottom;
+    for (std::uint32_t col = first_col / side; col <= last_col / side; ++col) {
+        const std::uint32_t from = std::max(first_col, col * side) % side,
+                            to = std::min(last_col, col * side + side - 1) % side;
+        for (std::uint32_t row = first_row / side; row <= last_row / side; ++row) {
             OpenTile& open = tile_of(pass, col, row);
             if (open.tile.is_empty()) continue;
-            open.set_rows(std::max(pass.first_row, row * side) % side,
-                          std::min(pass.last_row, row * side + side - 1) % side);
+            open.set_rows(std::max(first_row, row * side) % side, std::min(last_row, row * side + side - 1) % side);
             std::uint32_t highest = 0;
             for (std::uint32_t cell = from; cell <= to; ++cell)
                 highest = std::max<std::uint32_t>(highest, open.highest[cell]);
@@ -356,15 +348,15 @@ Proof Mask::proof_of(const Vec3& position)
     if (raster_.levels().empty() || !(std::abs(x - raster_.x0) < farthest * raster_.levels()[0].cell) ||
         !(std::abs(y - raster_.y0) < farthest * raster_.levels()[0].cell))
         return Proof::Candidate;
-    if (y != y_) set_y(y);
     bool is_free = true;
     for (Part& part : parts_) {
+        if (is_clear(part, part.passes.front(), position)) continue;
+        if (y != y_) set_y(y);
         Proof proof = Proof::Candidate;
         const Pass* coarser = nullptr;
         for (Pass& pass : part.passes) {
             if (!pass.is_ready) cover(part, pass);
-            proof = coarser == nullptr && is_clear(part, pass, x, z) ? Proof::Free
-                                                                     : proof_of(part, pass, coarser, x, z);
+            proof = proof_of(part, pass, coarser, x, z);
             coarser = &pass;
             if (proof != Proof::Candidate) break;
         }

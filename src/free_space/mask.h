@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/rect.h"
 #include "free_space/bounds_tile.h"
 #include "free_space/footprint.h"
 
@@ -61,17 +62,13 @@ private:
     struct Pass {
         std::size_t level;
         bool is_ready = false;
-        std::vector<CoverRow> rows;   ///< in the order of their numbers
-        double low = 0, high = 0;     ///< smallest low and largest high of all rows
-        bool has_known_rows = false;  ///< all rows lie completely on the finest raster
-        int known_cols = 0;           ///< number of columns that lie completely on it
-        std::uint32_t first_row = 0,
-                      last_row = 0;        ///< numbers of the first and the last of the rows, if they are known
+        std::vector<CoverRow> rows;        ///< in the order of their numbers
         std::vector<CellRange> undecided;  ///< for each row: all other cells are proven free at the last pose
         std::array<OpenTile, 4> tiles;     ///< the tiles that were used last; a part may lie on four of them
     };
     struct Part {
         Footprint footprint;
+        Rect reach;  ///< around the outer polygon, relative to the robot's origin, m
         std::vector<Pass> passes;  ///< coarse to fine
         bool is_around_origin;     ///< the origin is inside the polygon of the inner prism
     };
@@ -84,7 +81,7 @@ private:
     OpenTile& tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const;
     void open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, OpenTile& out) const;
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
-    bool is_clear(const Part& part, Pass& pass, double x, double z) const;
+    bool is_clear(const Part& part, Pass& pass, const Vec3& position) const;
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     Proof proof_of(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const;
@@ -92,7 +89,7 @@ private:
     const FreeSpace::Impl& space_;
     const SolidBounds::Impl& raster_;
     std::vector<Part> parts_;
-    double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose; pass.rows are computed for it
+    double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose that was not clear; for pass.rows
 };
 
 }  // namespace spawnfield

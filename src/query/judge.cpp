@@ -1,3 +1,4 @@
+#include "query/neighbourhoods.h"
 #include "query/pose_judge.h"
 
 #include <spawnfield/error.h>
@@ -74,27 +75,6 @@ private:
     ExactTime* const total_;
     const Clock::time_point start_;
 };
-
-/// Returns indices of poses, sorted so that neighbouring poses are adjacent and use the same tiles in the cache.
-/// Counting sort over a grid around the poses.
-std::vector<std::uint32_t> in_neighbourhoods(std::span<const Pose> poses)
-{
-    constexpr std::size_t side = 256;
-    Bounds bounds;
-    for (const Pose& pose : poses) bounds.extend(pose.position);
-    const auto bin_of = [&](const Vec3& p) {
-        const auto along = [&](int axis) {
-            const double share = (p[axis] - bounds.min[axis]) / (bounds.max[axis] - bounds.min[axis]);
-            return share > 0 ? std::size_t(std::min(share, 1.0) * (side - 1)) : 0;  // also if the share is NaN
-        };
-        return along(1) * side + along(0);
-    };
-    std::vector<std::uint32_t> starts(side * side + 1), order(poses.size());
-    for (const Pose& pose : poses) ++starts[bin_of(pose.position) + 1];
-    std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    for (std::size_t i = 0; i < poses.size(); ++i) order[starts[bin_of(poses[i].position)]++] = std::uint32_t(i);
-    return order;
-}
 
 }  // namespace
 
@@ -224,7 +204,10 @@ bool Judge::is_valid(const Pose& pose) const
 std::vector<Judgement> Judge::check(std::span<const Pose> poses, const RunOptions& options) const
 {
     std::vector<Judgement> out(poses.size());
-    const std::vector<std::uint32_t> order = in_neighbourhoods(poses);
+    std::vector<Vec2> places;
+    places.reserve(poses.size());
+    for (const Pose& pose : poses) places.push_back(pose.position.head<2>());
+    const std::vector<std::uint32_t> order = in_neighbourhoods(places);
     constexpr std::size_t batch = 256;
     parallel_for((poses.size() + batch - 1) / batch, options.threads, options.progress, [&](std::size_t b) {
         PoseJudge judge(*impl_, 0);

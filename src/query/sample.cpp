@@ -148,8 +148,12 @@ private:
             return std::size_t(
                 std::min<std::uint64_t>(most - so_far, batch_for(options_.count, out.spawns.size(), out.draws)));
         };
+        const auto place = [&](std::uint64_t index) {
+            Draw from(options_.seed, index);
+            return point(from);
+        };
         const auto look_at = [&](std::uint64_t index, PoseJudge& judge) { return look(index, point, judge); };
-        next_ = draw_in_order(next_, shared_, options_, out, taken_, batch_size, look_at,
+        next_ = draw_in_order(next_, shared_, options_, out, taken_, batch_size, place, look_at,
                               [&](const Candidate& candidate) {
                                   ++out.draws;
                                   ++draws;

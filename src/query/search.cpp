@@ -99,11 +99,18 @@ SpawnList search(const Judge& judge, const SearchOptions& options)
     const AvoidIndex avoided(options.avoid, box);
     TakenPoints checked(options.min_distance);
 
+    const auto position = [&](Draw& draw) {
+        const double x = draw.uniform(box.min.x(), box.max.x()), y = draw.uniform(box.min.y(), box.max.y());
+        return Vec3(x, y, draw.uniform(box.min.z(), box.max.z()));
+    };
+    const auto place = [&](std::uint64_t index) -> Vec2 {
+        Draw draw(options.seed, index);
+        return position(draw).head<2>();
+    };
     const auto look = [&](std::uint64_t index, PoseJudge& pose_judge) {
         Draw draw(options.seed, index);
         Candidate out;
-        Vec3& p = out.spawn.position;
-        for (int axis = 0; axis < 3; ++axis) p[axis] = draw.uniform(box.min[axis], box.max[axis]);
+        const Vec3& p = out.spawn.position = position(draw);
         out.spawn.yaw = draw_yaw(options, draw);
         out.off_area = !area.contains(p.head<2>(), p.z());
         if (out.off_area) return out;
@@ -122,7 +129,7 @@ SpawnList search(const Judge& judge, const SearchOptions& options)
     SpawnList out;
     std::uint64_t failures = 0;
     const auto batch_size = [&](std::uint64_t draws) { return batch_for(options.count, out.spawns.size(), draws); };
-    draw_in_order(0, judge.impl(), options, out, checked, batch_size, look, [&](const Candidate& candidate) {
+    draw_in_order(0, judge.impl(), options, out, checked, batch_size, place, look, [&](const Candidate& candidate) {
         ++out.draws;
         ++failures;
         if (candidate.off_area) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "query/draw.h"
+#include "query/neighbourhoods.h"
 #include "query/pose_judge.h"
 #include "query/spaced_points.h"
 
@@ -97,25 +98,29 @@ Progress share_found(const Options& options, const SpawnList& found)
     return [&](double) { options.progress(double(found.spawns.size()) / double(options.count)); };
 }
 
-/// Makes draws first, first + 1, … in batches. Several threads call look(index, judge), which returns a Candidate. Then
-/// take(candidate) is called for one draw after the other, in their order, until it returns false. batch_size(draws)
-/// returns the size of the next batch after so many draws; it does not change the result. Returns the number of the
-/// next draw.
-template <class Options, class BatchSize, class Look, class Take>
+/// Makes draws first, first + 1, … in batches. Several threads call look(index, judge), which returns a Candidate, for
+/// neighbours one after the other: place(index) returns x and y of a draw, m. Then take(candidate) is called for one
+/// draw after the other, in their order, until it returns false. batch_size(draws) returns the size of the next batch
+/// after so many draws; it does not change the result. Returns the number of the next draw.
+template <class Options, class BatchSize, class Place, class Look, class Take>
 std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, const Options& options,
-                            const SpawnList& found, TakenPoints& taken, const BatchSize& batch_size, const Look& look,
-                            const Take& take)
+                            const SpawnList& found, TakenPoints& taken, const BatchSize& batch_size, const Place& place,
+                            const Look& look, const Take& take)
 {
     constexpr std::size_t chunk = 64;
     std::vector<Candidate> batch;
+    std::vector<Vec2> places;
     for (std::uint64_t next = first;;) {
         taken.settle();
         batch.resize(batch_size(next - first));
+        places.resize(batch.size());
+        for (std::size_t i = 0; i < batch.size(); ++i) places[i] = place(next + i);
+        const std::vector<std::uint32_t> order = in_neighbourhoods(places);
         const Progress progress = share_found(options, found);
         parallel_for((batch.size() + chunk - 1) / chunk, options.threads, progress, [&](std::size_t c) {
             PoseJudge judge(shared, options.yaw);
-            for (std::size_t i = c * chunk; i < std::min(batch.size(), (c + 1) * chunk); ++i)
-                batch[i] = look(next + i, judge);
+            const std::size_t end = std::min(batch.size(), (c + 1) * chunk);
+            for (std::size_t k = c * chunk; k < end; ++k) batch[order[k]] = look(next + order[k], judge);
         });
         for (const Candidate& candidate : batch) {
             ++next;
@@ -128,7 +133,7 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
 /// draws stays the same, but at most twice the draws so far, and within fixed limits.
 inline std::size_t batch_for(std::size_t wanted, std::size_t found, std::uint64_t draws)
 {
-    constexpr double smallest = 256, largest = 16384;
+    constexpr double smallest = 256, largest = 1 << 17;
     const double share = (double(found) + 1) / (double(draws) + 1);
     return std::size_t(std::clamp(std::min(double(wanted - found) / share, 2 * double(draws)), smallest, largest));
 }
