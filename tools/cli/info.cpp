@@ -39,22 +39,30 @@ Json json_of(const GeoOrigin& origin)
     return {{"x", origin.x}, {"y", origin.y}, {"unit", origin.unit}, {"crs", origin.crs}};
 }
 
-Json json_of(const LabelCounts& labels, const std::vector<Part>& parts)
+/// Maps may have many thousands of parts, so this does not use an initializer list, which copies.
+Json json_of(const Part& part)
 {
-    Json out;
+    Json::object_t out;
+    out.reserve(7);
+    out.emplace("name", part.name);
+    out.emplace("kind", part.kind);
+    out.emplace("label", to_string(part.label));
+    out.emplace("triangles", part.triangles);
+    out.emplace("solid_pieces", part.solid_pieces);
+    out.emplace("sheet_pieces", part.sheet_pieces);
+    out.emplace("open_edges", part.open_edges);
+    return Json(std::move(out));
+}
+
+void add_contents(const LabelCounts& labels, const std::vector<Part>& parts, Json& out)
+{
     for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water})
         out["labels"][to_string(label)] = {{"triangles", labels[std::size_t(label)].triangles},
                                            {"primitives", labels[std::size_t(label)].primitives}};
-    out["parts"] = Json::array();
-    for (const Part& part : parts)
-        out["parts"].push_back({{"name", part.name},
-                                {"kind", part.kind},
-                                {"label", to_string(part.label)},
-                                {"triangles", part.triangles},
-                                {"solid_pieces", part.solid_pieces},
-                                {"sheet_pieces", part.sheet_pieces},
-                                {"open_edges", part.open_edges}});
-    return out;
+    Json::array_t list;
+    list.reserve(parts.size());
+    for (const Part& part : parts) list.push_back(json_of(part));
+    out["parts"] = std::move(list);
 }
 
 /// Returns the labels that occur in each part, in the order of Label.
@@ -90,7 +98,7 @@ Json scene_json(const Scene& scene)
     Json out = {{"kind", "scene"},
                 {"name", scene.name},
                 {"bounds", json_of(scene.map_bounds.is_empty() ? scene.bounds() : scene.map_bounds)}};
-    out.update(json_of(scene.count_labels(), scene.parts));
+    add_contents(scene.count_labels(), scene.parts, out);
     const Json labels = labels_of_parts(scene);
     for (std::size_t p = 0; p < scene.parts.size(); ++p) out["parts"][p]["labels"] = labels[p];
     for (const FaceGroup& group : scene.face_groups)
@@ -139,7 +147,7 @@ Json map_json(const Map& map, bool verified)
     if (verified) out["verified"] = true;
     out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
     for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
-    out.update(json_of(map.geometry.labels(), map.geometry.parts()));
+    add_contents(map.geometry.labels(), map.geometry.parts(), out);
     return out;
 }
 
