@@ -68,7 +68,7 @@ private:
     };
     struct Part {
         Footprint footprint;
-        Rect reach;  ///< around the outer polygon, relative to the robot's origin, m
+        Rect reach;                ///< around the outer polygon, relative to the robot's origin, m
         std::vector<Pass> passes;  ///< coarse to fine
         bool is_around_origin;     ///< the origin is inside the polygon of the inner prism
     };
