@@ -27,5 +27,5 @@ pkg_check_modules(deflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(ccd REQUIRED IMPORTED_TARGET ccd)
 
 set(SPAWNFIELD_PRIVATE_LIBRARIES
-  fcl PkgConfig::ccd octomap octomath yaml-cpp tinyxml2::tinyxml2 nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF
+  octomap octomath yaml-cpp tinyxml2::tinyxml2 nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF
   ZLIB::ZLIB TBB::tbb PkgConfig::urdfdom PkgConfig::qhull PkgConfig::xxhash PkgConfig::deflate Threads::Threads)

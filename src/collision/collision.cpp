@@ -1,3 +1,5 @@
+#include "base/module.h"
+#include "collision/narrow_phase_module.h"
 #include "geometry/tile.h"
 #include "map/occupancy_impl.h"
 #include "robot/hull.h"
@@ -5,49 +7,14 @@
 #include <spawnfield/collision.h>
 #include <spawnfield/free_space.h>
 
-#include <fcl/geometry/octree/octree.h>
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/capsule.h>
-#include <fcl/geometry/shape/convex.h>
-#include <fcl/geometry/shape/cylinder.h>
-#include <fcl/geometry/shape/sphere.h>
-#include <fcl/narrowphase/collision.h>
-#include <fcl/narrowphase/detail/gjk_solver_libccd.h>
-
 #include <algorithm>
-#include <variant>
 
 namespace spawnfield {
 namespace {
 
-using Transform = fcl::Transform3<double>;
-using FclShape = std::variant<fcl::Box<double>, fcl::Sphere<double>, fcl::Cylinder<double>, fcl::Capsule<double>,
-                              fcl::Convex<double>>;
-
-FclShape fcl_shape(const Shape& shape)
-{
-    switch (shape.kind) {
-    case ShapeKind::Sphere: return fcl::Sphere<double>(shape.size[0]);
-    case ShapeKind::Cylinder: return fcl::Cylinder<double>(shape.size[0], shape.size[1]);
-    case ShapeKind::Capsule: return fcl::Capsule<double>(shape.size[0], shape.size[1]);
-    case ShapeKind::Box:
-    case ShapeKind::Hull: break;
-    }
-    return fcl::Box<double>(shape.size);
-}
-
-FclShape fcl_convex(const RobotPart& hull)
-{
-    auto faces = std::make_shared<std::vector<int>>();
-    for (const auto& face : hull.hull_faces) faces->insert(faces->end(), {3, face[0], face[1], face[2]});
-    return fcl::Convex<double>(std::make_shared<const std::vector<Vec3>>(hull.hull_vertices),
-                               int(hull.hull_faces.size()), faces);
-}
-
-const fcl::CollisionGeometry<double>* geometry_of(const FclShape& shape)
-{
-    return std::visit([](const auto& s) -> const fcl::CollisionGeometry<double>* { return &s; }, shape);
-}
+using narrow_phase_module::Body;
+using narrow_phase_module::Transform;
+using NarrowPhase = narrow_phase_module::Functions;
 
 Transform transform_of(const Pose& pose)
 {
@@ -60,15 +27,15 @@ Transform transform_of(const Pose& pose)
 /// A part of the robot in the forms that the check needs. The constructor takes a part that is already grown by
 /// touch_margin. The corners of a hull are in the robot's frame, so robot_from_shape is the identity for hulls.
 struct CheckedPart {
-    FclShape shape;
+    std::unique_ptr<const Body> body;
     Pose robot_from_shape;
     Vec3 centre;
     Shape bounds_shape;  ///< for bounds_at(); not used for hulls
     std::vector<Vec3> hull_vertices;
     Vec3 box_centre, box_half;  ///< of the bounding box along the shape's axes, in its frame
 
-    explicit CheckedPart(const RobotPart& part)
-        : shape(part.shape.kind == ShapeKind::Hull ? fcl_convex(part) : fcl_shape(part.shape)),
+    CheckedPart(const NarrowPhase& narrow_phase, const RobotPart& part)
+        : body(narrow_phase.part(part)),
           robot_from_shape(part.shape.kind == ShapeKind::Hull ? Pose{} : part.shape.pose), centre(part.centre()),
           bounds_shape(part.shape), hull_vertices(part.hull_vertices)
     {
@@ -98,8 +65,8 @@ bool overlap(const ElementBox& a, const Bounds& b)
            a.min[2] <= b.max[2] && a.max[2] >= b.min[2];
 }
 
-/// A part of the robot at one pose. FCL gets all coordinates relative to the robot's position, so that they are small
-/// and precise even far from the scene's origin.
+/// A part of the robot at one pose. The narrow phase gets all coordinates relative to the robot's position, so that
+/// they are small and precise even far from the scene's origin.
 struct PlacedPart {
     const CheckedPart* part;
     Transform robot_from_shape;  ///< "robot" here: a frame with the scene's axes and the robot's position as origin
@@ -124,48 +91,20 @@ bool is_apart(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
     return std::abs(normal.dot(seen[0])) > normal.cwiseAbs().dot(half) + FreeSpace::margin * normal.norm();
 }
 
-/// Returns whether a triangle is so thin that rounding decides the direction of its normal.
-bool is_sliver(const std::array<Vec3, 3>& corners)
-{
-    const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], bc = corners[2] - corners[1];
-    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
-    return ab.cross(ac).squaredNorm() <= 1e-18 * longest * longest;
-}
-
-bool meets_triangle(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
-{
-    if (is_apart(placed, corners)) return false;
-    static const fcl::detail::GJKSolver_libccd<double> solver;
-    const auto meets = [&](const auto& shape) {
-        return solver.shapeTriangleIntersect(shape, placed.robot_from_shape, corners[0], corners[1], corners[2],
-                                             static_cast<Vec3*>(nullptr), static_cast<double*>(nullptr),
-                                             static_cast<Vec3*>(nullptr));
-    };
-    // FCL's answer for a sphere depends on the triangle's normal, and is wrong for slivers even if they are far away.
-    // Its answer for a capsule does not depend on the normal.
-    if (const auto* sphere = std::get_if<fcl::Sphere<double>>(&placed.part->shape);
-        sphere != nullptr && is_sliver(corners))
-        return meets(fcl::Capsule<double>(sphere->radius, 0));
-    return std::visit(meets, placed.part->shape);
-}
-
-bool fcl_collide(const fcl::CollisionGeometry<double>* a, const Transform& frame_from_a,
-                 const fcl::CollisionGeometry<double>* b, const Transform& frame_from_b)
-{
-    fcl::CollisionRequest<double> request;
-    request.gjk_solver_type = fcl::GST_LIBCCD;
-    fcl::CollisionResult<double> result;
-    return fcl::collide(a, frame_from_a, b, frame_from_b, request, result) > 0;
-}
-
 }  // namespace
 
 struct CollisionChecker::Impl {
+    const NarrowPhase& narrow_phase = module_functions<NarrowPhase>();
     Robot robot;
     Geometry geometry;
     std::shared_ptr<const OccupancyTree> tree;
-    std::unique_ptr<fcl::OcTree<double>> octree;
+    std::unique_ptr<const Body> octree;  ///< of `tree`; empty: the geometry is checked
     std::vector<CheckedPart> parts;
+
+    explicit Impl(const Robot& r) : robot(r)
+    {
+        for (const RobotPart& part : robot.parts) parts.emplace_back(narrow_phase, grown(part, touch_margin));
+    }
 
     std::vector<PlacedPart> place(const Pose& pose) const
     {
@@ -177,22 +116,20 @@ struct CollisionChecker::Impl {
         return placed;
     }
 
-    static bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
-                              const Vec3& origin)
+    bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
+                       const Vec3& origin) const
     {
         for (const PlacedPart& part : placed) {
             if (!overlap(tile.boxes[element], part.bounds)) continue;
             if (tile.is_triangle(element)) {
                 std::array<Vec3, 3> corners = tile.corners(element);
                 for (Vec3& corner : corners) corner -= origin;
-                if (meets_triangle(part, corners)) return true;
+                if (!is_apart(part, corners) && narrow_phase.triangle(*part.part->body, part.robot_from_shape, corners))
+                    return true;
             } else {
                 const Shape shape = tile.primitive(element).shape();
-                const FclShape other = fcl_shape(shape);
                 const Transform robot_from_other = transform_of({shape.pose.position - origin, shape.pose.rotation});
-                if (fcl_collide(geometry_of(part.part->shape), part.robot_from_shape, geometry_of(other),
-                                robot_from_other))
-                    return true;
+                if (narrow_phase.shape(*part.part->body, part.robot_from_shape, shape, robot_from_other)) return true;
             }
         }
         return false;
@@ -239,7 +176,7 @@ struct CollisionChecker::Impl {
         Transform robot_from_tree = Transform::Identity();
         robot_from_tree.translation() = -origin;
         for (const PlacedPart& part : placed)
-            if (fcl_collide(octree.get(), robot_from_tree, geometry_of(part.part->shape), part.robot_from_shape))
+            if (narrow_phase.in_octree(*part.part->body, part.robot_from_shape, *octree, robot_from_tree))
                 return CollisionHit{};
         return std::nullopt;
     }
@@ -247,20 +184,16 @@ struct CollisionChecker::Impl {
 
 CollisionChecker::CollisionChecker(const Geometry& geometry, const Robot& robot)
 {
-    auto impl = std::make_unique<Impl>();
-    impl->robot = robot;
+    auto impl = std::make_unique<Impl>(robot);
     impl->geometry = geometry;
-    for (const RobotPart& part : robot.parts) impl->parts.emplace_back(grown(part, touch_margin));
     impl_ = std::move(impl);
 }
 
 CollisionChecker::CollisionChecker(std::shared_ptr<const OccupancyTree> tree, const Robot& robot)
 {
-    auto impl = std::make_unique<Impl>();
-    impl->robot = robot;
+    auto impl = std::make_unique<Impl>(robot);
     impl->tree = std::move(tree);
-    impl->octree = std::make_unique<fcl::OcTree<double>>(impl->tree->impl().tree);
-    for (const RobotPart& part : robot.parts) impl->parts.emplace_back(grown(part, touch_margin));
+    impl->octree = impl->narrow_phase.octree(impl->tree->impl().tree);
     impl_ = std::move(impl);
 }
 

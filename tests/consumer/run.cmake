@@ -57,7 +57,7 @@ expect(0 "${WORK}/damaged.ply: [^\n]*\nwrite_heatmap: pixels is 199, needs 200 .
 
 # The program starts without the libraries of the modules, and a missing module is named when it is needed.
 execute_process(COMMAND ldd ${WORK}/prefix/bin/spawnfield OUTPUT_VARIABLE libraries COMMAND_ERROR_IS_FATAL ANY)
-if(libraries MATCHES "assimp|hpdf|opencv|libproj|sdformat|not found")
+if(libraries MATCHES "assimp|fcl|hpdf|opencv|libproj|sdformat|not found")
   message(FATAL_ERROR "spawnfield must start without the libraries of its modules, but needs\n${libraries}")
 endif()
 file(GLOB modules ${WORK}/prefix/lib*/libspawnfield_*.so ${WORK}/prefix/lib/*/libspawnfield_*.so)

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <sstream>
 
 namespace spawnfield::cli {
@@ -30,6 +31,8 @@ struct InfoArgs : CommonArgs, SceneArgs, RobotArgs {
     std::string picture;
 };
 
+constexpr std::size_t most_lines = 60;  // of a list; --json has all
+
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json json_of(const Bounds& bounds) { return {{"min", json_of(bounds.min)}, {"max", json_of(bounds.max)}}; }
@@ -39,7 +42,7 @@ Json json_of(const GeoOrigin& origin)
     return {{"x", origin.x}, {"y", origin.y}, {"unit", origin.unit}, {"crs", origin.crs}};
 }
 
-/// Maps may have many thousands of parts, so this does not use an initializer list, which copies.
+/// Scenes may have many thousands of parts, so this does not use an initializer list, which copies.
 Json json_of(const Part& part)
 {
     Json::object_t out;
@@ -54,7 +57,7 @@ Json json_of(const Part& part)
     return Json(std::move(out));
 }
 
-void add_contents(const LabelCounts& labels, const std::vector<Part>& parts, Json& out)
+void add_contents(const LabelCounts& labels, std::span<const Part> parts, Json& out)
 {
     for (const Label label : {Label::Terrain, Label::Obstacle, Label::Water})
         out["labels"][to_string(label)] = {{"triangles", labels[std::size_t(label)].triangles},
@@ -131,8 +134,11 @@ Json floors_json(const Map& map)
     return out;
 }
 
-Json map_json(const Map& map, bool verified)
+/// Returns the contents of a map, with at most `most_parts` of its parts.
+Json map_json(const Map& map, bool verified, std::size_t most_parts)
 {
+    const std::span<const Part> parts = map.geometry.parts();
+
     Json out = {{"kind", "map"},
                 {"name", map.name},
                 {"bounds", json_of(map.bounds)},
@@ -147,7 +153,7 @@ Json map_json(const Map& map, bool verified)
     if (verified) out["verified"] = true;
     out["files"]["map.yaml"] = fs::file_size(map.folder / "map.yaml");
     for (const char* const name : map_files) out["files"][name] = fs::file_size(map.folder / name);
-    add_contents(map.geometry.labels(), map.geometry.parts(), out);
+    add_contents(map.geometry.labels(), parts.first(std::min(parts.size(), most_parts)), out);
     return out;
 }
 
@@ -239,8 +245,6 @@ std::string part_line(const Json& part)
     return line + "\n";
 }
 
-constexpr std::size_t most_lines = 60;  // of a list; --json has all
-
 std::string more_line(std::size_t count)
 {
     return count > most_lines ? "  … and " + std::to_string(count - most_lines) + " more (--json lists all)\n" : "";
@@ -279,7 +283,8 @@ std::string name_lines(const Json& parts)
     return out + more_line(lines.size());
 }
 
-std::string scene_lines(const Json& scene)
+/// Returns lines about a scene or a map with this many parts; `scene` needs only the first `most_lines` of them.
+std::string scene_lines(const Json& scene, std::size_t part_count)
 {
     std::string out = "labels\n";
     for (const auto& [label, counts] : scene["labels"].items())
@@ -293,7 +298,7 @@ std::string scene_lines(const Json& scene)
     out += "parts\n";
     const Json& parts = scene["parts"];
     for (std::size_t i = 0; i < std::min(most_lines, parts.size()); ++i) out += part_line(parts[i]);
-    return out + more_line(parts.size()) + name_lines(parts);
+    return out + more_line(part_count) + name_lines(parts);
 }
 
 /// Returns a heading, then a line for each floor, the highest first.
@@ -323,13 +328,13 @@ std::string z_limits_line(const Json& map)
            " m: layers beyond them are not ground, poses beyond them are outside\n";
 }
 
-std::string map_lines(const Json& map)
+std::string map_lines(const Json& map, std::size_t part_count)
 {
     std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() +
                       ", hash " + map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
     out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") +
            "; voxels of " + map["occupancy_resolution"].dump() + " m\n" + z_limits_line(map) + origin_line(map);
-    out += floor_lines(map) + scene_lines(map) + "files\n";
+    out += floor_lines(map) + scene_lines(map, part_count) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
     return out;
@@ -416,6 +421,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
                                                                        : std::optional(picture_file(args.picture));
     const Progress listen = progress_bar(args, "info");
     Json out;
+    std::size_t part_count = 0;  // of a scene or a map
     std::vector<std::string> robot_options_of_info = robot_option_names;
     robot_options_of_info.emplace_back("--picture");
     const auto has_one_of = [&](const std::vector<std::string>& options) {
@@ -430,7 +436,8 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         if (args.verify) verify_map(args.what);
         const Map map = read_map(args.what);
         summary.map_hash = map.hash;
-        out = map_json(map, args.verify);
+        part_count = map.geometry.parts().size();
+        out = map_json(map, args.verify, args.json ? part_count : most_lines);
     } else if (robot_given) {
         refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a robot");
         refuse(command, {"--verify"}, "is only for maps; " + args.what + " is a robot");
@@ -443,16 +450,18 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         refuse(command, {"--verify"}, "is only for maps; " + args.what + " is not a map");
         const Scene scene = load_scene(args.what, scene_options(args, args));
         notices(args, scene.notices);
+        part_count = scene.parts.size();
         out = scene_json(scene);
     }
     listen(1);
     summary.lap("load");
     const std::string kind = out["kind"];
-    const std::string text = args.json         ? out.dump(2) + "\n"
-                             : kind == "map"   ? map_lines(out)
-                             : kind == "robot" ? robot_lines(out)
-                                               : "scene " + out["name"].get<std::string>() + "\n" +
-                                                     extent_lines(out["bounds"]) + origin_line(out) + scene_lines(out);
+    const std::string text = args.json       ? out.dump(2) + "\n"
+                             : kind == "map" ? map_lines(out, part_count)
+                             : kind == "robot"
+                                 ? robot_lines(out)
+                                 : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) +
+                                       origin_line(out) + scene_lines(out, part_count);
     write_output("", [&](const auto& sink) { sink(text); });
     summary.extra = {args.what};
     return {};
