@@ -37,7 +37,7 @@ public:
         check_includes(file_, *read_sdf_xml(file_), paths_);
         const SdfSession session(paths_, file_.parent_path());
         sdf::Root root;
-        check(root.Load(path_for_libsdformat(file_), session.config()));
+        check(load(root, file_, std::nullopt, session.config()));
         if (root.Model() == nullptr)
             throw FileError(file_.string(), root.WorldCount() > 0 ? "contains a <world>, needs a <model> to be a robot"
                                                                   : "has no <model>");

@@ -41,8 +41,7 @@ public:
     SdfContent read(const std::optional<std::string>& text)
     {
         sdf::Root root;
-        sdf::Errors errors = text ? root.LoadSdfString(*text, session_.config())
-                                  : root.Load(path_for_libsdformat(file_), session_.config());
+        const sdf::Errors errors = load(root, file_, text, session_.config());
         if (root.WorldCount() == 0 && root.Model() == nullptr) {
             if (root.Light() != nullptr)
                 return {};  // for example Gazebo's "sun"; libsdformat resolves an <include> of it

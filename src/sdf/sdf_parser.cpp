@@ -143,6 +143,27 @@ private:
     const SdfPlace& place_;
 };
 
+/// Returns an <sdf> element that can be filled. libsdformat copies the descriptions of the elements in it before it
+/// fills them, so all documents share them.
+sdf::ElementPtr empty_document()
+{
+    static const sdf::SDFPtr all_elements = [] {
+        sdf::SDFPtr out(new sdf::SDF);
+        sdf::init(out);
+        return out;
+    }();
+    const sdf::ElementPtr from = all_elements->Root(), out(new sdf::Element);
+    out->SetName(from->GetName());
+    out->SetRequired(from->GetRequired());
+    out->SetDescription(from->GetDescription());
+    for (const sdf::ParamPtr& attribute : from->GetAttributes())
+        out->AddAttribute(attribute->GetKey(), attribute->GetTypeName(), attribute->GetDefaultAsString(),
+                          attribute->GetRequired(), attribute->GetDescription());
+    for (unsigned int k = 0; k < from->GetElementDescriptionCount(); ++k)
+        out->AddElementDescription(from->GetElementDescription(k));
+    return out;
+}
+
 }  // namespace
 
 SdfSession::SdfSession(ModelPaths& paths, const fs::path& folder)
@@ -160,6 +181,23 @@ SdfSession::~SdfSession()
 {
     console_bridge::setLogLevel(console_bridge::LogLevel(log_level_));
     sdf::setFindCallback([](const std::string&) { return std::string(); });
+}
+
+sdf::Errors load(sdf::Root& root, const fs::path& file, const std::optional<std::string>& text,
+                 const sdf::ParserConfig& config)
+{
+    const sdf::SDFPtr document(new sdf::SDF);
+    document->Root(empty_document());
+    sdf::Errors errors;
+    const bool is_read = text ? sdf::readString(*text, config, document, errors)
+                              : sdf::readFile(path_for_libsdformat(file), config, document, errors);
+    if (!is_read) {
+        errors.emplace_back(sdf::ErrorCode::FILE_READ, "Unable to read file:" + path_for_libsdformat(file));
+        return errors;
+    }
+    const sdf::Errors of_content = root.Load(document, config);
+    errors.insert(errors.end(), of_content.begin(), of_content.end());
+    return errors;
 }
 
 SdfErrorKind kind_of(const sdf::Error& error)
