@@ -45,7 +45,7 @@ namespace crs_module {
 /// Does the work of coordinate_system(), inside the module.
 std::optional<CoordinateSystem> find_system(const std::string& definition);
 
-/// The module's functions. Its only exported symbol has this type.
+/// The functions that the module exports.
 struct Functions {
     static constexpr const char *module = "crs", *failure = "coordinate systems cannot be looked up";
     decltype(&find_system) find;

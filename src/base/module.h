@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spawnfield/export.h>
+
 #include <filesystem>
 
 namespace spawnfield {
@@ -9,12 +11,13 @@ std::filesystem::path library_folder();
 
 /// Returns the address of the symbol spawnfield_NAME_functions in a module: the shared library libspawnfield_NAME.so in
 /// the folder of this library, which is loaded at the first call and never unloaded. Throws std::runtime_error if that
-/// fails; its text begins with `failure` ("SDF cannot be read").
+/// fails, or if the module has another version than this library; its text begins with `failure` ("SDF cannot be
+/// read").
 const void* module_symbol(const char* name, const char* failure);
 
 /// Returns the functions of a module, and loads it at the first call. The type Functions is the module's interface: it
 /// has pointers to functions, and the constants `module` and `failure`, the arguments of module_symbol(). The module
-/// exports one object of this type, and no other symbol.
+/// exports them with SPAWNFIELD_MODULE.
 ///
 /// A module contains all code that uses a foreign library which takes long to load. Objects that its functions take and
 /// return are plain values, or their code is inline or exported by this library, so that both sides share it. Throws
@@ -28,3 +31,11 @@ const Functions& module_functions()
 }
 
 }  // namespace spawnfield
+
+/// Defines all that the module `name` exports: its version, and its functions in the order of their table. The library
+/// looks both up by name after it has loaded the module.
+#define SPAWNFIELD_MODULE(name, ...)                                                                    \
+    extern "C" SPAWNFIELD_API const char* const spawnfield_##name##_version;                            \
+    const char* const spawnfield_##name##_version = SPAWNFIELD_VERSION;                                 \
+    extern "C" SPAWNFIELD_API const spawnfield::name##_module::Functions spawnfield_##name##_functions; \
+    const spawnfield::name##_module::Functions spawnfield_##name##_functions { __VA_ARGS__ }

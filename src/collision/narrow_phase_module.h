@@ -36,7 +36,7 @@ bool meets_shape(const Body& part, const Transform& frame_from_part, const Shape
 bool meets_octree(const Body& part, const Transform& frame_from_part, const Body& octree,
                   const Transform& frame_from_octree);
 
-/// The module's functions. Its only exported symbol has this type.
+/// The functions that the module exports.
 struct Functions {
     static constexpr const char *module = "narrow_phase", *failure = "collisions cannot be checked";
     decltype(&make_part) part;

@@ -1,6 +1,5 @@
 #include "base/coordinate_system.h"
-
-#include <spawnfield/export.h>
+#include "base/module.h"
 
 #include <proj.h>
 
@@ -113,5 +112,4 @@ std::optional<CoordinateSystem> crs_module::find_system(const std::string& defin
 
 }  // namespace spawnfield
 
-extern "C" SPAWNFIELD_API const spawnfield::crs_module::Functions spawnfield_crs_functions;
-const spawnfield::crs_module::Functions spawnfield_crs_functions{&spawnfield::crs_module::find_system};
+SPAWNFIELD_MODULE(crs, &spawnfield::crs_module::find_system);

@@ -10,7 +10,7 @@ namespace spawnfield::mesh_reader_module {
 FileMesh read(const std::filesystem::path& file);
 std::string version();
 
-/// The module's functions. Its only exported symbol has this type.
+/// The functions that the module exports.
 struct Functions {
     static constexpr const char *module = "mesh_reader", *failure = "mesh files cannot be read";
     decltype(&mesh_reader_module::read) read;

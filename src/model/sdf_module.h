@@ -11,7 +11,7 @@ namespace spawnfield::sdf_module {
 SdfContent read_file(const std::filesystem::path& file, ModelPaths& paths, const std::optional<std::string>& text);
 JointedModel read_model(const std::filesystem::path& file, ModelPaths& paths, const std::vector<JointPosition>& joints);
 
-/// The module's functions. Its only exported symbol has this type.
+/// The functions that the module exports.
 struct Functions {
     static constexpr const char *module = "sdf", *failure = "SDF cannot be read";
     decltype(&read_file) file;

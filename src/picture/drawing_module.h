@@ -14,7 +14,7 @@ void write_heatmap(const Map& map, const TerrainMap& terrain, const RasterResult
 void write_preview(const Map& map, const TerrainMap& terrain, const std::filesystem::path& file);
 void write_robot_picture(const Robot& robot, const std::filesystem::path& file);
 
-/// The module's functions. Its only exported symbol has this type.
+/// The functions that the module exports.
 struct Functions {
     static constexpr const char *module = "drawing", *failure = "pictures cannot be drawn";
     decltype(&write_heatmap) heatmap;

@@ -65,3 +65,10 @@ file(REMOVE ${modules})
 expect(0 "[^\n]+\n.*" ${WORK}/prefix/bin/spawnfield info ${WORK}/map)
 expect(1 "another error: mesh files cannot be read: [^\n]*libspawnfield_mesh_reader.so cannot be loaded: [^\n]*\n"
   ${program}/errors ${WORK}/damaged.ply)
+
+# A module of another version is refused.
+list(GET modules 0 module)
+cmake_path(GET module PARENT_PATH folder)
+file(COPY ${program}/libspawnfield_mesh_reader.so DESTINATION ${folder})
+set(refused "[^\n]*libspawnfield_mesh_reader.so has version 0.1.0, needs [0-9.]+; [^\n]*\n")
+expect(1 "another error: mesh files cannot be read: ${refused}" ${program}/errors ${WORK}/damaged.ply)
