@@ -1,6 +1,6 @@
 #pragma once
 
-#include <spawnfield/types.h>
+#include "base/polygon2.h"
 
 #include <algorithm>
 #include <cmath>
