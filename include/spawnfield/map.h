@@ -49,8 +49,9 @@ SPAWNFIELD_API OccupancyTree read_occupancy(const Map& map);
 /// Verifies the sizes and checksums of all files of the folder. Throws FileError at the first that differs.
 SPAWNFIELD_API void verify_map(const std::filesystem::path& folder);
 
-/// Version 3 added z_limits and floors. A map of version 2 has no z limits, and its floors are computed from
-/// terrain.tiff.
+/// Version 4 stores less in bounds.bin: a tile whose cells are all the same only once, and an interval list that cells
+/// share only once. Version 3 added z_limits and floors. A map of version 2 has no z limits, and its floors are
+/// computed from terrain.tiff.
 inline constexpr int map_format_version = 4;
 
 }  // namespace spawnfield

@@ -20,8 +20,8 @@ const void* module_symbol(const char* name, const char* failure);
 /// exports them with SPAWNFIELD_MODULE.
 ///
 /// A module contains all code that uses a foreign library which takes long to load. Objects that its functions take and
-/// return are plain values, or their code is inline or exported by this library, so that both sides share it. Throws
-/// std::runtime_error as module_symbol().
+/// return are plain values, or have code that this library exports, or inline code without state of its own: each side
+/// has its own copy of that. Throws std::runtime_error as module_symbol().
 template <class Functions>
 const Functions& module_functions()
 {

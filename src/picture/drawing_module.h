@@ -4,8 +4,8 @@
 #include <spawnfield/robot_picture.h>
 
 /// The interface of the module src/drawing: a shared library that contains all code that uses OpenCV and libharu, and
-/// that is loaded when the first picture is drawn. Debian's OpenCV needs many other libraries (LAPACK, X11), of which
-/// OpenBLAS starts threads. Without the module, each start of a program would load them all.
+/// that is loaded when the first picture is drawn. Debian's OpenCV needs many other libraries, among them X11, and
+/// OpenBLAS, which starts threads. Without the module, each start of a program would load them all.
 namespace spawnfield::drawing_module {
 
 // They do the work of the functions of the same name in <spawnfield/heatmap.h> and <spawnfield/robot_picture.h>.

@@ -46,7 +46,7 @@ class AreaIndex {
 public:
     explicit AreaIndex(const Area& area);
 
-    /// Returns whether the area has no regions, so that it contains every point.
+    /// Returns whether the area has no regions and no keep-outs, so that it contains every point.
     bool is_everywhere() const { return within_.empty() && keep_out_.empty(); }
     /// Returns whether the area contains the point at some height.
     bool contains(const Vec2& point) const;
