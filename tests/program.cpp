@@ -27,15 +27,20 @@ std::string taken(const std::filesystem::path& file)
     return bytes;
 }
 
+/// Returns the run, and prints it if the next check fails: without it, nobody would know what, for example, a sanitizer
+/// found.
+ProgramRun reported(const std::string& arguments, ProgramRun run)
+{
+    UNSCOPED_INFO("spawnfield " << arguments << "\nended with status " << run.status << " and printed:\n" << run.err);
+    return run;
+}
+
 ProgramRun run(const TempFolder& folder, const std::string& before, const std::string& arguments)
 {
     const std::filesystem::path err = folder / ".err";
     const std::string command = "exec 2>'" + err.string() + "'; " + command_for(folder, before, arguments);
     const int status = exit_status(std::system(command.c_str()));
-    ProgramRun out{status, taken(folder / ".out"), taken(err)};
-    // Printed if the next check fails: without it, nobody would know what, for example, a sanitizer found.
-    UNSCOPED_INFO("spawnfield " << arguments << "\nended with status " << status << " and printed:\n" << out.err);
-    return out;
+    return reported(arguments, {status, taken(folder / ".out"), taken(err)});
 }
 
 }  // namespace
@@ -81,5 +86,5 @@ ProgramRun interrupt_program(const TempFolder& folder, const std::string& argume
     int status = 0;
     waitpid(child, &status, 0);
     close(terminal);
-    return {exit_status(status), taken(folder / ".out"), err};
+    return reported(arguments, {exit_status(status), taken(folder / ".out"), err});
 }

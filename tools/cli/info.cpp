@@ -138,7 +138,6 @@ Json floors_json(const Map& map)
 Json map_json(const Map& map, bool verified, std::size_t most_parts)
 {
     const std::span<const Part> parts = map.geometry.parts();
-
     Json out = {{"kind", "map"},
                 {"name", map.name},
                 {"bounds", json_of(map.bounds)},
