@@ -45,7 +45,7 @@ endif()
 # -ffp-contract=off: a fused multiply-add would give other numbers, and so other bytes on some machines.
 add_library(spawnfield_options INTERFACE)
 target_compile_options(spawnfield_options INTERFACE
-  -ffp-contract=off -Wall -Wextra -Wconversion -Wno-sign-conversion
+  -fopenmp-simd -ffp-contract=off -Wall -Wextra -Wconversion -Wno-sign-conversion
   $<IF:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>,$<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>,-Wshadow>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # gcc 12 warns about std::string + std::string (GCC bug 105329)
   $<$<BOOL:${SPAWNFIELD_WERROR}>:-Werror>)

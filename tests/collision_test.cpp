@@ -1,5 +1,5 @@
 #include "catch.h"
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
 #include "test_map.h"
 #include "worlds/hand_scene.h"
 #include "worlds/world.h"
@@ -180,7 +180,7 @@ TEST_CASE("a search in a box finds what the rectangle below it has at these heig
         std::vector<std::uint32_t> expected, visited;
         geometry.impl().visit_in(space.min.x(), space.min.y(), space.max.x(), space.max.y(),
                                  [&](const Tile& tile, std::uint32_t element) {
-                                     const ElementBox& box = tile.boxes[element];
+                                     const ElementBox box = tile.box(element);
                                      if (box.min[2] <= space.max.z() && box.max[2] >= space.min.z())
                                          expected.push_back(tile.ids[element]);
                                  });

@@ -1,5 +1,5 @@
 #include "catch.h"
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
 #include "base/checksum.h"
 #include "free_space/bounds_tile.h"
 #include "map/bounds_file.h"
@@ -384,14 +384,14 @@ TEST_CASE("a map folder that is cut short, altered, newer or not a map is refuse
     folder.write("map/map.yaml", bad);
     CHECK(read() == "@/map/map.yaml: differs from the hash in its last line: it was altered; bake the map again");
     bad = good;
-    bad.replace(0, bad.find('\n'), "format: spawnfield-map/5");
+    bad.replace(0, bad.find('\n'), "format: spawnfield-map/6");
     folder.write("map/map.yaml", bad);
     CHECK(read() ==
-          "@/map/map.yaml: has format version 5, this program reads 2 to 4; bake the map again or use a newer "
+          "@/map/map.yaml: has format version 6, this program reads 2 to 5; bake the map again or use a newer "
           "spawnfield");
     folder.write("map/map.yaml", "image: map.pgm\n");
     CHECK(read() ==
-          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/4`)");
+          "@/map/map.yaml: is not a map.yaml of spawnfield (its first line is not `format: spawnfield-map/5`)");
     fs::remove(map / "map.yaml");
     CHECK(read() == "@/map: is not a map: it has no map.yaml; make a map with `spawnfield bake SCENE -o MAP`");
     CHECK(complaint(folder, [&] { read_map(folder / "none"); }) == "@/none: does not exist; is the path right?");
@@ -480,7 +480,7 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
         Geometry::Impl changed;
         changed.elements = geometry.impl().elements;
         changed.parts = geometry.impl().parts;
-        std::vector<TileLevel> levels = geometry.impl().levels();
+        std::vector<TileLevel> levels = geometry.impl().tiles().levels();
         std::string tiles(geometry.impl().tiles().bytes());
         TileEntry* entry = nullptr;  // the tile with the triangles and the sphere
         for (TileEntry& tile : levels[0].tiles)
@@ -488,7 +488,8 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
         char* const tile = tiles.data() + entry->offset;
         change(levels, tile, Tile({tile, entry->size}));
         entry->checksum = XXH64(tile, entry->size, 0);
-        changed.set_tiles(TileStore(std::move(levels), spawnfield::bytes_of(std::move(tiles))));
+        changed.set_tiles(TileStore(std::move(levels), spawnfield::bytes_of(std::move(tiles))),
+                          geometry.impl().trees());
         const fs::path file = folder / "geometry.bin";
         return complaint(folder, [&] {
             const ListedFile written = write_geometry(
@@ -507,8 +508,7 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.primitives[0].part) = 9; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.primitives[0].kind) = char(ShapeKind::Hull); }) ==
           wanted);
-    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.refs[0]) = 99; }) == wanted);
-    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.starts.back()) += 1; }) == wanted);
+    CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.head->primitives) = 64; }) == wanted);
     CHECK(complaint_of([&](auto&, char*, const Tile& t) { *at(t.head->triangles) += 1; }) == wanted);
     CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].cell = 0; }) == wanted);
     CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].tiles.back().offset = 1 << 20; }) == wanted);

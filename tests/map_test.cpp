@@ -1,6 +1,6 @@
 #include "paths.h"
 #include "catch.h"
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
 #include "temp_folder.h"
 #include "test_map.h"
 #include "worlds/hand_scene.h"

@@ -11,11 +11,10 @@ namespace spawnfield {
 /// share the tiles. Any number of threads may read it at the same time. Reading a damaged tile of a map throws
 /// FileError.
 ///
-/// Elements have numbers: first all triangles, then all primitives. Tiles lie on several grids; the cells of each grid
-/// are larger than those of the grid before. An element uses the first grid whose cells are at least as large as the
-/// element, and is stored in all tiles that it overlaps there: at most 2 x 2. A tile contains its elements with their
-/// corners, labels and pieces, and a fine grid to find them. A tile of a file is checked when it is first used. A
-/// closed mesh needs about 90 bytes for each triangle.
+/// Elements have numbers: first all triangles, then all primitives. A tile has at most 64 elements that lie near each
+/// other, with their corners, labels and pieces. Elements of similar size form a packed tree of tiles (an R-tree whose
+/// nodes have 16 children). A tile of a file is checked when it is first used. A closed mesh needs about 35 bytes for
+/// each triangle.
 class SPAWNFIELD_API Geometry {
 public:
     Geometry();  ///< without elements

@@ -10,6 +10,12 @@
 
 namespace spawnfield {
 
+/// Version 5 stores geometry.bin in small tiles under a tree; the tiles of an older map are converted when it is
+/// opened, which takes about 0.5 s for a million triangles. Version 4 stores less in bounds.bin: a tile whose cells are
+/// all the same only once, and an interval list that cells share only once. Version 3 added z_limits and floors. A map
+/// of version 2 has no z limits, and its floors are computed from terrain.tiff.
+inline constexpr int map_format_version = 5;
+
 /// A scene, prepared for queries. `folder` is empty until the map is written or read.
 struct Map {
     std::string name;
@@ -26,6 +32,7 @@ struct Map {
     std::string scene_hash;                    ///< xxh64 of that file, 16 hexadecimal digits
     std::string hash;                          ///< 16 hexadecimal digits, from the checksums of the map's files
     std::filesystem::path folder;
+    int format_version = map_format_version;  ///< of the folder
 };
 
 /// The files of a map folder, except map.yaml. Other files in the folder do not belong to the map.
@@ -48,10 +55,5 @@ SPAWNFIELD_API OccupancyTree read_occupancy(const Map& map);
 
 /// Verifies the sizes and checksums of all files of the folder. Throws FileError at the first that differs.
 SPAWNFIELD_API void verify_map(const std::filesystem::path& folder);
-
-/// Version 4 stores less in bounds.bin: a tile whose cells are all the same only once, and an interval list that cells
-/// share only once. Version 3 added z_limits and floors. A map of version 2 has no z limits, and its floors are
-/// computed from terrain.tiff.
-inline constexpr int map_format_version = 4;
 
 }  // namespace spawnfield

@@ -1,6 +1,6 @@
 #include "base/module.h"
 #include "collision/narrow_phase_module.h"
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
 #include "map/occupancy_impl.h"
 #include "robot/hull.h"
 
@@ -119,8 +119,9 @@ struct CollisionChecker::Impl {
     bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
                        const Vec3& origin) const
     {
+        const ElementBox box = tile.box(element);
         for (const PlacedPart& part : placed) {
-            if (!overlap(tile.boxes[element], part.bounds)) continue;
+            if (!overlap(box, part.bounds)) continue;
             if (tile.is_triangle(element)) {
                 std::array<Vec3, 3> corners = tile.corners(element);
                 for (Vec3& corner : corners) corner -= origin;

@@ -297,7 +297,7 @@ CellSpans::CellSpans(const Geometry& geometry, const CellBlock& block)
                 collector.add_primitive(tile.primitive(element).shape());
                 return;
             }
-            const TilePiece& piece = tile.pieces[tile.triangles[element].piece];
+            const TilePiece& piece = tile.piece(element);
             collector.add_triangle(tile.corners(element), piece.open != 0 ? &piece.bottom : nullptr);
         });
     collector.finish();

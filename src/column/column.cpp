@@ -7,21 +7,15 @@ namespace spawnfield {
 
 bool counts(const Tile& tile, std::uint32_t element, Surfaces surfaces)
 {
-    return surfaces == Surfaces::All || !tile.is_triangle(element) ||
-           tile.pieces[tile.triangles[element].piece].solid != 0;
+    return surfaces == Surfaces::All || !tile.is_triangle(element) || tile.piece(element).solid != 0;
 }
 
 void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, std::vector<SurfaceHit>& hits)
 {
     hits.clear();
-    geometry.impl().visit_at(x, y, [&](const Tile& tile, std::span<const std::uint32_t> elements) {
-        for (const std::uint32_t element : elements) {
-            const ElementBox& box = tile.boxes[element];
-            if (box.min[0] > x || box.max[0] < x || box.min[1] > y || box.max[1] < y ||
-                !counts(tile, element, surfaces))
-                continue;
-            if (const auto hit = hit_of(tile, element, x, y)) hits.push_back(*hit);
-        }
+    geometry.impl().visit_at(x, y, [&](const Tile& tile, std::uint32_t element) {
+        if (!counts(tile, element, surfaces)) return;
+        if (const auto hit = hit_of(tile, element, x, y)) hits.push_back(*hit);
     });
     std::sort(hits.begin(), hits.end(), [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
 }

@@ -18,11 +18,11 @@ public:
     }
 
     /// Returns whether any column may lie in the box, seen from above. If so, sets their range.
-    bool find(const ElementBox& box, ColumnRange& out) const
+    bool find(const Bounds& box, ColumnRange& out) const
     {
         constexpr double rounding = 1e-6;  // of a step; more than the rounding error of indices up to 2^31
-        const Pair low = steps_to({box.min[0], box.min[1]}) - rounding,
-                   high = steps_to({box.max[0], box.max[1]}) + rounding;
+        const Pair low = steps_to(box.min.head<2>().array() - pad) - rounding,
+                   high = steps_to(box.max.head<2>().array() + pad) + rounding;
         const Pair from = (low.ceil() - first_).max(0), to = (high.floor() - first_).min(last_);
         if (!(from <= to).all()) return false;
         out = {int(from[0]), int(to[0]), int(from[1]), int(to[1])};
@@ -30,7 +30,8 @@ public:
     }
 
 private:
-    using Pair = Eigen::Array2d;  // x and y
+    static constexpr double pad = 2 * touch_tolerance;  // m: a line so near to an element may touch it
+    using Pair = Eigen::Array2d;                        // x and y
     Pair steps_to(const Pair& place) const { return (place - origin_) * inverse_step_ - shift_; }
 
     const Pair origin_;
@@ -56,7 +57,7 @@ void Columns::set(const Geometry& geometry, const ColumnGrid& grid, Surfaces sur
     const double elements = geometry.impl().elements_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
                                                           grid.x_of(grid.first_col + grid.cols),
                                                           grid.y_of(grid.first_row + grid.rows));
-    constexpr double elements_per_look_up = 30;  // so many elements are scanned in the time of one look-up
+    constexpr double elements_per_look_up = 50;  // so many elements are scanned in the time of one look-up
     if (elements > elements_per_look_up * double(slots_.size()))
         look_up(geometry, grid, surfaces);
     else
@@ -79,16 +80,16 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
 {
     const BlockIndex index(grid);
     ColumnRange range;  // of the element that was found last
-    const auto is_met = [&](const ElementBox& box) { return index.find(box, range); };
-    geometry.impl().visit_in(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
-                             grid.x_of(grid.first_col + grid.cols - 1), grid.y_of(grid.first_row + grid.rows - 1),
-                             is_met, [&](const Tile& tile, std::uint32_t element) {
-                                 if (!counts(tile, element, surfaces)) return;
-                                 if (tile.is_triangle(element))
-                                     add_triangle(tile, element, grid, range);
-                                 else
-                                     add_primitive(tile, element, grid, range);
-                             });
+    geometry.impl().visit_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
+                               grid.x_of(grid.first_col + grid.cols - 1), grid.y_of(grid.first_row + grid.rows - 1),
+                               [&](const Tile& tile, std::uint32_t element) {
+                                   if (!index.find(tile.bounds(element), range) || !counts(tile, element, surfaces))
+                                       return;
+                                   if (tile.is_triangle(element))
+                                       add_triangle(tile, element, grid, range);
+                                   else
+                                       add_primitive(tile, element, grid, range);
+                               });
     if (listed_.empty()) return;
     for (Slot& slot : slots_)
         if (slot.content == Content::Several) complete(slot);

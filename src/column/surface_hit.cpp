@@ -95,7 +95,7 @@ void SeenTriangle::prepare()
         slope_y_ = (acz * edges_[0].x - abz * acx) / twice_area_;
     }
     const TileTriangle& from = tile_.triangles[triangle_];
-    const TilePiece& piece = tile_.pieces[from.piece];
+    const TilePiece& piece = tile_.piece(triangle_);
     const bool filled = piece.solid != 0, looks_up = twice_area_ > 0;
     common_ = {.element = tile_.ids[triangle_],
                .piece = piece.piece,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
 
 #include <spawnfield/column.h>
 

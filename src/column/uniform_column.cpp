@@ -29,7 +29,7 @@ bool misses(const std::array<Vec3, 3>& corners, const Rect& rect)
 /// Returns the hit of every line in the rectangle with this triangle, if they are certainly all the same.
 std::optional<SurfaceHit> uniform_hit(const Tile& tile, std::uint32_t triangle, const Rect& rect)
 {
-    if (tile.pieces[tile.triangles[triangle].piece].solid != 0) return std::nullopt;
+    if (tile.piece(triangle).solid != 0) return std::nullopt;
     const auto [a, b, c] = tile.corners(triangle);
     // Computed heights of a triangle at -0 m may be 0 or -0.
     if (a.z() != b.z() || a.z() != c.z() || (a.z() == 0 && std::signbit(a.z()))) return std::nullopt;

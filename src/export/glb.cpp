@@ -1,6 +1,6 @@
 #include "base/parallel.h"
 #include "export/tessellation.h"
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
 #include "picture/palette.h"
 
 #include <spawnfield/error.h>
@@ -51,14 +51,11 @@ Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
     for (const LabelCount& count : impl.labels) triangles += count.triangles;
     out.triangles.resize(triangles);
     out.primitives.resize(impl.elements - triangles);
-    for (std::size_t level = 0; level < impl.levels().size(); ++level)
-        parallel_for(impl.levels()[level].tiles.size(), threads, {}, [&](std::size_t t) {
-            if (impl.levels()[level].tiles[t].size == 0) return;
-            const Tile tile = impl.open(level, t);
+    for (std::size_t tree = 0; tree < impl.trees().size(); ++tree)
+        parallel_for(impl.trees()[tree].boxes().size(), threads, {}, [&](std::size_t t) {
+            const Tile tile = impl.open(tree, t);
             for (std::uint32_t element = 0; element < tile.elements(); ++element) {
-                const Home home = tile.home(element);
                 const std::uint64_t id = tile.ids[element];
-                if (home.col == 0 || home.row == 0) continue;  // taken from its home tile
                 if (id >= impl.elements || tile.is_triangle(element) != (id < triangles))
                     impl.tiles().fail_inconsistent();
                 if (tile.is_triangle(element)) {

@@ -1,6 +1,7 @@
 #include "map/geometry_file.h"
 
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
+#include "map/old_geometry.h"
 #include "map/tiled_file.h"
 
 #include <algorithm>
@@ -9,18 +10,17 @@
 namespace spawnfield {
 namespace {
 
-constexpr TiledFormat geometry_format{"SPAWNGEO", 2, 2};
+constexpr TiledFormat geometry_format{"SPAWNGEO", 3, 2};
 
 std::string written_head(const Geometry::Impl& geometry)
 {
     BinaryWriter out;
-    out.put(geometry.x0);
-    out.put(geometry.y0);
     out.put(geometry.elements);
     for (const double limit : geometry.bounds.min) out.put(limit);
     for (const double limit : geometry.bounds.max) out.put(limit);
     out.put(std::uint32_t(geometry.has_filled_meshes));
-    put_levels(out, geometry.levels());
+    put_levels(out, geometry.tiles().levels());
+    for (const TileTree& tree : geometry.trees()) out.put_array(tree.boxes());
     for (const LabelCount& count : geometry.labels) {
         out.put(count.triangles);
         out.put(count.primitives);
@@ -53,6 +53,17 @@ void read_parts(BinaryReader& in, Geometry::Impl& geometry)
     }
 }
 
+/// Returns a geometry with the tiles of this version. Reads all tiles, which takes about 0.5 s for a million triangles.
+Geometry of_version_2(const TileStore& tiles, const Geometry::Impl& head)
+{
+    Scene scene;
+    scene.parts = head.parts;
+    std::uint64_t triangles = 0;
+    for (const LabelCount& count : head.labels) triangles += count.triangles;
+    read_old_tiles(tiles, triangles, head.elements, scene);
+    return Geometry(scene);
+}
+
 }  // namespace
 
 ListedFile write_geometry(const std::filesystem::path& file, const Geometry& geometry)
@@ -63,18 +74,25 @@ ListedFile write_geometry(const std::filesystem::path& file, const Geometry& geo
 Geometry open_geometry(const std::filesystem::path& file, const std::string& head_checksum)
 {
     auto impl = std::make_shared<Geometry::Impl>();
-    impl->set_tiles(open_tiled(file, geometry_format, head_checksum, [&](BinaryReader& head, std::uint32_t) {
-        impl->x0 = head.get<double>();
-        impl->y0 = head.get<double>();
+    std::vector<TileTree> trees;
+    std::uint32_t file_version = 0;
+    TileStore tiles = open_tiled(file, geometry_format, head_checksum, [&](BinaryReader& head, std::uint32_t version) {
+        file_version = version;
+        if (version == 2) head.get<std::array<double, 2>>();  // the corner of the grids of tiles
         impl->elements = head.get<std::uint64_t>();
         for (double& limit : impl->bounds.min) limit = head.get<double>();
         for (double& limit : impl->bounds.max) limit = head.get<double>();
         impl->has_filled_meshes = head.get<std::uint32_t>() != 0;
         std::vector<TileLevel> levels = get_levels(head, 1);
+        for (std::size_t tree = 0; version > 2 && tree < levels.size(); ++tree)
+            trees.emplace_back(head.get_array<ElementBox>());
         read_parts(head, *impl);
         return levels;
-    }));
-    if (!std::isfinite(impl->x0) || !std::isfinite(impl->y0)) impl->tiles().fail_inconsistent();
+    });
+    if (file_version == 2) return of_version_2(tiles, *impl);
+    for (std::size_t tree = 0; tree < trees.size(); ++tree)
+        if (trees[tree].boxes().size() != tiles.levels()[tree].tiles.size()) tiles.fail_inconsistent();
+    impl->set_tiles(std::move(tiles), std::move(trees));
     return Geometry(std::move(impl));
 }
 

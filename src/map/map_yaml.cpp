@@ -249,6 +249,7 @@ MapYaml read_map_yaml(const fs::path& folder)
     MapYaml out;
     out.map.hash = verified_hash(file, text);
     out.map.folder = folder;
+    out.map.format_version = format;
     const YamlMap root = read_yaml(file, format_prefix + std::to_string(format));
     out.map.name = root.text("name");
     out.map.bounds = read_bounds(root);

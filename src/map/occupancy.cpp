@@ -2,7 +2,7 @@
 #include "base/parallel.h"
 #include "column/cell_clip.h"
 #include "column/uniform_column.h"
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
 #include "map/occupancy_impl.h"
 #include "scene/octomap_file.h"
 

@@ -67,7 +67,7 @@ CellFacets::CellFacets(const Geometry& geometry, const Rect& cell) : cell_(cell)
 {
     geometry.impl().visit_in(cell.low_x, cell.low_y, cell.high_x, cell.high_y,
                              [&](const Tile& tile, std::uint32_t element) {
-                                 const ElementBox& box = tile.boxes[element];
+                                 const ElementBox box = tile.box(element);
                                  if (tile.label(element) == Label::Terrain) {
                                      terrain.bottom = std::min(terrain.bottom, double(box.min[2]));
                                      terrain.top = std::max(terrain.top, double(box.max[2]));
@@ -111,7 +111,7 @@ void CellFacets::add_triangle(const Tile& tile, std::uint32_t element, bool othe
     if (other_filled && (tile.label(element) == Label::Terrain || tile.label(element) == Label::Water)) return;
     const auto [a, b, c] = tile.corners(element);
     const TileTriangle& triangle = tile.triangles[element];
-    const TilePiece& piece = tile.pieces[triangle.piece];
+    const TilePiece& piece = tile.piece(element);
     Facet out;
     out.filled = piece.solid != 0;
     out.open = piece.open != 0;
@@ -152,7 +152,7 @@ void CellFacets::add_primitive(const Tile& tile, std::uint32_t element)
     Facet out;
     out.terrain = label == Label::Terrain;
     out.water = label == Label::Water;
-    const ElementBox& box = tile.boxes[element];
+    const ElementBox box = tile.box(element);
     out.z = {double(box.min[2]), double(box.max[2])};
     // The upper surface of a convex body is concave. So over the cell, its lowest point `least` is at a corner, and its
     // highest point is at most as far above `middle` as `least` is below.

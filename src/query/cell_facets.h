@@ -2,7 +2,7 @@
 
 #include "base/polygon2.h"
 #include "base/rect.h"
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
 
 #include <spawnfield/geometry.h>
 

@@ -202,7 +202,7 @@ private:
         bool in_primitive = false, meets_other = false;
         proofs_.shared_.map.geometry.impl().visit_in(
             rect.low_x, rect.low_y, rect.high_x, rect.high_y, [&](const Tile& tile, std::uint32_t element) {
-                const ElementBox& box = tile.boxes[element];
+                const ElementBox box = tile.box(element);
                 const Label label = tile.label(element);
                 if (in_primitive || label == Label::Water || box.min[2] > z.top || box.max[2] < z.bottom) return;
                 meets_other = true;

@@ -1,6 +1,6 @@
 #include "digest.h"
 
-#include "geometry/tile.h"
+#include "geometry/geometry_impl.h"
 
 using namespace spawnfield;
 

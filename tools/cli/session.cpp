@@ -24,6 +24,15 @@ void notice_if_larger_than_map(const CommonArgs& args, const Robot& robot, const
     notice(args, text);
 }
 
+void notice_if_old(const CommonArgs& args, const Map& map)
+{
+    constexpr int oldest_with_tree = 5;  // geometry.bin of older versions is converted each time
+    if (map.format_version < oldest_with_tree)
+        notice(args, map.folder.string() + " has format " + std::to_string(map.format_version) +
+                         ", which is slow to open; bake the map again to get format " +
+                         std::to_string(map_format_version));
+}
+
 }  // namespace
 
 Session open_session(const QueryArgs& args, Summary& summary)
@@ -35,6 +44,7 @@ Session open_session(const QueryArgs& args, Summary& summary)
         notices(args, session.robot.notices);
     }
     session.map = read_map(args.map);
+    notice_if_old(args, session.map);
     summary.map_hash = session.map.hash;
     if (args.robot.empty()) return session;
     notice_if_larger_than_map(args, session.robot, session.map);

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "base/tile_store.h"
+#include "geometry/tile_tree.h"
+
+#include <spawnfield/geometry.h>
+
+namespace spawnfield {
+
+struct Geometry::Impl {
+    std::uint64_t elements = 0;
+    Bounds bounds;            ///< of all elements
+    std::vector<Part> parts;  ///< of the scene, in its order
+    LabelCounts labels{};
+    bool has_filled_meshes = false;
+
+    /// Gives the geometry its tiles. Each level of the store has the tiles of one tree.
+    void set_tiles(TileStore tiles, std::vector<TileTree> trees);
+    const TileStore& tiles() const { return tiles_; }
+    const std::vector<TileTree>& trees() const { return trees_; }
+
+    /// Returns a tile. Throws FileError for a damaged tile of a file.
+    Tile open(std::size_t tree, std::size_t tile) const
+    {
+        return Tile(tiles_.open(tree, tile,
+                                [this](std::string_view bytes) { return is_consistent_tile(bytes, parts.size()); }));
+    }
+
+    /// Calls visit(tile, element) once for each element whose box contains (x, y), and for a few others near it.
+    template <class Visit>
+    void visit_at(double x, double y, const Visit& visit) const
+    {
+        visit_near(x, y, x, y, visit);
+    }
+
+    /// Calls visit(tile, element) once for each element whose box meets the closed rectangle.
+    template <class Visit>
+    void visit_in(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
+    {
+        visit_near(low_x, low_y, high_x, high_y, [&](const Tile& tile, std::uint32_t element) {
+            const ElementBox box = tile.box(element);
+            if (box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y)
+                visit(tile, element);
+        });
+    }
+
+    /// Calls visit(tile, element) once for each element whose box meets the closed box `space`.
+    template <class Visit>
+    void visit_in(const Bounds& space, const Visit& visit) const
+    {
+        const Vec3 &low = space.min, &high = space.max;
+        const auto meets = [&](const ElementBox& box) {
+            return box.min[0] <= high.x() && box.max[0] >= low.x() && box.min[1] <= high.y() && box.max[1] >= low.y() &&
+                   box.min[2] <= high.z() && box.max[2] >= low.z();
+        };
+        for (std::size_t t = 0; t < trees_.size(); ++t)
+            trees_[t].visit(space, [&](std::size_t number) {
+                const Tile tile = open(t, number);
+                visit_each(tile.near(space), [&](std::uint32_t element) {
+                    if (meets(tile.box(element))) visit(tile, element);
+                });
+            });
+    }
+
+    /// Calls visit(tile, element) once for each element whose box meets the closed rectangle, and for a few others near
+    /// it.
+    template <class Visit>
+    void visit_near(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
+    {
+        for (std::size_t t = 0; t < trees_.size(); ++t)
+            trees_[t].visit(low_x, low_y, high_x, high_y, [&](std::size_t number) {
+                const Tile tile = open(t, number);
+                visit_each(tile.near(low_x, low_y, high_x, high_y),
+                           [&](std::uint32_t element) { visit(tile, element); });
+            });
+    }
+
+    /// Estimates how many elements lie in a rectangle, from the sizes of the tiles that it meets. Each tile counts by
+    /// the share of its area in the rectangle.
+    double elements_near(double low_x, double low_y, double high_x, double high_y) const;
+
+private:
+    /// Calls visit(k) for each bit k that is set, ascending.
+    template <class Visit>
+    static void visit_each(std::uint64_t bits, const Visit& visit)
+    {
+        for (; bits != 0; bits &= bits - 1) visit(std::uint32_t(std::countr_zero(bits)));
+    }
+
+    TileStore tiles_;
+    std::vector<TileTree> trees_;
+};
+
+}  // namespace spawnfield

@@ -1,0 +1,183 @@
+#include "geometry/tile.h"
+
+#include "base/tile_store.h"
+#include "scene/elements.h"
+
+namespace spawnfield {
+namespace {
+
+/// Returns the `count` values that begin at `next`, and moves `next` behind them.
+template <class T>
+std::span<const T> take(const char*& next, std::size_t count)
+{
+    const std::span<const T> out(reinterpret_cast<const T*>(next), count);
+    next += count * sizeof(T);
+    return out;
+}
+
+/// Builds the bytes of one tile.
+class TileBuilder {
+public:
+    TileBuilder(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements)
+        : scene_(scene), boxes_(boxes), elements_(elements)
+    {
+    }
+
+    std::string build()
+    {
+        number_corners();
+        TileHead head{.scales = {},
+                      .vertices = std::uint8_t(vertices_.size()),
+                      .triangles = std::uint8_t(triangles_),
+                      .primitives = std::uint8_t(elements_.size() - triangles_),
+                      .pieces = std::uint8_t(pieces_.size()),
+                      .unused = 0};
+        for (std::size_t axis = 0; axis < 3; ++axis) head.scales[axis] = scale_along(axis);
+        TileBoxes numbers{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (std::size_t e = 0; e < elements_.size(); ++e) {
+                numbers.min[axis][e] = head.scales[axis].number_of(boxes_[elements_[e]].min[axis]);
+                numbers.max[axis][e] = head.scales[axis].number_of(boxes_[elements_[e]].max[axis]);
+            }
+        out_.reserve(tile_size(head));
+        put(head);
+        put(numbers);
+        for (const std::uint32_t vertex : vertices_) put(scene_.vertices[vertex]);
+        for (std::size_t e = triangles_; e < elements_.size(); ++e) put(packed_primitive(elements_[e]));
+        for (const std::uint32_t piece : pieces_) put(packed_piece(piece));
+        for (const std::uint32_t element : elements_) put(element);
+        for (std::size_t e = 0; e < triangles_; ++e) put(packed_triangle(elements_[e]));
+        return std::move(out_);
+    }
+
+private:
+    /// Collects the vertices and the pieces of the tile's triangles. Their order gives them their numbers in the tile.
+    void number_corners()
+    {
+        triangles_ = std::size_t(std::partition_point(elements_.begin(), elements_.end(),
+                                                      [&](std::uint32_t e) { return is_triangle(scene_, e); }) -
+                                 elements_.begin());
+        for (std::size_t e = 0; e < triangles_; ++e) {
+            for (const std::uint32_t corner : scene_.triangles[elements_[e]]) vertices_.push_back(corner);
+            pieces_.push_back(scene_.triangle_pieces[elements_[e]]);
+        }
+        for (auto* list : {&vertices_, &pieces_}) {
+            std::sort(list->begin(), list->end());
+            list->erase(std::unique(list->begin(), list->end()), list->end());
+        }
+    }
+
+    static std::uint8_t number_in(const std::vector<std::uint32_t>& sorted, std::uint32_t value)
+    {
+        return std::uint8_t(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
+    }
+
+    TileScale scale_along(std::size_t axis) const
+    {
+        float low = std::numeric_limits<float>::infinity(), high = -low;
+        for (const std::uint32_t element : elements_) {
+            low = std::min(low, boxes_[element].min[axis]);
+            high = std::max(high, boxes_[element].max[axis]);
+        }
+        return {low, high > low ? 255 / (high - low) : 0};
+    }
+
+    TileTriangle packed_triangle(std::uint32_t element) const
+    {
+        TileTriangle out{};
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            out.corners[corner] = number_in(vertices_, scene_.triangles[element][corner]);
+        out.piece = number_in(pieces_, scene_.triangle_pieces[element]);
+        out.label = scene_.triangle_labels[element];
+        return out;
+    }
+
+    TilePiece packed_piece(std::uint32_t piece) const
+    {
+        const Piece& from = scene_.pieces[piece];
+        TilePiece out{};
+        out.bottom = from.bottom;
+        out.piece = piece;
+        out.part = from.part;
+        out.solid = from.solid;
+        out.open = from.open;
+        out.sides_up = from.sides_up;
+        return out;
+    }
+
+    TilePrimitive packed_primitive(std::uint32_t element) const
+    {
+        const Primitive& from = primitive_of(scene_, element);
+        TilePrimitive out{};
+        Vec3::Map(out.size.data()) = from.shape.size;
+        Vec3::Map(out.position.data()) = from.shape.pose.position;
+        Mat3::Map(out.rotation.data()) = from.shape.pose.rotation;
+        out.box = boxes_[element];
+        out.part = from.part;
+        out.kind = from.shape.kind;
+        out.label = from.label;
+        return out;
+    }
+
+    template <class T>
+    void put(const T& value)
+    {
+        out_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+
+    const Scene& scene_;
+    const std::vector<ElementBox>& boxes_;
+    const std::span<const std::uint32_t> elements_;
+    std::size_t triangles_ = 0;
+    std::vector<std::uint32_t> vertices_, pieces_;
+    std::string out_;
+};
+
+}  // namespace
+
+std::uint64_t tile_size(const TileHead& head)
+{
+    return sizeof(TileHead) + sizeof(TileBoxes) + head.vertices * sizeof(Vec3) +
+           head.primitives * (sizeof(TilePrimitive) + 4) + head.pieces * sizeof(TilePiece) +
+           head.triangles * (sizeof(TileTriangle) + 4);
+}
+
+Tile::Tile(std::string_view bytes)
+    : head(reinterpret_cast<const TileHead*>(bytes.data())),
+      boxes(reinterpret_cast<const TileBoxes*>(bytes.data() + sizeof(TileHead)))
+{
+    const char* next = bytes.data() + sizeof(TileHead) + sizeof(TileBoxes);
+    vertices = take<Vec3>(next, head->vertices);
+    primitives = take<TilePrimitive>(next, head->primitives);
+    pieces = take<TilePiece>(next, head->pieces);
+    ids = take<std::uint32_t>(next, elements());
+    triangles = take<TileTriangle>(next, head->triangles);
+}
+
+bool is_consistent_tile(std::string_view bytes, std::size_t parts)
+{
+    if (bytes.size() < sizeof(TileHead)) return false;
+    TileHead head;
+    std::memcpy(&head, bytes.data(), sizeof head);
+    const std::uint64_t size = tile_size(head);
+    if (bytes.size() < size || bytes.size() >= size + tile_alignment) return false;
+    if (std::size_t{head.triangles} + head.primitives > TileBoxes::most) return false;
+    const Tile tile(bytes);
+    for (const TileTriangle& t : tile.triangles) {
+        for (const std::uint8_t corner : t.corners)
+            if (corner >= tile.vertices.size()) return false;
+        if (t.piece >= tile.pieces.size() || t.label > Label::Water) return false;
+    }
+    for (const TilePiece& p : tile.pieces)
+        if (p.part >= parts) return false;
+    for (const TilePrimitive& p : tile.primitives)
+        if (p.kind > ShapeKind::Capsule || p.label > Label::Water || p.part >= parts) return false;
+    return true;
+}
+
+std::string tile_of(const Scene& scene, const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements)
+{
+    return TileBuilder(scene, boxes, elements).build();
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,101 @@
+#include "geometry/tile_tree.h"
+
+#include "base/parallel.h"
+
+#include <limits>
+
+namespace spawnfield {
+namespace {
+
+constexpr float no_limit = std::numeric_limits<float>::infinity(),
+                not_a_number = std::numeric_limits<float>::quiet_NaN();
+
+ElementBox empty_box() { return {{no_limit, no_limit, no_limit}, {-no_limit, -no_limit, -no_limit}}; }
+
+void extend(ElementBox& box, const ElementBox& by)
+{
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.min[axis] = std::min(box.min[axis], by.min[axis]);
+        box.max[axis] = std::max(box.max[axis], by.max[axis]);
+    }
+}
+
+/// Twice the centre of a box along an axis.
+double centre(const ElementBox& box, std::size_t axis) { return double(box.min[axis]) + double(box.max[axis]); }
+
+struct Range {
+    std::size_t first, end;
+    std::size_t tiles() const { return (end - first + TileBoxes::most - 1) / TileBoxes::most; }
+};
+
+/// Splits a range of elements along the longest side of what their centres cover. The first part gets a power of two of
+/// full tiles, so that 16 consecutive tiles are whole parts.
+std::array<Range, 2> split(const std::vector<ElementBox>& boxes, std::vector<std::uint32_t>& order, const Range& range)
+{
+    std::size_t longest = 0;
+    double length = -1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t k = range.first; k < range.end; ++k) {
+            low = std::min(low, centre(boxes[order[k]], axis));
+            high = std::max(high, centre(boxes[order[k]], axis));
+        }
+        if (high - low > length) {
+            length = high - low;
+            longest = axis;
+        }
+    }
+    const std::size_t middle = range.first + std::bit_ceil(range.tiles()) / 2 * TileBoxes::most;
+    const auto at = [&](std::size_t k) { return order.begin() + std::ptrdiff_t(k); };
+    std::nth_element(at(range.first), at(middle), at(range.end), [&](std::uint32_t l, std::uint32_t r) {
+        const double a = centre(boxes[l], longest), b = centre(boxes[r], longest);
+        return a < b || (a == b && l < r);
+    });
+    return {Range{range.first, middle}, Range{middle, range.end}};
+}
+
+}  // namespace
+
+TileTree::TileTree(std::vector<ElementBox> boxes) : boxes_(std::move(boxes))
+{
+    std::vector<ElementBox> children = boxes_;
+    while (levels_.empty() ? !children.empty() : children.size() > 1) {
+        std::vector<Node> nodes((children.size() + width - 1) / width);
+        std::vector<ElementBox> around(nodes.size(), empty_box());
+        for (std::size_t n = 0; n < nodes.size(); ++n)
+            for (std::size_t c = 0; c < width; ++c) {
+                const std::size_t child = n * width + c;
+                const bool exists = child < children.size();
+                for (std::size_t axis = 0; axis < 3; ++axis) {  // a comparison with NaN is always false
+                    nodes[n].min[axis][c] = exists ? children[child].min[axis] : not_a_number;
+                    nodes[n].max[axis][c] = exists ? children[child].max[axis] : not_a_number;
+                }
+                if (exists) extend(around[n], children[child]);
+            }
+        levels_.push_back(std::move(nodes));
+        children = std::move(around);
+    }
+}
+
+std::vector<std::uint32_t> packed_order(const std::vector<ElementBox>& boxes, std::vector<std::uint32_t> elements,
+                                        int threads)
+{
+    std::vector<Range> ranges{{0, elements.size()}};
+    while (std::any_of(ranges.begin(), ranges.end(), [](const Range& range) { return range.tiles() > 1; })) {
+        std::vector<std::array<Range, 2>> halves(ranges.size());
+        parallel_for(ranges.size(), threads, {}, [&](std::size_t r) {
+            const Range& range = ranges[r];
+            halves[r] = range.tiles() > 1 ? split(boxes, elements, range)
+                                          : std::array<Range, 2>{range, Range{range.end, range.end}};
+        });
+        ranges.clear();
+        for (const auto& pair : halves)
+            for (const Range& range : pair)
+                if (range.first < range.end) ranges.push_back(range);
+    }
+    for (const Range& range : ranges)
+        std::sort(elements.begin() + std::ptrdiff_t(range.first), elements.begin() + std::ptrdiff_t(range.end));
+    return elements;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,143 @@
+#include "map/old_geometry.h"
+
+#include <cmath>
+#include <cstring>
+#include <span>
+
+namespace spawnfield {
+namespace {
+
+// The records of a tile of version 2: the head, then vertices, primitives, pieces, triangles, boxes (24 bytes for each
+// element), ids, starts and refs (4 bytes each). An element may be in several tiles; it is taken from its home tile.
+
+struct OldHead {
+    double x0, y0, bin;
+    std::uint32_t vertices, triangles, primitives, pieces, refs, bin_cols, bin_rows, unused;
+};
+static_assert(sizeof(OldHead) == 56);
+
+struct OldPrimitive {
+    std::array<double, 3> size, position;
+    std::array<double, 9> rotation;  // column by column
+    std::uint32_t part;
+    ShapeKind kind;
+    Label label;
+    std::uint8_t home_col, home_row;
+};
+static_assert(sizeof(OldPrimitive) == 128);
+
+struct OldPiece {
+    double bottom;
+    std::uint32_t piece, part;
+    std::uint8_t solid, open, sides_up;
+    std::array<std::uint8_t, 5> unused;
+};
+static_assert(sizeof(OldPiece) == 24);
+
+struct OldTriangle {
+    Triangle corners;
+    std::uint32_t piece;
+    Label label;
+    std::uint8_t home_col, home_row, unused;
+};
+static_assert(sizeof(OldTriangle) == 20);
+
+/// Reads arrays one after the other. `is_valid` becomes false if the bytes end too early.
+class ArrayReader {
+public:
+    explicit ArrayReader(std::string_view bytes) : rest_(bytes) {}
+
+    template <class T>
+    std::span<const T> take(std::uint64_t count)
+    {
+        is_valid = is_valid && count <= rest_.size() / sizeof(T);
+        if (!is_valid) return {};
+        const std::span<const T> out(reinterpret_cast<const T*>(rest_.data()), count);
+        rest_.remove_prefix(count * sizeof(T));
+        return out;
+    }
+
+    bool is_valid = true;
+
+private:
+    std::string_view rest_;
+};
+
+/// Adds the elements whose home is a tile. Returns whether the tile is consistent.
+bool add_tile(std::string_view bytes, std::uint64_t triangle_count, std::uint64_t element_count, Scene& scene)
+{
+    ArrayReader in(bytes);
+    const auto heads = in.take<OldHead>(1);
+    if (heads.empty()) return false;
+    const OldHead& head = heads.front();
+    const auto vertices = in.take<Vec3>(head.vertices);
+    const auto primitives = in.take<OldPrimitive>(head.primitives);
+    const auto pieces = in.take<OldPiece>(head.pieces);
+    const auto triangles = in.take<OldTriangle>(head.triangles);
+    const std::uint64_t elements = std::uint64_t{head.triangles} + head.primitives;
+    in.take<std::array<float, 6>>(elements);  // boxes
+    const auto ids = in.take<std::uint32_t>(elements);
+    if (!in.is_valid) return false;
+    const auto first_vertex = std::uint32_t(scene.vertices.size());
+    scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
+    for (const OldPiece& piece : pieces) {
+        if (piece.part >= scene.parts.size() || piece.piece >= triangle_count) return false;
+        if (piece.piece >= scene.pieces.size()) scene.pieces.resize(piece.piece + 1);
+        Piece& to = scene.pieces[piece.piece];
+        to.part = piece.part;
+        to.solid = piece.solid != 0;
+        to.open = piece.open != 0;
+        to.sides_up = piece.sides_up != 0;
+        to.bottom = piece.bottom;
+    }
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const OldTriangle& from = triangles[t];
+        if (ids[t] >= triangle_count || from.piece >= pieces.size() || from.label > Label::Water) return false;
+        for (const std::uint32_t corner : from.corners)
+            if (corner >= vertices.size()) return false;
+        if (from.home_col == 0 || from.home_row == 0) continue;
+        for (std::size_t c = 0; c < 3; ++c) scene.triangles[ids[t]][c] = first_vertex + from.corners[c];
+        scene.triangle_labels[ids[t]] = from.label;
+        scene.triangle_pieces[ids[t]] = pieces[from.piece].piece;
+    }
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+        const OldPrimitive& from = primitives[p];
+        const std::uint64_t id = ids[triangles.size() + p];
+        if (id < triangle_count || id >= element_count || from.part >= scene.parts.size() ||
+            from.kind > ShapeKind::Capsule || from.label > Label::Water)
+            return false;
+        if (from.home_col == 0 || from.home_row == 0) continue;
+        scene.primitives[id - triangle_count] = {
+            {from.kind, Vec3(from.size.data()), {Vec3(from.position.data()), Mat3(from.rotation.data())}},
+            from.part,
+            from.label};
+    }
+    return true;
+}
+
+}  // namespace
+
+void read_old_tiles(const TileStore& tiles, std::uint64_t triangles, std::uint64_t elements, Scene& scene)
+{
+    // A tile needs at least 24 bytes for an element, so larger counts contradict the file.
+    if (triangles > elements || elements > tiles.bytes().size() / 24) tiles.fail_inconsistent();
+    constexpr std::uint32_t missing = 0xffffffff;
+    scene.triangles.assign(triangles, {});
+    scene.triangle_labels.assign(triangles, Label::Obstacle);
+    scene.triangle_pieces.assign(triangles, missing);
+    scene.primitives.assign(elements - triangles, Primitive{.shape = {}, .part = missing});
+    for (std::size_t level = 0; level < tiles.levels().size(); ++level)
+        for (std::size_t tile = 0; tile < tiles.levels()[level].tiles.size(); ++tile) {
+            bool is_consistent = true;
+            const auto trust = [](std::string_view) { return true; };
+            if (const std::string_view bytes = tiles.open(level, tile, trust); !bytes.empty())
+                is_consistent = add_tile(bytes, triangles, elements, scene);
+            if (!is_consistent) tiles.fail_inconsistent();
+        }
+    for (const std::uint32_t piece : scene.triangle_pieces)
+        if (piece == missing) tiles.fail_inconsistent();
+    for (const Primitive& primitive : scene.primitives)
+        if (primitive.part == missing) tiles.fail_inconsistent();
+}
+
+}  // namespace spawnfield
