@@ -515,6 +515,45 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
     CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].tiles.back().offset += 8; }) == wanted);
 }
 
+TEST_CASE("a changed byte in an old geometry file with right checksums is refused, or gives another geometry")
+{
+    const TempFolder folder;
+    const std::string good = bytes_of(fs::path(source_folder()) / "tests/data/maps/format-3/geometry.bin");
+    const auto number_at = [](const std::string& bytes, std::size_t place) {
+        std::uint64_t out;
+        std::memcpy(&out, bytes.data() + place, sizeof out);
+        return out;
+    };
+    const std::size_t head_size = number_at(good, 16);
+    const auto open_changed = [&](std::size_t place) {
+        std::string bytes = good;
+        bytes[place] ^= 0x55;
+        for (std::size_t entry = 24; entry + 24 <= head_size; entry += 4) {  // offset, size and checksum of a tile
+            const std::size_t tile = head_size + number_at(good, entry), size = number_at(good, entry + 8);
+            if (size == 0 || tile > good.size() || size > good.size() - tile ||
+                XXH64(good.data() + tile, size, 0) != number_at(good, entry + 16))
+                continue;
+            const std::uint64_t sum = XXH64(bytes.data() + tile, size, 0);
+            std::memcpy(bytes.data() + entry + 16, &sum, sizeof sum);
+        }
+        folder.write("geometry.bin", bytes);
+        return complaint(folder, [&] {
+            column_at(open_geometry(folder / "geometry.bin", checksum(bytes.substr(0, head_size))), 1, 0);
+        });
+    };
+    const std::string refusal =
+        "@/geometry.bin: is not a valid map file: its values contradict each other; bake the map again";
+    std::size_t refused = 0;
+    for (std::size_t place = head_size; place < good.size(); ++place) {
+        CAPTURE(place);
+        const std::string text = open_changed(place);
+        CHECK((text.empty() || text == refusal));
+        refused += text == refusal;
+    }
+    CHECK(refused > 50);  // counts, indices, kinds, labels and numbers of elements
+    CHECK(refused < good.size() - head_size);
+}
+
 TEST_CASE("a bounds file whose levels do not fit each other is refused, even if its checksums are right")
 {
     const TempFolder folder;
