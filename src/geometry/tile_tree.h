@@ -77,7 +77,7 @@ private:
             const float *const min = node.min[axis].data(), *const max = node.max[axis].data();
             const float low = from[axis], high = to[axis];
 #pragma omp simd
-            for (std::size_t c = 0; c < width; ++c) bits[c] = (min[c] <= high) & (max[c] >= low) ? bits[c] : 0;
+            for (std::size_t c = 0; c < width; ++c) bits[c] = ((min[c] <= high) & (max[c] >= low)) ? bits[c] : 0;
         }
         std::uint32_t out = 0;
 #pragma omp simd reduction(| : out)
