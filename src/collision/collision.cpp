@@ -1,11 +1,11 @@
 #include "base/module.h"
+#include "collision/box_triangle.h"
 #include "collision/narrow_phase_module.h"
 #include "geometry/geometry_impl.h"
 #include "map/occupancy_impl.h"
 #include "robot/hull.h"
 
 #include <spawnfield/collision.h>
-#include <spawnfield/free_space.h>
 
 #include <algorithm>
 
@@ -73,22 +73,17 @@ struct PlacedPart {
     Bounds bounds;               ///< in the scene's frame
 };
 
-/// Returns whether a fast test proves that a part does not meet a triangle: a gap of more than FreeSpace::margin is
-/// between the part's box and the triangle's bounding box along the axes of the part's box, or between the part's box
-/// and the triangle's plane. For smaller gaps FCL must decide, because its answer depends on its own tolerance. This
-/// test excludes most triangles near a robot, and is much faster than FCL.
-bool is_apart(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
+/// Compares a part with a triangle by a fast test, which decides most of the triangles near a robot without FCL. FCL
+/// must decide if the part and the triangle nearly touch, because its answer depends on its own tolerance. The test
+/// sees the bounding box of a part that is not a box, so such a part is never proven to overlap.
+Contact quick_contact(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
 {
-    const Vec3& half = placed.part->box_half;
     std::array<Vec3, 3> seen;  // corners relative to the middle of the box, along its axes
     for (std::size_t k = 0; k < 3; ++k)
         seen[k] = placed.robot_from_shape.linear().transpose() * (corners[k] - placed.robot_from_shape.translation()) -
                   placed.part->box_centre;
-    const Vec3 low = seen[0].cwiseMin(seen[1]).cwiseMin(seen[2]), high = seen[0].cwiseMax(seen[1]).cwiseMax(seen[2]);
-    if (((low - half).array() > FreeSpace::margin).any() || ((-half - high).array() > FreeSpace::margin).any())
-        return true;
-    const Vec3 normal = (seen[1] - seen[0]).cross(seen[2] - seen[0]);
-    return std::abs(normal.dot(seen[0])) > normal.cwiseAbs().dot(half) + FreeSpace::margin * normal.norm();
+    const Contact contact = contact_of(placed.part->box_half, seen);
+    return contact == Contact::Overlap && placed.part->bounds_shape.kind != ShapeKind::Box ? Contact::Unclear : contact;
 }
 
 }  // namespace
@@ -119,21 +114,35 @@ struct CollisionChecker::Impl {
     bool element_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
                        const Vec3& origin) const
     {
-        const ElementBox box = tile.box(element);
+        return tile.is_triangle(element) ? triangle_meets(tile, element, placed, origin)
+                                         : primitive_meets(tile, element, placed, origin);
+    }
+
+    bool triangle_meets(const Tile& tile, std::uint32_t triangle, const std::vector<PlacedPart>& placed,
+                        const Vec3& origin) const
+    {
+        std::array<Vec3, 3> corners = tile.corners(triangle);
+        for (Vec3& corner : corners) corner -= origin;
         for (const PlacedPart& part : placed) {
-            if (!overlap(box, part.bounds)) continue;
-            if (tile.is_triangle(element)) {
-                std::array<Vec3, 3> corners = tile.corners(element);
-                for (Vec3& corner : corners) corner -= origin;
-                if (!is_apart(part, corners) && narrow_phase.triangle(*part.part->body, part.robot_from_shape, corners))
-                    return true;
-            } else {
-                const Shape shape = tile.primitive(element).shape();
-                const Transform robot_from_other = transform_of({shape.pose.position - origin, shape.pose.rotation});
-                if (narrow_phase.shape(*part.part->body, part.robot_from_shape, shape, robot_from_other)) return true;
-            }
+            const Contact contact = quick_contact(part, corners);
+            if (contact == Contact::Overlap) return true;
+            if (contact == Contact::Unclear && overlap(tile.box(triangle), part.bounds) &&
+                narrow_phase.triangle(*part.part->body, part.robot_from_shape, corners))
+                return true;
         }
         return false;
+    }
+
+    bool primitive_meets(const Tile& tile, std::uint32_t element, const std::vector<PlacedPart>& placed,
+                         const Vec3& origin) const
+    {
+        const ElementBox box = tile.box(element);
+        const Shape shape = tile.primitive(element).shape();
+        const Transform robot_from_other = transform_of({shape.pose.position - origin, shape.pose.rotation});
+        return std::any_of(placed.begin(), placed.end(), [&](const PlacedPart& part) {
+            return overlap(box, part.bounds) &&
+                   narrow_phase.shape(*part.part->body, part.robot_from_shape, shape, robot_from_other);
+        });
     }
 
     /// Returns the smallest number of a part of the scene, below `best`, whose filled meshes contain a part of the
@@ -162,7 +171,7 @@ struct CollisionChecker::Impl {
             all.extend(part.bounds.max);
         }
         std::uint32_t best = CollisionHit::occupancy;  // larger than every part number: no hit yet
-        geometry.impl().visit_in(all, [&](const Tile& tile, std::uint32_t element) {
+        geometry.impl().visit_near(all, [&](const Tile& tile, std::uint32_t element) {
             if ((any_will_do && best != CollisionHit::occupancy) || tile.label(element) == Label::Water) return;
             const std::uint32_t part = tile.part(element);
             if (part < best && element_meets(tile, element, placed, pose.position)) best = part;

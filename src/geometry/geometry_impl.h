@@ -53,13 +53,9 @@ struct Geometry::Impl {
             return box.min[0] <= high.x() && box.max[0] >= low.x() && box.min[1] <= high.y() && box.max[1] >= low.y() &&
                    box.min[2] <= high.z() && box.max[2] >= low.z();
         };
-        for (std::size_t t = 0; t < trees_.size(); ++t)
-            trees_[t].visit(space, [&](std::size_t number) {
-                const Tile tile = open(t, number);
-                visit_each(tile.near(space), [&](std::uint32_t element) {
-                    if (meets(tile.box(element))) visit(tile, element);
-                });
-            });
+        visit_near(space, [&](const Tile& tile, std::uint32_t element) {
+            if (meets(tile.box(element))) visit(tile, element);
+        });
     }
 
     /// Calls visit(tile, element) once for each element whose box meets the closed rectangle, and for a few others near
@@ -72,6 +68,17 @@ struct Geometry::Impl {
                 const Tile tile = open(t, number);
                 visit_each(tile.near(low_x, low_y, high_x, high_y),
                            [&](std::uint32_t element) { visit(tile, element); });
+            });
+    }
+
+    /// The same for a closed box.
+    template <class Visit>
+    void visit_near(const Bounds& space, const Visit& visit) const
+    {
+        for (std::size_t t = 0; t < trees_.size(); ++t)
+            trees_[t].visit(space, [&](std::size_t number) {
+                const Tile tile = open(t, number);
+                visit_each(tile.near(space), [&](std::uint32_t element) { visit(tile, element); });
             });
     }
 

@@ -1,0 +1,122 @@
+#include "catch.h"
+#include "collision/box_triangle.h"
+
+#include <spawnfield/free_space.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace spawnfield;
+
+namespace {
+
+using Triangle3 = std::array<Vec3, 3>;
+
+/// Returns whether a triangle meets the box -half .. half: cuts the triangle by the six planes of the box (Sutherland,
+/// Hodgman, Reentrant polygon clipping, 1974) and looks whether something is left.
+bool meets(const Vec3& half, const Triangle3& triangle)
+{
+    std::vector<Vec3> polygon(triangle.begin(), triangle.end());
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double sign : {-1.0, 1.0}) {
+            std::vector<Vec3> rest;
+            for (std::size_t k = 0; k < polygon.size(); ++k) {
+                const Vec3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+                const double beyond_p = sign * p[axis] - half[axis], beyond_q = sign * q[axis] - half[axis];
+                if (beyond_p <= 0) rest.push_back(p);
+                if ((beyond_p < 0) != (beyond_q < 0) && beyond_p != beyond_q)
+                    rest.push_back(p + beyond_p / (beyond_p - beyond_q) * (q - p));
+            }
+            polygon = std::move(rest);
+        }
+    return !polygon.empty();
+}
+
+/// Moves along a random direction by a random length between 1e-6 and `most` times a size.
+Vec3 random_step(std::mt19937& random, double most)
+{
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> exponent(-6, std::log10(most));
+    return Vec3(normal(random), normal(random), normal(random)).normalized() * std::pow(10, exponent(random));
+}
+
+/// Corners near the surface of a box, at all distances between them. Some triangles have edges along the axes, and some
+/// are nearly parallel to them.
+Triangle3 random_triangle(std::mt19937& random, const Vec3& half)
+{
+    std::uniform_real_distribution<double> within(-1.2, 1.2);
+    std::uniform_int_distribution<int> kind(0, 5);
+    const Vec3 first(within(random) * half.x(), within(random) * half.y(), within(random) * half.z());
+    Triangle3 out{first, first + random_step(random, 1e3), first + random_step(random, 1e3)};
+    const int chosen = kind(random);
+    if (chosen == 0) out[1] = first + Vec3::Unit(chosen % 3) * (out[1] - first).norm();
+    if (chosen == 1) out[2].z() = out[1].z() = first.z();
+    if (chosen == 2) out[2] = first + 3 * (out[1] - first) + random_step(random, 1e-2);
+    return out;
+}
+
+/// Returns whether no angle of the triangle is very small, and no edge is nearly, but not exactly, parallel to an axis.
+bool is_regular(const Triangle3& triangle)
+{
+    constexpr double least = 1e-6;  // rad
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 edge = triangle[(k + 1) % 3] - triangle[k];
+        longest = std::max(longest, edge.norm());
+        for (int axis = 0; axis < 3; ++axis) {
+            const double across = Vec3::Unit(axis).cross(edge).norm();
+            if (across != 0 && across < least * edge.norm()) return false;
+        }
+    }
+    const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    return normal.norm() > least * longest * longest;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the fast test of a box and a triangle is right wherever it claims something, and clear about regular triangles")
+{
+    constexpr double margin = FreeSpace::margin;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> size(0.05, 2);
+    std::array<int, 3> counts{};
+    int clear = 0;
+    for (int n = 0; n < 300000; ++n) {
+        const Vec3 half(size(random), size(random), size(random));
+        const Triangle3 triangle = random_triangle(random, half);
+        const Contact contact = contact_of(half, triangle);
+        ++counts[std::size_t(contact)];
+        const auto meets_grown_by = [&](double by) { return meets(half + Vec3::Constant(by), triangle); };
+        // A gap of more than the margin is more than margin / sqrt(3) along some axis of the box.
+        if (contact == Contact::Apart && meets_grown_by(margin / 2)) FAIL("apart, but they meet: case " << n);
+        if (contact == Contact::Overlap && !meets_grown_by(-margin)) FAIL("overlap, but they do not: case " << n);
+        const bool is_far = !meets_grown_by(2 * margin), is_deep = meets_grown_by(-3 * margin);
+        if (!is_regular(triangle) || (!is_far && !is_deep)) continue;
+        ++clear;
+        if (contact == Contact::Unclear) FAIL("unclear, but the distance is large: case " << n);
+    }
+    CHECK(counts[std::size_t(Contact::Apart)] > 50000);
+    CHECK(counts[std::size_t(Contact::Overlap)] > 50000);
+    CHECK(clear > 150000);
+}
+
+TEST_CASE("the fast test of a box and a triangle knows touching, thin and flat cases")
+{
+    const Vec3 half(0.5, 0.3, 0.2);
+    const auto at_height = [&](double z) { return contact_of(half, {Vec3(-9, -9, z), Vec3(9, -9, z), Vec3(0, 9, z)}); };
+    CHECK(at_height(0) == Contact::Overlap);
+    CHECK(at_height(0.19) == Contact::Overlap);
+    CHECK(at_height(0.2) == Contact::Unclear);
+    CHECK(at_height(0.200005) == Contact::Unclear);
+    CHECK(at_height(0.20002) == Contact::Apart);
+    CHECK(contact_of(half, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}) == Contact::Unclear);
+    CHECK(contact_of(half, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)}) == Contact::Unclear);
+    CHECK(contact_of(half, {Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(2, 0, 1)}) == Contact::Apart);
+    // Only the cross product of an edge of the box and an edge of the triangle separates these.
+    CHECK(contact_of({1, 1, 1}, {Vec3(1.6, 0.3, 2), Vec3(0.3, 1.6, -2), Vec3(9, 9, 0)}) == Contact::Overlap);
+    CHECK(contact_of({1, 1, 1}, {Vec3(2.2, 0, 2), Vec3(0, 2.2, -2), Vec3(9, 9, 0)}) == Contact::Apart);
+}
