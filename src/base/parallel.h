@@ -12,7 +12,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <map>
 #include <mutex>
+#include <vector>
 
 namespace spawnfield {
 
@@ -55,6 +57,35 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
     const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     tbb::task_arena arena(std::min(thread_count(threads), int(allowed)));
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), run); });
+}
+
+/// Calls make(i, buffer) for each i < count, like parallel_for, and take(buffer) in the order of i, one at a time. A
+/// result is taken while others are made. Few buffers exist, and each is used again.
+template <class Buffer, class Make, class Take>
+void parallel_in_order(std::size_t count, int threads, const Progress& progress, const Make& make, const Take& take)
+{
+    std::mutex mutex;
+    std::size_t started = 0, taken = 0;
+    std::map<std::size_t, Buffer> waiting;
+    std::vector<Buffer> unused;
+    parallel_for(count, threads, progress, [&](std::size_t) {
+        Buffer buffer;
+        std::unique_lock lock(mutex);
+        const std::size_t i = started++;
+        if (!unused.empty()) {
+            buffer = std::move(unused.back());
+            unused.pop_back();
+        }
+        lock.unlock();
+        make(i, buffer);
+        lock.lock();
+        waiting.emplace(i, std::move(buffer));
+        for (auto next = waiting.begin(); next != waiting.end() && next->first == taken; next = waiting.erase(next)) {
+            take(next->second);
+            unused.push_back(std::move(next->second));
+            ++taken;
+        }
+    });
 }
 
 }  // namespace spawnfield

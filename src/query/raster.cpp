@@ -86,7 +86,22 @@ struct Row {
     std::vector<RasterPose> poses;
     std::vector<VerdictTally> tallies;  ///< of the poses, if they are judged at several headings
     std::uint64_t aerial = 0, exact_checks = 0;
+
+    void clear()  // keeps the memory
+    {
+        poses.clear();
+        tallies.clear();
+        aerial = exact_checks = 0;
+    }
 };
+
+/// Makes room for the poses of these rows. If there is not enough, makes room for `times` as many as with these rows.
+void reserve_poses(std::vector<RasterPose>& poses, const std::vector<Row>& rows, double times)
+{
+    std::size_t needed = poses.size();
+    for (const Row& row : rows) needed += row.poses.size();
+    if (needed > poses.capacity()) poses.reserve(std::max(needed + needed / 2, std::size_t(double(needed) * times)));
+}
 
 /// Judges strips of rows. In a strip, it goes from block to block, so that neighbouring columns share work.
 class RasterJudge {
@@ -104,31 +119,36 @@ public:
     /// Judges as many rows as `out` has entries, beginning with row `first`.
     void judge_rows(int first, std::span<Row> out) const
     {
-        Judges judges{PoseJudge(shared_, options_.yaw, max_height()), {}};
-        if (headings_ > 0) judges.at_headings.emplace(shared_, headings_, max_height());
+        Worker& worker = workers_.local();
         if (options_.dims == 2 && is_everywhere_)
             for (Row& row : out) row.poses.reserve(std::size_t(grid_.cols));  // one layer for each column, mostly
-        Columns columns;
         for (int col = 0; col < grid_.cols; col += block) {
             const int cols = std::min(block, grid_.cols - col);
             if (area_.misses({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
                               grid_.y_of(first + int(out.size()) - 1)}))
                 continue;
             if (options_.height_check)
-                columns.set(shared_.map.geometry, {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
+                worker.columns.set(shared_.map.geometry,
+                                   {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
             for (int j = 0; j < int(out.size()); ++j)
                 for (int i = 0; i < cols; ++i) {
                     const double x = grid_.x_of(col + i), y = grid_.y_of(first + j);
-                    if (is_everywhere_ || area_.contains({x, y}))
-                        judge_column(judges, columns, i, j, x, y, out[std::size_t(j)]);
+                    if (is_everywhere_ || area_.contains({x, y})) judge_column(worker, i, j, x, y, out[std::size_t(j)]);
                 }
         }
     }
 
 private:
-    struct Judges {
-        PoseJudge one;                             ///< at options.yaw
+    /// What a thread keeps from strip to strip: mostly memory.
+    struct Worker {
+        PoseJudge judge;                           ///< at options.yaw
         std::optional<HeadingsJudge> at_headings;  ///< empty: only one yaw is judged
+        Columns columns;                           ///< of the current block
+
+        explicit Worker(const RasterJudge& raster) : judge(raster.shared_, raster.options_.yaw, raster.max_height())
+        {
+            if (raster.headings_ > 0) at_headings.emplace(raster.shared_, raster.headings_, raster.max_height());
+        }
     };
 
     /// A pose of a 2D raster is `offset` above its layer by definition.
@@ -137,21 +157,21 @@ private:
         return options_.dims == 2 ? std::numeric_limits<double>::infinity() : shared_.options.max_height;
     }
 
-    void judge_column(Judges& judges, const Columns& columns, int i, int j, double x, double y, Row& out) const
+    void judge_column(Worker& worker, int i, int j, double x, double y, Row& out) const
     {
-        const ColumnView column = options_.height_check ? columns.at(i, j) : ColumnView();
+        const ColumnView column = options_.height_check ? worker.columns.at(i, j) : ColumnView();
         if (options_.dims == 2) {
-            layers(judges, column, x, y, out);
+            layers(worker, column, x, y, out);
             return;
         }
         const std::size_t first = out.poses.size();
-        if (options_.snap) layers(judges, column, x, y, out);
+        if (options_.snap) layers(worker, column, x, y, out);
         const std::size_t steps = out.poses.size();
         const Steps replaced = replaced_steps(grid_, offset_, std::span(out.poses).subspan(first));
         if (options_.height_check && shared_.map.bounds.contains_xy(x, y, touch_tolerance))
-            heights(judges.one, column, replaced, x, y, out);
+            heights(worker.judge, column, replaced, x, y, out);
         else
-            all_heights(judges.one, replaced, x, y, out);
+            all_heights(worker.judge, replaced, x, y, out);
         if (steps > first)
             std::inplace_merge(out.poses.begin() + std::ptrdiff_t(first), out.poses.begin() + std::ptrdiff_t(steps),
                                out.poses.end(), [](const RasterPose& a, const RasterPose& b) { return a.z > b.z; });
@@ -163,7 +183,7 @@ private:
         return heights_within(column.layers, ground_z_);
     }
 
-    void layers(Judges& judges, const ColumnView& column, double x, double y, Row& out) const
+    void layers(Worker& worker, const ColumnView& column, double x, double y, Row& out) const
     {
         const std::span<const double> heights = ground_layers(column);
         const int count = int(heights.size());
@@ -174,11 +194,11 @@ private:
             if (options_.snap && !(height >= grid_.z0 - touch_tolerance && height <= top_ + touch_tolerance)) continue;
             const double z = height + offset_;
             Verdict verdict;
-            if (judges.at_headings) {
-                out.tallies.push_back(judges.at_headings->judge(column, {x, y, z}, out.exact_checks));
+            if (worker.at_headings) {
+                out.tallies.push_back(worker.at_headings->judge(column, {x, y, z}, out.exact_checks));
                 verdict = merged(out.tallies.back());
             } else {
-                const Judgement judged = judges.one.judge(column, {x, y, z});
+                const Judgement judged = worker.judge.judge(column, {x, y, z});
                 out.exact_checks += judged.exact_check;
                 verdict = judged.verdict;
             }
@@ -270,6 +290,7 @@ private:
     const bool is_everywhere_;
     const int headings_;  ///< 0: only options.yaw
     const Steps outside_ = steps_outside();
+    mutable PerThread<Worker> workers_{[this] { return Worker(*this); }};
 };
 
 }  // namespace
@@ -319,26 +340,31 @@ RasterResult raster_with(const Judge& judge, const RasterOptions& options, int h
     const Bounds bounds = chosen_bounds("raster", options.bounds, map.bounds, options.dims);
     out.grid = raster_grid(bounds, options);
     const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z(), headings);
-    std::vector<Row> rows(std::size_t(out.grid.rows));
+    const auto rows = std::size_t(out.grid.rows);
     // Without the height check, rows share no work, and each row takes long.
     const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
-    const std::size_t strip = std::clamp<std::size_t>(rows.size() / std::size_t(4 * thread_count(options.threads)), 1,
+    const std::size_t strip = std::clamp<std::size_t>(rows / std::size_t(4 * thread_count(options.threads)), 1,
                                                       most_rows);
-    parallel_for((rows.size() + strip - 1) / strip, options.threads, options.progress, [&](std::size_t s) {
-        strips.judge_rows(int(s * strip), std::span(rows).subspan(s * strip, std::min(strip, rows.size() - s * strip)));
-    });
-
-    std::size_t total = 0;
-    for (const Row& row : rows) total += row.poses.size();
-    out.poses.reserve(total);
-    for (Row& row : rows) {
-        for (const RasterPose& pose : row.poses) ++out.counts[pose.verdict];
-        out.counts[Verdict::Aerial] += row.aerial;
-        out.exact_checks += row.exact_checks;
-        out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
-        if (tallies != nullptr) tallies->insert(tallies->end(), row.tallies.begin(), row.tallies.end());
-        row = {};
-    }
+    std::size_t rows_taken = 0;
+    parallel_in_order<std::vector<Row>>((rows + strip - 1) / strip, options.threads, options.progress,
+                                        [&](std::size_t s, std::vector<Row>& made) {
+                                            made.resize(std::min(strip, rows - s * strip));
+                                            strips.judge_rows(int(s * strip), made);
+                                        },
+                                        [&](std::vector<Row>& made) {
+                                            rows_taken += made.size();
+                                            reserve_poses(out.poses, made, double(rows) / double(rows_taken));
+                                            for (Row& row : made) {
+                                                for (const RasterPose& pose : row.poses) ++out.counts[pose.verdict];
+                                                out.counts[Verdict::Aerial] += row.aerial;
+                                                out.exact_checks += row.exact_checks;
+                                                out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
+                                                if (tallies != nullptr)
+                                                    tallies->insert(tallies->end(), row.tallies.begin(),
+                                                                    row.tallies.end());
+                                                row.clear();
+                                            }
+                                        });
     return out;
 }
 
