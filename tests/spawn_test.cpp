@@ -430,3 +430,25 @@ TEST_CASE("counts and distances beyond their limits are refused")
     SearchOptions options{.max_failures = 0};
     CHECK_THROWS_WITH(search(judge, options), "search: max_failures is 0, needs >= 1");
 }
+
+TEST_CASE("few spawns in a map of many tiles are the exhaustive ones, with coarse cells and more exact checks")
+{
+    const TestMap fine = map_of(load_scene(source_folder() + "/maps/training/scene.yaml"), 0.02),
+                  coarse = map_of(load_scene(source_folder() + "/maps/training/scene.yaml"), 0.1);
+    const Judge judge(fine, husky());
+    REQUIRE(judge.impl().is_sparse(256));  // the first batch of draws
+    CHECK_FALSE(judge.impl().is_sparse(1000000));
+    CHECK_FALSE(Judge(coarse, husky()).impl().is_sparse(256));
+    CHECK_FALSE(Judge(fine, load_robot("box:90,90,1")).impl().is_sparse(256));  // meets too many elements
+    const SampleOptions options{.count = 100, .random_yaw = true, .seed = 5};
+    const SpawnList fast = sample(judge, options), slow = sample(without_mask(judge), options),
+                    all_cells = sample(Judge(coarse, husky()), options);
+    REQUIRE(fast.spawns.size() == 100);
+    REQUIRE(slow.spawns.size() == 100);
+    for (std::size_t k = 0; k < 100; ++k) {
+        CHECK(fast.spawns[k].position == slow.spawns[k].position);
+        CHECK(fast.spawns[k].yaw == slow.spawns[k].yaw);
+    }
+    CHECK(fast.exact_checks > all_cells.exact_checks);
+    CHECK(fast.exact_checks < slow.exact_checks);
+}

@@ -8,12 +8,32 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
+
 namespace spawnfield {
 
 Bytes bytes_of(std::string bytes)
 {
     const auto owner = std::make_shared<const std::string>(std::move(bytes));
-    return {owner, *owner};
+    return {.owner = owner, .view = *owner};
+}
+
+bool Bytes::copy(std::size_t offset, std::size_t size, char* to) const
+{
+    if (descriptor < 0) {
+        std::memcpy(to, view.data() + offset, size);
+        return true;
+    }
+    while (size > 0) {
+        const ssize_t count = pread(descriptor, to, size, off_t(start + offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return false;
+        offset += std::size_t(count);
+        size -= std::size_t(count);
+        to += count;
+    }
+    return true;
 }
 
 Bytes map_file(const std::filesystem::path& file)
@@ -27,12 +47,14 @@ Bytes map_file(const std::filesystem::path& file)
     }
     const auto size = std::size_t(status.st_size);
     void* const start = size == 0 ? nullptr : mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
-    close(descriptor);
+    if (size == 0 || start == MAP_FAILED) close(descriptor);
     if (size == 0) return {};
     if (start == MAP_FAILED) throw FileError(file.string(), "cannot be mapped into memory");
-    const std::shared_ptr<const void> owner(start,
-                                            [size](const void* mapped) { munmap(const_cast<void*>(mapped), size); });
-    return {owner, {static_cast<const char*>(start), size}};
+    const std::shared_ptr<const void> owner(start, [size, descriptor](const void* mapped) {
+        munmap(const_cast<void*>(mapped), size);
+        close(descriptor);
+    });
+    return {.owner = owner, .view = {static_cast<const char*>(start), size}, .descriptor = descriptor};
 }
 
 }  // namespace spawnfield

@@ -6,7 +6,14 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
+
 namespace spawnfield {
+namespace {
+
+constexpr std::size_t large_file = 64 << 20, page = 4096;  // bytes
+
+}  // namespace
 
 TileLevel::TileLevel(double cell_size, std::uint32_t col_count, std::uint32_t row_count, std::uint32_t tile_side)
     : cell(cell_size), cols(col_count), rows(row_count), tile_cols(cols / tile_side + (cols % tile_side != 0)),
@@ -18,16 +25,59 @@ TileStore::TileStore(std::vector<TileLevel> levels, Bytes bytes, std::string fil
     : levels_(std::move(levels)), bytes_(std::move(bytes)), file_(std::move(file))
 {
     if (file_.empty()) return;
+    opened_ = std::make_unique<Opened>();
+    opened_->bytes_to_copy = bytes_.view.size() > large_file ? bytes_.view.size() / 4 : 0;
     for (const TileLevel& level : levels_)
-        checked_.push_back(std::make_unique<std::atomic<std::uint8_t>[]>(level.tiles.size()));
+        opened_->tiles.push_back(std::make_unique<std::atomic<const char*>[]>(level.tiles.size()));
 }
 
-void TileStore::verify_checksum(std::size_t level, std::size_t tile) const
+/// Returns memory for a tile of this size, a multiple of 8 bytes. Blocks of many tiles spare malloc the system calls by
+/// which it gets memory.
+char* TileStore::Opened::room_for(std::size_t size)
+{
+    constexpr std::size_t block = 1 << 20;  // bytes
+    const std::lock_guard lock(mutex);
+    if (size > room) {
+        copies.push_back(std::make_unique_for_overwrite<std::uint64_t[]>(block / 8));
+        room = block;
+    }
+    char* const out = reinterpret_cast<char*>(copies.back().get()) + (block - room);
+    room -= size;
+    return out;
+}
+
+/// Returns a copy of a small tile; nothing for a large one, or if enough was copied.
+std::string_view TileStore::copy_of(const TileEntry& entry) const
+{
+    std::size_t rest = opened_->bytes_to_copy;
+    do {
+        if (entry.size > std::min(page, rest)) return {};
+    } while (!opened_->bytes_to_copy.compare_exchange_weak(rest, rest - entry.size));
+    char* const copy = opened_->room_for((entry.size + 7) / 8 * 8);
+    if (!bytes_.copy(entry.offset, entry.size, copy))
+        throw FileError(file_, "cannot be read any more, or was cut short");
+    return {copy, entry.size};
+}
+
+/// Reads a tile and checks its checksum.
+std::string_view TileStore::fetch(std::size_t level, std::size_t tile) const
 {
     const TileEntry& entry = levels_[level].tiles[tile];
-    if (XXH64(bytes_.view.data() + entry.offset, entry.size, 0) != entry.checksum)
+    std::string_view out = copy_of(entry);
+    if (out.empty()) out = bytes_.view.substr(entry.offset, entry.size);
+    if (XXH64(out.data(), out.size(), 0) != entry.checksum)
         throw FileError(file_, "is damaged (tile " + std::to_string(tile) + " of level " + std::to_string(level) +
                                    " has another checksum than the head of the file lists); bake the map again");
+    return out;
+}
+
+/// Keeps these bytes for the next calls, unless another thread has opened the tile meanwhile. Returns what is kept.
+std::string_view TileStore::keep(std::size_t level, std::size_t tile, std::string_view bytes) const
+{
+    const char* known = nullptr;
+    const bool is_first = opened_->tiles[level][tile].compare_exchange_strong(known, bytes.data(),
+                                                                              std::memory_order_acq_rel);
+    return is_first ? bytes : std::string_view(known, bytes.size());
 }
 
 void TileStore::fail_inconsistent() const

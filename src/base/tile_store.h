@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -31,8 +33,12 @@ struct TileLevel {
     TileLevel(double cell, std::uint32_t cols, std::uint32_t rows, std::uint32_t tile_side);
 };
 
-/// The tiles of several levels, in memory or in a file that is mapped into memory. A tile of a file is checked when it
-/// is opened for the first time; tiles in memory are trusted. Any number of threads may open tiles at the same time.
+/// The tiles of several levels, in memory or in a file. A tile of a file is read and checked when it is opened for the
+/// first time; tiles in memory are trusted. Any number of threads may open tiles at the same time.
+///
+/// A tile of a file is used where the file is mapped, except the first small tiles of a large file: they are copied,
+/// until the copies take a quarter of the file's size. With a page, Linux maps up to 15 others around it, so a query of
+/// few small tiles, far apart, would use 30 times the memory of their bytes. A copy takes 1 microsecond more.
 class TileStore {
 public:
     TileStore() = default;
@@ -43,32 +49,52 @@ public:
     const std::vector<TileLevel>& levels() const { return levels_; }
     std::string_view bytes() const { return bytes_.view; }
 
-    /// Returns the bytes of a tile; none for an empty tile. The first call for a tile of a file checks its checksum,
-    /// and then is_consistent(bytes). If one of them is wrong, it throws FileError.
+    /// From now on, no tile is copied: most of them will be needed.
+    void expect_all() const
+    {
+        if (opened_) opened_->bytes_to_copy = 0;
+    }
+
+    /// Returns the bytes of a tile; none for an empty tile. They are valid as long as the store lives. The first call
+    /// for a tile of a file checks its checksum, and then is_consistent(bytes). If one of them is wrong, it throws
+    /// FileError.
     template <class IsConsistent>
     std::string_view open(std::size_t level, std::size_t tile, const IsConsistent& is_consistent) const
     {
         const TileEntry& entry = levels_[level].tiles[tile];
-        const std::string_view bytes = bytes_.view.substr(entry.offset, entry.size);
-        if (checked_.empty() || checked_[level][tile].load(std::memory_order_acquire) != 0) return bytes;
+        if (!opened_) return bytes_.view.substr(entry.offset, entry.size);
+        if (const char* const known = opened_->tiles[level][tile].load(std::memory_order_acquire))
+            return {known, entry.size};
         if (entry.size == 0) return {};
-        verify_checksum(level, tile);
+        const std::string_view bytes = fetch(level, tile);
         if (!is_consistent(bytes)) fail_inconsistent();
-        checked_[level][tile].store(1, std::memory_order_release);
-        return bytes;
+        return keep(level, tile, bytes);
     }
 
     /// Throws FileError: the checksums of the file are right, but its values contradict each other.
     [[noreturn]] void fail_inconsistent() const;
 
 private:
-    void verify_checksum(std::size_t level, std::size_t tile) const;
+    using Block = std::unique_ptr<std::uint64_t[]>;  // aligned like the records in tiles
+    /// The tiles of a file that were opened.
+    struct Opened {
+        std::vector<std::unique_ptr<std::atomic<const char*>[]>> tiles;  ///< of each level; nullptr: not opened yet
+        std::atomic<std::size_t> bytes_to_copy;                          ///< limit of further copies
+        std::mutex mutex;                                                ///< for what follows
+        std::vector<Block> copies;                                       ///< tiles, one after the other
+        std::size_t room = 0;                                            ///< bytes that are left in the last block
+
+        char* room_for(std::size_t size);
+    };
+
+    std::string_view fetch(std::size_t level, std::size_t tile) const;
+    std::string_view copy_of(const TileEntry& entry) const;
+    std::string_view keep(std::size_t level, std::size_t tile, std::string_view bytes) const;
 
     std::vector<TileLevel> levels_;
     Bytes bytes_;
     std::string file_;
-    /// 1: the tile was checked. Empty for a store in memory.
-    mutable std::vector<std::unique_ptr<std::atomic<std::uint8_t>[]>> checked_;
+    std::unique_ptr<Opened> opened_;  ///< empty for a store in memory
 };
 
 /// Makes a store in memory, level by level.

@@ -358,7 +358,7 @@ Proof Mask::proof_of(const Vec3& position)
             if (!pass.is_ready) cover(part, pass);
             proof = proof_of(part, pass, coarser, x, z);
             coarser = &pass;
-            if (proof != Proof::Candidate) break;
+            if (proof != Proof::Candidate || coarse_only_) break;
         }
         if (proof == Proof::Blocked) return Proof::Blocked;
         is_free = is_free && proof == Proof::Free;

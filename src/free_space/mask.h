@@ -32,6 +32,8 @@ public:
     void set_rotation(double yaw);            ///< upright robot
     void set_rotation(const Mat3& rotation);  ///< any rotation; poses of a tilted robot are never Blocked
     void set_every_yaw();                     ///< upright robot; proofs hold for every yaw
+    /// From now on, proofs use only the coarsest cells that are useful. They read few tiles, and prove less.
+    void use_coarse_cells() { coarse_only_ = true; }
     Proof proof_of(const Vec3& position);
     /// Returns whether a solid on the vertical line through the origin is certainly inside a part. `spans` are the
     /// spans of that line.
@@ -89,6 +91,7 @@ private:
     const FreeSpace::Impl& space_;
     const SolidBounds::Impl& raster_;
     std::vector<Part> parts_;
+    bool coarse_only_ = false;
     double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose that was not clear; for pass.rows
 };
 

@@ -84,6 +84,16 @@ Judge::Impl::Impl(Map map_, Robot robot_, const JudgeOptions& options_)
 {
 }
 
+bool Judge::Impl::is_sparse(std::uint64_t poses) const
+{
+    constexpr double few_elements = 64;  // under a robot: they take about as long as one tile
+    const std::vector<TileLevel>& levels = map.solid_bounds.impl().levels();
+    if (options.obstacles != Obstacles::Geometry || levels.empty() || poses > levels[0].tiles.size()) return false;
+    const auto area = [](const Bounds& box) { return (box.max.x() - box.min.x()) * (box.max.y() - box.min.y()); };
+    const double scene = area(map.geometry.bounds());
+    return double(map.geometry.element_count()) * area(robot.bounds()) <= few_elements * scene;
+}
+
 PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw) : PoseJudge(shared, yaw, shared.options.max_height) {}
 
 PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw, double max_height)

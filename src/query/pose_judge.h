@@ -39,6 +39,12 @@ public:
     void set_rotation(double yaw);
     void set_rotation(const Mat3& rotation);
 
+    /// From now on, the mask only uses coarse cells, and more poses are checked exactly: for few poses, far apart.
+    void use_coarse_cells()
+    {
+        if (mask_) mask_->use_coarse_cells();
+    }
+
     /// Returns the verdict on a pose, and its ground. `column` must be the column at its x and y. `with_hit` adds what
     /// the robot collides with; this needs an exact check.
     Judgement judge(const ColumnView& column, const Vec3& position, bool with_hit = false);
@@ -69,6 +75,10 @@ private:
 
 struct Judge::Impl {
     Impl(Map map_, Robot robot_, const JudgeOptions& options_);
+
+    /// Returns whether so many poses, far apart, take less time with coarse cells only. Then most fine tiles of the
+    /// mask would be read for one pose, and an exact check takes less time than that unless it meets many elements.
+    bool is_sparse(std::uint64_t poses) const;
 
     const Map map;
     const Robot robot;

@@ -117,8 +117,10 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
         for (std::size_t i = 0; i < batch.size(); ++i) places[i] = place(next + i);
         const std::vector<std::uint32_t> order = in_neighbourhoods(places);
         const Progress progress = share_found(options, found);
+        const bool is_sparse = shared.is_sparse(next - first + batch.size());
         parallel_for((batch.size() + chunk - 1) / chunk, options.threads, progress, [&](std::size_t c) {
             PoseJudge judge(shared, options.yaw);
+            if (is_sparse) judge.use_coarse_cells();
             const std::size_t end = std::min(batch.size(), (c + 1) * chunk);
             for (std::size_t k = c * chunk; k < end; ++k) batch[order[k]] = look(next + order[k], judge);
         });
