@@ -513,6 +513,7 @@ TEST_CASE("a geometry file with invalid indices is refused, even if its checksum
     CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].cell = 0; }) == wanted);
     CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].tiles.back().offset = 1 << 20; }) == wanted);
     CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].tiles.back().offset += 8; }) == wanted);
+    CHECK(complaint_of([&](auto& levels, char*, const Tile&) { levels[0].tiles.back().size = 0; }) == wanted);
 }
 
 TEST_CASE("a changed byte in an old geometry file with right checksums is refused, or gives another geometry")

@@ -8,6 +8,7 @@
 #include <xxhash.h>
 
 #include <filesystem>
+#include <fstream>
 
 using namespace spawnfield;
 
@@ -86,12 +87,13 @@ TEST_CASE("a copied tile is checked, and a file that becomes shorter is an error
     const SparseFile folder(large);
     const TileStore store = folder.open();
     CHECK_THROWS_AS(store.open(0, 1, [](std::string_view) { return false; }), FileError);
+    {
+        std::fstream out(folder.file, std::ios::in | std::ios::out | std::ios::binary);
+        out.seekp(5 * tile_size);
+        out << 1;
+    }
+    CHECK_THROWS_WITH(store.open(0, 5, trust), Contains("tiles.bin: is damaged (tile 5 of level 0 has another"));
     std::filesystem::resize_file(folder.file, large / 2);
     CHECK_THROWS_WITH(store.open(0, store.levels()[0].tiles.size() - 1, trust),
-                      Contains("tiles.bin: cannot be read any more, or was cut short"));
-    std::string changed(large / 2, '\0');
-    changed[5 * tile_size] = 1;
-    folder.write("tiles.bin", changed);
-    CHECK_THROWS_WITH(folder.open().open(0, 5, trust),
-                      Contains("tiles.bin: is damaged (tile 5 of level 0 has another"));
+                      Contains("tiles.bin: cannot be read any more, or was cut short; bake the map again"));
 }

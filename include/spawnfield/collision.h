@@ -22,12 +22,14 @@ struct CollisionHit {
 ///
 /// Any number of threads may call its const methods at the same time. They read the scene's tiles when they first need
 /// them, so they throw FileError if a tile of a map is damaged. FCL decides (Pan, Chitta, Manocha, FCL: A General
-/// Purpose Library for Collision and Proximity Queries, 2012), with its libccd solver. The robot is enlarged by
-/// touch_margin, so that touching counts as a collision in spite of the solver's rounding.
+/// Purpose Library for Collision and Proximity Queries, 2012), with its libccd solver. It is not asked about a triangle
+/// if a separating axis test proves that a box is more than FreeSpace::margin from it, or overlaps it by more than
+/// twice that. The robot is enlarged by touch_margin, so that touching counts as a collision in spite of the solver's
+/// rounding.
 class SPAWNFIELD_API CollisionChecker {
 public:
-    /// Checks against the scene's own geometry.
-    CollisionChecker(const Geometry& geometry, const Robot& robot);
+    /// Checks against the scene's own geometry. `fcl_only`: without the separating axis test, which is slower.
+    CollisionChecker(const Geometry& geometry, const Robot& robot, bool fcl_only = false);
     /// Checks against the occupied voxels of a baked tree instead.
     CollisionChecker(std::shared_ptr<const OccupancyTree> tree, const Robot& robot);
     CollisionChecker(CollisionChecker&&) noexcept;

@@ -46,7 +46,7 @@ struct JudgeOptions {
     /// a valid pose invalid. Ground between the contacts is not examined.
     double max_slope = std::numeric_limits<double>::infinity();
     Obstacles obstacles = Obstacles::Geometry;
-    bool exhaustive = false;  ///< decide every collision by an exact check, without the mask: same answers, but slower
+    bool exhaustive = false;  ///< FCL decides every collision, without mask and axis test: same answers, but slower
     ExactTime* exact_time = nullptr;  ///< if given, the time of exact checks is added to it
 };
 

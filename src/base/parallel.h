@@ -60,7 +60,8 @@ void parallel_for(std::size_t count, int threads, const Progress& progress, cons
 }
 
 /// Calls make(i, buffer) for each i < count, like parallel_for, and take(buffer) in the order of i, one at a time. A
-/// result is taken while others are made. Few buffers exist, and each is used again.
+/// result is taken while others are made, and its buffer is used again. If one result takes long, those after it wait
+/// in memory.
 template <class Buffer, class Make, class Take>
 void parallel_in_order(std::size_t count, int threads, const Progress& progress, const Make& make, const Take& take)
 {

@@ -55,7 +55,7 @@ std::string_view TileStore::copy_of(const TileEntry& entry) const
     } while (!opened_->bytes_to_copy.compare_exchange_weak(rest, rest - entry.size));
     char* const copy = opened_->room_for((entry.size + 7) / 8 * 8);
     if (!bytes_.copy(entry.offset, entry.size, copy))
-        throw FileError(file_, "cannot be read any more, or was cut short");
+        throw FileError(file_, "cannot be read any more, or was cut short; bake the map again");
     return {copy, entry.size};
 }
 

@@ -36,7 +36,7 @@ struct TileLevel {
 /// The tiles of several levels, in memory or in a file. A tile of a file is read and checked when it is opened for the
 /// first time; tiles in memory are trusted. Any number of threads may open tiles at the same time.
 ///
-/// A tile of a file is used where the file is mapped, except the first small tiles of a large file: they are copied,
+/// A tile of a file is used in place, in the mapping, except the first small tiles of a large file: they are copied,
 /// until the copies take a quarter of the file's size. With a page, Linux maps up to 15 others around it, so a query of
 /// few small tiles, far apart, would use 30 times the memory of their bytes. A copy takes 1 microsecond more.
 class TileStore {

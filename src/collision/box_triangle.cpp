@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 
 namespace spawnfield {
 namespace {
@@ -51,13 +52,13 @@ void add_edge(const Vec3& half, const Vec3& from, const Vec3& edge, const Vec3& 
 
 }  // namespace
 
-Contact contact_of(const Vec3& half, const std::array<Vec3, 3>& corners)
+AxisTest axis_test(const Vec3& half, const std::array<Vec3, 3>& corners)
 {
     const auto& [a, b, c] = corners;
     Gaps gaps;
     const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
     for (int axis = 0; axis < 3; ++axis) gaps.add(gap_between(low[axis], high[axis], half[axis]), 1);
-    if (gaps.is_apart) return Contact::Apart;
+    if (gaps.is_apart) return AxisTest::Apart;
     const Vec3 ab = b - a, bc = c - b, ca = a - c;
     const Vec3 normal = ab.cross(bc);
     const double squared_area = normal.squaredNorm(),
@@ -66,11 +67,11 @@ Contact contact_of(const Vec3& half, const std::array<Vec3, 3>& corners)
         gaps.add(std::abs(normal.dot(a)) - normal.cwiseAbs().dot(half), squared_area);
     else
         gaps.overlaps = false;
-    if (gaps.is_apart) return Contact::Apart;
+    if (gaps.is_apart) return AxisTest::Apart;
     add_edge(half, a, ab, c, gaps);
     add_edge(half, b, bc, a, gaps);
     add_edge(half, c, ca, b, gaps);
-    return gaps.is_apart ? Contact::Apart : gaps.overlaps ? Contact::Overlap : Contact::Unclear;
+    return gaps.is_apart ? AxisTest::Apart : gaps.overlaps ? AxisTest::Overlap : AxisTest::Unclear;
 }
 
 }  // namespace spawnfield

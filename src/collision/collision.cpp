@@ -59,12 +59,6 @@ struct CheckedPart {
     }
 };
 
-bool overlap(const ElementBox& a, const Bounds& b)
-{
-    return a.min[0] <= b.max[0] && a.max[0] >= b.min[0] && a.min[1] <= b.max[1] && a.max[1] >= b.min[1] &&
-           a.min[2] <= b.max[2] && a.max[2] >= b.min[2];
-}
-
 /// A part of the robot at one pose. The narrow phase gets all coordinates relative to the robot's position, so that
 /// they are small and precise even far from the scene's origin.
 struct PlacedPart {
@@ -76,14 +70,14 @@ struct PlacedPart {
 /// Compares a part with a triangle by a fast test, which decides most of the triangles near a robot without FCL. FCL
 /// must decide if the part and the triangle nearly touch, because its answer depends on its own tolerance. The test
 /// sees the bounding box of a part that is not a box, so such a part is never proven to overlap.
-Contact quick_contact(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
+AxisTest axis_test_of(const PlacedPart& placed, const std::array<Vec3, 3>& corners)
 {
     std::array<Vec3, 3> seen;  // corners relative to the middle of the box, along its axes
     for (std::size_t k = 0; k < 3; ++k)
         seen[k] = placed.robot_from_shape.linear().transpose() * (corners[k] - placed.robot_from_shape.translation()) -
                   placed.part->box_centre;
-    const Contact contact = contact_of(placed.part->box_half, seen);
-    return contact == Contact::Overlap && placed.part->bounds_shape.kind != ShapeKind::Box ? Contact::Unclear : contact;
+    const AxisTest result = axis_test(placed.part->box_half, seen);
+    return result == AxisTest::Overlap && placed.part->bounds_shape.kind != ShapeKind::Box ? AxisTest::Unclear : result;
 }
 
 }  // namespace
@@ -95,6 +89,7 @@ struct CollisionChecker::Impl {
     std::shared_ptr<const OccupancyTree> tree;
     std::unique_ptr<const Body> octree;  ///< of `tree`; empty: the geometry is checked
     std::vector<CheckedPart> parts;
+    bool fcl_only = false;
 
     explicit Impl(const Robot& r) : robot(r)
     {
@@ -124,9 +119,9 @@ struct CollisionChecker::Impl {
         std::array<Vec3, 3> corners = tile.corners(triangle);
         for (Vec3& corner : corners) corner -= origin;
         for (const PlacedPart& part : placed) {
-            const Contact contact = quick_contact(part, corners);
-            if (contact == Contact::Overlap) return true;
-            if (contact == Contact::Unclear && overlap(tile.box(triangle), part.bounds) &&
+            const AxisTest result = fcl_only ? AxisTest::Unclear : axis_test_of(part, corners);
+            if (result == AxisTest::Overlap) return true;
+            if (result == AxisTest::Unclear && overlap(tile.box(triangle), part.bounds) &&
                 narrow_phase.triangle(*part.part->body, part.robot_from_shape, corners))
                 return true;
         }
@@ -192,10 +187,11 @@ struct CollisionChecker::Impl {
     }
 };
 
-CollisionChecker::CollisionChecker(const Geometry& geometry, const Robot& robot)
+CollisionChecker::CollisionChecker(const Geometry& geometry, const Robot& robot, bool fcl_only)
 {
     auto impl = std::make_unique<Impl>(robot);
     impl->geometry = geometry;
+    impl->fcl_only = fcl_only;
     impl_ = std::move(impl);
 }
 

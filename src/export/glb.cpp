@@ -51,6 +51,7 @@ Elements elements_of(const Geometry& geometry, const Vec3& origin, int threads)
     for (const LabelCount& count : impl.labels) triangles += count.triangles;
     out.triangles.resize(triangles);
     out.primitives.resize(impl.elements - triangles);
+    impl.tiles().expect_all();
     for (std::size_t tree = 0; tree < impl.trees().size(); ++tree)
         parallel_for(impl.trees()[tree].boxes().size(), threads, {}, [&](std::size_t t) {
             const Tile tile = impl.open(tree, t);

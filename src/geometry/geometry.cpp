@@ -7,9 +7,9 @@
 namespace spawnfield {
 namespace {
 
-/// Sorts elements by size, so that a large one does not widen the tile of many small ones: the elements of each group
-/// are at most four times as long as those of the group before. The first group has all that are shorter than a tile of
-/// average elements.
+/// Sorts elements by size, so that a large one does not widen the tile of many small ones. The first group has all that
+/// are shorter than a tile of average elements; the limit of each further group is four times that of the one before.
+/// Empty groups are left out.
 std::vector<std::vector<std::uint32_t>> groups_by_size(const std::vector<ElementBox>& boxes, const Bounds& bounds)
 {
     constexpr double factor = 4;
@@ -32,11 +32,7 @@ std::vector<std::vector<std::uint32_t>> groups_by_size(const std::vector<Element
 ElementBox box_around(const std::vector<ElementBox>& boxes, std::span<const std::uint32_t> elements)
 {
     ElementBox out = boxes[elements.front()];
-    for (const std::uint32_t element : elements)
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            out.min[axis] = std::min(out.min[axis], boxes[element].min[axis]);
-            out.max[axis] = std::max(out.max[axis], boxes[element].max[axis]);
-        }
+    for (const std::uint32_t element : elements) extend(out, boxes[element]);
     return out;
 }
 

@@ -48,13 +48,8 @@ struct Geometry::Impl {
     template <class Visit>
     void visit_in(const Bounds& space, const Visit& visit) const
     {
-        const Vec3 &low = space.min, &high = space.max;
-        const auto meets = [&](const ElementBox& box) {
-            return box.min[0] <= high.x() && box.max[0] >= low.x() && box.min[1] <= high.y() && box.max[1] >= low.y() &&
-                   box.min[2] <= high.z() && box.max[2] >= low.z();
-        };
         visit_near(space, [&](const Tile& tile, std::uint32_t element) {
-            if (meets(tile.box(element))) visit(tile, element);
+            if (overlap(tile.box(element), space)) visit(tile, element);
         });
     }
 

@@ -7,10 +7,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace spawnfield {
 
@@ -21,6 +22,23 @@ namespace spawnfield {
 struct ElementBox {
     std::array<float, 3> min, max;
 };
+static_assert(sizeof(ElementBox) == 24);
+
+/// Extends a box so that it contains another one.
+inline void extend(ElementBox& box, const ElementBox& by)
+{
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.min[axis] = std::min(box.min[axis], by.min[axis]);
+        box.max[axis] = std::max(box.max[axis], by.max[axis]);
+    }
+}
+
+/// Returns whether two closed boxes have a point in common.
+inline bool overlap(const ElementBox& a, const Bounds& b)
+{
+    return a.min[0] <= b.max[0] && a.max[0] >= b.min[0] && a.min[1] <= b.max[1] && a.max[1] >= b.min[1] &&
+           a.min[2] <= b.max[2] && a.max[2] >= b.min[2];
+}
 
 /// Returns the ElementBox of these bounds.
 inline ElementBox widened(const Vec3& min, const Vec3& max)
@@ -48,6 +66,7 @@ struct TilePiece {
     std::uint8_t solid, open, sides_up;
     std::array<std::uint8_t, 5> unused;
 };
+static_assert(sizeof(TilePiece) == 24);
 
 struct TilePrimitive {
     std::array<double, 3> size, position;
@@ -60,6 +79,7 @@ struct TilePrimitive {
 
     Shape shape() const { return {kind, Vec3(size.data()), {Vec3(position.data()), Mat3(rotation.data())}}; }
 };
+static_assert(sizeof(TilePrimitive) == 152);
 
 /// Turns coordinates along one axis of a tile into numbers 0 .. 255. A larger coordinate never gets a smaller number.
 struct TileScale {
@@ -77,6 +97,7 @@ struct TileHead {
     std::uint8_t vertices, triangles, primitives, pieces;
     std::uint32_t unused;
 };
+static_assert(sizeof(TileHead) == 32);
 
 /// For each element of a tile, the numbers of its box: smallest x, y, z, then largest x, y, z. They are one array for
 /// each limit, so that 16 elements are compared at a time.
@@ -84,6 +105,7 @@ struct TileBoxes {
     static constexpr std::size_t most = 64;  ///< elements of a tile
     std::array<std::array<std::uint8_t, most>, 3> min, max;
 };
+static_assert(sizeof(TileBoxes) == 384);
 
 /// A view of a tile's bytes as typed arrays. A tile has at most 64 elements that lie near each other. They are
 /// numbered: first its triangles, then its primitives, both in the order of the scene.
@@ -133,7 +155,8 @@ struct Tile {
         return widened(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
     }
 
-    /// Returns a bit for each element whose box may meet the closed rectangle. It is 0 only if the box does not.
+    /// Returns a bit for each element whose box may meet the closed rectangle. If it is 0, the box certainly does not
+    /// meet it.
     std::uint64_t near(double low_x, double low_y, double high_x, double high_y) const
     {
         return marks<2>({low_x, low_y}, {high_x, high_y});

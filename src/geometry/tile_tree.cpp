@@ -12,14 +12,6 @@ constexpr float no_limit = std::numeric_limits<float>::infinity(),
 
 ElementBox empty_box() { return {{no_limit, no_limit, no_limit}, {-no_limit, -no_limit, -no_limit}}; }
 
-void extend(ElementBox& box, const ElementBox& by)
-{
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.min[axis] = std::min(box.min[axis], by.min[axis]);
-        box.max[axis] = std::max(box.max[axis], by.max[axis]);
-    }
-}
-
 /// Twice the centre of a box along an axis.
 double centre(const ElementBox& box, std::size_t axis) { return double(box.min[axis]) + double(box.max[axis]); }
 

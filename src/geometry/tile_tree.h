@@ -2,6 +2,7 @@
 
 #include "geometry/tile.h"
 
+#include <bit>
 #include <vector>
 
 namespace spawnfield {
@@ -12,12 +13,12 @@ namespace spawnfield {
 /// 1985).
 class TileTree {
 public:
-    TileTree() = default;
     explicit TileTree(std::vector<ElementBox> boxes);
 
     const std::vector<ElementBox>& boxes() const { return boxes_; }  ///< of the tiles
 
-    /// Calls visit(tile) for the number of each tile whose box meets the closed rectangle, ascending.
+    /// Calls visit(tile) for the number of each tile whose box meets the closed rectangle, ascending. May visit tiles
+    /// that miss it by the rounding error of a float.
     template <class Visit>
     void visit(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
     {
@@ -49,7 +50,7 @@ private:
         if (levels_.empty()) return;
         std::array<float, Axes> from, to;
         for (std::size_t axis = 0; axis < Axes; ++axis) {
-            from[axis] = rounded_down(low[axis]);  // boxes have floats, so rounding outwards changes nothing for them
+            from[axis] = rounded_down(low[axis]);  // outwards: boxes up to one float beyond are visited, too
             to[axis] = rounded_up(high[axis]);
         }
         visit_below<Axes>(levels_.size() - 1, 0, from, to, visit);
@@ -89,9 +90,9 @@ private:
     std::vector<std::vector<Node>> levels_;  ///< from the nodes whose children are tiles to the root
 };
 
-/// Returns the elements in an order in which each run of TileBoxes::most of them makes a good tile, and each 16 runs a
-/// good node: the longest side of what they cover is halved again and again. `boxes` has the boxes of all elements of
-/// the scene.
+/// Returns the elements in an order in which each run of TileBoxes::most of them lies close together, and so do each 16
+/// runs: ranges are split across the longest side of what they cover, again and again. `boxes` has the boxes of all
+/// elements of the scene.
 std::vector<std::uint32_t> packed_order(const std::vector<ElementBox>& boxes, std::vector<std::uint32_t> elements,
                                         int threads);
 

@@ -1,7 +1,6 @@
 #include "map/old_geometry.h"
 
-#include <cmath>
-#include <cstring>
+#include <algorithm>
 #include <span>
 
 namespace spawnfield {
@@ -77,7 +76,8 @@ bool add_tile(std::string_view bytes, std::uint64_t triangle_count, std::uint64_
     const std::uint64_t elements = std::uint64_t{head.triangles} + head.primitives;
     in.take<std::array<float, 6>>(elements);  // boxes
     const auto ids = in.take<std::uint32_t>(elements);
-    if (!in.is_valid) return false;
+    if (!in.is_valid || !std::all_of(vertices.begin(), vertices.end(), [](const Vec3& v) { return v.allFinite(); }))
+        return false;
     const auto first_vertex = std::uint32_t(scene.vertices.size());
     scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
     for (const OldPiece& piece : pieces) {
@@ -107,10 +107,10 @@ bool add_tile(std::string_view bytes, std::uint64_t triangle_count, std::uint64_
             from.kind > ShapeKind::Capsule || from.label > Label::Water)
             return false;
         if (from.home_col == 0 || from.home_row == 0) continue;
-        scene.primitives[id - triangle_count] = {
-            {from.kind, Vec3(from.size.data()), {Vec3(from.position.data()), Mat3(from.rotation.data())}},
-            from.part,
-            from.label};
+        const Pose pose{Vec3(from.position.data()), Mat3(from.rotation.data())};
+        const Shape shape{from.kind, Vec3(from.size.data()), pose};
+        if (!has_extent(shape) || !pose.position.allFinite() || !pose.rotation.allFinite()) return false;
+        scene.primitives[id - triangle_count] = {shape, from.part, from.label};
     }
     return true;
 }
@@ -121,6 +121,7 @@ void read_old_tiles(const TileStore& tiles, std::uint64_t triangles, std::uint64
 {
     // A tile needs at least 24 bytes for an element, so larger counts contradict the file.
     if (triangles > elements || elements > tiles.bytes().size() / 24) tiles.fail_inconsistent();
+    tiles.expect_all();
     constexpr std::uint32_t missing = 0xffffffff;
     scene.triangles.assign(triangles, {});
     scene.triangle_labels.assign(triangles, Label::Obstacle);
@@ -132,7 +133,9 @@ void read_old_tiles(const TileStore& tiles, std::uint64_t triangles, std::uint64
             const auto trust = [](std::string_view) { return true; };
             if (const std::string_view bytes = tiles.open(level, tile, trust); !bytes.empty())
                 is_consistent = add_tile(bytes, triangles, elements, scene);
-            if (!is_consistent) tiles.fail_inconsistent();
+            // Entries that share their bytes could have more vertices than the file.
+            if (!is_consistent || scene.vertices.size() > tiles.bytes().size() / sizeof(Vec3))
+                tiles.fail_inconsistent();
         }
     for (const std::uint32_t piece : scene.triangle_pieces)
         if (piece == missing) tiles.fail_inconsistent();

@@ -32,9 +32,9 @@ Robot checked(Robot robot)
     return robot;
 }
 
-CollisionChecker checker_of(const Map& map, const Robot& robot, Obstacles obstacles)
+CollisionChecker checker_of(const Map& map, const Robot& robot, const JudgeOptions& options)
 {
-    if (obstacles == Obstacles::Geometry) return {map.geometry, robot};
+    if (options.obstacles == Obstacles::Geometry) return {map.geometry, robot, options.exhaustive};
     return {std::make_shared<const OccupancyTree>(read_occupancy(map)), robot};
 }
 
@@ -79,7 +79,7 @@ private:
 
 Judge::Impl::Impl(Map map_, Robot robot_, const JudgeOptions& options_)
     : map(std::move(map_)), robot(checked(std::move(robot_))), options(checked(options_)),
-      checker(checker_of(map, robot, options.obstacles)), space(mask_of(map, robot, options)),
+      checker(checker_of(map, robot, options)), space(mask_of(map, robot, options)),
       footing(footing_of(map, robot, options))
 {
 }

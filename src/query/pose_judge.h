@@ -76,8 +76,9 @@ private:
 struct Judge::Impl {
     Impl(Map map_, Robot robot_, const JudgeOptions& options_);
 
-    /// Returns whether so many poses, far apart, take less time with coarse cells only. Then most fine tiles of the
-    /// mask would be read for one pose, and an exact check takes less time than that unless it meets many elements.
+    /// Returns whether so many poses, far apart, take less time with coarse cells only. For so few poses, most fine
+    /// tiles of the mask would serve one pose only, and an exact check takes less time than reading a tile, unless it
+    /// meets many elements.
     bool is_sparse(std::uint64_t poses) const;
 
     const Map map;

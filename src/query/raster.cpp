@@ -95,12 +95,16 @@ struct Row {
     }
 };
 
-/// Makes room for the poses of these rows. If there is not enough, makes room for `times` as many as with these rows.
-void reserve_poses(std::vector<RasterPose>& poses, const std::vector<Row>& rows, double times)
+/// Makes room for the poses of these rows. If more room is needed, also makes room for the rows that follow: as if they
+/// had as many poses, but at most four times as many poses as now, or one for each column of the raster. `share` is the
+/// share of the rows so far, 0 to 1.
+void reserve_poses(std::vector<RasterPose>& poses, const std::vector<Row>& rows, double share, double columns)
 {
     std::size_t needed = poses.size();
     for (const Row& row : rows) needed += row.poses.size();
-    if (needed > poses.capacity()) poses.reserve(std::max(needed + needed / 2, std::size_t(double(needed) * times)));
+    if (needed <= poses.capacity()) return;
+    const double expected = std::min(double(needed) / share, std::max(4 * double(needed), columns));
+    poses.reserve(std::max(needed + needed / 2, std::size_t(expected)));
 }
 
 /// Judges strips of rows. In a strip, it goes from block to block, so that neighbouring columns share work.
@@ -347,25 +351,24 @@ RasterResult raster_with(const Judge& judge, const RasterOptions& options, int h
     const std::size_t strip = std::clamp<std::size_t>(rows / std::size_t(4 * thread_count(options.threads)), 1,
                                                       most_rows);
     std::size_t rows_taken = 0;
-    parallel_in_order<std::vector<Row>>((rows + strip - 1) / strip, options.threads, options.progress,
-                                        [&](std::size_t s, std::vector<Row>& made) {
-                                            made.resize(std::min(strip, rows - s * strip));
-                                            strips.judge_rows(int(s * strip), made);
-                                        },
-                                        [&](std::vector<Row>& made) {
-                                            rows_taken += made.size();
-                                            reserve_poses(out.poses, made, double(rows) / double(rows_taken));
-                                            for (Row& row : made) {
-                                                for (const RasterPose& pose : row.poses) ++out.counts[pose.verdict];
-                                                out.counts[Verdict::Aerial] += row.aerial;
-                                                out.exact_checks += row.exact_checks;
-                                                out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
-                                                if (tallies != nullptr)
-                                                    tallies->insert(tallies->end(), row.tallies.begin(),
-                                                                    row.tallies.end());
-                                                row.clear();
-                                            }
-                                        });
+    parallel_in_order<std::vector<Row>>(
+        (rows + strip - 1) / strip, options.threads, options.progress,
+        [&](std::size_t s, std::vector<Row>& made) {
+            made.resize(std::min(strip, rows - s * strip));
+            strips.judge_rows(int(s * strip), made);
+        },
+        [&](std::vector<Row>& made) {
+            rows_taken += made.size();
+            reserve_poses(out.poses, made, double(rows_taken) / double(rows), double(rows) * out.grid.cols);
+            for (Row& row : made) {
+                for (const RasterPose& pose : row.poses) ++out.counts[pose.verdict];
+                out.counts[Verdict::Aerial] += row.aerial;
+                out.exact_checks += row.exact_checks;
+                out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
+                if (tallies != nullptr) tallies->insert(tallies->end(), row.tallies.begin(), row.tallies.end());
+                row.clear();
+            }
+        });
     return out;
 }
 

@@ -101,7 +101,7 @@ Progress share_found(const Options& options, const SpawnList& found)
 /// Makes draws first, first + 1, … in batches. Several threads call look(index, judge), which returns a Candidate, for
 /// neighbours one after the other: place(index) returns x and y of a draw, m. Then take(candidate) is called for one
 /// draw after the other, in their order, until it returns false. batch_size(draws) returns the size of the next batch
-/// after so many draws; it does not change the result. Returns the number of the next draw.
+/// after so many draws; it changes nothing but the exact checks. Returns the number of the next draw.
 template <class Options, class BatchSize, class Place, class Look, class Take>
 std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, const Options& options,
                             const SpawnList& found, TakenPoints& taken, const BatchSize& batch_size, const Place& place,
@@ -117,7 +117,7 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
         for (std::size_t i = 0; i < batch.size(); ++i) places[i] = place(next + i);
         const std::vector<std::uint32_t> order = in_neighbourhoods(places);
         const Progress progress = share_found(options, found);
-        const bool is_sparse = shared.is_sparse(next - first + batch.size());
+        const bool is_sparse = shared.is_sparse(next + batch.size());
         parallel_for((batch.size() + chunk - 1) / chunk, options.threads, progress, [&](std::size_t c) {
             PoseJudge judge(shared, options.yaw);
             if (is_sparse) judge.use_coarse_cells();
