@@ -184,8 +184,9 @@ TEST_CASE("a search in a box finds what the rectangle below it has at these heig
                                      if (box.min[2] <= space.max.z() && box.max[2] >= space.min.z())
                                          expected.push_back(tile.ids[element]);
                                  });
-        geometry.impl().visit_in(
-            space, [&](const Tile& tile, std::uint32_t element) { visited.push_back(tile.ids[element]); });
+        geometry.impl().visit_near(space, [&](const Tile& tile, std::uint32_t element) {
+            if (overlap(tile.box(element), space)) visited.push_back(tile.ids[element]);
+        });
         CHECK(visited == expected);
         found += visited.size();
     }

@@ -7,9 +7,8 @@
 
 namespace spawnfield {
 
-/// A scene, cut into tiles, so that a query reads only the tiles near it. Cheap to copy: copies
-/// share the tiles. Any number of threads may read it at the same time. Reading a damaged tile of a map throws
-/// FileError.
+/// A scene, cut into tiles, so that a query reads only the tiles near it. Cheap to copy: copies share
+/// the tiles. Any number of threads may read it at the same time. Reading a damaged tile of a map throws FileError.
 ///
 /// Elements have numbers: first all triangles, then all primitives. A tile has at most 64 elements that lie near each
 /// other, with their corners, labels and pieces. Elements of similar size form a packed tree of tiles (an R-tree whose

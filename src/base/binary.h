@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -60,10 +61,16 @@ public:
     std::vector<T> get_array()
     {
         const auto count = get<std::uint64_t>();
-        if (count > rest_.size() / sizeof(T)) throw std::out_of_range("array");
+        const char* const start = take_array<T>(count);
         std::vector<T> values(count);
-        if (count > 0) std::memcpy(static_cast<void*>(values.data()), take(count * sizeof(T)), count * sizeof(T));
+        if (count > 0) std::memcpy(static_cast<void*>(values.data()), start, count * sizeof(T));
         return values;
+    }
+    /// Returns a view of `count` values without a count before them. They must be aligned.
+    template <class T>
+    std::span<const T> view_array(std::uint64_t count)
+    {
+        return {reinterpret_cast<const T*>(take_array<T>(count)), std::size_t(count)};
     }
     std::string get_text()
     {
@@ -72,6 +79,12 @@ public:
     }
 
 private:
+    template <class T>
+    const char* take_array(std::uint64_t count)
+    {
+        if (count > rest_.size() / sizeof(T)) throw std::out_of_range("array");
+        return take(count * sizeof(T));
+    }
     const char* take(std::size_t size)
     {
         if (size > rest_.size()) throw std::out_of_range("value");

@@ -13,7 +13,7 @@ bool counts(const Tile& tile, std::uint32_t element, Surfaces surfaces)
 void find_hits(const Geometry& geometry, double x, double y, Surfaces surfaces, std::vector<SurfaceHit>& hits)
 {
     hits.clear();
-    geometry.impl().visit_at(x, y, [&](const Tile& tile, std::uint32_t element) {
+    geometry.impl().visit_near(x, y, x, y, [&](const Tile& tile, std::uint32_t element) {
         if (!counts(tile, element, surfaces)) return;
         if (const auto hit = hit_of(tile, element, x, y)) hits.push_back(*hit);
     });

@@ -81,10 +81,8 @@ Geometry::Geometry(const Scene& scene, int threads)
                                           [](const Piece& p) { return p.solid; });
     if (elements > 0) {
         std::vector<ElementBox> boxes(elements);
-        parallel_for(elements, threads, {}, [&](std::size_t e) {
-            const Bounds bounds = element_bounds(scene, std::uint32_t(e));
-            boxes[e] = widened(bounds.min, bounds.max);
-        });
+        parallel_for(elements, threads, {},
+                     [&](std::size_t e) { boxes[e] = widened(element_bounds(scene, std::uint32_t(e))); });
         impl->bounds = scene.bounds();
         TileStoreBuilder store(0);
         std::vector<TileTree> trees;

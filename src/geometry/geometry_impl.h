@@ -26,13 +26,6 @@ struct Geometry::Impl {
                                 [this](std::string_view bytes) { return is_consistent_tile(bytes, parts.size()); }));
     }
 
-    /// Calls visit(tile, element) once for each element whose box contains (x, y), and for a few others near it.
-    template <class Visit>
-    void visit_at(double x, double y, const Visit& visit) const
-    {
-        visit_near(x, y, x, y, visit);
-    }
-
     /// Calls visit(tile, element) once for each element whose box meets the closed rectangle.
     template <class Visit>
     void visit_in(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
@@ -41,15 +34,6 @@ struct Geometry::Impl {
             const ElementBox box = tile.box(element);
             if (box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y)
                 visit(tile, element);
-        });
-    }
-
-    /// Calls visit(tile, element) once for each element whose box meets the closed box `space`.
-    template <class Visit>
-    void visit_in(const Bounds& space, const Visit& visit) const
-    {
-        visit_near(space, [&](const Tile& tile, std::uint32_t element) {
-            if (overlap(tile.box(element), space)) visit(tile, element);
         });
     }
 

@@ -41,13 +41,13 @@ inline bool overlap(const ElementBox& a, const Bounds& b)
 }
 
 /// Returns the ElementBox of these bounds.
-inline ElementBox widened(const Vec3& min, const Vec3& max)
+inline ElementBox widened(const Bounds& bounds)
 {
     constexpr double pad = 1e-8;  // m; wider than touch_tolerance, so a line on an edge finds its triangle
     ElementBox out{};
     for (int axis = 0; axis < 3; ++axis) {
-        out.min[std::size_t(axis)] = rounded_down(min[axis] - pad);
-        out.max[std::size_t(axis)] = rounded_up(max[axis] + pad);
+        out.min[std::size_t(axis)] = rounded_down(bounds.min[axis] - pad);
+        out.max[std::size_t(axis)] = rounded_up(bounds.max[axis] + pad);
     }
     return out;
 }
@@ -150,9 +150,7 @@ struct Tile {
     }
     ElementBox box(std::uint32_t element) const
     {
-        if (!is_triangle(element)) return primitive(element).box;
-        const auto [a, b, c] = corners(element);
-        return widened(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
+        return is_triangle(element) ? widened(bounds(element)) : primitive(element).box;
     }
 
     /// Returns a bit for each element whose box may meet the closed rectangle. If it is 0, the box certainly does not

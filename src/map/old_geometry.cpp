@@ -1,7 +1,8 @@
 #include "map/old_geometry.h"
 
+#include "base/binary.h"
+
 #include <algorithm>
-#include <span>
 
 namespace spawnfield {
 namespace {
@@ -41,43 +42,20 @@ struct OldTriangle {
 };
 static_assert(sizeof(OldTriangle) == 20);
 
-/// Reads arrays one after the other. `is_valid` becomes false if the bytes end too early.
-class ArrayReader {
-public:
-    explicit ArrayReader(std::string_view bytes) : rest_(bytes) {}
-
-    template <class T>
-    std::span<const T> take(std::uint64_t count)
-    {
-        is_valid = is_valid && count <= rest_.size() / sizeof(T);
-        if (!is_valid) return {};
-        const std::span<const T> out(reinterpret_cast<const T*>(rest_.data()), count);
-        rest_.remove_prefix(count * sizeof(T));
-        return out;
-    }
-
-    bool is_valid = true;
-
-private:
-    std::string_view rest_;
-};
-
-/// Adds the elements whose home is a tile. Returns whether the tile is consistent.
+/// Adds the elements whose home is a tile. Returns whether the tile is consistent. Throws std::out_of_range if its
+/// bytes end too early.
 bool add_tile(std::string_view bytes, std::uint64_t triangle_count, std::uint64_t element_count, Scene& scene)
 {
-    ArrayReader in(bytes);
-    const auto heads = in.take<OldHead>(1);
-    if (heads.empty()) return false;
-    const OldHead& head = heads.front();
-    const auto vertices = in.take<Vec3>(head.vertices);
-    const auto primitives = in.take<OldPrimitive>(head.primitives);
-    const auto pieces = in.take<OldPiece>(head.pieces);
-    const auto triangles = in.take<OldTriangle>(head.triangles);
+    BinaryReader in(bytes);
+    const OldHead& head = in.view_array<OldHead>(1).front();
+    const auto vertices = in.view_array<Vec3>(head.vertices);
+    const auto primitives = in.view_array<OldPrimitive>(head.primitives);
+    const auto pieces = in.view_array<OldPiece>(head.pieces);
+    const auto triangles = in.view_array<OldTriangle>(head.triangles);
     const std::uint64_t elements = std::uint64_t{head.triangles} + head.primitives;
-    in.take<std::array<float, 6>>(elements);  // boxes
-    const auto ids = in.take<std::uint32_t>(elements);
-    if (!in.is_valid || !std::all_of(vertices.begin(), vertices.end(), [](const Vec3& v) { return v.allFinite(); }))
-        return false;
+    in.view_array<std::array<float, 6>>(elements);  // boxes
+    const auto ids = in.view_array<std::uint32_t>(elements);
+    if (!std::all_of(vertices.begin(), vertices.end(), [](const Vec3& v) { return v.allFinite(); })) return false;
     const auto first_vertex = std::uint32_t(scene.vertices.size());
     scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
     for (const OldPiece& piece : pieces) {
@@ -127,15 +105,19 @@ void read_old_tiles(const TileStore& tiles, std::uint64_t triangles, std::uint64
     scene.triangle_labels.assign(triangles, Label::Obstacle);
     scene.triangle_pieces.assign(triangles, missing);
     scene.primitives.assign(elements - triangles, Primitive{.shape = {}, .part = missing});
+    const auto is_added = [&](std::string_view bytes) {
+        try {
+            return add_tile(bytes, triangles, elements, scene);
+        } catch (const std::out_of_range&) {
+            return false;
+        }
+    };
     for (std::size_t level = 0; level < tiles.levels().size(); ++level)
         for (std::size_t tile = 0; tile < tiles.levels()[level].tiles.size(); ++tile) {
-            bool is_consistent = true;
-            const auto trust = [](std::string_view) { return true; };
-            if (const std::string_view bytes = tiles.open(level, tile, trust); !bytes.empty())
-                is_consistent = add_tile(bytes, triangles, elements, scene);
+            const std::string_view bytes = tiles.open(level, tile, [](std::string_view) { return true; });
+            if (!bytes.empty() && !is_added(bytes)) tiles.fail_inconsistent();
             // Entries that share their bytes could have more vertices than the file.
-            if (!is_consistent || scene.vertices.size() > tiles.bytes().size() / sizeof(Vec3))
-                tiles.fail_inconsistent();
+            if (scene.vertices.size() > tiles.bytes().size() / sizeof(Vec3)) tiles.fail_inconsistent();
         }
     for (const std::uint32_t piece : scene.triangle_pieces)
         if (piece == missing) tiles.fail_inconsistent();
