@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "base/number.h"
 #include "temp_folder.h"
 
 #include <spawnfield/error.h>
@@ -239,7 +240,7 @@ TEST_CASE("aerial poses are written, in their places, only on request")
 TEST_CASE("a long raster comes in pieces of whole lines")
 {
     RasterResult raster;
-    for (int i = 0; i < 60000; ++i) raster.poses.push_back({double(i), 0.25, -1, 0, Verdict::Valid});
+    for (int i = 0; i < 150000; ++i) raster.poses.push_back({double(i), 0.25, -1, 0, Verdict::Valid});
     std::size_t pieces = 0, lines = 0, most = 0;
     bool whole = true;
     write_raster_csv(raster, false, [&](std::string_view text) {
@@ -248,10 +249,31 @@ TEST_CASE("a long raster comes in pieces of whole lines")
         lines += std::size_t(std::count(text.begin(), text.end(), '\n'));
         whole = whole && (text.empty() || text.back() == '\n');
     });
-    CHECK(lines == 60001);
+    CHECK(lines == 150001);
     CHECK(pieces > 1);
     CHECK(whole);
     CHECK(most < (1 << 20) + 100);
+}
+
+TEST_CASE("a raster is written in its order, with the same bytes for any number of threads")
+{
+    RasterResult raster;
+    raster.yaw = 0.1;
+    std::string expected = "x,y,z,yaw,layer,verdict\n";
+    for (int i = 0; i < 150000; ++i) {
+        const int row = i / 700;
+        raster.poses.push_back({i % 700 * 0.25, row * 0.5, -1.5, i % 3 - 1, i % 2 ? Verdict::Valid : Verdict::Steep});
+        const std::string layer = i % 3 == 0 ? "" : std::to_string(i % 3 - 1);
+        expected += number(i % 700 * 0.25) + "," + number(row * 0.5) + ",-1.5,0.1," + layer +
+                    (i % 2 ? ",valid\n" : ",steep\n");
+    }
+    for (const int threads : {1, 2, 8}) {
+        CAPTURE(threads);
+        std::string text;
+        write_raster_csv(
+            raster, false, [&](std::string_view piece) { text += piece; }, threads);
+        CHECK(text == expected);
+    }
 }
 
 TEST_CASE("spawns as JSON have unit quaternions, names, their settings and their map")

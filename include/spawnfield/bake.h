@@ -25,7 +25,7 @@ SPAWNFIELD_API Map make_map(const Scene& scene, const BakeOptions& options = {})
 /// The numbers that the summary of a bake contains.
 struct BakeReport {
     std::vector<std::string> notices;
-    std::vector<std::pair<std::string, double>> seconds;  ///< seconds of each stage, in order
+    std::vector<std::pair<std::string, double>> seconds;  ///< of each stage; several run at the same time
     int layers = 0;
     std::size_t occupancy_leaves = 0;
     std::uintmax_t bytes = 0;  ///< size of the folder

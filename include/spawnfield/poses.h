@@ -54,9 +54,9 @@ SPAWNFIELD_API std::string verdicts_csv(const PoseTable& table, const std::vecto
 
 /// Writes x,y,z,yaw,layer,verdict. Passes the text to `sink` in pieces. `layer` is empty if the ground is not a layer.
 /// With `aerial`, also writes the aerial poses of a 3D raster that are not in raster.poses, at their places in the
-/// order.
+/// order. Several threads make the text (0: all cores); it is the same for any number of them.
 SPAWNFIELD_API void write_raster_csv(const RasterResult& raster, bool aerial,
-                                     const std::function<void(std::string_view)>& sink);
+                                     const std::function<void(std::string_view)>& sink, int threads = 0);
 
 /// Returns x,y,z,roll,pitch,yaw of each spawn.
 SPAWNFIELD_API std::string spawns_csv(const SpawnList& list);

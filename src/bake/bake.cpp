@@ -16,6 +16,7 @@
 #include <spawnfield/output_folder.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -103,28 +104,51 @@ int count_layers(const TerrainMap& terrain, const HeightImage& top)
     return is_empty ? 0 : terrain.layers();
 }
 
-/// Writes terrain.tiff, heightmap.png and preview.png in parallel. Sets map.layers. Returns the two heights of
-/// write_heightmap_png().
-std::pair<double, double> write_images(const TerrainMap& terrain, const fs::path& folder, Map& map, int threads)
-{
-    std::pair<double, double> z_range;
-    parallel_for(3, threads, {}, [&](std::size_t file) {
-        if (file == 0) {
-            const HeightImage top = page_image(terrain, "height.0");
-            map.layers = count_layers(terrain, top);
-            z_range = write_heightmap_png(top, folder / "heightmap.png");
-        }
-        if (file == 1) write_preview(map, terrain, folder / "preview.png");
-        if (file == 2) write_terrain(folder / "terrain.tiff", terrain);
-    });
-    return z_range;
-}
-
 /// Returns the progress function of one stage, during which the progress of the whole grows from `from` to `to`.
 Progress part_of(const Progress& progress, double from, double to)
 {
     if (!progress) return {};
     return [=](double share) { progress(from + share * (to - from)); };
+}
+
+/// What the files of a map contain that map.yaml lists, and the numbers for the report.
+struct WrittenFiles {
+    ListedFile bounds, geometry;
+    int layers = 0;
+    std::pair<double, double> heightmap_z;  ///< see write_heightmap_png
+    std::size_t occupancy_leaves = 0;
+    std::vector<std::pair<std::string, double>> seconds;  ///< of each stage; they overlap, so their sum is longer
+};
+
+/// Writes all files but map.yaml, several at the same time: most of them occupy only one core.
+WrittenFiles write_files(const Map& map, const TerrainMap& terrain, const fs::path& folder, int threads,
+                         const Progress& progress)
+{
+    WrittenFiles out;
+    const auto occupancy = [&] {
+        out.occupancy_leaves = write_occupancy(folder / "occupancy.bt", map.geometry, map.bounds,
+                                               map.occupancy_resolution, threads, progress);
+    };
+    const auto heightmap = [&] {
+        const HeightImage top = page_image(terrain, "height.0");
+        out.layers = count_layers(terrain, top);
+        out.heightmap_z = write_heightmap_png(top, folder / "heightmap.png");
+    };
+    const std::array<std::pair<const char*, std::function<void()>>, 6> stages{{
+        {"write", [&] { out.bounds = write_bounds(folder / "bounds.bin", map.solid_bounds); }},
+        {"occupancy", occupancy},
+        {"images", [&] { write_terrain(folder / "terrain.tiff", terrain); }},
+        {"images", [&] { write_preview(map, terrain, folder / "preview.png"); }},
+        {"images", heightmap},
+        {"write", [&] { out.geometry = write_geometry(folder / "geometry.bin", map.geometry); }},
+    }};
+    out.seconds.resize(stages.size());
+    parallel_for(stages.size(), threads, {}, [&](std::size_t i) {
+        Stopwatch watch;
+        stages[i].second();
+        out.seconds[i] = {stages[i].first, watch.lap()};
+    });
+    return out;
 }
 
 /// Checks the options. Returns a map with its names, bounds and resolutions, but without geometry, layers and floors.
@@ -202,23 +226,19 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
                                                  part_of(options.progress, 0, 0.3), map.z_limits);
     map.floors = find_floors(terrain, options.threads);
     lap("terrain");
-    const std::pair<double, double> z_range = write_images(terrain, target.path(), map, options.threads);
+    map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads,
+                                   part_of(options.progress, 0.3, 0.6));
+    lap("bounds");
+    const WrittenFiles files = write_files(map, terrain, target.path(), options.threads,
+                                           part_of(options.progress, 0.6, 0.9));
+    map.layers = files.layers;
+    report.occupancy_leaves = files.occupancy_leaves;
+    report.seconds.insert(report.seconds.end(), files.seconds.begin(), files.seconds.end());
     if (map.layers == 0 && has_terrain)
         report.notices.push_back("no robot can stand in the bounds " + to_string(map.bounds) +
                                  ": there is no terrain at any cell's centre; the scene is " + to_string(extent));
-    lap("images");
-    map.solid_bounds = SolidBounds(map.geometry, map.bounds, map.resolution, options.threads,
-                                   part_of(options.progress, 0.3, 0.6));
-    const ListedFile bounds_file = write_bounds(target.path() / "bounds.bin", map.solid_bounds);
-    map.solid_bounds = {};
-    lap("bounds");
-    report.occupancy_leaves = write_occupancy(target.path() / "occupancy.bt", map.geometry, map.bounds,
-                                              map.occupancy_resolution, options.threads,
-                                              part_of(options.progress, 0.6, 0.9));
-    lap("occupancy");
-
-    const ListedFile geometry_file = write_geometry(target.path() / "geometry.bin", map.geometry);
-    report.hash = write_map_yaml(target.path(), map, terrain, z_range, {bounds_file, geometry_file});
+    watch.lap();
+    report.hash = write_map_yaml(target.path(), map, terrain, files.heightmap_z, {files.bounds, files.geometry});
     if (options.progress) options.progress(1);
     for (const auto& entry : fs::directory_iterator(target.path())) report.bytes += entry.file_size();
     target.commit(keep_foreign_files);

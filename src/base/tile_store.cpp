@@ -94,6 +94,10 @@ void TileStoreBuilder::add(TileLevel level, std::vector<std::string> tiles, int 
         tiles[t].resize((tiles[t].size() + tile_alignment - 1) / tile_alignment * tile_alignment, '\0');
         level.tiles[t].checksum = XXH64(tiles[t].data(), tiles[t].size(), 0);
     });
+    std::size_t size = bytes_.size();
+    for (const std::string& tile : tiles) size += tile.size();
+    if (bytes_.capacity() < size)
+        bytes_.reserve(size + size / 2);  // coarser levels will take about a third of this one
     for (std::size_t t = 0; t < tiles.size(); ++t) {
         level.tiles[t].offset = bytes_.size();
         level.tiles[t].size = tiles[t].size();

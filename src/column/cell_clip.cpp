@@ -176,7 +176,7 @@ public:
         if (shape.kind == ShapeKind::Capsule)
             for (const double end : {-0.5, 0.5})
                 add_ball(shape.pose.position + shape.pose.rotation.col(2) * end * shape.size[1], shape.size[0]);
-        std::sort(own_.begin(), own_.end(), [](const Further& l, const Further& r) { return l.cell < r.cell; });
+        std::sort(own_.begin(), own_.end(), [](const OfCell& l, const OfCell& r) { return l.cell < r.cell; });
         for (std::size_t k = 0; k < own_.size();) {
             const std::uint32_t cell = own_[k].cell;
             Interval z = own_[k].z;
@@ -186,16 +186,12 @@ public:
         }
     }
 
-    void finish()
-    {
-        std::vector<Further>& further = out_.further_;
-        std::sort(further.begin(), further.end(), [](const Further& l, const Further& r) { return l.cell < r.cell; });
-        out_.starts_.assign(std::size_t(block_.rows) + 1, 0);
-        for (const Further& span : further) ++out_.starts_[span.cell / std::uint32_t(block_.cols) + 1];
-        for (std::size_t row = 1; row < out_.starts_.size(); ++row) out_.starts_[row] += out_.starts_[row - 1];
-    }
-
 private:
+    struct OfCell {
+        std::uint32_t cell;
+        Interval z;
+    };
+
     void add(std::uint32_t cell, const Interval& z)
     {
         Interval& first = out_.first_[cell];
@@ -204,8 +200,9 @@ private:
         } else if (z.bottom <= first.top + touch_tolerance && first.bottom <= z.top + touch_tolerance) {
             first = {std::min(first.bottom, z.bottom), std::max(first.top, z.top)};
         } else {
-            out_.further_.push_back({cell, z});
-            out_.more_[cell] = true;
+            std::uint32_t& last = out_.last_[cell];
+            out_.further_.push_back({z, last});
+            last = std::uint32_t(out_.further_.size() - 1);
         }
     }
 
@@ -281,12 +278,12 @@ private:
     CellSpans& out_;
     const CellBlock& block_;
     PolygonScanner scanner_;
-    std::vector<Further> own_;
+    std::vector<OfCell> own_;  ///< of one primitive
     Polygon face_;
 };
 
 CellSpans::CellSpans(const Geometry& geometry, const CellBlock& block)
-    : first_(std::size_t(block.cols) * std::size_t(block.rows), none), more_(first_.size()), cols_(block.cols)
+    : first_(std::size_t(block.cols) * std::size_t(block.rows), none), last_(first_.size(), nothing)
 {
     Collector collector(*this, block);
     geometry.impl().visit_in(
@@ -300,7 +297,6 @@ CellSpans::CellSpans(const Geometry& geometry, const CellBlock& block)
             const TilePiece& piece = tile.piece(element);
             collector.add_triangle(tile.corners(element), piece.open != 0 ? &piece.bottom : nullptr);
         });
-    collector.finish();
 }
 
 void CellSpans::get(std::uint32_t cell, std::vector<Interval>& out) const
@@ -308,12 +304,8 @@ void CellSpans::get(std::uint32_t cell, std::vector<Interval>& out) const
     out.clear();
     if (first_[cell].bottom > first_[cell].top) return;
     out.push_back(first_[cell]);
-    if (!more_[cell]) return;
-    const std::size_t row = cell / std::uint32_t(cols_);
-    const auto end = further_.begin() + starts_[row + 1];
-    auto span = std::lower_bound(further_.begin() + starts_[row], end, cell,
-                                 [](const Further& f, std::uint32_t c) { return f.cell < c; });
-    for (; span != end && span->cell == cell; ++span) out.push_back(span->z);
+    if (!has_more(cell)) return;
+    for (std::uint32_t k = last_[cell]; k != nothing; k = further_[k].previous) out.push_back(further_[k].z);
     join_intervals(out, touch_tolerance);
 }
 

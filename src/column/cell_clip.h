@@ -2,6 +2,8 @@
 
 #include "column/columns.h"
 
+#include <limits>
+
 namespace spawnfield {
 
 /// A rectangle of square cells. Cell (i, j) extends from x0 + i * cell to x0 + (i + 1) * cell in x, and from y0 + j *
@@ -27,7 +29,7 @@ public:
 
     /// Returns whether a cell has more intervals than first(). If not, first() is its only interval, or the cell has
     /// none: then first() has bottom > top.
-    bool has_more(std::uint32_t cell) const { return more_[cell]; }
+    bool has_more(std::uint32_t cell) const { return last_[cell] != nothing; }
     const Interval& first(std::uint32_t cell) const { return first_[cell]; }
     /// Writes the intervals of one cell to `out`, joined, from the bottom up.
     void get(std::uint32_t cell, std::vector<Interval>& out) const;
@@ -35,15 +37,14 @@ public:
 
 private:
     class Collector;
+    static constexpr std::uint32_t nothing = std::numeric_limits<std::uint32_t>::max();
     struct Further {
-        std::uint32_t cell;
         Interval z;
+        std::uint32_t previous;  ///< index in further_ of another interval of the same cell, or nothing
     };
-    std::vector<Interval> first_;        ///< one for each cell; bottom > top: none
-    std::vector<bool> more_;             ///< whether the cell has further intervals
-    std::vector<Further> further_;       ///< intervals that did not touch the cell's first one; sorted by cell
-    std::vector<std::uint32_t> starts_;  ///< where each row of the block begins in further_
-    int cols_;
+    std::vector<Interval> first_;      ///< one for each cell; bottom > top: none
+    std::vector<Further> further_;     ///< intervals that did not touch the cell's first one
+    std::vector<std::uint32_t> last_;  ///< for each cell the index of its last one in further_, or nothing
     bool tight_ = true;
 };
 

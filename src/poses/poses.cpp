@@ -1,5 +1,6 @@
 #include "base/csv.h"
 #include "base/number.h"
+#include "base/parallel.h"
 #include "poses/pose_columns.h"
 #include "poses/pose_json.h"
 
@@ -11,6 +12,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
+#include <span>
 
 namespace spawnfield {
 namespace {
@@ -43,14 +46,22 @@ void append_numbers(std::string& text, std::initializer_list<double> values)
     }
 }
 
-void append_row(std::string& text, const RasterPose& pose, double yaw)
+/// Appends a line x,y,z,yaw,layer,verdict for each pose.
+void append_rows(std::string& text, std::span<const RasterPose> poses, const std::string& yaw)
 {
-    append_numbers(text, {pose.x, pose.y, pose.z, yaw});
-    text += ',';
-    if (pose.layer >= 0) text += std::to_string(pose.layer);
-    text += ',';
-    text += to_string(pose.verdict);
-    text += '\n';
+    double last_y = std::numeric_limits<double>::quiet_NaN();
+    std::string y;  // the text of last_y; a row of poses has the same y, and making the text takes time
+    for (const RasterPose& pose : poses) {
+        if (pose.y != last_y) y = number(last_y = pose.y);
+        append_number(text, pose.x);
+        ((text += ',') += y) += ',';
+        append_number(text, pose.z);
+        ((text += ',') += yaw) += ',';
+        if (pose.layer >= 0) text += std::to_string(pose.layer);
+        text += ',';
+        text += to_string(pose.verdict);
+        text += '\n';
+    }
 }
 
 Json bounds_json(const Bounds& bounds, int axes)
@@ -177,17 +188,30 @@ std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& j
     return text;
 }
 
-void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink)
+void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink,
+                      int threads)
 {
-    constexpr std::size_t piece = 1 << 20;
-    std::string text = "x,y,z,yaw,layer,verdict\n";
+    constexpr std::size_t piece = 1 << 12, batch = 1 << 16;  // poses of a text, and of a loop of several threads
+    const std::string yaw = number(raster.yaw);
+    std::vector<RasterPose> poses;
+    poses.reserve(std::min<std::size_t>(batch, raster.counts.total()));
+    std::vector<std::string> texts;
+    const auto write = [&] {
+        texts.resize((poses.size() + piece - 1) / piece);
+        parallel_for(texts.size(), threads, {}, [&](std::size_t i) {
+            const std::size_t first = i * piece;
+            texts[i].clear();
+            append_rows(texts[i], std::span(poses).subspan(first, std::min(piece, poses.size() - first)), yaw);
+        });
+        for (const std::string& text : texts) sink(text);
+        poses.clear();
+    };
+    sink("x,y,z,yaw,layer,verdict\n");
     for_each_pose(raster, aerial, [&](const RasterPose& pose) {
-        append_row(text, pose, raster.yaw);
-        if (text.size() < piece) return;
-        sink(text);
-        text.clear();
+        poses.push_back(pose);
+        if (poses.size() == batch) write();
     });
-    sink(text);
+    write();
 }
 
 std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<std::string>& names,

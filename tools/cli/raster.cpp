@@ -100,7 +100,7 @@ Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summar
         draw();
     else
         write_output(
-            args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink); }, draw);
+            args.out, [&](const auto& sink) { write_raster_csv(result, args.write_aerial, sink, args.threads); }, draw);
     summary.set_verdicts(result.counts, result.exact_checks);
     return {};
 }
