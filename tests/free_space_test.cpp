@@ -1,6 +1,8 @@
 #include "catch.h"
 #include "free_space/bounds_tile.h"
 #include "free_space/footprint.h"
+#include "free_space/mask.h"
+#include "query/draw.h"
 #include "slow.h"
 #include "test_map.h"
 #include "worlds/hand_scene.h"
@@ -153,6 +155,41 @@ TEST_CASE("a map that is smaller than its scene proves nothing beyond its edge")
     CHECK(space.proof_of({1.5, 0, 0.1}, 0) == Proof::Free);
     CHECK(space.proof_of({2.25, 0, 0.1}, 0) == Proof::Candidate);
     CHECK(space.proof_of({8, 0, 0.1}, 0) == Proof::Candidate);
+}
+
+TEST_CASE("clear poses of a row are free, and the same as one by one")
+{
+    std::size_t clear_poses = 0, others = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        Draw draw(seed, 0);
+        const TestMap map = map_of(random_scene(seed), draw.uniform(0.02, 0.3));
+        Robot robot = load_robot("box:0.6,0.4,0.3");
+        if (seed % 2 == 0) robot.parts.push_back(load_robot("box:0.17,3,1.2@-0.2,0,0.6").parts[0]);
+        const FreeSpace space(map.solid_bounds, robot);
+        Mask mask(space.impl(), draw.uniform(-pi, pi));
+        for (int row = 0; row < 20; ++row) {
+            const double y = draw.uniform(map.bounds.min.y() - 1, map.bounds.max.y() + 1);
+            std::vector<double> x, z;
+            for (int i = 0; i < 150; ++i) {
+                x.push_back(draw.uniform(map.bounds.min.x() - 1, map.bounds.max.x() + 1));
+                z.push_back(draw.uniform(map.bounds.min.z(), map.bounds.max.z() + 0.5));
+            }
+            z[7] = std::numeric_limits<double>::quiet_NaN();
+            x[9] = 1e300;
+            std::vector<std::uint8_t> clear(x.size(), 2), alone(1);
+            mask.find_clear(x, y, z, clear);
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                mask.find_clear(std::span(x).subspan(i, 1), y, std::span(z).subspan(i, 1), alone);
+                REQUIRE(clear[i] == alone[0]);
+                if (clear[i] != 0) REQUIRE(mask.proof_of({x[i], y, z[i]}) == Proof::Free);
+                ++(clear[i] != 0 ? clear_poses : others);
+            }
+            CHECK(clear[7] == 0);
+            CHECK(clear[9] == 0);
+        }
+    }
+    CHECK(clear_poses > 1000);
+    CHECK(others > 1000);
 }
 
 TEST_CASE("footprints bound a part from outside and from inside")

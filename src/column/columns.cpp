@@ -17,12 +17,13 @@ public:
     {
     }
 
-    /// Returns whether any column may lie in the box, seen from above. If so, sets their range.
-    bool find(const Bounds& box, ColumnRange& out) const
+    using Pair = Eigen::Array2d;  ///< x and y
+
+    /// Returns whether any column may lie in the rectangle from `min` to `max`. If so, sets their range.
+    bool find(const Pair& min, const Pair& max, ColumnRange& out) const
     {
         constexpr double rounding = 1e-6;  // of a step; more than the rounding error of indices up to 2^31
-        const Pair low = steps_to(box.min.head<2>().array() - pad) - rounding,
-                   high = steps_to(box.max.head<2>().array() + pad) + rounding;
+        const Pair low = steps_to(min - pad) - rounding, high = steps_to(max + pad) + rounding;
         const Pair from = (low.ceil() - first_).max(0), to = (high.floor() - first_).min(last_);
         if (!(from <= to).all()) return false;
         out = {int(from[0]), int(to[0]), int(from[1]), int(to[1])};
@@ -31,7 +32,6 @@ public:
 
 private:
     static constexpr double pad = 2 * touch_tolerance;  // m: a line so near to an element may touch it
-    using Pair = Eigen::Array2d;                        // x and y
     Pair steps_to(const Pair& place) const { return (place - origin_) * inverse_step_ - shift_; }
 
     const Pair origin_;
@@ -78,40 +78,64 @@ void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces
 
 void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
 {
+    x_.resize(std::size_t(grid.cols) + 1);  // one more for SeenTriangle::sides_of
+    for (int i = 0; i <= grid.cols; ++i) x_[std::size_t(i)] = grid.x_of(grid.first_col + i);
     const BlockIndex index(grid);
-    ColumnRange range;  // of the element that was found last
-    geometry.impl().visit_near(grid.x_of(grid.first_col), grid.y_of(grid.first_row),
-                               grid.x_of(grid.first_col + grid.cols - 1), grid.y_of(grid.first_row + grid.rows - 1),
-                               [&](const Tile& tile, std::uint32_t element) {
-                                   if (!index.find(tile.bounds(element), range) || !counts(tile, element, surfaces))
-                                       return;
-                                   if (tile.is_triangle(element))
-                                       add_triangle(tile, element, grid, range);
-                                   else
-                                       add_primitive(tile, element, grid, range);
-                               });
+    const double low_x = x_[0], high_x = x_[std::size_t(grid.cols) - 1], low_y = grid.y_of(grid.first_row),
+                 high_y = grid.y_of(grid.first_row + grid.rows - 1);
+    geometry.impl().visit_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox& box) {
+        ColumnRange range;
+        if (!index.find({box.min[0], box.min[1]}, {box.max[0], box.max[1]}, range)) return;
+        const auto columns = std::uint32_t(range.last_col + 1 - range.first_col) *
+                             std::uint32_t(range.last_row + 1 - range.first_row);
+        std::uint64_t elements = 0;  // a bit for each that may meet a column
+        if (2 * columns <= tile.elements()) {
+            for (int j = range.first_row; j <= range.last_row; ++j)
+                for (int i = range.first_col; i <= range.last_col; ++i) {
+                    const double x = x_[std::size_t(i)], y = grid.y_of(grid.first_row + j);
+                    elements |= tile.near(x, y, x, y);
+                }
+        } else {
+            elements = tile.near(low_x, low_y, high_x, high_y);
+        }
+        for_each_bit(elements, [&](std::uint32_t element) {
+            if (!counts(tile, element, surfaces)) return;
+            if (!tile.is_triangle(element)) {
+                const Bounds bounds = tile.bounds(element);
+                if (index.find(bounds.min.head<2>(), bounds.max.head<2>(), range))
+                    add_primitive(tile, element, grid, range);
+                return;
+            }
+            const auto corners = tile.corners(element);
+            const BlockIndex::Pair a = corners[0].head<2>(), b = corners[1].head<2>(), c = corners[2].head<2>();
+            if (index.find(a.min(b).min(c), a.max(b).max(c), range))
+                add_triangle(SeenTriangle(tile, element, corners), grid, range);
+        });
+    });
     if (listed_.empty()) return;
     for (Slot& slot : slots_)
         if (slot.content == Content::Several) complete(slot);
 }
 
-void Columns::add_triangle(const Tile& tile, std::uint32_t triangle, const ColumnGrid& grid, const ColumnRange& range)
+void Columns::add_triangle(SeenTriangle seen, const ColumnGrid& grid, const ColumnRange& range)
 {
-    SeenTriangle seen(tile, triangle);
+    constexpr int most = 64;  // columns of a row that are looked at together, so that no branch depends on one of them
     for (int j = range.first_row; j <= range.last_row; ++j) {
         seen.set_y(grid.y_of(grid.first_row + j));
-        for (int i = range.first_col; i <= range.last_col; ++i) {
-            const double x = grid.x_of(grid.first_col + i);
-            const SeenTriangle::Side side = seen.side_of(x);
-            if (side == SeenTriangle::Side::Outside) continue;
-            Slot& slot = slots_[number(i, j)];
-            const SurfaceHit& common = seen.common();
-            if (side == SeenTriangle::Side::Inside && !common.filled)
-                add_sheet(slot, common, seen.height_at(x));
-            else if (side == SeenTriangle::Side::Inside)
-                add(slot, seen.hit_inside(x));
-            else if (const auto hit = seen.hit_at_rim(x))
-                hit->filled ? add(slot, *hit) : add_sheet(slot, *hit, hit->z.top);
+        for (int first = range.first_col; first <= range.last_col; first += most) {
+            const double* const x = x_.data() + first;
+            Slot* const slots = slots_.data() + number(first, j);
+            const auto [inside, rim] = seen.sides_of(x, std::min(most, range.last_col + 1 - first));
+            for_each_bit(inside, [&](std::uint32_t k) {
+                if (const SurfaceHit& common = seen.common(); common.filled)
+                    add(slots[k], seen.hit_inside(x[k]));
+                else
+                    add_sheet(slots[k], common, seen.height_at(x[k]));
+            });
+            for_each_bit(rim, [&](std::uint32_t k) {
+                if (const auto hit = seen.hit_at_rim(x[k]))
+                    hit->filled ? add(slots[k], *hit) : add_sheet(slots[k], *hit, hit->z.top);
+            });
         }
     }
 }
@@ -120,23 +144,28 @@ void Columns::add_primitive(const Tile& tile, std::uint32_t element, const Colum
 {
     for (int j = range.first_row; j <= range.last_row; ++j)
         for (int i = range.first_col; i <= range.last_col; ++i)
-            if (const auto hit = hit_of(tile, element, grid.x_of(grid.first_col + i), grid.y_of(grid.first_row + j)))
+            if (const auto hit = hit_of(tile, element, x_[std::size_t(i)], grid.y_of(grid.first_row + j)))
                 add(slots_[number(i, j)], *hit);
+}
+
+/// Adds the hit of a sheet at height z.
+inline void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
+{
+    if (slot.content != Content::Nothing) {
+        add_further_sheet(slot, hit, z);
+        return;
+    }
+    slot.span = {z, z, hit.part, hit.terrain, !hit.open};
+    slot.index = hit.element;
+    slot.content = hit.water ? Content::Water : hit.terrain ? Content::Terrain : Content::Obstacle;
 }
 
 /// Adds the hit of a sheet at height z, unless the column has no other hit than the same: triangles share corners and
 /// edges.
-void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
+void Columns::add_further_sheet(Slot& slot, const SurfaceHit& hit, double z)
 {
-    const Span span{z, z, hit.part, hit.terrain, !hit.open};
-    if (slot.content == Content::Nothing) {
-        slot.span = span;
-        slot.index = hit.element;
-        slot.content = hit.water ? Content::Water : hit.terrain ? Content::Terrain : Content::Obstacle;
-        return;
-    }
     if (slot.content != Content::Several && slot.span.top == z && slot.span.part == hit.part &&
-        slot.span.terrain == hit.terrain && slot.span.sealed == span.sealed &&
+        slot.span.terrain == hit.terrain && slot.span.sealed == !hit.open &&
         (slot.content == Content::Water) == hit.water)
         return;
     SurfaceHit listed = hit;

@@ -103,6 +103,13 @@ public:
                 std::span(column_.water).subspan(from.water, to.water - from.water)};
     }
 
+    /// Returns the height of a column that contains nothing but one terrain surface; NaN for all others.
+    double only_terrain(int i, int j) const
+    {
+        const Slot& slot = slots_[number(i, j)];
+        return slot.content == Content::Terrain ? slot.span.top : std::numeric_limits<double>::quiet_NaN();
+    }
+
 private:
     /// What a column contains. Most columns contain nothing, or one surface of a sheet: it is `span`. All others are
     /// `Several`: they are one after the other in column_.
@@ -126,15 +133,17 @@ private:
 
     void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
-    void add_triangle(const Tile& tile, std::uint32_t triangle, const ColumnGrid& grid, const ColumnRange& range);
+    void add_triangle(SeenTriangle seen, const ColumnGrid& grid, const ColumnRange& range);
     void add_primitive(const Tile& tile, std::uint32_t element, const ColumnGrid& grid, const ColumnRange& range);
     void add_sheet(Slot& slot, const SurfaceHit& hit, double z);
+    void add_further_sheet(Slot& slot, const SurfaceHit& hit, double z);
     void add(Slot& slot, const SurfaceHit& hit);
     void complete(Slot& slot);
     void end_column(Slot& slot);
     std::size_t number(int i, int j) const { return std::size_t(j) * std::size_t(cols_) + std::size_t(i); }
 
     int cols_ = 0;
+    std::vector<double> x_;  ///< of the block's columns, m; while scanning
     std::vector<Slot> slots_;
     Column column_;
     std::vector<Start> starts_;

@@ -120,7 +120,8 @@ std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x)
     SurfaceHit out = common();
     out.crosses = out.filled && is_crossed(corners_, x, y);
     if (out.crosses) out.crossing = height_at_rim(x, y);
-    const double longest = std::max({edges_[0].squared_length, edges_[1].squared_length, edges_[2].squared_length});
+    const double longest = std::max(
+        {edges_[0].squared_length(), edges_[1].squared_length(), edges_[2].squared_length()});
     // If the triangle is thinner than the tolerance, its height at a point is undefined.
     const bool is_vertical = twice_area_ * twice_area_ <= squared_tolerance * longest;
     if (is_vertical) {

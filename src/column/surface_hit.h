@@ -5,6 +5,7 @@
 #include <spawnfield/column.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -25,10 +26,12 @@ struct SurfaceHit {
 /// A triangle that is intersected with one vertical line after the other.
 class SeenTriangle {
 public:
-    SeenTriangle(const Tile& tile, std::uint32_t triangle)
+    SeenTriangle(const Tile& tile, std::uint32_t triangle) : SeenTriangle(tile, triangle, tile.corners(triangle)) {}
+    /// `corners` are those of the triangle.
+    SeenTriangle(const Tile& tile, std::uint32_t triangle, const std::array<Vec3, 3>& corners)
         : tile_(tile), triangle_(triangle),
-          corners_(tile.corners(triangle)), edges_{Edge(corners_[0], corners_[1]), Edge(corners_[1], corners_[2]),
-                                                   Edge(corners_[2], corners_[0])}
+          corners_(corners), edges_{Edge(corners[0], corners[1]), Edge(corners[1], corners[2]),
+                                    Edge(corners[2], corners[0])}
     {
     }
 
@@ -39,20 +42,32 @@ public:
         for (Edge& edge : edges_) edge.across = edge.x * (y - edge.from_y);
     }
 
-    /// Where a vertical line passes a triangle. Rim: so near to an edge that only hit_at_rim() can decide.
-    enum class Side { Outside, Inside, Rim };
-    Side side_of(double x) const
+    /// Which of some vertical lines pass through a triangle, one bit for each. Rim: so near to an edge that only
+    /// hit_at_rim() can decide. All others are outside.
+    struct Sides {
+        std::uint64_t inside = 0, rim = 0;
+    };
+    /// Looks at the lines at x[0], …, x[count - 1], m; at most 64. If the count is odd, x[count] must exist, too.
+    Sides sides_of(const double* x, int count) const
     {
-        // Clear lines are far from all edges, so that neither rounding nor a tolerance decides. If a clear line is on
-        // the same side of all edges, it goes through the triangle.
-        const double a = edges_[0].cross(x), b = edges_[1].cross(x), c = edges_[2].cross(x);
-        bool is_clear = a * a > edges_[0].rim;
-        is_clear &= b * b > edges_[1].rim;  // not &&: three comparisons cost less than a branch
-        is_clear &= c * c > edges_[2].rim;
-        if (!is_clear) return Side::Rim;
-        const double low = std::min(std::min(a, b), c), high = std::max(std::max(a, b), c);
-        if (low < 0 && high > 0) return Side::Outside;
-        return low <= 0 && high >= 0 ? Side::Rim : Side::Inside;
+        Sides out;
+        for (int k = 0; k < count; k += 2) {
+            // A line on the same side of all edges, and clear of them, goes through the triangle. A line that is
+            // clearly left of one edge and clearly right of another one does not. Clear lines are far from an edge, so
+            // that neither rounding nor a tolerance decides. There is no branch, because one that is predicted wrongly
+            // takes longer than all this.
+            const Two lines{x[k], x[k + 1]};
+            const auto& [p, q, r] = edges_;
+            const Two a = p.cross(lines), b = q.cross(lines), c = r.cross(lines);
+            const TwoMasks left_a = a > p.rim, left_b = b > q.rim, left_c = c > r.rim, right_a = a < -p.rim,
+                           right_b = b < -q.rim, right_c = c < -r.rim;
+            const TwoMasks inside = (left_a & left_b & left_c) | (right_a & right_b & right_c),
+                           outside = (left_a | left_b | left_c) & (right_a | right_b | right_c);
+            out.inside |= bits_of(inside) << k;
+            out.rim |= bits_of(~(inside | outside)) << k;
+        }
+        const std::uint64_t asked = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
+        return {out.inside & asked, out.rim & asked};
     }
 
     /// Returns the hit of a line inside the triangle, without its heights.
@@ -77,31 +92,32 @@ public:
     std::optional<SurfaceHit> hit(double x, double y)
     {
         set_y(y);
-        switch (side_of(x)) {
-        case Side::Outside: return std::nullopt;
-        case Side::Inside: return hit_inside(x);
-        case Side::Rim: break;
-        }
-        return hit_at_rim(x);
+        const std::array twice{x, x};
+        const auto [inside, rim] = sides_of(twice.data(), 1);
+        if (inside != 0) return hit_inside(x);
+        return rim != 0 ? hit_at_rim(x) : std::nullopt;
     }
 
 private:
+    using Two = double __attribute__((vector_size(16)));  ///< two lines in one register; also an extension of clang
+    using TwoMasks = decltype(Two{} < Two{});             ///< all bits of a number are equal
+
+    static std::uint64_t bits_of(const TwoMasks& masks) { return std::uint64_t((masks[0] & 1) | (masks[1] & 2)); }
+
     /// An edge, seen from above.
     struct Edge {
         double from_x, from_y;
-        double x, y;            ///< from its first corner to the next, m
-        double squared_length;  ///< m2
-        /// A line is clear of the edge if the squared cross product exceeds this; -1: the edge is vertical.
-        double rim;
-        double across;  ///< the part of that cross product which depends on y, m2
+        double x, y;    ///< from its first corner to the next, m
+        double rim;     ///< a line is clear of the edge if its cross product is above this, or below the negative, m2
+        double across;  ///< the part of the cross product that depends on y, m2
 
         Edge(const Vec3& from, const Vec3& to)
             : from_x(from.x()), from_y(from.y()), x(to.x() - from.x()), y(to.y() - from.y()),
-              squared_length(x * x + y * y),
-              rim(squared_length > 0 ? 16 * touch_tolerance * touch_tolerance * squared_length : -1), across(0)
+              rim(4 * touch_tolerance * (std::abs(x) + std::abs(y))), across(0)
         {
         }
-        double cross(double line_x) const { return across - y * (line_x - from_x); }
+        double squared_length() const { return x * x + y * y; }  ///< m2
+        Two cross(Two lines_x) const { return across - y * (lines_x - from_x); }
     };
 
     void prepare();

@@ -36,8 +36,8 @@ std::optional<SurfaceHit> uniform_hit(const Tile& tile, std::uint32_t triangle, 
     SeenTriangle seen(tile, triangle);
     for (const double y : {rect.low_y, rect.high_y}) {
         seen.set_y(y);
-        for (const double x : {rect.low_x, rect.high_x})
-            if (seen.side_of(x) != SeenTriangle::Side::Inside) return std::nullopt;
+        const std::array both{rect.low_x, rect.high_x};
+        if (seen.sides_of(both.data(), 2).inside != 0b11) return std::nullopt;
     }
     return seen.hit_inside(rect.high_x);
 }

@@ -192,36 +192,59 @@ void Mask::OpenTile::set_rows(std::uint32_t first, std::uint32_t last)
     highest = maxima;
 }
 
-/// Returns whether nothing in the rectangle of cells around a part reaches up to its lowest point. This fast test is
-/// true for most poses on open ground.
-bool Mask::is_clear(const Part& part, Pass& pass, const Vec3& position) const
+/// Returns whether nothing in these columns of the tile, in the rows that set_rows() got, reaches up to z.
+bool Mask::OpenTile::is_below(std::uint32_t first_col, std::uint32_t last_col, double z) const
 {
+    std::uint32_t top = 0;
+    for (std::uint32_t col = first_col; col <= last_col; ++col) top = std::max<std::uint32_t>(top, highest[col]);
+    return top <= values_below(tile, inverse_quantum, z);
+}
+
+/// Looks at the poses (x[i], y, z[i]) for which clear[i] is 1, and sets it to 0 unless nothing in the rectangle of
+/// cells around the part reaches up to its lowest point.
+void Mask::keep_clear(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
+                      std::span<std::uint8_t> clear) const
+{
+    constexpr int side = BoundsTile::side;
     const double per_cell = 1 / raster_.levels()[pass.level].cell;
-    const double x = position.x() - raster_.x0, y = position.y() - raster_.y0;
     const Rect& reach = part.reach;
-    const int low_col = floor_of((x + reach.low_x) * per_cell), high_col = floor_of((x + reach.high_x) * per_cell),
-              low_row = floor_of((y + reach.low_y) * per_cell), high_row = floor_of((y + reach.high_y) * per_cell);
-    if (low_col < 0 || high_col >= int(raster_.whole_cols(pass.level)) || low_row < 0 ||
-        high_row >= int(raster_.whole_rows(pass.level)))
-        return false;
-    const auto first_col = std::uint32_t(low_col), last_col = std::uint32_t(high_col),
-               first_row = std::uint32_t(low_row), last_row = std::uint32_t(high_row);
-    constexpr std::uint32_t side = BoundsTile::side;
-    const double bottom = position.z() + part.footprint.outer.bottom;
-    for (std::uint32_t col = first_col / side; col <= last_col / side; ++col) {
-        const std::uint32_t from = std::max(first_col, col * side) % side,
-                            to = std::min(last_col, col * side + side - 1) % side;
-        for (std::uint32_t row = first_row / side; row <= last_row / side; ++row) {
-            OpenTile& open = tile_of(pass, col, row);
-            if (open.tile.is_empty()) continue;
-            open.set_rows(std::max(first_row, row * side) % side, std::min(last_row, row * side + side - 1) % side);
-            std::uint32_t highest = 0;
-            for (std::uint32_t cell = from; cell <= to; ++cell)
-                highest = std::max<std::uint32_t>(highest, open.highest[cell]);
-            if (highest > values_below(open.tile, open.inverse_quantum, bottom)) return false;
+    const int low_row = floor_of((y - raster_.y0 + reach.low_y) * per_cell),
+              high_row = floor_of((y - raster_.y0 + reach.high_y) * per_cell),
+              cols = int(raster_.whole_cols(pass.level));
+    if (low_row < 0 || high_row >= int(raster_.whole_rows(pass.level))) {
+        std::fill(clear.begin(), clear.end(), std::uint8_t(0));
+        return;
+    }
+    for (int tile_row = low_row / side; tile_row <= high_row / side; ++tile_row) {
+        const int first_row = std::max(low_row - tile_row * side, 0),
+                  last_row = std::min(high_row - tile_row * side, side - 1);
+        const OpenTile* open = nullptr;
+        int tile_col = -1;  // of `open`
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            if (clear[i] == 0) continue;
+            const double from_left = x[i] - raster_.x0, bottom = z[i] + part.footprint.outer.bottom;
+            const int low_col = floor_of((from_left + reach.low_x) * per_cell),
+                      high_col = floor_of((from_left + reach.high_x) * per_cell);
+            clear[i] = low_col >= 0 && high_col < cols;
+            for (int col = low_col / side; clear[i] != 0 && col <= high_col / side; ++col) {
+                if (col != tile_col) {
+                    OpenTile& next = tile_of(pass, std::uint32_t(col), std::uint32_t(tile_row));
+                    if (!next.tile.is_empty()) next.set_rows(std::uint32_t(first_row), std::uint32_t(last_row));
+                    open = &next;
+                    tile_col = col;
+                }
+                if (open->tile.is_empty()) continue;
+                clear[i] = open->is_below(std::uint32_t(std::max(low_col - col * side, 0)),
+                                          std::uint32_t(std::min(high_col - col * side, side - 1)), bottom);
+            }
         }
     }
-    return true;
+}
+
+void Mask::find_clear(std::span<const double> x, double y, std::span<const double> z, std::span<std::uint8_t> clear)
+{
+    for (std::size_t i = 0; i < clear.size(); ++i) clear[i] = !std::isnan(z[i]) && is_in_reach(x[i], y);
+    for (Part& part : parts_) keep_clear(part, part.passes.front(), x, y, z, clear);
 }
 
 /// The heights of a part at a pose, in m and as quantized heights of the current tile.
@@ -341,16 +364,23 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
     return nothing_near ? Proof::Free : Proof::Candidate;
 }
 
+/// Returns whether the numbers of the cells around a pose fit an int.
+bool Mask::is_in_reach(double x, double y) const
+{
+    constexpr double farthest = 1e8;  // cells
+    return !raster_.levels().empty() && std::abs(x - raster_.x0) < farthest * raster_.levels()[0].cell &&
+           std::abs(y - raster_.y0) < farthest * raster_.levels()[0].cell;
+}
+
 Proof Mask::proof_of(const Vec3& position)
 {
     const double x = position.x(), y = position.y(), z = position.z();
-    constexpr double farthest = 1e8;  // cells; farther cells have numbers that might not fit an int
-    if (raster_.levels().empty() || !(std::abs(x - raster_.x0) < farthest * raster_.levels()[0].cell) ||
-        !(std::abs(y - raster_.y0) < farthest * raster_.levels()[0].cell))
-        return Proof::Candidate;
+    if (!is_in_reach(x, y)) return Proof::Candidate;
     bool is_free = true;
     for (Part& part : parts_) {
-        if (is_clear(part, part.passes.front(), position)) continue;
+        std::uint8_t is_clear = 1;
+        keep_clear(part, part.passes.front(), {&x, 1}, y, {&z, 1}, {&is_clear, 1});
+        if (is_clear != 0) continue;
         if (y != y_) set_y(y);
         Proof proof = Proof::Candidate;
         const Pass* coarser = nullptr;

@@ -35,6 +35,10 @@ public:
     /// From now on, proofs use only the coarsest cells that are useful. They read few tiles, and prove less.
     void use_coarse_cells() { coarse_only_ = true; }
     Proof proof_of(const Vec3& position);
+    /// Finds poses of a row, (x[i], y, z[i]), near which nothing reaches up to the robot's lowest point: clear[i]
+    /// becomes 1, and proof_of() is Free. For most poses on open ground this proof is enough, and it takes much less
+    /// time for a row than for one pose after the other. Otherwise, or if z[i] is NaN, clear[i] becomes 0.
+    void find_clear(std::span<const double> x, double y, std::span<const double> z, std::span<std::uint8_t> clear);
     /// Returns whether a solid on the vertical line through the origin is certainly inside a part. `spans` are the
     /// spans of that line.
     bool is_pierced(std::span<const Span> spans, double z) const;
@@ -56,6 +60,7 @@ private:
         std::uint32_t first_row = none, last_row = 0;
 
         void set_rows(std::uint32_t first, std::uint32_t last);
+        bool is_below(std::uint32_t first_col, std::uint32_t last_col, double z) const;
     };
     struct CellRange {
         int first, last;  ///< columns, inclusive
@@ -83,7 +88,9 @@ private:
     OpenTile& tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const;
     void open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, OpenTile& out) const;
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
-    bool is_clear(const Part& part, Pass& pass, const Vec3& position) const;
+    bool is_in_reach(double x, double y) const;
+    void keep_clear(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
+                    std::span<std::uint8_t> clear) const;
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     Proof proof_of(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const;

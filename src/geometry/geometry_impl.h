@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/bits.h"
 #include "base/tile_store.h"
 #include "geometry/tile_tree.h"
 
@@ -37,17 +38,23 @@ struct Geometry::Impl {
         });
     }
 
+    /// Calls visit(tile, box) for each tile whose box meets the closed rectangle, and for a few others near it.
+    template <class Visit>
+    void visit_tiles(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
+    {
+        for (std::size_t t = 0; t < trees_.size(); ++t)
+            trees_[t].visit(low_x, low_y, high_x, high_y,
+                            [&](std::size_t number) { visit(open(t, number), trees_[t].boxes()[number]); });
+    }
+
     /// Calls visit(tile, element) once for each element whose box meets the closed rectangle, and for a few others near
     /// it.
     template <class Visit>
     void visit_near(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
     {
-        for (std::size_t t = 0; t < trees_.size(); ++t)
-            trees_[t].visit(low_x, low_y, high_x, high_y, [&](std::size_t number) {
-                const Tile tile = open(t, number);
-                visit_each(tile.near(low_x, low_y, high_x, high_y),
-                           [&](std::uint32_t element) { visit(tile, element); });
-            });
+        visit_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox&) {
+            for_each_bit(tile.near(low_x, low_y, high_x, high_y), [&](std::uint32_t element) { visit(tile, element); });
+        });
     }
 
     /// The same for a closed box.
@@ -57,7 +64,7 @@ struct Geometry::Impl {
         for (std::size_t t = 0; t < trees_.size(); ++t)
             trees_[t].visit(space, [&](std::size_t number) {
                 const Tile tile = open(t, number);
-                visit_each(tile.near(space), [&](std::uint32_t element) { visit(tile, element); });
+                for_each_bit(tile.near(space), [&](std::uint32_t element) { visit(tile, element); });
             });
     }
 
@@ -66,13 +73,6 @@ struct Geometry::Impl {
     double elements_near(double low_x, double low_y, double high_x, double high_y) const;
 
 private:
-    /// Calls visit(k) for each bit k that is set, ascending.
-    template <class Visit>
-    static void visit_each(std::uint64_t bits, const Visit& visit)
-    {
-        for (; bits != 0; bits &= bits - 1) visit(std::uint32_t(std::countr_zero(bits)));
-    }
-
     TileStore tiles_;
     std::vector<TileTree> trees_;
 };

@@ -155,6 +155,18 @@ Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
     return judge(column_, position, with_hit);
 }
 
+void PoseJudge::find_valid(std::span<const double> x, double y, std::span<const double> z,
+                           std::span<std::uint8_t> valid)
+{
+    if (!mask_ || footing_ || max_height_ != std::numeric_limits<double>::infinity()) {
+        std::fill(valid.begin(), valid.end(), std::uint8_t(0));
+        return;
+    }
+    mask_->find_clear(x, y, z, valid);
+    for (std::size_t i = 0; i < valid.size(); ++i)
+        if (valid[i] != 0) valid[i] = is_within(shared_.map, {x[i], y, z[i]});
+}
+
 Judgement PoseJudge::judge_collision(const Vec3& position)
 {
     Judgement out;

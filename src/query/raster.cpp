@@ -7,7 +7,9 @@
 #include <spawnfield/query.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace spawnfield {
 namespace {
@@ -134,11 +136,10 @@ public:
             if (options_.height_check)
                 worker.columns.set(shared_.map.geometry,
                                    {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
+            for (int i = 0; i < cols; ++i) worker.x[std::size_t(i)] = grid_.x_of(col + i);
             for (int j = 0; j < int(out.size()); ++j)
-                for (int i = 0; i < cols; ++i) {
-                    const double x = grid_.x_of(col + i), y = grid_.y_of(first + j);
-                    if (is_everywhere_ || area_.contains({x, y})) judge_column(worker, i, j, x, y, out[std::size_t(j)]);
-                }
+                judge_row(worker, std::span(worker.x).first(std::size_t(cols)), j, grid_.y_of(first + j),
+                          out[std::size_t(j)]);
         }
     }
 
@@ -148,6 +149,8 @@ private:
         PoseJudge judge;                           ///< at options.yaw
         std::optional<HeadingsJudge> at_headings;  ///< empty: only one yaw is judged
         Columns columns;                           ///< of the current block
+        std::array<double, block> x, z;            ///< of the block's columns; of poses in one of its rows
+        std::array<std::uint8_t, block> valid;     ///< whether these poses are certainly valid
 
         explicit Worker(const RasterJudge& raster) : judge(raster.shared_, raster.options_.yaw, raster.max_height())
         {
@@ -159,6 +162,30 @@ private:
     double max_height() const
     {
         return options_.dims == 2 ? std::numeric_limits<double>::infinity() : shared_.options.max_height;
+    }
+
+    /// Judges row j of a block.
+    void judge_row(Worker& worker, std::span<const double> x, int j, double y, Row& out) const
+    {
+        worker.valid.fill(0);
+        if (is_simple_) find_valid(worker, x, j, y);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            if (worker.valid[i] != 0)
+                out.poses.push_back({x[i], y, worker.z[i], 0, Verdict::Valid});
+            else if (is_everywhere_ || area_.contains({x[i], y}))
+                judge_column(worker, int(i), j, x[i], y, out);
+        }
+    }
+
+    /// Sets worker.z and worker.valid for row j of a block.
+    void find_valid(Worker& worker, std::span<const double> x, int j, double y) const
+    {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double height = worker.columns.only_terrain(int(i), j);
+            const bool is_ground = ground_z_.contains(height, touch_tolerance);
+            worker.z[i] = is_ground ? height + offset_ : std::numeric_limits<double>::quiet_NaN();
+        }
+        worker.judge.find_valid(x, y, std::span(worker.z).first(x.size()), std::span(worker.valid).first(x.size()));
     }
 
     void judge_column(Worker& worker, int i, int j, double x, double y, Row& out) const
@@ -293,6 +320,9 @@ private:
     const AreaIndex area_;
     const bool is_everywhere_;
     const int headings_;  ///< 0: only options.yaw
+    /// Whether all poses on columns with one surface are judged alike: at one yaw, above their layer, anywhere.
+    const bool is_simple_ = options_.dims == 2 && options_.height_check && headings_ == 0 && is_everywhere_ &&
+                            offset_ >= 0 && options_.layers.includes(0, 1);
     const Steps outside_ = steps_outside();
     mutable PerThread<Worker> workers_{[this] { return Worker(*this); }};
 };
