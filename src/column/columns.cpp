@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace spawnfield {
 namespace {
@@ -114,7 +115,7 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
     });
     if (listed_.empty()) return;
     for (Slot& slot : slots_)
-        if (slot.content == Content::Several) complete(slot);
+        if (slot.has_more) complete(slot);
 }
 
 void Columns::add_triangle(SeenTriangle seen, const ColumnGrid& grid, const ColumnRange& range)
@@ -148,53 +149,57 @@ void Columns::add_primitive(const Tile& tile, std::uint32_t element, const Colum
                 add(slots_[number(i, j)], *hit);
 }
 
-/// Adds the hit of a sheet at height z.
+/// Adds the hit of a sheet at height z, unless the slot has the same hit already: triangles share corners and edges.
 inline void Columns::add_sheet(Slot& slot, const SurfaceHit& hit, double z)
 {
-    if (slot.content != Content::Nothing) {
-        add_further_sheet(slot, hit, z);
-        return;
+    if (!slot.has_more && hit.water) {
+        if (slot.has_water && slot.water == z) return;
+        if (!slot.has_water) {
+            slot.has_water = true;
+            slot.water = z;
+            return;
+        }
+    } else if (!slot.has_more) {
+        const Span span{z, z, hit.part, hit.terrain, !hit.open};
+        if (slot.has_span && slot.span == span) return;
+        if (!slot.has_span) {
+            slot.has_span = true;
+            slot.span = span;
+            slot.index = hit.element;
+            return;
+        }
     }
-    slot.span = {z, z, hit.part, hit.terrain, !hit.open};
-    slot.index = hit.element;
-    slot.content = hit.water ? Content::Water : hit.terrain ? Content::Terrain : Content::Obstacle;
-}
-
-/// Adds the hit of a sheet at height z, unless the column has no other hit than the same: triangles share corners and
-/// edges.
-void Columns::add_further_sheet(Slot& slot, const SurfaceHit& hit, double z)
-{
-    if (slot.content != Content::Several && slot.span.top == z && slot.span.part == hit.part &&
-        slot.span.terrain == hit.terrain && slot.span.sealed == !hit.open &&
-        (slot.content == Content::Water) == hit.water)
-        return;
     SurfaceHit listed = hit;
     listed.z = {z, z};
     add(slot, listed);
 }
 
-/// Adds a hit to the list of a column. If the column has a hit that is not in a list yet, its list begins with it.
+/// Adds a hit to the list of a column. The list begins with what the slot has.
 void Columns::add(Slot& slot, const SurfaceHit& hit)
 {
-    std::uint32_t next = none;
-    if (slot.content == Content::Several) {
-        next = slot.index;
-    } else if (slot.content != Content::Nothing) {
+    if (!slot.has_more) {
         SurfaceHit first{};
-        first.element = slot.index;
+        first.element = std::exchange(slot.index, none);
         first.piece = none;  // its piece is not known, and not needed because it is not filled
         first.part = slot.span.part;
         first.open = !slot.span.sealed;
         first.terrain = slot.span.terrain;
-        first.water = slot.content == Content::Water;
         first.touches = true;
         first.z = {slot.span.bottom, slot.span.top};
-        next = std::uint32_t(listed_.size());
-        listed_.push_back({first, none});
+        if (slot.has_span) list(slot, first);
+        first.element = none;  // not known; the order matters only within a filled piece
+        first.water = true;
+        first.z = {slot.water, slot.water};
+        if (slot.has_water) list(slot, first);
+        slot.has_more = true;
     }
-    slot.content = Content::Several;
-    slot.index = std::uint32_t(listed_.size());
-    listed_.push_back({hit, next});
+    list(slot, hit);
+}
+
+void Columns::list(Slot& slot, const SurfaceHit& hit)
+{
+    listed_.push_back({hit, slot.index});
+    slot.index = std::uint32_t(listed_.size() - 1);
 }
 
 /// Appends the column of a list of hits to column_.
@@ -212,7 +217,7 @@ void Columns::complete(Slot& slot)
 /// Ends the column that was added to column_ last.
 void Columns::end_column(Slot& slot)
 {
-    slot.content = Content::Several;
+    slot.has_more = true;
     slot.index = std::uint32_t(starts_.size() - 1);
     starts_.push_back({std::uint32_t(column_.spans.size()), std::uint32_t(column_.layers.size()),
                        std::uint32_t(column_.water.size())});

@@ -90,13 +90,10 @@ public:
     ColumnView at(int i, int j) const
     {
         const Slot& slot = slots_[number(i, j)];
-        switch (slot.content) {
-        case Content::Nothing: return {};
-        case Content::Terrain: return {{&slot.span, 1}, {&slot.span.top, 1}, {}};
-        case Content::Obstacle: return {{&slot.span, 1}, {}, {}};
-        case Content::Water: return {{}, {}, {&slot.span.top, 1}};
-        case Content::Several: break;
-        }
+        if (!slot.has_more)
+            return {{&slot.span, slot.has_span},
+                    {&slot.span.top, slot.has_span && slot.span.terrain},
+                    {&slot.water, slot.has_water}};
         const Start &from = starts_[slot.index], &to = starts_[slot.index + 1];
         return {std::span(column_.spans).subspan(from.span, to.span - from.span),
                 std::span(column_.layers).subspan(from.layer, to.layer - from.layer),
@@ -107,24 +104,25 @@ public:
     double only_terrain(int i, int j) const
     {
         const Slot& slot = slots_[number(i, j)];
-        return slot.content == Content::Terrain ? slot.span.top : std::numeric_limits<double>::quiet_NaN();
+        const bool is_alone = slot.has_span && slot.span.terrain && !slot.has_water && !slot.has_more;
+        return is_alone ? slot.span.top : std::numeric_limits<double>::quiet_NaN();
     }
 
 private:
-    /// What a column contains. Most columns contain nothing, or one surface of a sheet: it is `span`. All others are
-    /// `Several`: they are one after the other in column_.
-    enum class Content : std::uint8_t { Nothing, Terrain, Obstacle, Water, Several };
+    /// What a column contains. Most columns have at most one surface of a sheet and one water surface: the slot has
+    /// both. All others have more; they are one after the other in column_.
     struct Slot {
         Span span;
-        /// While scanning: the element, or for Several, the column's first hit in listed_. Then, for Several: the place
+        double water = 0;  ///< m
+        /// The element of `span`. If the column has more: while scanning, its first hit in listed_, and then, its place
         /// in starts_.
         std::uint32_t index = 0;
-        Content content = Content::Nothing;
+        bool has_span = false, has_water = false, has_more = false;
     };
     struct Start {
         std::uint32_t span = 0, layer = 0, water = 0;
     };
-    /// A hit of a column with several hits.
+    /// A hit of a column that has more than a slot can hold.
     struct ListedHit {
         SurfaceHit hit;
         std::uint32_t next;  ///< index in listed_ of another hit of the column, or `none`
@@ -136,8 +134,8 @@ private:
     void add_triangle(SeenTriangle seen, const ColumnGrid& grid, const ColumnRange& range);
     void add_primitive(const Tile& tile, std::uint32_t element, const ColumnGrid& grid, const ColumnRange& range);
     void add_sheet(Slot& slot, const SurfaceHit& hit, double z);
-    void add_further_sheet(Slot& slot, const SurfaceHit& hit, double z);
     void add(Slot& slot, const SurfaceHit& hit);
+    void list(Slot& slot, const SurfaceHit& hit);
     void complete(Slot& slot);
     void end_column(Slot& slot);
     std::size_t number(int i, int j) const { return std::size_t(j) * std::size_t(cols_) + std::size_t(i); }
