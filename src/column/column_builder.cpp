@@ -41,6 +41,13 @@ void ColumnBuilder::build(std::span<const SurfaceHit> hits, Column& out)
 /// Adds a filled piece. It consists entirely of water or has no water.
 void ColumnBuilder::add_piece(std::span<const SurfaceHit> hits, Column& out)
 {
+    const auto only_crosses = [](const SurfaceHit& hit) { return hit.crosses && !hit.touches; };
+    if (hits.size() == 2 && only_crosses(hits[0]) && only_crosses(hits[1])) {  // most lines: in, and out again
+        const bool is_upwards = hits[0].crossing <= hits[1].crossing;
+        const SurfaceHit &low = hits[is_upwards ? 0 : 1], &high = hits[is_upwards ? 1 : 0];
+        add({low.crossing, high.crossing}, hits[0], high.terrain, out);
+        return;
+    }
     intervals_.clear();
     crossings_.clear();
     for (const SurfaceHit& hit : hits) {
