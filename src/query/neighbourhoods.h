@@ -19,7 +19,7 @@ inline std::vector<std::uint32_t> in_neighbourhoods(const std::vector<Vec2>& pla
         low = low.cwiseMin(place);
         high = high.cwiseMax(place);
     }
-    const auto side = std::size_t(std::clamp(std::sqrt(double(places.size())), 1.0, 256.0));
+    const auto side = std::size_t(std::clamp(std::sqrt(double(places.size())), 1.0, 1024.0));
     const auto along = [&](const Vec2& place, int axis) {
         const double share = (place[axis] - low[axis]) / (high[axis] - low[axis]);
         return share > 0 ? std::size_t(std::min(share, 1.0) * double(side - 1)) : 0;  // also if the share is NaN

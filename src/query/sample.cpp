@@ -145,8 +145,8 @@ private:
         const std::size_t before = out.spawns.size();
         std::uint64_t failures = 0, draws = 0;
         const auto batch_size = [&](std::uint64_t so_far) {
-            return std::size_t(
-                std::min<std::uint64_t>(most - so_far, batch_for(options_.count, out.spawns.size(), out.draws)));
+            return std::size_t(std::min<std::uint64_t>(
+                most - so_far, batch_for(options_.count, options_.min_distance, out.spawns.size(), out.draws)));
         };
         const auto place = [&](std::uint64_t index) {
             Draw from(options_.seed, index);

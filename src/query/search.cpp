@@ -128,7 +128,9 @@ SpawnList search(const Judge& judge, const SearchOptions& options)
     };
     SpawnList out;
     std::uint64_t failures = 0;
-    const auto batch_size = [&](std::uint64_t draws) { return batch_for(options.count, out.spawns.size(), draws); };
+    const auto batch_size = [&](std::uint64_t draws) {
+        return batch_for(options.count, options.min_distance, out.spawns.size(), draws);
+    };
     draw_in_order(0, judge.impl(), options, out, checked, batch_size, place, look, [&](const Candidate& candidate) {
         ++out.draws;
         ++failures;

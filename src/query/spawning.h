@@ -132,12 +132,15 @@ std::uint64_t draw_in_order(std::uint64_t first, const Judge::Impl& shared, cons
 }
 
 /// Returns the size of the next batch: about as many draws as the missing spawns will need if the share of successful
-/// draws stays the same, but at most twice the draws so far, and within fixed limits.
-inline std::size_t batch_for(std::size_t wanted, std::size_t found, std::uint64_t draws)
+/// draws stays the same, but at most twice the draws so far, and within fixed limits. In a larger batch, neighbours are
+/// nearer to each other. But with a distance between spawns, draws that are too near to others of their batch are
+/// judged in vain.
+inline std::size_t batch_for(std::size_t wanted, double min_distance, std::size_t found, std::uint64_t draws)
 {
-    constexpr double smallest = 256, largest = 1 << 17;
+    constexpr double smallest = 256, largest = 1 << 17, largest_without_distance = 1 << 20;
     const double share = (double(found) + 1) / (double(draws) + 1);
-    return std::size_t(std::clamp(std::min(double(wanted - found) / share, 2 * double(draws)), smallest, largest));
+    return std::size_t(std::clamp(std::min(double(wanted - found) / share, 2 * double(draws)), smallest,
+                                  min_distance > 0 ? largest : largest_without_distance));
 }
 
 }  // namespace spawnfield
