@@ -32,7 +32,6 @@ endfunction()
 # Asserts stay on in optimised builds.
 string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
 string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
-string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
 
 # Every x86 processor since 2009 can count bits and round in one instruction. The results are the same.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

@@ -26,6 +26,13 @@ public:
     {
         for (const Vec2& p : corners) push_back(p);
     }
+    SmallPolygon(const SmallPolygon& from) { *this = from; }
+    SmallPolygon& operator=(const SmallPolygon& from)  // copies only the corners that exist
+    {
+        size_ = from.size_;
+        std::copy(from.begin(), from.end(), corners_.begin());
+        return *this;
+    }
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
     const Vec2& operator[](std::size_t k) const { return corners_[k]; }
