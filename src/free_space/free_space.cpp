@@ -196,7 +196,7 @@ void Mask::OpenTile::set_rows(std::uint32_t first, std::uint32_t last)
 bool Mask::OpenTile::is_below(std::uint32_t first_col, std::uint32_t last_col, double z) const
 {
     std::uint32_t top = 0;
-    for (std::uint32_t col = first_col; col <= last_col; ++col) top = std::max<std::uint32_t>(top, highest[col]);
+    for (std::uint32_t c = first_col; c <= last_col; ++c) top = std::max<std::uint32_t>(top, highest[c]);
     return top <= values_below(tile, inverse_quantum, z);
 }
 
