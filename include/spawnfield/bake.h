@@ -25,7 +25,8 @@ SPAWNFIELD_API Map make_map(const Scene& scene, const BakeOptions& options = {})
 /// The numbers that the summary of a bake contains.
 struct BakeReport {
     std::vector<std::string> notices;
-    /// Of each stage. Stages that write files run at the same time, and a name may occur several times.
+    /// The name and the seconds of each stage. Stages that write files run at the same time, so the sum may be longer
+    /// than the bake. A name may occur several times.
     std::vector<std::pair<std::string, double>> seconds;
     int layers = 0;
     std::size_t occupancy_leaves = 0;

@@ -208,8 +208,8 @@ void Columns::complete(Slot& slot)
     hits_.clear();
     for (std::uint32_t h = slot.index; h != none; h = listed_[h].next) hits_.push_back(listed_[h].hit);
     std::reverse(hits_.begin(), hits_.end());  // the list begins with the last hit, and most hits come in their order
-    const auto is_before = [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; };
-    if (!std::is_sorted(hits_.begin(), hits_.end(), is_before)) std::sort(hits_.begin(), hits_.end(), is_before);
+    std::sort(hits_.begin(), hits_.end(),
+              [](const SurfaceHit& l, const SurfaceHit& r) { return l.element < r.element; });
     builder_.build(hits_, column_);
     end_column(slot);
 }

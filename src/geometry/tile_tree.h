@@ -1,8 +1,8 @@
 #pragma once
 
+#include "base/bits.h"
 #include "geometry/tile.h"
 
-#include <bit>
 #include <vector>
 
 namespace spawnfield {
@@ -60,13 +60,13 @@ private:
     void visit_below(std::size_t level, std::size_t node, const std::array<float, Axes>& from,
                      const std::array<float, Axes>& to, const Visit& visit) const
     {
-        for (std::uint32_t met = children_of<Axes>(levels_[level][node], from, to); met != 0; met &= met - 1) {
-            const std::size_t child = node * width + std::size_t(std::countr_zero(met));
+        for_each_bit(children_of<Axes>(levels_[level][node], from, to), [&](std::uint32_t k) {
+            const std::size_t child = node * width + k;
             if (level == 0)
                 visit(child);
             else
                 visit_below<Axes>(level - 1, child, from, to, visit);
-        }
+        });
     }
 
     template <std::size_t Axes>
