@@ -7,7 +7,11 @@
 #include "test_map.h"
 #include "worlds/hand_scene.h"
 
+#include <spawnfield/collision.h>
 #include <spawnfield/free_space.h>
+
+#include <algorithm>
+#include <cmath>
 
 using namespace spawnfield;
 
@@ -157,16 +161,18 @@ TEST_CASE("a map that is smaller than its scene proves nothing beyond its edge")
     CHECK(space.proof_of({8, 0, 0.1}, 0) == Proof::Candidate);
 }
 
-TEST_CASE("clear poses of a row are free, and the same as one by one")
+TEST_CASE("the proofs of a row are true, and the same as those of its poses one by one")
 {
-    std::size_t clear_poses = 0, others = 0;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    std::array<std::size_t, 3> proofs{};
+    for (std::uint64_t seed = 1; seed <= 24; ++seed) {
         Draw draw(seed, 0);
         const TestMap map = map_of(random_scene(seed), draw.uniform(0.02, 0.3));
         Robot robot = load_robot("box:0.6,0.4,0.3");
-        if (seed % 2 == 0) robot.parts.push_back(load_robot("box:0.17,3,1.2@-0.2,0,0.6").parts[0]);
+        if (seed % 3 == 0) robot.parts.push_back(load_robot("box:0.17,3,1.2@-0.2,0,0.6").parts[0]);
+        const double yaw = seed % 2 == 0 ? 0 : draw.uniform(-pi, pi);  // at yaw 0, footprints are along the axes
         const FreeSpace space(map.solid_bounds, robot);
-        Mask mask(space.impl(), draw.uniform(-pi, pi));
+        const CollisionChecker checker(map.geometry, robot);
+        Mask mask(space.impl(), yaw), other(space.impl(), yaw);
         for (int row = 0; row < 20; ++row) {
             const double y = draw.uniform(map.bounds.min.y() - 1, map.bounds.max.y() + 1);
             std::vector<double> x, z;
@@ -174,22 +180,26 @@ TEST_CASE("clear poses of a row are free, and the same as one by one")
                 x.push_back(draw.uniform(map.bounds.min.x() - 1, map.bounds.max.x() + 1));
                 z.push_back(draw.uniform(map.bounds.min.z(), map.bounds.max.z() + 0.5));
             }
+            std::sort(x.begin(), x.end());
             z[7] = std::numeric_limits<double>::quiet_NaN();
-            x[9] = 1e300;
-            std::vector<std::uint8_t> clear(x.size(), 2), alone(1);
-            mask.find_clear(x, y, z, clear);
+            std::vector<Proof> found(x.size());
+            mask.prove(x, y, z, found);
+            CHECK(found[7] != Proof::Blocked);
             for (std::size_t i = 0; i < x.size(); ++i) {
-                mask.find_clear(std::span(x).subspan(i, 1), y, std::span(z).subspan(i, 1), alone);
-                REQUIRE(clear[i] == alone[0]);
-                if (clear[i] != 0) REQUIRE(mask.proof_of({x[i], y, z[i]}) == Proof::Free);
-                ++(clear[i] != 0 ? clear_poses : others);
+                if (std::isnan(z[i])) continue;
+                const Vec3 position(x[i], y, z[i]);
+                CAPTURE(seed, yaw, position.transpose());
+                REQUIRE(found[i] == other.proof_of(position));
+                if (found[i] != Proof::Candidate)
+                    REQUIRE((found[i] == Proof::Free) == checker.is_free({position, rotation_from_rpy(0, 0, yaw)}));
+                ++proofs[std::size_t(found[i])];
             }
-            CHECK(clear[7] == 0);
-            CHECK(clear[9] == 0);
+            x.back() = 1e300;
+            mask.prove(x, y, z, found);
+            CHECK(std::count(found.begin(), found.end(), Proof::Candidate) == std::ptrdiff_t(found.size()));
         }
     }
-    CHECK(clear_poses > 1000);
-    CHECK(others > 1000);
+    for (const std::size_t count : proofs) CHECK(count > 1000);
 }
 
 TEST_CASE("footprints bound a part from outside and from inside")

@@ -18,7 +18,7 @@ public:
     {
     }
 
-    using Pair = Eigen::Array2d;  ///< x and y
+    using Pair = SeenTriangle::Place;
 
     /// Returns whether any column may lie in the rectangle from `min` to `max`. If so, sets their range.
     bool find(const Pair& min, const Pair& max, ColumnRange& out) const
@@ -84,21 +84,18 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
     const BlockIndex index(grid);
     const double low_x = x_[0], high_x = x_[std::size_t(grid.cols) - 1], low_y = grid.y_of(grid.first_row),
                  high_y = grid.y_of(grid.first_row + grid.rows - 1);
-    geometry.impl().visit_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox& box) {
+    geometry.impl().visit_whole_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox& box) {
         ColumnRange range;
         if (!index.find({box.min[0], box.min[1]}, {box.max[0], box.max[1]}, range)) return;
         const auto columns = std::uint32_t(range.last_col + 1 - range.first_col) *
                              std::uint32_t(range.last_row + 1 - range.first_row);
-        std::uint64_t elements = 0;  // a bit for each that may meet a column
-        if (2 * columns <= tile.elements()) {
+        if (columns <= tile.elements()) {  // most elements meet no column
             for (int j = range.first_row; j <= range.last_row; ++j)
-                for (int i = range.first_col; i <= range.last_col; ++i) {
-                    const double x = x_[std::size_t(i)], y = grid.y_of(grid.first_row + j);
-                    elements |= tile.near(x, y, x, y);
-                }
-        } else {
-            elements = tile.near(low_x, low_y, high_x, high_y);
+                for (int i = range.first_col; i <= range.last_col; ++i)
+                    add_column(tile, surfaces, x_[std::size_t(i)], grid.y_of(grid.first_row + j), slots_[number(i, j)]);
+            return;
         }
+        const std::uint64_t elements = tile.near(low_x, low_y, high_x, high_y);
         for_each_bit(elements, [&](std::uint32_t element) {
             if (!counts(tile, element, surfaces)) return;
             if (!tile.is_triangle(element)) {
@@ -107,10 +104,8 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
                     add_primitive(tile, element, grid, range);
                 return;
             }
-            const auto corners = tile.corners(element);
-            const BlockIndex::Pair a = corners[0].head<2>(), b = corners[1].head<2>(), c = corners[2].head<2>();
-            if (index.find(a.min(b).min(c), a.max(b).max(c), range))
-                add_triangle(SeenTriangle(tile, element, corners), grid, range);
+            const SeenTriangle seen(tile, element);
+            if (index.find(seen.low_corner(), seen.high_corner(), range)) add_triangle(seen, grid, range);
         });
     });
     if (listed_.empty()) return;
@@ -118,27 +113,54 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
         if (slot.has_more) complete(slot);
 }
 
-void Columns::add_triangle(SeenTriangle seen, const ColumnGrid& grid, const ColumnRange& range)
+void Columns::add_triangle(const SeenTriangle& seen, const ColumnGrid& grid, const ColumnRange& range)
 {
     constexpr int most = 64;  // columns of a row that are looked at together, so that no branch depends on one of them
+    std::optional<TrianglePlane> plane;
     for (int j = range.first_row; j <= range.last_row; ++j) {
-        seen.set_y(grid.y_of(grid.first_row + j));
+        const double y = grid.y_of(grid.first_row + j);
         for (int first = range.first_col; first <= range.last_col; first += most) {
             const double* const x = x_.data() + first;
             Slot* const slots = slots_.data() + number(first, j);
-            const auto [inside, rim] = seen.sides_of(x, std::min(most, range.last_col + 1 - first));
-            for_each_bit(inside, [&](std::uint32_t k) {
-                if (const SurfaceHit& common = seen.common(); common.filled)
-                    add(slots[k], seen.hit_inside(x[k]));
-                else
-                    add_sheet(slots[k], common, seen.height_at(x[k]));
-            });
-            for_each_bit(rim, [&](std::uint32_t k) {
-                if (const auto hit = seen.hit_at_rim(x[k]))
-                    hit->filled ? add(slots[k], *hit) : add_sheet(slots[k], *hit, hit->z.top);
-            });
+            const auto [inside, rim] = seen.sides_of(x, std::min(most, range.last_col + 1 - first), y);
+            if ((inside | rim) == 0) continue;
+            if (!plane) plane.emplace(seen);
+            for_each_bit(inside, [&](std::uint32_t k) { add_inside(slots[k], *plane, x[k], y); });
+            for_each_bit(rim, [&](std::uint32_t k) { add_rim(slots[k], seen, *plane, x[k], y); });
         }
     }
+}
+
+/// Adds the hits of one vertical line with the elements of a tile.
+void Columns::add_column(const Tile& tile, Surfaces surfaces, double x, double y, Slot& slot)
+{
+    for_each_bit(tile.near(x, y, x, y), [&](std::uint32_t element) {
+        if (!counts(tile, element, surfaces)) return;
+        if (!tile.is_triangle(element)) {
+            if (const auto hit = hit_of(tile, element, x, y)) add(slot, *hit);
+            return;
+        }
+        const SeenTriangle seen(tile, element);
+        const auto [inside, rim] = seen.sides_of(x, y);
+        if (inside != 0)
+            add_inside(slot, TrianglePlane(seen), x, y);
+        else if (rim != 0)
+            add_rim(slot, seen, TrianglePlane(seen), x, y);
+    });
+}
+
+inline void Columns::add_inside(Slot& slot, const TrianglePlane& plane, double x, double y)
+{
+    if (plane.hit.filled)
+        add(slot, plane.hit_inside(x, y));
+    else
+        add_sheet(slot, plane.hit, plane.height(x, y));
+}
+
+inline void Columns::add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y)
+{
+    if (const auto hit = seen.hit_at_rim(plane, x, y))
+        hit->filled ? add(slot, *hit) : add_sheet(slot, *hit, hit->z.top);
 }
 
 void Columns::add_primitive(const Tile& tile, std::uint32_t element, const ColumnGrid& grid, const ColumnRange& range)

@@ -131,7 +131,10 @@ private:
 
     void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
-    void add_triangle(SeenTriangle seen, const ColumnGrid& grid, const ColumnRange& range);
+    void add_triangle(const SeenTriangle& seen, const ColumnGrid& grid, const ColumnRange& range);
+    void add_column(const Tile& tile, Surfaces surfaces, double x, double y, Slot& slot);
+    void add_inside(Slot& slot, const TrianglePlane& plane, double x, double y);
+    void add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y);
     void add_primitive(const Tile& tile, std::uint32_t element, const ColumnGrid& grid, const ColumnRange& range);
     void add_sheet(Slot& slot, const SurfaceHit& hit, double z);
     void add(Slot& slot, const SurfaceHit& hit);

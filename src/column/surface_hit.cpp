@@ -82,56 +82,65 @@ bool is_touched(const std::array<Vec3, 3>& corners, double sign, double x, doubl
 
 }  // namespace
 
-void SeenTriangle::prepare()
+TrianglePlane::TrianglePlane(const SeenTriangle& triangle)
 {
-    const auto& [a, b, c] = corners_;
-    const Interval z = extent(corners_, 2);
-    const double acx = c.x() - a.x(), acy = c.y() - a.y(), abz = b.z() - a.z(), acz = c.z() - a.z();
-    twice_area_ = edges_[0].x * acy - edges_[0].y * acx;
-    low_ = twice_area_ != 0 ? z.bottom : z.top;  // a vertical triangle has no single height at a point: its top counts
-    high_ = z.top;
-    if (twice_area_ != 0) {
-        slope_x_ = (abz * acy - acz * edges_[0].y) / twice_area_;
-        slope_y_ = (acz * edges_[0].x - abz * acx) / twice_area_;
-    }
-    const TileTriangle& from = tile_.triangles[triangle_];
-    const TilePiece& piece = tile_.piece(triangle_);
-    const bool filled = piece.solid != 0, looks_up = twice_area_ > 0;
-    common_ = {.element = tile_.ids[triangle_],
-               .piece = piece.piece,
-               .part = piece.part,
-               .is_primitive = false,
-               .filled = filled,
-               .open = piece.open != 0,
-               .terrain = from.label == Label::Terrain && (piece.sides_up == 0 || filled || looks_up),
-               .water = from.label == Label::Water,
-               .crosses = filled,
-               .touches = !filled,
-               .z = {},
-               .crossing = 0,
-               .piece_bottom = piece.bottom};
-    is_prepared_ = true;
+    const auto& [a, b, c] = triangle.corners_;
+    const Vec3 ab = b - a, ac = c - a;
+    const Interval heights = extent(triangle.corners_, 2);
+    twice_area = ab.x() * ac.y() - ab.y() * ac.x();
+    x = a.x();
+    y = a.y();
+    z = a.z();
+    const bool is_vertical = twice_area == 0;
+    slope_x = is_vertical ? 0 : (ab.z() * ac.y() - ac.z() * ab.y()) / twice_area;
+    slope_y = is_vertical ? 0 : (ac.z() * ab.x() - ab.z() * ac.x()) / twice_area;
+    low = is_vertical ? heights.top : heights.bottom;  // a vertical one has no single height at a point: its top counts
+    high = heights.top;
+    const TileTriangle& from = triangle.tile_.triangles[triangle.triangle_];
+    const TilePiece& piece = triangle.tile_.piece(triangle.triangle_);
+    const bool filled = piece.solid != 0, looks_up = twice_area > 0;
+    hit = {.element = triangle.tile_.ids[triangle.triangle_],
+           .piece = piece.piece,
+           .part = piece.part,
+           .is_primitive = false,
+           .filled = filled,
+           .open = piece.open != 0,
+           .terrain = from.label == Label::Terrain && (piece.sides_up == 0 || filled || looks_up),
+           .water = from.label == Label::Water,
+           .crosses = filled,
+           .touches = !filled,
+           .z = {},
+           .crossing = 0,
+           .piece_bottom = piece.bottom};
 }
 
-std::optional<SurfaceHit> SeenTriangle::hit_at_rim(double x)
+/// At a corner, this is exactly the corner's height, so that all triangles at that corner agree.
+double SeenTriangle::height_at_rim(const TrianglePlane& plane, double x, double y) const
 {
-    const double y = y_;
+    for (const Vec3& corner : corners_)
+        if (corner.x() == x && corner.y() == y) return std::max(corner.z(), plane.low);
+    return plane.height(x, y);
+}
+
+std::optional<SurfaceHit> SeenTriangle::hit_at_rim(const TrianglePlane& plane, double x, double y) const
+{
     if (!may_meet(corners_, x, y)) return std::nullopt;
-    SurfaceHit out = common();
+    SurfaceHit out = plane.hit;
     out.crosses = out.filled && is_crossed(corners_, x, y);
-    if (out.crosses) out.crossing = height_at_rim(x, y);
-    const double longest = std::max(
-        {edges_[0].squared_length(), edges_[1].squared_length(), edges_[2].squared_length()});
+    if (out.crosses) out.crossing = height_at_rim(plane, x, y);
+    const auto squared_length = [](const Vec3& p, const Vec3& q) { return (q - p).head<2>().squaredNorm(); };
+    const auto& [a, b, c] = corners_;
+    const double longest = std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
     // If the triangle is thinner than the tolerance, its height at a point is undefined.
-    const bool is_vertical = twice_area_ * twice_area_ <= squared_tolerance * longest;
+    const bool is_vertical = plane.twice_area * plane.twice_area <= squared_tolerance * longest;
     if (is_vertical) {
         // Computed even if `crosses` is true: because of rounding, a line in a vertical triangle may also cross it.
         const auto met = out.filled ? segment(corners_, x, y) : std::nullopt;
         out.touches = met.has_value();
         if (met) out.z = *met;
     } else {
-        out.touches = !out.crosses && is_touched(corners_, twice_area_ > 0 ? 1 : -1, x, y);
-        if (out.touches) out.z.bottom = out.z.top = height_at_rim(x, y);
+        out.touches = !out.crosses && is_touched(corners_, plane.twice_area > 0 ? 1 : -1, x, y);
+        if (out.touches) out.z.bottom = out.z.top = height_at_rim(plane, x, y);
     }
     if (!out.crosses && !out.touches) return std::nullopt;
     return out;

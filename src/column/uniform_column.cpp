@@ -33,13 +33,12 @@ std::optional<SurfaceHit> uniform_hit(const Tile& tile, std::uint32_t triangle, 
     const auto [a, b, c] = tile.corners(triangle);
     // Computed heights of a triangle at -0 m may be 0 or -0.
     if (a.z() != b.z() || a.z() != c.z() || (a.z() == 0 && std::signbit(a.z()))) return std::nullopt;
-    SeenTriangle seen(tile, triangle);
+    const SeenTriangle seen(tile, triangle);
     for (const double y : {rect.low_y, rect.high_y}) {
-        seen.set_y(y);
         const std::array both{rect.low_x, rect.high_x};
-        if (seen.sides_of(both.data(), 2).inside != 0b11) return std::nullopt;
+        if (seen.sides_of(both.data(), 2, y).inside != 0b11) return std::nullopt;
     }
-    return seen.hit_inside(rect.high_x);
+    return TrianglePlane(seen).hit_inside(rect.high_x, rect.high_y);
 }
 
 }  // namespace

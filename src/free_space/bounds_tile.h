@@ -37,6 +37,8 @@ struct CellIntervals {
     const std::uint32_t* starts = nullptr;  ///< where each list begins in `spans`; then their number
     const QuantizedSpan* spans = nullptr;   ///< in each list from the bottom up
 
+    /// Returns the marks of the cells of a row of the tile, one bit for each.
+    std::uint64_t marks_of(std::uint32_t row) const { return marks == nullptr ? 0 : marks[row]; }
     bool has(std::uint32_t cell) const { return marks != nullptr && (marks[cell / 64] >> (cell % 64) & 1) != 0; }
     /// Returns the intervals of a marked cell.
     std::span<const QuantizedSpan> of(std::uint32_t cell) const

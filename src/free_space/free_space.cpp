@@ -1,7 +1,9 @@
+#include "base/bits.h"
 #include "free_space/mask.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace spawnfield {
@@ -36,6 +38,62 @@ const QuantizedSpan* lowest_where(std::span<const QuantizedSpan> spans, const Te
     return lowest == spans.end() ? nullptr : &*lowest;
 }
 
+/// Values of 16 neighbouring cells of a row of a tile, in two registers. The type is an extension of GCC and clang.
+class Sixteen {
+public:
+    static constexpr int width = 16;
+
+    /// Raises each value to that of a cell; `cells` has 16.
+    void raise(const std::uint16_t* cells)
+    {
+        std::array<Eight, 2> by;
+        std::memcpy(&by, cells, sizeof by);
+        for (std::size_t half = 0; half < 2; ++half)
+            values_[half] = values_[half] > by[half] ? values_[half] : by[half];
+    }
+    void raise(const Sixteen& by)
+    {
+        for (std::size_t half = 0; half < 2; ++half)
+            values_[half] = values_[half] > by.values_[half] ? values_[half] : by.values_[half];
+    }
+
+    /// Returns a bit for each value in the range low .. high.
+    std::uint64_t bits_within(std::uint32_t low, std::uint32_t high) const
+    {
+        constexpr Eight bits_of_first{1, 2, 4, 8, 16, 32, 64, 128}, bits_of_second = bits_of_first << 8;
+        high = std::min<std::uint32_t>(high, 65535);
+        if (low > high) return 0;
+        const auto from = std::uint16_t(low), range = std::uint16_t(high - low);
+        const Eight marks = ((values_[0] - from <= range) & bits_of_first) |  // differences are modulo 65536
+                            ((values_[1] - from <= range) & bits_of_second);
+        std::array<std::uint64_t, 2> fours;
+        std::memcpy(&fours, &marks, sizeof fours);
+        std::uint64_t bits = fours[0] | fours[1];
+        bits |= bits >> 32;
+        bits |= bits >> 16;
+        return bits & 0xffff;
+    }
+
+private:
+    using Eight = std::uint16_t __attribute__((vector_size(16)));
+    std::array<Eight, 2> values_{};
+};
+
+/// Returns the rectangle that a polygon is, if its sides are parallel to the axes.
+std::optional<Rect> rectangle_of(const Polygon2& polygon)
+{
+    if (polygon.size() != 4) return std::nullopt;
+    Rect out{inf, inf, -inf, -inf};
+    for (const Vec2& corner : polygon)
+        out = {std::min(out.low_x, corner.x()), std::min(out.low_y, corner.y()), std::max(out.high_x, corner.x()),
+               std::max(out.high_y, corner.y())};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Vec2 &p = polygon[k], &q = polygon[(k + 1) % 4];
+        if ((p.x() == q.x()) == (p.y() == q.y())) return std::nullopt;
+    }
+    return out;
+}
+
 /// The number of cells along a part's width in each pass. The first pass is a quick look at the surroundings. The
 /// second one follows the part's shape. The third one is the finest that is still cheaper than an exact check.
 constexpr std::array cells_along{1.4, 6.0, 24.0};
@@ -63,6 +121,7 @@ void Mask::set_footprints(const std::vector<Footprint>& footprints, double cosin
         for (const Vec2& corner : to.outer.polygon)
             reach = {std::min(reach.low_x, corner.x()), std::min(reach.low_y, corner.y()),
                      std::max(reach.high_x, corner.x()), std::max(reach.high_y, corner.y())};
+        parts_[p].core = rectangle_of(to.outer.polygon) ? rectangle_of(to.inner.polygon) : std::nullopt;
         choose_passes(parts_[p]);
     }
 }
@@ -177,33 +236,35 @@ void Mask::open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, Op
     out.first_row = OpenTile::none;
 }
 
-/// Sets `highest` for these rows of the tile. Does nothing if it has been set for them already: poses of one row of a
-/// raster share it.
+/// Sets `highest` and `listed` for these rows of the tile. Does nothing if it has been set for them already: poses of
+/// one row of a raster share it.
 void Mask::OpenTile::set_rows(std::uint32_t first, std::uint32_t last)
 {
     if (first == first_row && last == last_row) return;
     first_row = first;
     last_row = last;
     std::array<std::uint16_t, BoundsTile::side> maxima{};  // a local array, so that the compiler uses vectors
+    listed = 0;
     for (std::uint32_t r = first; r <= last; ++r) {
         const std::uint16_t* const tops = tile.tops + r * BoundsTile::side;
         for (std::size_t c = 0; c < BoundsTile::side; ++c) maxima[c] = maxima[c] < tops[c] ? tops[c] : maxima[c];
+        listed |= tile.bounds.marks_of(r);
     }
     highest = maxima;
 }
 
-/// Returns whether nothing in these columns of the tile, in the rows that set_rows() got, reaches up to z.
-bool Mask::OpenTile::is_below(std::uint32_t first_col, std::uint32_t last_col, double z) const
+/// Looks at these columns of the tile, in the rows that set_rows() got, for cells that reach up to z.
+Mask::Surroundings Mask::OpenTile::around(int first_col, int last_col, double z) const
 {
     std::uint32_t top = 0;
-    for (std::uint32_t c = first_col; c <= last_col; ++c) top = std::max<std::uint32_t>(top, highest[c]);
-    return top <= values_below(tile, inverse_quantum, z);
+    for (int c = first_col; c <= last_col; ++c) top = std::max<std::uint32_t>(top, highest[std::size_t(c)]);
+    if (top <= values_below(tile, inverse_quantum, z)) return Surroundings::Clear;
+    return (listed & bits_between(first_col, last_col)) != 0 ? Surroundings::Layered : Surroundings::Plain;
 }
 
-/// Looks at the poses (x[i], y, z[i]) for which clear[i] is 1, and sets it to 0 unless nothing in the rectangle of
-/// cells around the part reaches up to its lowest point.
-void Mask::keep_clear(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
-                      std::span<std::uint8_t> clear) const
+/// Looks at the rectangle of coarse cells around the part at each pose (x[i], y, z[i]) whose z[i] is not NaN.
+void Mask::look_around(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
+                       std::span<Surroundings> out) const
 {
     constexpr int side = BoundsTile::side;
     const double per_cell = 1 / raster_.levels()[pass.level].cell;
@@ -211,22 +272,24 @@ void Mask::keep_clear(const Part& part, Pass& pass, std::span<const double> x, d
     const int low_row = floor_of((y - raster_.y0 + reach.low_y) * per_cell),
               high_row = floor_of((y - raster_.y0 + reach.high_y) * per_cell),
               cols = int(raster_.whole_cols(pass.level));
-    if (low_row < 0 || high_row >= int(raster_.whole_rows(pass.level))) {
-        std::fill(clear.begin(), clear.end(), std::uint8_t(0));
-        return;
-    }
+    const bool is_known = low_row >= 0 && high_row < int(raster_.whole_rows(pass.level));
+    std::fill(out.begin(), out.end(), is_known ? Surroundings::Clear : Surroundings::Plain);
+    if (!is_known) return;
     for (int tile_row = low_row / side; tile_row <= high_row / side; ++tile_row) {
         const int first_row = std::max(low_row - tile_row * side, 0),
                   last_row = std::min(high_row - tile_row * side, side - 1);
         const OpenTile* open = nullptr;
         int tile_col = -1;  // of `open`
         for (std::size_t i = 0; i < x.size(); ++i) {
-            if (clear[i] == 0) continue;
+            if (out[i] != Surroundings::Clear || std::isnan(z[i])) continue;
             const double from_left = x[i] - raster_.x0, bottom = z[i] + part.footprint.outer.bottom;
             const int low_col = floor_of((from_left + reach.low_x) * per_cell),
                       high_col = floor_of((from_left + reach.high_x) * per_cell);
-            clear[i] = low_col >= 0 && high_col < cols;
-            for (int col = low_col / side; clear[i] != 0 && col <= high_col / side; ++col) {
+            if (low_col < 0 || high_col >= cols) {
+                out[i] = Surroundings::Plain;
+                continue;
+            }
+            for (int col = low_col / side; out[i] == Surroundings::Clear && col <= high_col / side; ++col) {
                 if (col != tile_col) {
                     OpenTile& next = tile_of(pass, std::uint32_t(col), std::uint32_t(tile_row));
                     if (!next.tile.is_empty()) next.set_rows(std::uint32_t(first_row), std::uint32_t(last_row));
@@ -234,17 +297,11 @@ void Mask::keep_clear(const Part& part, Pass& pass, std::span<const double> x, d
                     tile_col = col;
                 }
                 if (open->tile.is_empty()) continue;
-                clear[i] = open->is_below(std::uint32_t(std::max(low_col - col * side, 0)),
-                                          std::uint32_t(std::min(high_col - col * side, side - 1)), bottom);
+                out[i] = open->around(std::max(low_col - col * side, 0), std::min(high_col - col * side, side - 1),
+                                      bottom);
             }
         }
     }
-}
-
-void Mask::find_clear(std::span<const double> x, double y, std::span<const double> z, std::span<std::uint8_t> clear)
-{
-    for (std::size_t i = 0; i < clear.size(); ++i) clear[i] = !std::isnan(z[i]) && is_in_reach(x[i], y);
-    for (Part& part : parts_) keep_clear(part, part.passes.front(), x, y, z, clear);
 }
 
 /// The heights of a part at a pose, in m and as quantized heights of the current tile.
@@ -303,6 +360,67 @@ Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const 
     const CellRange& range = coarser->undecided[std::size_t(row)];
     if (range.first > range.last) return no_cells;
     return {std::max(out.first, range.first << finer), std::min(out.last, (range.last << finer) + (1 << finer) - 1)};
+}
+
+/// Looks at all cells under a rectangular part at once: the highest cell of each column decides. Returns nothing if the
+/// cells must be examined one by one, because some have several intervals, or are above the part, or are not known.
+std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, const Vec3& position) const
+{
+    constexpr int side = BoundsTile::side;
+    const double cell = raster_.levels()[pass.level].cell, u = (position.x() - raster_.x0) / cell,
+                 v = (position.y() - raster_.y0) / cell, z = position.z();
+    const Rect &reach = part.reach, &core = *part.core;
+    const CellRange cols{floor_of(u + reach.low_x / cell), floor_of(u + reach.high_x / cell)},
+        rows{floor_of(v + reach.low_y / cell), floor_of(v + reach.high_y / cell)},
+        core_cols{ceil_of(u + core.low_x / cell), floor_of(u + core.high_x / cell) - 1},
+        core_rows{ceil_of(v + core.low_y / cell), floor_of(v + core.high_y / cell) - 1};
+    if (cols.first < 0 || cols.last >= int(raster_.whole_cols(pass.level)) || rows.first < 0 ||
+        rows.last >= int(raster_.whole_rows(pass.level)))
+        return std::nullopt;
+    Heights heights{.bottom = z + part.footprint.outer.bottom,
+                    .top = z + part.footprint.outer.top,
+                    .inner_bottom = z + part.footprint.inner.bottom,
+                    .inner_top = z + part.footprint.inner.top};
+    bool is_free = true, is_decided = true;
+    for (int bottom = rows.first / side * side; bottom <= rows.last; bottom += side)
+        for (int left = cols.first / side * side; left <= cols.last; left += side) {
+            const OpenTile& open = tile_of(pass, std::uint32_t(left / side), std::uint32_t(bottom / side));
+            const BoundsTile& tile = open.tile;
+            if (tile.is_empty()) continue;
+            heights.set_tile(tile, open.inverse_quantum);
+            // All that follows counts from the tile's first column and row.
+            const auto in_tile = [](const CellRange& range, int first) {
+                return CellRange{std::max(range.first - first, 0), std::min(range.last - first, side - 1)};
+            };
+            const CellRange c = in_tile(cols, left), r = in_tile(rows, bottom), inner_c = in_tile(core_cols, left),
+                            inner_r = in_tile(core_rows, bottom);
+            std::uint64_t above = 0, hit = 0, beyond = 0;
+            for (int next = c.first; next <= c.last; next += Sixteen::width) {
+                const int first = std::min(next, side - Sixteen::width);
+                const auto highest = [&](Sixteen of, int from, int to) {
+                    for (int row = from; row <= to; ++row) of.raise(tile.tops + row * side + first);
+                    return of;
+                };
+                const Sixteen inner = highest({}, inner_r.first, inner_r.last);
+                const Sixteen all = inner_r.first <= inner_r.last
+                                        ? highest(highest(inner, r.first, inner_r.first - 1), inner_r.last + 1, r.last)
+                                        : highest({}, r.first, r.last);
+                above |= all.bits_within(heights.below + 1, 65535) << first;
+                hit |= inner.bits_within(heights.hit_low, heights.hit_high) << first;
+                beyond |= inner.bits_within(heights.hit_high + 1, 65535) << first;
+            }
+            above &= bits_between(c.first, c.last);
+            const std::uint64_t inside = bits_between(inner_c.first, inner_c.last);
+            if ((hit & inside) != 0) return Proof::Blocked;
+            if (above == 0) continue;
+            is_free = false;
+            std::uint64_t listed = beyond & inside;
+            for (int row = r.first; row <= r.last; ++row)
+                listed |= tile.bounds.marks_of(std::uint32_t(row)) | tile.solids.marks_of(std::uint32_t(row));
+            is_decided = is_decided && (listed & above) == 0;
+        }
+    if (is_free) return Proof::Free;
+    return is_decided && &pass == &part.passes.back() ? std::optional(Proof::Candidate) : std::nullopt;
 }
 
 /// Looks at each cell that open_cells() returns. The proof is Blocked if something in a cell is certainly inside the
@@ -372,28 +490,45 @@ bool Mask::is_in_reach(double x, double y) const
            std::abs(y - raster_.y0) < farthest * raster_.levels()[0].cell;
 }
 
+Proof Mask::proof_of_part(Part& part, const Vec3& position, Surroundings surroundings)
+{
+    if (surroundings == Surroundings::Clear) return Proof::Free;
+    if (part.core && surroundings == Surroundings::Plain && !coarse_only_)
+        if (const auto proof = proof_of_rectangle(part, part.passes[part.passes.size() > 1 ? 1 : 0], position))
+            return *proof;
+    if (position.y() != y_) set_y(position.y());
+    Proof proof = Proof::Candidate;
+    const Pass* coarser = nullptr;
+    for (Pass& pass : part.passes) {
+        if (!pass.is_ready) cover(part, pass);
+        proof = proof_of(part, pass, coarser, position.x(), position.z());
+        coarser = &pass;
+        if (proof != Proof::Candidate || coarse_only_) break;
+    }
+    return proof;
+}
+
+void Mask::prove(std::span<const double> x, double y, std::span<const double> z, std::span<Proof> out)
+{
+    std::fill(out.begin(), out.end(), Proof::Candidate);
+    if (!is_in_reach(x.front(), y) || !is_in_reach(x.back(), y)) return;
+    std::fill(out.begin(), out.end(), Proof::Free);
+    surroundings_.resize(x.size());
+    for (Part& part : parts_) {
+        look_around(part, part.passes.front(), x, y, z, surroundings_);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            if (out[i] == Proof::Blocked || std::isnan(z[i])) continue;
+            const Proof proof = proof_of_part(part, {x[i], y, z[i]}, surroundings_[i]);
+            if (proof != Proof::Free) out[i] = proof;
+        }
+    }
+}
+
 Proof Mask::proof_of(const Vec3& position)
 {
-    const double x = position.x(), y = position.y(), z = position.z();
-    if (!is_in_reach(x, y)) return Proof::Candidate;
-    bool is_free = true;
-    for (Part& part : parts_) {
-        std::uint8_t is_clear = 1;
-        keep_clear(part, part.passes.front(), {&x, 1}, y, {&z, 1}, {&is_clear, 1});
-        if (is_clear != 0) continue;
-        if (y != y_) set_y(y);
-        Proof proof = Proof::Candidate;
-        const Pass* coarser = nullptr;
-        for (Pass& pass : part.passes) {
-            if (!pass.is_ready) cover(part, pass);
-            proof = proof_of(part, pass, coarser, x, z);
-            coarser = &pass;
-            if (proof != Proof::Candidate || coarse_only_) break;
-        }
-        if (proof == Proof::Blocked) return Proof::Blocked;
-        is_free = is_free && proof == Proof::Free;
-    }
-    return is_free ? Proof::Free : Proof::Candidate;
+    Proof out;
+    prove({&position.x(), 1}, position.y(), {&position.z(), 1}, {&out, 1});
+    return out;
 }
 
 bool Mask::is_pierced(std::span<const Span> spans, double z) const

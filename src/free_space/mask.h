@@ -9,6 +9,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 
 namespace spawnfield {
 
@@ -35,10 +36,10 @@ public:
     /// From now on, proofs use only the coarsest cells that are useful. They read few tiles, and prove less.
     void use_coarse_cells() { coarse_only_ = true; }
     Proof proof_of(const Vec3& position);
-    /// Finds poses of a row, (x[i], y, z[i]), near which nothing reaches up to the robot's lowest point: clear[i]
-    /// becomes 1, and proof_of() is Free. For most poses on open ground this proof is enough, and it takes much less
-    /// time for a row than for one pose after the other. Otherwise, or if z[i] is NaN, clear[i] becomes 0.
-    void find_clear(std::span<const double> x, double y, std::span<const double> z, std::span<std::uint8_t> clear);
+    /// Sets out[i] to the proof of the pose (x[i], y, z[i]), which is faster than one pose after the other. The x of
+    /// the poses are ascending. Poses whose z[i] is NaN are not looked at, and are not Blocked. If a pose is more than
+    /// 1e8 cells away, no pose of the row has a proof.
+    void prove(std::span<const double> x, double y, std::span<const double> z, std::span<Proof> out);
     /// Returns whether a solid on the vertical line through the origin is certainly inside a part. `spans` are the
     /// spans of that line.
     bool is_pierced(std::span<const Span> spans, double z) const;
@@ -50,6 +51,9 @@ private:
         int row;
         double low, high, inner_low, inner_high;
     };
+    /// What the cells around a part are like. Clear: nothing reaches up to its lowest point. Plain: something does, and
+    /// each cell has one interval. Layered: a cell has several, and the part may be between two.
+    enum class Surroundings : std::uint8_t { Clear, Plain, Layered };
     struct OpenTile {
         BoundsTile tile;
         static constexpr std::uint32_t none = 0xffffffff;
@@ -58,9 +62,10 @@ private:
         /// For each column of the tile's cells, the highest top in the rows first_row .. last_row of the tile.
         std::array<std::uint16_t, BoundsTile::side> highest{};
         std::uint32_t first_row = none, last_row = 0;
+        std::uint64_t listed = 0;  ///< a bit for each column in which a cell of these rows has a list of intervals
 
         void set_rows(std::uint32_t first, std::uint32_t last);
-        bool is_below(std::uint32_t first_col, std::uint32_t last_col, double z) const;
+        Surroundings around(int first_col, int last_col, double z) const;
     };
     struct CellRange {
         int first, last;  ///< columns, inclusive
@@ -78,6 +83,8 @@ private:
         Rect reach;                ///< around the outer polygon, relative to the robot's origin, m
         std::vector<Pass> passes;  ///< coarse to fine
         bool is_around_origin;     ///< the origin is inside the polygon of the inner prism
+        /// Around the inner polygon, if both polygons are rectangles along the axes, as for a box at yaw 0.
+        std::optional<Rect> core;
     };
     struct Heights;
 
@@ -89,16 +96,19 @@ private:
     void open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, OpenTile& out) const;
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
     bool is_in_reach(double x, double y) const;
-    void keep_clear(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
-                    std::span<std::uint8_t> clear) const;
+    void look_around(const Part& part, Pass& pass, std::span<const double> x, double y, std::span<const double> z,
+                     std::span<Surroundings> out) const;
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
+    Proof proof_of_part(Part& part, const Vec3& position, Surroundings surroundings);
+    std::optional<Proof> proof_of_rectangle(const Part& part, Pass& pass, const Vec3& position) const;
     Proof proof_of(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const;
 
     const FreeSpace::Impl& space_;
     const SolidBounds::Impl& raster_;
     std::vector<Part> parts_;
     bool coarse_only_ = false;
+    std::vector<Surroundings> surroundings_;               ///< of the poses of a row
     double y_ = std::numeric_limits<double>::quiet_NaN();  ///< y of the last pose that was not clear; for pass.rows
 };
 

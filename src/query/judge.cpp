@@ -155,22 +155,29 @@ Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
     return judge(column_, position, with_hit);
 }
 
-void PoseJudge::find_valid(std::span<const double> x, double y, std::span<const double> z,
-                           std::span<std::uint8_t> valid)
+void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const double> ground, double offset,
+                          std::span<RowVerdict> out)
 {
-    if (!mask_ || footing_ || max_height_ != std::numeric_limits<double>::infinity()) {
-        std::fill(valid.begin(), valid.end(), std::uint8_t(0));
-        return;
+    z_.resize(x.size());
+    proofs_.resize(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) z_[i] = ground[i] + offset;
+    mask_->prove(x, y, z_, proofs_);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (std::isnan(z_[i])) continue;
+        const Vec3 position(x[i], y, z_[i]);
+        const Span surface{ground[i], ground[i], 0, true, true};
+        Judgement judged;  // Outside
+        if (is_within(shared_.map, position))
+            judge_collision(mask_->is_pierced({&surface, 1}, z_[i]) ? Proof::Blocked : proofs_[i], position, false,
+                            judged);
+        out[i] = {judged.verdict, judged.exact_check};
     }
-    mask_->find_clear(x, y, z, valid);
-    for (std::size_t i = 0; i < valid.size(); ++i)
-        if (valid[i] != 0) valid[i] = is_within(shared_.map, {x[i], y, z[i]});
 }
 
 Judgement PoseJudge::judge_collision(const Vec3& position)
 {
     Judgement out;
-    judge_collision({}, position, false, out);
+    judge_collision(ColumnView(), position, false, out);
     return out;
 }
 
@@ -181,6 +188,12 @@ void PoseJudge::judge_collision(const ColumnView& column, const Vec3& position, 
         proof = Proof::Blocked;
     else if (mask_)
         proof = mask_->proof_of(position);
+    judge_collision(proof, position, with_hit, out);
+}
+
+/// Sets the verdict on a pose whose proof is known.
+void PoseJudge::judge_collision(Proof proof, const Vec3& position, bool with_hit, Judgement& out) const
+{
     if (proof == Proof::Free)
         out.verdict = Verdict::Valid;
     else if (proof == Proof::Blocked && !with_hit)

@@ -50,11 +50,17 @@ public:
     Judgement judge(const ColumnView& column, const Vec3& position, bool with_hit = false);
     /// The same, but looks up the column of the pose itself.
     Judgement judge(const Vec3& position, bool with_hit = false);
-    /// Finds poses of a row, (x[i], y, z[i]), that are certainly valid: valid[i] becomes 1, and judge() would return
-    /// Valid without an exact check. It takes much less time than judge() for each pose. The columns of these poses
-    /// must have nothing but one terrain surface, at or below z[i]; z[i] is NaN for all others. Otherwise valid[i]
-    /// becomes 0.
-    void find_valid(std::span<const double> x, double y, std::span<const double> z, std::span<std::uint8_t> valid);
+    struct RowVerdict {
+        Verdict verdict;
+        bool exact_check;  ///< as in Judgement
+    };
+    /// Returns whether judge_row() can be called.
+    bool can_judge_rows() const { return mask_ && !footing_ && max_height_ == std::numeric_limits<double>::infinity(); }
+    /// Judges a row of poses: at x[i], ascending, and y, `offset` >= 0 above ground[i]. It takes less time than judge()
+    /// for each pose. The column of each pose must have nothing but one terrain surface, at ground[i]; poses whose
+    /// ground[i] is NaN are left out.
+    void judge_row(std::span<const double> x, double y, std::span<const double> ground, double offset,
+                   std::span<RowVerdict> out);
     /// Returns Valid or Collision. Does not look at ground and footing.
     Judgement judge_collision(const Vec3& position);
 
@@ -67,6 +73,7 @@ public:
     void judge_footing(const Vec3& position, Judgement& out);
 
 private:
+    void judge_collision(Proof proof, const Vec3& position, bool with_hit, Judgement& out) const;
     void check_exactly(const Vec3& position, bool with_hit, Judgement& out) const;
 
     const Judge::Impl& shared_;
@@ -74,8 +81,10 @@ private:
     std::optional<Mask> mask_;        ///< empty: every pose is checked exactly
     std::optional<Footing> footing_;  ///< empty: footings are not examined
     Mat3 rotation_;
-    double yaw_;     ///< the yaw given to set_rotation(); NaN after a matrix
-    Column column_;  ///< of the last pose that was judged without a column
+    double yaw_;                 ///< the yaw given to set_rotation(); NaN after a matrix
+    Column column_;              ///< of the last pose that was judged without a column
+    std::vector<double> z_;      ///< of the poses of a row, m
+    std::vector<Proof> proofs_;  ///< of these poses
 };
 
 struct Judge::Impl {

@@ -149,8 +149,8 @@ private:
         PoseJudge judge;                           ///< at options.yaw
         std::optional<HeadingsJudge> at_headings;  ///< empty: only one yaw is judged
         Columns columns;                           ///< of the current block
-        std::array<double, block> x, z;            ///< of the block's columns; of poses in one of its rows
-        std::array<std::uint8_t, block> valid;     ///< whether these poses are certainly valid
+        std::array<double, block> x, ground;       ///< of the block's columns; of one of its rows, as for judge_row()
+        std::array<PoseJudge::RowVerdict, block> verdicts;  ///< of this row
 
         explicit Worker(const RasterJudge& raster) : judge(raster.shared_, raster.options_.yaw, raster.max_height())
         {
@@ -167,25 +167,25 @@ private:
     /// Judges row j of a block.
     void judge_row(Worker& worker, std::span<const double> x, int j, double y, Row& out) const
     {
-        worker.valid.fill(0);
-        if (is_simple_) find_valid(worker, x, j, y);
+        const std::span<double> ground = std::span(worker.ground).first(x.size());
+        const std::span<PoseJudge::RowVerdict> verdicts = std::span(worker.verdicts).first(x.size());
+        const bool is_simple = is_simple_ && worker.judge.can_judge_rows();
+        if (is_simple) {
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double height = worker.columns.only_terrain(int(i), j);
+                ground[i] = ground_z_.contains(height, touch_tolerance) ? height
+                                                                        : std::numeric_limits<double>::quiet_NaN();
+            }
+            worker.judge.judge_row(x, y, ground, offset_, verdicts);
+        }
         for (std::size_t i = 0; i < x.size(); ++i) {
-            if (worker.valid[i] != 0)
-                out.poses.push_back({x[i], y, worker.z[i], 0, Verdict::Valid});
-            else if (is_everywhere_ || area_.contains({x[i], y}))
+            if (is_simple && !std::isnan(ground[i])) {
+                out.poses.push_back({x[i], y, ground[i] + offset_, 0, verdicts[i].verdict});
+                out.exact_checks += verdicts[i].exact_check;
+            } else if (is_everywhere_ || area_.contains({x[i], y})) {
                 judge_column(worker, int(i), j, x[i], y, out);
+            }
         }
-    }
-
-    /// Sets worker.z and worker.valid for row j of a block.
-    void find_valid(Worker& worker, std::span<const double> x, int j, double y) const
-    {
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            const double height = worker.columns.only_terrain(int(i), j);
-            const bool is_ground = ground_z_.contains(height, touch_tolerance);
-            worker.z[i] = is_ground ? height + offset_ : std::numeric_limits<double>::quiet_NaN();
-        }
-        worker.judge.find_valid(x, y, std::span(worker.z).first(x.size()), std::span(worker.valid).first(x.size()));
     }
 
     void judge_column(Worker& worker, int i, int j, double x, double y, Row& out) const
