@@ -1,14 +1,19 @@
 #include "catch.h"
+#include "collision/pose_checker.h"
 #include "geometry/geometry_impl.h"
+#include "random_scene.h"
 #include "test_map.h"
 #include "worlds/hand_scene.h"
 #include "worlds/world.h"
 
+#include <array>
 #include <numbers>
 
 using namespace spawnfield;
 
 namespace {
+
+constexpr double pi = std::numbers::pi;
 
 bool is_free(const Scene& scene, const std::string& robot, const Vec3& position, double yaw = 0)
 {
@@ -184,11 +189,53 @@ TEST_CASE("a search in a box finds what the rectangle below it has at these heig
                                      if (box.min[2] <= space.max.z() && box.max[2] >= space.min.z())
                                          expected.push_back(tile.ids[element]);
                                  });
-        geometry.impl().visit_near(space, [&](const Tile& tile, std::uint32_t element) {
-            if (overlap(tile.box(element), space)) visited.push_back(tile.ids[element]);
+        geometry.impl().visit_tiles(space, [&](const Tile& tile, const ElementBox&) {
+            for_each_bit(tile.near(space), [&](std::uint32_t element) {
+                if (overlap(tile.box(element), space)) visited.push_back(tile.ids[element]);
+            });
         });
         CHECK(visited == expected);
         found += visited.size();
     }
     CHECK(found > 10000);
+}
+
+TEST_CASE("a checker that keeps the tiles around its last pose, and knows the column, gives the same answers")
+{
+    std::array<std::size_t, 2> free{}, neighbours{};
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const Geometry geometry(random_scene(seed));
+        const Robot robot = seed % 3 == 0 ? hull_robot() : random_robot(seed);
+        const CollisionChecker checker(geometry, robot);
+        PoseChecker kept(checker), with_column(checker);
+        const Bounds all = geometry.bounds();
+        const Vec3 size = robot.bounds().max - robot.bounds().min;
+        Random random(seed);
+        const auto anywhere = [&] {
+            return Vec3(random.between(all.min.x(), all.max.x()), random.between(all.min.y(), all.max.y()),
+                        random.between(all.min.z() - 0.3, all.max.z() + 0.3));
+        };
+        Vec3 at = anywhere();
+        for (int step = 0; step < 300; ++step) {  // mostly short steps, and now and then a jump
+            const bool is_near = random.between(0, 1) < 0.9;
+            at = is_near ? Vec3(at + size.cwiseProduct(
+                                         Vec3(random.between(-1, 1), random.between(-1, 1), random.between(-0.3, 0.3))))
+                         : anywhere();
+            const Pose pose{at, rotation_from_rpy(0, step % 5 == 0 ? 0.2 : 0, random.between(-pi, pi))};
+            const std::optional<CollisionHit> expected = checker.find_hit(pose);
+            const Column column = column_at(geometry, at.x(), at.y());
+            const ColumnView view(column);
+            CAPTURE(seed, step, at.transpose());
+            REQUIRE(kept.is_free(pose) == !expected);
+            REQUIRE(with_column.is_free(pose, &view) == !expected);
+            for (const auto& hit : {kept.find_hit(pose), with_column.find_hit(pose, &view)}) {
+                REQUIRE(hit.has_value() == expected.has_value());
+                if (hit) REQUIRE(hit->part == expected->part);
+            }
+            ++free[expected ? 1 : 0];
+            ++neighbours[is_near ? 1 : 0];
+        }
+    }
+    for (const std::size_t count : free) CHECK(count > 1000);
+    for (const std::size_t count : neighbours) CHECK(count > 500);
 }

@@ -45,8 +45,10 @@ public:
     /// Returns the part that the robot collides with, the first one in the scene's order; nothing if the robot is free.
     std::optional<CollisionHit> find_hit(const Pose& scene_from_robot) const;
 
-private:
     struct Impl;
+    const Impl& impl() const { return *impl_; }
+
+private:
     std::unique_ptr<const Impl> impl_;
 };
 

@@ -1,6 +1,7 @@
 #include "base/module.h"
 #include "collision/box_triangle.h"
 #include "collision/narrow_phase_module.h"
+#include "collision/pose_checker.h"
 #include "geometry/geometry_impl.h"
 #include "map/occupancy_impl.h"
 #include "robot/hull.h"
@@ -30,7 +31,8 @@ struct CheckedPart {
     std::unique_ptr<const Body> body;
     Pose robot_from_shape;
     Vec3 centre;
-    Shape bounds_shape;  ///< for bounds_at(); not used for hulls
+    std::optional<double> axis_z;  ///< height of a point of the part on the robot's z axis, m; empty: none is known
+    Shape bounds_shape;            ///< for bounds_at(); not used for hulls
     std::vector<Vec3> hull_vertices;
     Vec3 box_centre, box_half;  ///< of the bounding box along the shape's axes, in its frame
 
@@ -44,6 +46,16 @@ struct CheckedPart {
         if (bounds_shape.kind != ShapeKind::Hull) box = bounds_of({bounds_shape.kind, bounds_shape.size, {}});
         box_centre = (box.min + box.max) / 2;
         box_half = (box.max - box.min) / 2;
+        axis_z = height_on_axis();
+    }
+
+    std::optional<double> height_on_axis() const
+    {
+        constexpr double least = 1e-3;  // m; a shorter piece of the axis may lie in the part by rounding only
+        if (bounds_shape.kind == ShapeKind::Hull) return std::nullopt;
+        const std::optional<Interval> inside = vertical_interval(bounds_shape, 0, 0);
+        return inside && inside->top - inside->bottom >= least ? std::optional((inside->bottom + inside->top) / 2)
+                                                               : std::nullopt;
     }
 
     Bounds bounds_at(const Pose& pose) const
@@ -142,38 +154,25 @@ struct CollisionChecker::Impl {
 
     /// Returns the smallest number of a part of the scene, below `best`, whose filled meshes contain a part of the
     /// robot; `best` if there is none. The robot must not touch the surfaces of the scene's parts below `best`. Then
-    /// one point of each convex part of the robot decides for the whole robot.
-    std::uint32_t first_around(const Pose& pose, std::uint32_t best) const
+    /// one point of each convex part of the robot decides for the whole robot: if `column`, the column at the pose, is
+    /// known, a point in it.
+    std::uint32_t first_around(const Pose& pose, const ColumnView* column, std::uint32_t best) const
     {
         if (!geometry.impl().has_filled_meshes) return best;
+        const auto look = [&](const ColumnView& there, double z) {
+            for (const Span& span : there.spans)
+                if (span.bottom <= z && z <= span.top) best = std::min(best, span.part);
+        };
+        const bool is_upright = pose.rotation(2, 2) == 1;
         for (const CheckedPart& part : parts) {
-            const Vec3 centre = pose.rotation * part.centre + pose.position;
-            for (const Span& span : column_at(geometry, centre.x(), centre.y()).spans)
-                if (span.bottom <= centre.z() && centre.z() <= span.top) best = std::min(best, span.part);
+            if (column != nullptr && is_upright && part.axis_z) {
+                look(*column, pose.position.z() + *part.axis_z);
+            } else {
+                const Vec3 centre = pose.rotation * part.centre + pose.position;
+                look(column_at(geometry, centre.x(), centre.y()), centre.z());
+            }
         }
         return best;
-    }
-
-    /// Returns the hit with the smallest part number; with `any_will_do` any hit, which is faster. Returns nothing if
-    /// the robot does not collide.
-    std::optional<CollisionHit> find(const Pose& pose, bool any_will_do) const
-    {
-        const std::vector<PlacedPart> placed = place(pose);
-        if (octree) return find_in_octree(placed, pose.position);
-        Bounds all;
-        for (const PlacedPart& part : placed) {
-            all.extend(part.bounds.min);
-            all.extend(part.bounds.max);
-        }
-        std::uint32_t best = CollisionHit::occupancy;  // larger than every part number: no hit yet
-        geometry.impl().visit_near(all, [&](const Tile& tile, std::uint32_t element) {
-            if ((any_will_do && best != CollisionHit::occupancy) || tile.label(element) == Label::Water) return;
-            const std::uint32_t part = tile.part(element);
-            if (part < best && element_meets(tile, element, placed, pose.position)) best = part;
-        });
-        if (!any_will_do || best == CollisionHit::occupancy) best = first_around(pose, best);
-        if (best == CollisionHit::occupancy) return std::nullopt;
-        return CollisionHit{best};
     }
 
     std::optional<CollisionHit> find_in_octree(const std::vector<PlacedPart>& placed, const Vec3& origin) const
@@ -209,11 +208,74 @@ CollisionChecker::~CollisionChecker() = default;
 const Robot& CollisionChecker::robot() const { return impl_->robot; }
 bool CollisionChecker::uses_occupancy() const { return impl_->octree != nullptr; }
 
-bool CollisionChecker::is_free(const Pose& scene_from_robot) const { return !impl_->find(scene_from_robot, true); }
+bool CollisionChecker::is_free(const Pose& scene_from_robot) const
+{
+    return PoseChecker(*this).is_free(scene_from_robot);
+}
 
 std::optional<CollisionHit> CollisionChecker::find_hit(const Pose& scene_from_robot) const
 {
-    return impl_->find(scene_from_robot, false);
+    return PoseChecker(*this).find_hit(scene_from_robot);
+}
+
+bool PoseChecker::is_free(const Pose& scene_from_robot, const ColumnView* column)
+{
+    return !find(scene_from_robot, true, column);
+}
+
+std::optional<CollisionHit> PoseChecker::find_hit(const Pose& scene_from_robot, const ColumnView* column)
+{
+    return find(scene_from_robot, false, column);
+}
+
+/// Returns the tiles that meet a box around the robot, and others near it.
+const std::vector<PoseChecker::NearTile>& PoseChecker::tiles_near(const Bounds& space)
+{
+    const auto contains = [](const Bounds& outer, const Bounds& inner) {
+        return (outer.min.array() <= inner.min.array()).all() && (outer.max.array() >= inner.max.array()).all();
+    };
+    const auto grown = [](const Bounds& box) {
+        constexpr double reach = 3;  // by so many of its own lengths: the poses of a raster are that near to each other
+        const Vec3 by = reach * (box.max - box.min);
+        return Bounds{box.min - by, box.max + by};
+    };
+    if (!contains(known_, space)) {
+        const Bounds wanted = contains(grown(last_), space) ? grown(space) : space;
+        known_ = {};  // remains so if a tile is damaged
+        tiles_.clear();
+        impl_.geometry.impl().visit_tiles(wanted, [&](const Tile& tile, const ElementBox& box) {
+            tiles_.push_back({tile, box});
+        });
+        known_ = wanted;
+    }
+    last_ = space;
+    return tiles_;
+}
+
+/// Returns the hit with the smallest part number; with `any_will_do` any hit, which is faster. Returns nothing if the
+/// robot does not collide.
+std::optional<CollisionHit> PoseChecker::find(const Pose& pose, bool any_will_do, const ColumnView* column)
+{
+    const std::vector<PlacedPart> placed = impl_.place(pose);
+    if (impl_.octree) return impl_.find_in_octree(placed, pose.position);
+    Bounds all;
+    for (const PlacedPart& part : placed) {
+        all.extend(part.bounds.min);
+        all.extend(part.bounds.max);
+    }
+    std::uint32_t best = CollisionHit::occupancy;  // larger than every part number: no hit yet
+    for (const auto& [tile, box] : tiles_near(all)) {
+        if (!overlap(box, all)) continue;
+        for_each_bit(tile.near(all), [&, &t = tile](std::uint32_t element) {
+            if ((any_will_do && best != CollisionHit::occupancy) || t.label(element) == Label::Water) return;
+            const std::uint32_t part = t.part(element);
+            if (part < best && impl_.element_meets(t, element, placed, pose.position)) best = part;
+        });
+        if (any_will_do && best != CollisionHit::occupancy) break;
+    }
+    if (!any_will_do || best == CollisionHit::occupancy) best = impl_.first_around(pose, column, best);
+    if (best == CollisionHit::occupancy) return std::nullopt;
+    return CollisionHit{best};
 }
 
 }  // namespace spawnfield

@@ -116,17 +116,15 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
 void Columns::add_triangle(const SeenTriangle& seen, const ColumnGrid& grid, const ColumnRange& range)
 {
     constexpr int most = 64;  // columns of a row that are looked at together, so that no branch depends on one of them
-    std::optional<TrianglePlane> plane;
+    const TrianglePlane plane(seen);  // nearly all triangles with a range of columns are met by one
     for (int j = range.first_row; j <= range.last_row; ++j) {
         const double y = grid.y_of(grid.first_row + j);
         for (int first = range.first_col; first <= range.last_col; first += most) {
             const double* const x = x_.data() + first;
             Slot* const slots = slots_.data() + number(first, j);
             const auto [inside, rim] = seen.sides_of(x, std::min(most, range.last_col + 1 - first), y);
-            if ((inside | rim) == 0) continue;
-            if (!plane) plane.emplace(seen);
-            for_each_bit(inside, [&](std::uint32_t k) { add_inside(slots[k], *plane, x[k], y); });
-            for_each_bit(rim, [&](std::uint32_t k) { add_rim(slots[k], seen, *plane, x[k], y); });
+            for_each_bit(inside, [&](std::uint32_t k) { add_inside(slots[k], plane, x[k], y); });
+            for_each_bit(rim, [&](std::uint32_t k) { add_rim(slots[k], seen, plane, x[k], y); });
         }
     }
 }

@@ -76,7 +76,7 @@ public:
     /// too.
     Sides sides_of(const double* x, int count, double y) const
     {
-        Sides out;
+        std::uint64_t all_inside = 0, all_outside = 0;
         const auto& [p, q, r] = corners_;
         const double py = p.y() - y, qy = q.y() - y, ry = r.y() - y;
         for (int k = 0; k < count; k += 2) {
@@ -90,11 +90,11 @@ public:
             const Two pq = px * qy - py * qx, qr = qx * ry - qy * rx, rp = rx * py - ry * px;
             const Two low = least(least(pq, qr), rp), high = most(most(pq, qr), rp);
             const TwoMasks inside = (low > rim_) | (high < -rim_), outside = (high > rim_) & (low < -rim_);
-            out.inside |= bits_of(inside) << k;
-            out.rim |= bits_of(~(inside | outside)) << k;
+            all_inside |= bits_of(inside) << k;
+            all_outside |= bits_of(outside) << k;
         }
-        const std::uint64_t asked = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
-        return {out.inside & asked, out.rim & asked};
+        const std::uint64_t asked = bits_between(0, count - 1);
+        return {all_inside & asked, ~(all_inside | all_outside) & asked};
     }
     /// The same for one line.
     Sides sides_of(double x, double y) const

@@ -473,8 +473,9 @@ Proof Mask::proof_of(const Part& part, Pass& pass, const Pass* coarser, double x
             for (; col <= end && !tile.is_empty(); ++col) {
                 const auto cell = std::uint32_t(cover.row % side * side + col % side);
                 if (tile.tops[cell] <= heights.below) continue;
+                if (is_free(tile, cell, heights)) continue;
                 if (col >= inner.first && col <= inner.last && is_hit(tile, cell, heights)) return Proof::Blocked;
-                if (!is_free(tile, cell, heights)) leave(col, col);
+                leave(col, col);
             }
             col = end + 1;
         }

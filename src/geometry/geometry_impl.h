@@ -43,8 +43,16 @@ struct Geometry::Impl {
                             [&](std::size_t number) { visit(open(t, number), trees_[t].boxes()[number]); });
     }
 
-    /// The same, for callers that read most of each tile: while a tile is visited, the processor already fetches the
-    /// next one from memory.
+    /// The same for a closed box.
+    template <class Visit>
+    void visit_tiles(const Bounds& space, const Visit& visit) const
+    {
+        for (std::size_t t = 0; t < trees_.size(); ++t)
+            trees_[t].visit(space, [&](std::size_t number) { visit(open(t, number), trees_[t].boxes()[number]); });
+    }
+
+    /// Does the same as visit_tiles, for callers that read most of each tile: while a tile is visited, the processor
+    /// already fetches the next one from memory.
     template <class Visit>
     void visit_whole_tiles(double low_x, double low_y, double high_x, double high_y, const Visit& visit) const
     {
@@ -72,17 +80,6 @@ struct Geometry::Impl {
         visit_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox&) {
             for_each_bit(tile.near(low_x, low_y, high_x, high_y), [&](std::uint32_t element) { visit(tile, element); });
         });
-    }
-
-    /// The same for a closed box.
-    template <class Visit>
-    void visit_near(const Bounds& space, const Visit& visit) const
-    {
-        for (std::size_t t = 0; t < trees_.size(); ++t)
-            trees_[t].visit(space, [&](std::size_t number) {
-                const Tile tile = open(t, number);
-                for_each_bit(tile.near(space), [&](std::uint32_t element) { visit(tile, element); });
-            });
     }
 
     /// Estimates how many elements lie in a rectangle, from the sizes of the tiles that it meets. Each tile counts by

@@ -97,8 +97,8 @@ bool Judge::Impl::is_sparse(std::uint64_t poses) const
 PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw) : PoseJudge(shared, yaw, shared.options.max_height) {}
 
 PoseJudge::PoseJudge(const Judge::Impl& shared, double yaw, double max_height)
-    : shared_(shared), max_height_(max_height), footing_(shared.footing), rotation_(rotation_from_rpy(0, 0, yaw)),
-      yaw_(yaw)
+    : shared_(shared), max_height_(max_height), checker_(shared.checker), footing_(shared.footing),
+      rotation_(rotation_from_rpy(0, 0, yaw)), yaw_(yaw)
 {
     if (shared.space) mask_.emplace(shared.space->impl(), yaw);
     if (footing_) footing_->set_rotation(rotation_);
@@ -166,10 +166,11 @@ void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const d
         if (std::isnan(z_[i])) continue;
         const Vec3 position(x[i], y, z_[i]);
         const Span surface{ground[i], ground[i], 0, true, true};
+        const ColumnView column({&surface, 1}, {}, {});
         Judgement judged;  // Outside
         if (is_within(shared_.map, position))
-            judge_collision(mask_->is_pierced({&surface, 1}, z_[i]) ? Proof::Blocked : proofs_[i], position, false,
-                            judged);
+            judge_collision(mask_->is_pierced(column.spans, z_[i]) ? Proof::Blocked : proofs_[i], &column, position,
+                            false, judged);
         out[i] = {judged.verdict, judged.exact_check};
     }
 }
@@ -177,7 +178,7 @@ void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const d
 Judgement PoseJudge::judge_collision(const Vec3& position)
 {
     Judgement out;
-    judge_collision(ColumnView(), position, false, out);
+    judge_collision(mask_ ? mask_->proof_of(position) : Proof::Candidate, nullptr, position, false, out);
     return out;
 }
 
@@ -188,27 +189,28 @@ void PoseJudge::judge_collision(const ColumnView& column, const Vec3& position, 
         proof = Proof::Blocked;
     else if (mask_)
         proof = mask_->proof_of(position);
-    judge_collision(proof, position, with_hit, out);
+    judge_collision(proof, &column, position, with_hit, out);
 }
 
-/// Sets the verdict on a pose whose proof is known.
-void PoseJudge::judge_collision(Proof proof, const Vec3& position, bool with_hit, Judgement& out) const
+/// Sets the verdict on a pose whose proof is known. `column` is nullptr if it is not known.
+void PoseJudge::judge_collision(Proof proof, const ColumnView* column, const Vec3& position, bool with_hit,
+                                Judgement& out)
 {
     if (proof == Proof::Free)
         out.verdict = Verdict::Valid;
     else if (proof == Proof::Blocked && !with_hit)
         out.verdict = Verdict::Collision;
     else
-        check_exactly(position, with_hit, out);
+        check_exactly(column, position, with_hit, out);
 }
 
-void PoseJudge::check_exactly(const Vec3& position, bool with_hit, Judgement& out) const
+void PoseJudge::check_exactly(const ColumnView* column, const Vec3& position, bool with_hit, Judgement& out)
 {
     const TimedPart timed(shared_.options.exact_time);
     const Pose pose{position, rotation_};
     out.exact_check = true;
-    if (with_hit) out.hit = shared_.checker.find_hit(pose);
-    const bool is_free = with_hit ? !out.hit : shared_.checker.is_free(pose);
+    if (with_hit) out.hit = checker_.find_hit(pose, column);
+    const bool is_free = with_hit ? !out.hit : checker_.is_free(pose, column);
     out.verdict = is_free ? Verdict::Valid : Verdict::Collision;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/parallel.h"
+#include "collision/pose_checker.h"
 #include "column/columns.h"
 #include "free_space/mask.h"
 #include "query/footing.h"
@@ -73,11 +74,12 @@ public:
     void judge_footing(const Vec3& position, Judgement& out);
 
 private:
-    void judge_collision(Proof proof, const Vec3& position, bool with_hit, Judgement& out) const;
-    void check_exactly(const Vec3& position, bool with_hit, Judgement& out) const;
+    void judge_collision(Proof proof, const ColumnView* column, const Vec3& position, bool with_hit, Judgement& out);
+    void check_exactly(const ColumnView* column, const Vec3& position, bool with_hit, Judgement& out);
 
     const Judge::Impl& shared_;
     const double max_height_;
+    PoseChecker checker_;
     std::optional<Mask> mask_;        ///< empty: every pose is checked exactly
     std::optional<Footing> footing_;  ///< empty: footings are not examined
     Mat3 rotation_;
