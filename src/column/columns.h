@@ -100,12 +100,18 @@ public:
                 std::span(column_.water).subspan(from.water, to.water - from.water)};
     }
 
-    /// Returns the height of a column that contains nothing but one terrain surface; NaN for all others.
-    double only_terrain(int i, int j) const
+    /// The heights of a terrain surface and of a water surface, m; NaN for one that does not exist.
+    struct OpenGround {
+        double terrain, water;
+    };
+    /// Returns the surfaces of a column that contains one terrain surface, at most one water surface, and nothing else;
+    /// no surfaces for all other columns.
+    OpenGround open_ground(int i, int j) const
     {
+        constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
         const Slot& slot = slots_[number(i, j)];
-        const bool is_alone = slot.has_span && slot.span.terrain && !slot.has_water && !slot.has_more;
-        return is_alone ? slot.span.top : std::numeric_limits<double>::quiet_NaN();
+        if (!slot.has_span || !slot.span.terrain || slot.has_more) return {nothing, nothing};
+        return {slot.span.top, slot.has_water ? slot.water : nothing};
     }
 
 private:

@@ -51,11 +51,9 @@ std::optional<Footing> footing_of(const Map& map, const Robot& robot, const Judg
                                   : std::nullopt;
 }
 
-bool is_submerged(const ColumnView& column, double ground, double max_water_depth)
+bool is_submerged(double ground, double water, double max_water_depth)
 {
-    return std::any_of(column.water.begin(), column.water.end(), [&](double water) {
-        return water >= ground - touch_tolerance && water <= ground + max_water_depth + touch_tolerance;
-    });
+    return water >= ground - touch_tolerance && water <= ground + max_water_depth + touch_tolerance;
 }
 
 /// Adds the time from its construction to its destruction to a total, unless the total is nullptr.
@@ -141,7 +139,9 @@ bool PoseJudge::judge_ground(const ColumnView& column, const Vec3& position, Jud
     out.verdict = Verdict::OffTerrain;
     if (!out.ground->terrain) return false;
     out.verdict = Verdict::Submerged;
-    return !is_submerged(column, out.ground->height, shared_.options.max_water_depth);
+    return std::none_of(column.water.begin(), column.water.end(), [&](double water) {
+        return is_submerged(out.ground->height, water, shared_.options.max_water_depth);
+    });
 }
 
 void PoseJudge::judge_footing(const Vec3& position, Judgement& out)
@@ -155,22 +155,31 @@ Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
     return judge(column_, position, with_hit);
 }
 
-void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const double> ground, double offset,
-                          std::span<RowVerdict> out)
+void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const Columns::OpenGround> ground,
+                          double offset, std::span<RowVerdict> out)
 {
     z_.resize(x.size());
     proofs_.resize(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) z_[i] = ground[i] + offset;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const auto& [terrain, water] = ground[i];
+        z_[i] = terrain + offset;
+        if (!is_within(shared_.map, {x[i], y, z_[i]}))
+            out[i] = {Verdict::Outside, false};
+        else if (is_submerged(terrain, water, shared_.options.max_water_depth))
+            out[i] = {Verdict::Submerged, false};
+        else
+            continue;
+        z_[i] = std::numeric_limits<double>::quiet_NaN();  // decided, or without terrain
+    }
     mask_->prove(x, y, z_, proofs_);
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (std::isnan(z_[i])) continue;
-        const Vec3 position(x[i], y, z_[i]);
-        const Span surface{ground[i], ground[i], 0, true, true};
+        const double terrain = ground[i].terrain;
+        const Span surface{terrain, terrain, 0, true, true};
         const ColumnView column({&surface, 1}, {}, {});
-        Judgement judged;  // Outside
-        if (is_within(shared_.map, position))
-            judge_collision(mask_->is_pierced(column.spans, z_[i]) ? Proof::Blocked : proofs_[i], &column, position,
-                            false, judged);
+        const Proof proof = mask_->is_pierced(column.spans, z_[i]) ? Proof::Blocked : proofs_[i];
+        Judgement judged;
+        judge_collision(proof, &column, {x[i], y, z_[i]}, false, judged);
         out[i] = {judged.verdict, judged.exact_check};
     }
 }

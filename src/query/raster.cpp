@@ -149,8 +149,10 @@ private:
         PoseJudge judge;                           ///< at options.yaw
         std::optional<HeadingsJudge> at_headings;  ///< empty: only one yaw is judged
         Columns columns;                           ///< of the current block
-        std::array<double, block> x, ground;       ///< of the block's columns; of one of its rows, as for judge_row()
-        std::array<PoseJudge::RowVerdict, block> verdicts;  ///< of this row
+        std::array<double, block> x;               ///< of the block's columns
+        // Of one row of them:
+        std::array<Columns::OpenGround, block> ground;
+        std::array<PoseJudge::RowVerdict, block> verdicts;
 
         explicit Worker(const RasterJudge& raster) : judge(raster.shared_, raster.options_.yaw, raster.max_height())
         {
@@ -167,20 +169,20 @@ private:
     /// Judges row j of a block.
     void judge_row(Worker& worker, std::span<const double> x, int j, double y, Row& out) const
     {
-        const std::span<double> ground = std::span(worker.ground).first(x.size());
+        const std::span<Columns::OpenGround> ground = std::span(worker.ground).first(x.size());
         const std::span<PoseJudge::RowVerdict> verdicts = std::span(worker.verdicts).first(x.size());
         const bool is_simple = is_simple_ && worker.judge.can_judge_rows();
         if (is_simple) {
             for (std::size_t i = 0; i < x.size(); ++i) {
-                const double height = worker.columns.only_terrain(int(i), j);
-                ground[i] = ground_z_.contains(height, touch_tolerance) ? height
-                                                                        : std::numeric_limits<double>::quiet_NaN();
+                ground[i] = worker.columns.open_ground(int(i), j);
+                if (!ground_z_.contains(ground[i].terrain, touch_tolerance))
+                    ground[i].terrain = std::numeric_limits<double>::quiet_NaN();
             }
             worker.judge.judge_row(x, y, ground, offset_, verdicts);
         }
         for (std::size_t i = 0; i < x.size(); ++i) {
-            if (is_simple && !std::isnan(ground[i])) {
-                out.poses.push_back({x[i], y, ground[i] + offset_, 0, verdicts[i].verdict});
+            if (is_simple && !std::isnan(ground[i].terrain)) {
+                out.poses.push_back({x[i], y, ground[i].terrain + offset_, 0, verdicts[i].verdict});
                 out.exact_checks += verdicts[i].exact_check;
             } else if (is_everywhere_ || area_.contains({x[i], y})) {
                 judge_column(worker, int(i), j, x[i], y, out);
@@ -320,7 +322,7 @@ private:
     const AreaIndex area_;
     const bool is_everywhere_;
     const int headings_;  ///< 0: only options.yaw
-    /// Whether all poses on columns with one surface are judged alike: at one yaw, above their layer, anywhere.
+    /// Whether all poses on open ground are judged alike: at one yaw, above their layer, anywhere.
     const bool is_simple_ = options_.dims == 2 && options_.height_check && headings_ == 0 && is_everywhere_ &&
                             offset_ >= 0 && options_.layers.includes(0, 1);
     const Steps outside_ = steps_outside();
