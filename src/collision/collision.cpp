@@ -1,3 +1,4 @@
+#include "base/bits.h"
 #include "base/module.h"
 #include "collision/box_triangle.h"
 #include "collision/narrow_phase_module.h"

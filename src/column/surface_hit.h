@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/bits.h"
 #include "geometry/geometry_impl.h"
 
 #include <spawnfield/column.h>

@@ -51,11 +51,6 @@ public:
         for (std::size_t half = 0; half < 2; ++half)
             values_[half] = values_[half] > by[half] ? values_[half] : by[half];
     }
-    void raise(const Sixteen& by)
-    {
-        for (std::size_t half = 0; half < 2; ++half)
-            values_[half] = values_[half] > by.values_[half] ? values_[half] : by.values_[half];
-    }
 
     /// Returns a bit for each value in the range low .. high.
     std::uint64_t bits_within(std::uint32_t low, std::uint32_t high) const
@@ -79,19 +74,25 @@ private:
     std::array<Eight, 2> values_{};
 };
 
-/// Returns the rectangle that a polygon is, if its sides are parallel to the axes.
-std::optional<Rect> rectangle_of(const Polygon2& polygon)
+/// Returns the rectangle around a polygon, along the axes.
+Rect rectangle_around(const Polygon2& polygon)
 {
-    if (polygon.size() != 4) return std::nullopt;
     Rect out{inf, inf, -inf, -inf};
     for (const Vec2& corner : polygon)
         out = {std::min(out.low_x, corner.x()), std::min(out.low_y, corner.y()), std::max(out.high_x, corner.x()),
                std::max(out.high_y, corner.y())};
+    return out;
+}
+
+/// Returns whether a polygon is a rectangle whose sides are parallel to the axes.
+bool is_rectangle(const Polygon2& polygon)
+{
+    if (polygon.size() != 4) return false;
     for (std::size_t k = 0; k < 4; ++k) {
         const Vec2 &p = polygon[k], &q = polygon[(k + 1) % 4];
-        if ((p.x() == q.x()) == (p.y() == q.y())) return std::nullopt;
+        if ((p.x() == q.x()) == (p.y() == q.y())) return false;
     }
-    return out;
+    return true;
 }
 
 /// The number of cells along a part's width in each pass. The first pass is a quick look at the surroundings. The
@@ -117,11 +118,10 @@ void Mask::set_footprints(const std::vector<Footprint>& footprints, double cosin
         to.inner.bottom = footprints[p].inner.bottom;
         to.inner.top = footprints[p].inner.top;
         parts_[p].is_around_origin = contains(to.inner.polygon, Vec2::Zero());
-        Rect& reach = parts_[p].reach = {inf, inf, -inf, -inf};
-        for (const Vec2& corner : to.outer.polygon)
-            reach = {std::min(reach.low_x, corner.x()), std::min(reach.low_y, corner.y()),
-                     std::max(reach.high_x, corner.x()), std::max(reach.high_y, corner.y())};
-        parts_[p].core = rectangle_of(to.outer.polygon) ? rectangle_of(to.inner.polygon) : std::nullopt;
+        parts_[p].reach = rectangle_around(to.outer.polygon);
+        parts_[p].core.reset();
+        if (is_rectangle(to.outer.polygon) && is_rectangle(to.inner.polygon))
+            parts_[p].core = rectangle_around(to.inner.polygon);
         choose_passes(parts_[p]);
     }
 }

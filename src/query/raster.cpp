@@ -146,13 +146,12 @@ public:
 private:
     /// What a thread keeps from strip to strip: mostly memory.
     struct Worker {
-        PoseJudge judge;                           ///< at options.yaw
-        std::optional<HeadingsJudge> at_headings;  ///< empty: only one yaw is judged
-        Columns columns;                           ///< of the current block
-        std::array<double, block> x;               ///< of the block's columns
-        // Of one row of them:
-        std::array<Columns::OpenGround, block> ground;
-        std::array<PoseJudge::RowVerdict, block> verdicts;
+        PoseJudge judge;                                    ///< at options.yaw
+        std::optional<HeadingsJudge> at_headings;           ///< empty: only one yaw is judged
+        Columns columns;                                    ///< of the current block
+        std::array<double, block> x;                        ///< of the block's columns
+        std::array<Columns::OpenGround, block> ground;      ///< in one row of the block
+        std::array<PoseJudge::RowVerdict, block> verdicts;  ///< in the same row
 
         explicit Worker(const RasterJudge& raster) : judge(raster.shared_, raster.options_.yaw, raster.max_height())
         {
