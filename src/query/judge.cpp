@@ -151,8 +151,13 @@ void PoseJudge::judge_footing(const Vec3& position, Judgement& out)
 
 Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
 {
-    read_column(shared_.map.geometry, position.x(), position.y(), column_);
-    return judge(column_, position, with_hit);
+    return judge(column_at(position.head<2>()), position, with_hit);
+}
+
+const Column& PoseJudge::column_at(const Vec2& place)
+{
+    read_column(shared_.map.geometry, place.x(), place.y(), column_);
+    return column_;
 }
 
 void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const Columns::OpenGround> ground,

@@ -51,6 +51,8 @@ public:
     Judgement judge(const ColumnView& column, const Vec3& position, bool with_hit = false);
     /// The same, but looks up the column of the pose itself.
     Judgement judge(const Vec3& position, bool with_hit = false);
+    /// Returns the column at (x, y). It is valid until the next column is looked up.
+    const Column& column_at(const Vec2& place);
     struct RowVerdict {
         Verdict verdict;
         bool exact_check;  ///< as in Judgement
@@ -84,7 +86,7 @@ private:
     std::optional<Footing> footing_;  ///< empty: footings are not examined
     Mat3 rotation_;
     double yaw_;                 ///< the yaw given to set_rotation(); NaN after a matrix
-    Column column_;              ///< of the last pose that was judged without a column
+    Column column_;              ///< the one that was looked up last
     std::vector<double> z_;      ///< of the poses of a row, m
     std::vector<Proof> proofs_;  ///< of these poses
 };

@@ -219,15 +219,19 @@ private:
         cells.drop(flags);
     }
 
-    /// Returns the heights of a column's layers that are ground, chosen by the options and in the area, from the top.
-    std::vector<double> chosen_layers(const Column& column, const Vec2& at) const
+    /// Returns the height of the layer in a slot, if there is one. The slots of a column contain, from the top, its
+    /// layers that are ground, chosen by the options and in the area.
+    std::optional<double> layer_in(std::size_t slot, const Column& column, const Vec2& at)
     {
-        std::vector<double> out;
+        std::optional<double> out;
+        std::size_t used = 0;
         const std::span<const double> heights = heights_within(column.layers, ground_z_);
         const int count = int(heights.size());
-        for (int layer = 0; layer < count; ++layer)
-            if (options_.layers.includes(layer, count) && area_.contains(at, heights[std::size_t(layer)]))
-                out.push_back(heights[std::size_t(layer)]);
+        for (int layer = 0; layer < count; ++layer) {
+            const double height = heights[std::size_t(layer)];
+            if (options_.layers.includes(layer, count) && area_.contains(at, height) && used++ == slot) out = height;
+        }
+        if (used > slots_) overfull_ = true;
         return out;
     }
 
@@ -236,17 +240,16 @@ private:
     {
         Draw from(options_.seed, index);
         const Vec2 at = point(from);
-        const double x = at.x(), y = at.y(), slot = from.uniform(0, double(slots_));
+        const double slot = from.uniform(0, double(slots_));
         Candidate out;
         out.spawn.yaw = draw_yaw(options_, from);
         out.off_area = !area_.contains(at);
         if (out.off_area) return out;
-        const Column column = column_at(shared_.map.geometry, x, y);
-        const std::vector<double> layers = chosen_layers(column, at);
-        if (layers.size() > slots_) overfull_ = true;
-        if (slot >= double(layers.size())) return out;
+        const Column& column = judge.column_at(at);
+        const std::optional<double> layer = layer_in(std::size_t(slot), column, at);
+        if (!layer) return out;
         out.on_ground = true;
-        out.spawn.position = Vec3(x, y, layers[std::size_t(slot)] + offset_);
+        out.spawn.position = Vec3(at.x(), at.y(), *layer + offset_);
         out.near_avoided = !avoided_.is_clear(out.spawn.position);
         if (out.near_avoided) return out;
         out.clear = taken_.before().is_clear(out.spawn.position);
