@@ -46,6 +46,7 @@ struct Robot {
     std::vector<MeshFit> meshes = {};        ///< one for each mesh collision
     std::vector<JointPosition> joints = {};  ///< the RobotOptions::joints with which it was read
     int mesh_parts = 1;                      ///< the RobotOptions::mesh_parts with which it was read
+    std::optional<Vec3> mass_center = {};    ///< m; empty: the file says nothing about it
 
     SPAWNFIELD_API Bounds bounds() const;
 };

@@ -124,7 +124,7 @@ void append_part(Robot& robot, const YamlMap& map, const std::filesystem::path& 
 Robot read_robot_yaml(const std::filesystem::path& file, int mesh_parts)
 {
     const YamlMap root = read_yaml(file, "spawnfield-robot/1");
-    root.only({"format", "name", "parts", "contacts"});
+    root.only({"format", "name", "parts", "contacts", "mass_center"});
     Robot robot;
     robot.name = root.text("name", file.stem().string());
     std::size_t count = 0;
@@ -132,6 +132,7 @@ Robot read_robot_yaml(const std::filesystem::path& file, int mesh_parts)
         append_part(robot, {node, file.string(), "part " + std::to_string(++count)}, file.parent_path(), mesh_parts);
     if (robot.parts.empty()) root.fail("parts", "is empty, needs at least one part");
     if (root.has("contacts")) robot.contacts = root.vectors("contacts");
+    if (root.has("mass_center")) robot.mass_center = root.vector("mass_center");
     return robot;
 }
 

@@ -1,0 +1,456 @@
+#include "settle/settle.h"
+
+#include "geometry/geometry_impl.h"
+#include "settle/minimax.h"
+#include "settle/touch.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace spawnfield {
+namespace {
+
+constexpr double contact_tolerance = 1e-9;  // m: touches that are at most this much lower than the highest are contacts
+constexpr double tie = 2e-12;               // m: touches of one height, up to rounding
+constexpr double smallest_turn = 1e-11;     // rad
+constexpr double first_turn = 0.1, largest_turn = 0.3;  // rad: limits of one step
+constexpr double seen_below = 0.2;  // m: touches that much below the highest may soon carry the robot
+constexpr int max_steps = 300;
+/// Where the mass is exactly above an edge between two ways to rest, the robot turns as if its centre of mass were this
+/// much farther back and to the right, m.
+const Vec3 preference(-1e-7, -0.5e-7, 0);
+
+/// A part of the scene near a robot, relative to the place where the robot is let down.
+struct Solid {
+    Convex body;
+    Bounds bounds;
+    std::uint32_t part;
+    Label label;
+};
+
+/// A touch between a part of the robot and a solid.
+struct RestTouch {
+    Touch touch;
+    std::size_t part, solid;
+};
+
+/// The robot with a roll and a pitch, lowered onto the solids below it.
+struct Lowered {
+    Vec2 angles = Vec2::Zero();  ///< roll and pitch, rad
+    double z = 0;                ///< of its origin, m
+    std::vector<RestTouch> touches;
+    bool has_room = false;
+};
+
+/// Returns the distance of a point to the boundary of a convex polygon (counterclockwise, 3 or more corners); negative
+/// if it is outside.
+double margin_of(const Polygon2& polygon, const Vec2& point)
+{
+    double nearest = std::numeric_limits<double>::infinity();
+    bool is_inside = true;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec2 &p = polygon[k], along = polygon[k + 1 < polygon.size() ? k + 1 : 0] - p;
+        const double t = std::clamp(along.dot(point - p) / along.squaredNorm(), 0.0, 1.0);
+        nearest = std::min(nearest, (point - p - t * along).norm());
+        is_inside = is_inside && cross(along, point - p) >= 0;
+    }
+    return is_inside ? nearest : -nearest;
+}
+
+struct Weight {
+    double volume;
+    Vec3 centre;
+};
+
+Weight weight_of(const RobotPart& part)
+{
+    const Vec3& size = part.shape.size;
+    constexpr double pi = std::numbers::pi;
+    const double ball = 4 * pi / 3 * std::pow(size[0], 3), tube = pi * size[0] * size[0] * size[1];
+    switch (part.shape.kind) {
+    case ShapeKind::Box: return {size.prod(), part.shape.pose.position};
+    case ShapeKind::Sphere: return {ball, part.shape.pose.position};
+    case ShapeKind::Cylinder: return {tube, part.shape.pose.position};
+    case ShapeKind::Capsule: return {tube + ball, part.shape.pose.position};
+    case ShapeKind::Hull: break;
+    }
+    Weight out{0, Vec3::Zero()};
+    const Vec3 middle = part.centre();
+    for (const auto& face : part.hull_faces) {  // tetrahedra from a point inside to each face
+        const auto corner = [&](std::size_t k) -> Vec3 {
+            return part.hull_vertices[std::size_t(face[k])] - middle;
+        };
+        const double volume = corner(0).dot(corner(1).cross(corner(2))) / 6;
+        out.volume += volume;
+        out.centre += volume * (corner(0) + corner(1) + corner(2)) / 4;
+    }
+    out.centre = out.centre / out.volume + middle;
+    return out;
+}
+
+}  // namespace
+
+double Rest::tilt() const { return std::acos(std::clamp(std::cos(roll) * std::cos(pitch), -1.0, 1.0)); }
+
+Vec3 mass_center_of(const Robot& robot)
+{
+    if (robot.mass_center) return *robot.mass_center;
+    double volume = 0;
+    Vec3 sum = Vec3::Zero();
+    for (const RobotPart& part : robot.parts) {
+        const Weight weight = weight_of(part);
+        volume += weight.volume;
+        sum += weight.volume * weight.centre;
+    }
+    return sum / volume;
+}
+
+/// One robot on its way down.
+class Settler::Descent {
+public:
+    Descent(const Settler& settler, std::vector<Solid> solids, double yaw)
+        : settler_(settler), solids_(std::move(solids)), yaw_(yaw)
+    {
+    }
+
+    Rest run()
+    {
+        at_ = level();
+        if (!at_.has_room) return {};
+        balance_ = at_;
+        double limit = first_turn;
+        std::optional<Edge> edge;  // it tips over this edge
+        for (int step = 0; step < max_steps; ++step) {
+            if (at_.touches.empty() || tilt(at_) > settler_.options_.max_tilt)
+                return rest(balance_, Rest::State::Falling);
+            if (stands()) return rest(at_, Rest::State::Standing);
+            const std::vector<MinimaxRow> rows = rows_at(at_);
+            Vec2 aim = Vec2::Zero();
+            if (!edge) aim = lowest_of_highest(rows, limit).at;
+            const bool tips = aim.norm() < smallest_turn;
+            if (tips) {
+                // The contacts slope so much that the mass would rise if x and y stayed the same. But friction holds
+                // the robot, so from here on it tips over one edge of its support polygon after the other.
+                if (const auto next_edge = support_edge()) edge = next_edge;
+                if (!edge) return rest(at_, Rest::State::Falling);
+                aim = tipping_turn(*edge, limit);
+            }
+            const auto [share, is_kink] = way_to_kink(rows, aim);
+            const Vec2 turn = share * aim;
+            Lowered next = turned(turn);
+            const double height = mass_height(at_), expected = height_after(rows, turn);
+            if (!next.has_room || (!tips && mass_height(next) > height - 0.25 * (height - expected))) {
+                limit = turn.lpNorm<Eigen::Infinity>() / 4;
+                if (limit < smallest_turn) return rest(at_, Rest::State::Falling);
+                continue;
+            }
+            limit = std::min(largest_turn, std::max(limit, 2 * turn.lpNorm<Eigen::Infinity>()));
+            at_ = std::move(next);
+            if (is_kink) land(turn);
+        }
+        return rest(at_, Rest::State::Falling);
+    }
+
+private:
+    Mat3 rotation(const Vec2& angles) const { return rotation_from_rpy(angles[0], angles[1], yaw_); }
+
+    static double tilt(const Lowered& at) { return std::acos(std::cos(at.angles[0]) * std::cos(at.angles[1])); }
+
+    Vec3 mass_center(const Vec2& angles) const { return rotation(angles) * (settler_.mass_center_ + preference); }
+    double mass_height(const Lowered& at) const { return at.z + mass_center(at.angles).z(); }
+
+    std::vector<Convex> parts(const Vec2& angles) const
+    {
+        std::vector<Convex> out;
+        for (const Convex& part : settler_.parts_) out.push_back(moved(part, {Vec3::Zero(), rotation(angles)}));
+        return out;
+    }
+
+    /// Returns the level robot at the lowest height where it has room above its layer.
+    Lowered level() const
+    {
+        std::vector<Interval> blocked;
+        const std::vector<Convex> robot = parts(Vec2::Zero());
+        Convex layer;
+        layer.points = {Vec3::Zero()};
+        double z = -std::numeric_limits<double>::infinity(), top = z;
+        for (const Convex& part : robot) {
+            const Bounds bounds = part.bounds();
+            top = std::max(top, bounds.max.z());
+            if (const auto around = blocked_heights(part, layer)) z = std::max(z, around->top);
+            for (const Solid& solid : solids_)
+                if (bounds.meets(solid.bounds, 2))
+                    if (const auto heights = blocked_heights(part, solid.body)) blocked.push_back(*heights);
+        }
+        if (!std::isfinite(z)) z = -top;  // nothing of the robot is above its origin
+        std::sort(blocked.begin(), blocked.end(), [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
+        for (const Interval& heights : blocked)
+            if (heights.bottom < z + contact_tolerance) z = std::max(z, heights.top);
+        if (z > settler_.options_.max_height) return {};
+        return lowered(Vec2::Zero(), z, contact_tolerance);
+    }
+
+    /// Lowers the robot onto the solids that are not higher than about z. It has no room if a solid reaches from below
+    /// z to more than `rise` above it: a wall. Solids above are ceilings.
+    Lowered lowered(const Vec2& angles, double z, double rise) const
+    {
+        Lowered out;
+        out.angles = angles;
+        out.z = -std::numeric_limits<double>::infinity();
+        double ceiling = std::numeric_limits<double>::infinity();
+        const std::vector<Convex> robot = parts(angles);
+        std::vector<Touch> found;
+        for (std::size_t p = 0; p < robot.size(); ++p) {
+            const Bounds bounds = robot[p].bounds();
+            for (std::size_t s = 0; s < solids_.size(); ++s) {
+                const Bounds& around = solids_[s].bounds;
+                if (!bounds.meets(around, 2) || around.max.z() - bounds.min.z() < std::max(out.z, z) - seen_below)
+                    continue;
+                found.clear();
+                add_touches(robot[p], solids_[s].body, found);
+                double highest = -std::numeric_limits<double>::infinity();
+                for (const Touch& touch : found) highest = std::max(highest, touch.height);
+                if (highest > z + rise) {
+                    const auto blocked = blocked_heights(robot[p], solids_[s].body);
+                    if (blocked && blocked->bottom < z - rise) return out;
+                    if (blocked) ceiling = std::min(ceiling, blocked->bottom);
+                    continue;
+                }
+                out.z = std::max(out.z, highest);
+                for (const Touch& touch : found) out.touches.push_back({touch, p, s});
+            }
+        }
+        out.has_room = out.z <= ceiling;
+        return out;
+    }
+
+    /// Returns how the height of the mass changes near a pose for each touch, if only this touch carries the robot.
+    std::vector<MinimaxRow> rows_at(const Lowered& at) const
+    {
+        const Vec2 mass = gradient(at.angles, mass_center(at.angles), -Vec3::UnitZ());
+        const double height = mass_center(at.angles).z();
+        std::vector<MinimaxRow> out;
+        for (const RestTouch& t : at.touches)
+            out.push_back({t.touch.height + height, gradient(at.angles, t.touch.body, t.touch.slope) + mass});
+        return out;
+    }
+
+    /// Returns the derivative by roll and pitch of how much the robot must be raised so that its point `r` stays above
+    /// a plane with this slope.
+    Vec2 gradient(const Vec2& angles, const Vec3& r, const Vec3& slope) const
+    {
+        const Mat3 of_yaw = rotation_from_rpy(0, 0, yaw_), of_pitch = rotation_from_rpy(0, angles[1], yaw_);
+        const Vec3 roll_axis = of_pitch.col(0), pitch_axis = of_yaw.col(1), arm = r.cross(slope);
+        return {-roll_axis.dot(arm), -pitch_axis.dot(arm)};
+    }
+
+    double expected_z(const Vec2& turn) const
+    {
+        double out = -std::numeric_limits<double>::infinity();
+        for (const RestTouch& t : at_.touches)
+            out = std::max(out, t.touch.height + gradient(at_.angles, t.touch.body, t.touch.slope).dot(turn));
+        return out;
+    }
+
+    static double height_after(const std::vector<MinimaxRow>& rows, const Vec2& turn)
+    {
+        double out = -std::numeric_limits<double>::infinity();
+        for (const MinimaxRow& row : rows) out = std::max(out, row.height + row.gradient.dot(turn));
+        return out;
+    }
+
+    /// The touch that carries the robot when it begins to turn: the highest one, and of equal ones the one that rises
+    /// most.
+    static const MinimaxRow& carrier(const std::vector<MinimaxRow>& rows, const Vec2& turn)
+    {
+        double highest = -std::numeric_limits<double>::infinity();
+        for (const MinimaxRow& row : rows) highest = std::max(highest, row.height);
+        const MinimaxRow* out = nullptr;
+        for (const MinimaxRow& row : rows)
+            if (row.height >= highest - tie && (!out || row.gradient.dot(turn) > out->gradient.dot(turn))) out = &row;
+        return *out;
+    }
+
+    Lowered turned(const Vec2& turn) const
+    {
+        return lowered(at_.angles + turn, expected_z(turn), 4 * settler_.reach_ * turn.norm() + contact_tolerance);
+    }
+
+    /// Returns the share of a turn up to which the touch that carries the robot does so, and whether another one takes
+    /// over there.
+    static std::pair<double, bool> way_to_kink(const std::vector<MinimaxRow>& rows, const Vec2& turn)
+    {
+        const MinimaxRow& carried = carrier(rows, turn);
+        double share = 1;
+        for (const MinimaxRow& row : rows) {
+            const double faster = (row.gradient - carried.gradient).dot(turn);
+            if (faster <= 0) continue;
+            const double there = (carried.height - row.height) / faster;
+            if (there * turn.norm() >= smallest_turn) share = std::min(share, there);
+        }
+        return {share, share < 1};
+    }
+
+    /// Turns the robot a little, forth or back along its last turn, until two touches are equally high there.
+    void land(const Vec2& turn)
+    {
+        for (int step = 0; step < 8; ++step) {
+            const double share = nearest_kink(rows_at(at_), turn);
+            if (std::abs(share) * turn.norm() < smallest_turn) return;
+            Lowered next = turned(share * turn);
+            if (!next.has_room) return;
+            at_ = std::move(next);
+        }
+    }
+
+    /// Returns how far, as a share of `turn`, it is to the nearest place along it where another touch is as high as the
+    /// one that carries the robot; negative: back.
+    static double nearest_kink(const std::vector<MinimaxRow>& rows, const Vec2& turn)
+    {
+        const MinimaxRow& carried = carrier(rows, turn);
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const MinimaxRow& row : rows) {
+            const double faster = (row.gradient - carried.gradient).dot(turn);
+            if (std::abs(faster) < 1e-6 * turn.norm()) continue;
+            const double there = (carried.height - row.height) / faster;
+            if (std::abs(there) < std::abs(nearest)) nearest = there;
+        }
+        return std::abs(nearest) < 0.5 ? nearest : 0;
+    }
+
+    /// Two touches over whose line the robot tips.
+    using Edge = std::array<RestTouch, 2>;
+
+    /// Returns the edge of the support polygon that is nearest to the mass, which lies outside. Returns nothing if the
+    /// contacts span no line.
+    std::optional<Edge> support_edge() const
+    {
+        const std::vector<RestTouch> found = contacts(at_);
+        const Polygon2 polygon = support_polygon(at_);
+        if (polygon.size() < 2) return std::nullopt;
+        const Vec2 mass = mass_center(at_.angles).head<2>();
+        double farthest = -std::numeric_limits<double>::infinity();
+        std::size_t edge = 0;
+        const auto corner = [&](std::size_t k) -> const Vec2& { return polygon[k % polygon.size()]; };
+        for (std::size_t k = 0; k < polygon.size(); ++k) {
+            const Vec2 along = corner(k + 1) - corner(k);
+            const double outside = -cross(along, mass - corner(k)) / along.norm();
+            if (outside <= farthest) continue;
+            farthest = outside;
+            edge = k;
+        }
+        const auto touch_at = [&](const Vec2& place) -> const RestTouch& {
+            return *std::find_if(found.begin(), found.end(),
+                                 [&](const RestTouch& t) { return t.touch.body.head<2>() == place; });
+        };
+        return Edge{touch_at(corner(edge)), touch_at(corner(edge + 1))};
+    }
+
+    /// Returns the turn with which the robot tips over an edge, at most `limit` in roll and pitch: both touches of the
+    /// edge keep carrying it, and its mass sinks.
+    Vec2 tipping_turn(const Edge& edge, double limit) const
+    {
+        // The touches of the same parts, where the robot is now.
+        const auto now = [&](const RestTouch& then) {
+            const RestTouch* out = nullptr;
+            for (const RestTouch& t : at_.touches)
+                if (t.part == then.part && t.solid == then.solid && (!out || t.touch.height > out->touch.height))
+                    out = &t;
+            return out ? out->touch : then.touch;
+        };
+        const Touch first = now(edge[0]), second = now(edge[1]);
+        const Vec2 apart = gradient(at_.angles, first.body, first.slope) -
+                           gradient(at_.angles, second.body, second.slope);
+        if (apart.norm() < 1e-9) return Vec2::Zero();
+        const Vec2 along = Vec2(-apart.y(), apart.x()) / apart.lpNorm<Eigen::Infinity>();
+        const double sinks = gradient(at_.angles, mass_center(at_.angles) - first.body, Vec3::UnitZ()).dot(along);
+        const Vec2 level = (second.height - first.height) / apart.squaredNorm() * apart;
+        const Vec2 turn = (sinks > 0 ? 1 : -1) * limit * along;
+        return level.lpNorm<Eigen::Infinity>() < limit ? Vec2(turn + level) : turn;
+    }
+
+    /// Returns the touches that carry the robot.
+    std::vector<RestTouch> contacts(const Lowered& at) const
+    {
+        std::vector<RestTouch> out;
+        for (const RestTouch& t : at.touches)
+            if (t.touch.height >= at.z - contact_tolerance) out.push_back(t);
+        return out;
+    }
+
+    Polygon2 support_polygon(const Lowered& at) const
+    {
+        Polygon2 points;
+        for (const RestTouch& t : contacts(at)) points.push_back(t.touch.body.head<2>());
+        return convex_hull(std::move(points));
+    }
+
+    /// Returns whether the robot stands. Remembers a pose in which it would only have to balance.
+    bool stands()
+    {
+        const Polygon2 polygon = support_polygon(at_);
+        if (polygon.size() < 3) return false;
+        balance_ = at_;
+        return margin_of(polygon, mass_center(at_.angles).head<2>()) >= 0;
+    }
+
+    Rest rest(const Lowered& at, Rest::State state) const
+    {
+        Rest out;
+        out.state = state;
+        out.z = at.z;
+        out.roll = at.angles[0];
+        out.pitch = at.angles[1];
+        const Polygon2 polygon = support_polygon(at);
+        const Vec2 mass = (rotation(at.angles) * settler_.mass_center_).head<2>();
+        out.margin = polygon.size() < 3 ? 0 : margin_of(polygon, mass);
+        for (const RestTouch& t : contacts(at))
+            out.contacts.push_back({t.touch.body + at.z * Vec3::UnitZ(), t.touch.slope.normalized(), t.part,
+                                    solids_[t.solid].part, solids_[t.solid].label});
+        return out;
+    }
+
+    const Settler& settler_;
+    const std::vector<Solid> solids_;
+    const double yaw_;
+    Lowered at_, balance_;
+};
+
+Settler::Settler(const Geometry& geometry, const Robot& robot, const Options& options)
+    : geometry_(geometry), options_(options), mass_center_(mass_center_of(robot)), reach_(0)
+{
+    for (const RobotPart& part : robot.parts) {
+        parts_.push_back(convex_of(part));
+        const Convex& body = parts_.back();
+        for (const Vec3& point : body.points) reach_ = std::max(reach_, point.norm() + body.ball + body.disc);
+    }
+}
+
+Rest Settler::settle(double x, double y, double yaw, double layer) const
+{
+    const Vec3 origin(x, y, layer);
+    std::vector<Solid> solids;
+    const Geometry::Impl& geometry = geometry_.impl();
+    geometry.visit_in(x - reach_, y - reach_, x + reach_, y + reach_, [&](const Tile& tile, std::uint32_t element) {
+        if (tile.label(element) == Label::Water || tile.label(element) == Label::Ignore) return;
+        Solid solid{{}, {}, tile.part(element), tile.label(element)};
+        if (tile.is_triangle(element)) {
+            std::array<Vec3, 3> corners = tile.corners(element);
+            for (Vec3& corner : corners) corner -= origin;
+            solid.body = convex_of(corners);
+        } else {
+            solid.body = moved(convex_of(tile.primitive(element).shape()), {-origin, Mat3::Identity()});
+        }
+        solid.bounds = solid.body.bounds();
+        solids.push_back(std::move(solid));
+    });
+    Rest out = Descent(*this, std::move(solids), yaw).run();
+    out.z += layer;
+    for (RestContact& contact : out.contacts) contact.point += origin;
+    return out;
+}
+
+}  // namespace spawnfield

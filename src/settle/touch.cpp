@@ -1,0 +1,285 @@
+#include "settle/touch.h"
+
+#include "settle/minimax.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+constexpr double steepest = 1e5;      ///< largest slope of a touching surface; a steeper one is a wall
+constexpr double rounding = 1e-12;    // m
+constexpr double parallel = 1e-12;    // of the product of lengths: sine of the angle between parallel edges
+constexpr int max_cuts = 200;
+
+/// The lower or the upper end of a vertical line in a polyhedron.
+struct End {
+    double z;
+    Vec3 normal;  ///< of the face there, outwards
+};
+
+/// Returns the lower end (sign -1) or the upper end (sign 1) of the vertical line through (x, y) in a polyhedron, if
+/// the line meets it.
+std::optional<End> end_of(const Convex& body, double x, double y, double sign)
+{
+    double low = -std::numeric_limits<double>::infinity(), high = -low;
+    const Convex::Plane *lowest = nullptr, *highest = nullptr;
+    for (const Convex::Plane& plane : body.planes) {
+        const double rest = plane.offset - plane.normal.x() * x - plane.normal.y() * y;  // >= normal.z * z
+        if (std::abs(plane.normal.z()) * steepest < 1) {
+            if (rest < -rounding) return std::nullopt;
+            continue;
+        }
+        const double z = rest / plane.normal.z();
+        if (plane.normal.z() > 0 && z < high) {
+            high = z;
+            highest = &plane;
+        }
+        if (plane.normal.z() < 0 && z > low) {
+            low = z;
+            lowest = &plane;
+        }
+    }
+    const Convex::Plane* const face = sign > 0 ? highest : lowest;
+    if (face == nullptr || low > high + rounding * steepest) return std::nullopt;
+    return End{sign > 0 ? high : low, face->normal};
+}
+
+Touch touch_at(double height, const Vec3& body, const Vec3& normal)
+{
+    return {height, body, normal / normal.z()};
+}
+
+/// Returns the height of a polyhedron's top at the x and y of a point, if it is on the face with this plane.
+std::optional<double> height_on(const Convex::Plane& plane, const Convex& ground, const Vec3& point)
+{
+    if (plane.normal.z() * steepest < 1) return std::nullopt;
+    const double z = (plane.offset - plane.normal.head<2>().dot(point.head<2>())) / plane.normal.z();
+    const auto top = end_of(ground, point.x(), point.y(), 1);
+    return top && top->z >= z - 1e-9 ? std::optional(z) : std::nullopt;
+}
+
+/// Adds the touches of two polyhedra: the corners of the overlay of both, seen from above.
+void add_polyhedra(const Convex& body, const Convex& ground, std::vector<Touch>& out)
+{
+    for (const Vec3& point : body.points)
+        if (const auto end = end_of(ground, point.x(), point.y(), 1))
+            out.push_back(touch_at(end->z - point.z(), point, end->normal));
+    for (const Vec3& point : ground.points)
+        if (const auto end = end_of(body, point.x(), point.y(), -1))
+            out.push_back(touch_at(point.z() - end->z, {point.x(), point.y(), end->z}, end->normal));
+    for (const auto& [a, b] : body.edges) {
+        const Vec3 &from = body.points[std::size_t(a)], along = body.points[std::size_t(b)] - from;
+        for (const auto& [c, d] : ground.edges) {
+            const Vec3 &other = ground.points[std::size_t(c)], across = ground.points[std::size_t(d)] - other;
+            const Vec3 normal = along.cross(across);
+            if (std::abs(normal.z()) <= parallel * along.norm() * across.norm() ||
+                std::abs(normal.z()) * steepest < normal.norm())
+                continue;
+            const Vec2 apart = (other - from).head<2>();
+            const double s = cross(apart, across.head<2>()) / normal.z(), t = cross(apart, along.head<2>()) / normal.z();
+            if (s < 0 || s > 1 || t < 0 || t > 1) continue;
+            const Vec3 point = from + s * along;
+            out.push_back(touch_at(other.z() + t * across.z() - point.z(), point, normal));
+        }
+    }
+}
+
+/// Adds the touches of a ball.
+void add_ball(const Vec3& centre, double radius, const Convex& ground, std::vector<Touch>& out)
+{
+    const auto add = [&](const Vec3& on_ground, const Vec3& normal) {  // the normal has length 1
+        if (normal.z() * steepest < 1) return;
+        const Vec3 point = centre - radius * normal;
+        out.push_back(touch_at(on_ground.z() - point.z(), point, normal));
+    };
+    for (const Convex::Plane& plane : ground.planes) {
+        const Vec3 point = centre - radius * plane.normal;
+        if (const auto z = height_on(plane, ground, point)) add({point.x(), point.y(), *z}, plane.normal);
+    }
+    for (const auto& [a, b] : ground.edges) {
+        const Vec3 &from = ground.points[std::size_t(a)], along = ground.points[std::size_t(b)] - from;
+        const double length = along.head<2>().norm();
+        if (length * steepest < along.norm()) continue;
+        const Vec3 aside = Vec3(-along.y(), along.x(), 0) / length;  // perpendicular to the vertical plane of the edge
+        const double off = aside.dot(centre - from);
+        if (std::abs(off) >= radius) continue;
+        const Vec3 up = along.cross(aside).normalized() * (along.cross(aside).z() < 0 ? -1 : 1);
+        const Vec3 normal = (off * aside + std::sqrt(radius * radius - off * off) * up) / radius;
+        const double t = (centre - radius * normal - from).head<2>().dot(along.head<2>()) / (length * length);
+        if (t >= 0 && t <= 1) add(from + t * along, normal);
+    }
+    for (const Vec3& corner : ground.points) {
+        const Vec2 off = (centre - corner).head<2>();
+        if (off.squaredNorm() >= radius * radius) continue;
+        const double up = std::sqrt(radius * radius - off.squaredNorm());
+        add(corner, Vec3(off.x(), off.y(), up) / radius);
+    }
+}
+
+/// Adds the touches of a cylinder without its rims: corners below it, and edges below its side.
+void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& ground, std::vector<Touch>& out)
+{
+    const Vec3 axis = (ends[1] - ends[0]).normalized();
+    const double length = (ends[1] - ends[0]).norm();
+    const auto add = [&](const Vec3& on_ground, const Vec3& point, const Vec3& normal) {
+        if (normal.z() * steepest >= normal.norm()) out.push_back(touch_at(on_ground.z() - point.z(), point, normal));
+    };
+    for (const Vec3& corner : ground.points) {
+        // Along the vertical line (corner.x, corner.y, z), the distance from the axis is |off + z * rise|, and the place
+        // along the axis is `place + z * axis.z`.
+        const Vec3 from(corner.x() - ends[0].x(), corner.y() - ends[0].y(), -ends[0].z());
+        const double place = from.dot(axis);
+        const Vec3 off = from - place * axis, rise = Vec3::UnitZ() - axis.z() * axis;
+        const double a = rise.squaredNorm(), b = off.dot(rise), c = off.squaredNorm() - radius * radius;
+        double low = -std::numeric_limits<double>::infinity(), high = -low;
+        Vec3 normal = Vec3::Zero();
+        if (a * steepest * steepest > 1) {
+            if (b * b < a * c) continue;
+            const double root = std::sqrt(b * b - a * c);
+            low = (-b - root) / a;
+            high = (-b + root) / a;
+            normal = -(off + low * rise);
+        } else if (c > 0) {
+            continue;
+        }
+        if (std::abs(axis.z()) * steepest > 1) {
+            const double first = -place / axis.z(), last = (length - place) / axis.z();
+            if (std::min(first, last) > low) {
+                low = std::min(first, last);
+                normal = axis * (axis.z() < 0 ? -1 : 1);
+            }
+            high = std::min(high, std::max(first, last));
+        } else if (place < 0 || place > length) {
+            continue;
+        }
+        if (low <= high) add(corner, {corner.x(), corner.y(), low}, normal);
+    }
+    for (const auto& [a, b] : ground.edges) {
+        const Vec3 &from = ground.points[std::size_t(a)], along = ground.points[std::size_t(b)] - from;
+        Vec3 normal = axis.cross(along);
+        if (std::abs(normal.z()) * steepest < normal.norm() || normal.norm() <= parallel * along.norm()) continue;
+        normal *= (normal.z() < 0 ? -1 : 1) / normal.norm();
+        // Seen from above, the line below the axis at -radius * normal crosses the edge.
+        const Vec3 line = ends[0] - radius * normal;
+        const Vec2 apart = (from - line).head<2>();
+        const double crossing = cross(axis.head<2>(), along.head<2>());
+        const double s = cross(apart, along.head<2>()) / crossing, t = cross(apart, axis.head<2>()) / crossing;
+        if (s >= 0 && s <= length && t >= 0 && t <= 1) add(from + t * along, line + s * axis, normal);
+    }
+}
+
+/// Adds the touches of the rim of a disc.
+void add_rim(const Vec3& centre, const Vec3& axis, double radius, const Convex& ground, std::vector<Touch>& out)
+{
+    for (const Convex::Plane& plane : ground.planes) {
+        const Vec3 across = plane.normal - plane.normal.dot(axis) * axis;
+        if (plane.normal.z() * steepest < 1 || across.norm() < 1e-14) continue;
+        const Vec3 point = centre - radius * across.normalized();
+        if (const auto z = height_on(plane, ground, point))
+            out.push_back(touch_at(*z - point.z(), point, plane.normal));
+    }
+    const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
+    for (const auto& [a, b] : ground.edges) {
+        const Vec3 &from = ground.points[std::size_t(a)], along = ground.points[std::size_t(b)] - from;
+        const Vec2 flat = along.head<2>(), aside(-flat.y(), flat.x());
+        // The rim's points at an angle: centre + radius * (u cos + v sin). They lie above the edge's line where
+        // p cos + q sin = r.
+        const double p = radius * aside.dot(u.head<2>()), q = radius * aside.dot(v.head<2>()),
+                     r = aside.dot((from - centre).head<2>()), square = p * p + q * q;
+        if (square <= r * r) continue;
+        const double root = std::sqrt(square - r * r);
+        for (const double sign : {-1.0, 1.0}) {
+            const double cosine = (p * r - sign * q * root) / square, sine = (q * r + sign * p * root) / square;
+            const Vec3 point = centre + radius * (cosine * u + sine * v);
+            const double t = (point - from).head<2>().dot(flat) / flat.squaredNorm();
+            if (t < 0 || t > 1) continue;
+            const Vec3 normal = along.cross(cosine * v - sine * u);
+            if (std::abs(normal.z()) * steepest < normal.norm()) continue;
+            out.push_back(touch_at(from.z() + t * along.z() - point.z(), point, normal));
+        }
+    }
+}
+
+/// Adds the touches of a round body and a polyhedron.
+void add_round(const Convex& body, const Convex& ground, std::vector<Touch>& out)
+{
+    for (const Vec3& point : body.points)
+        if (body.ball > 0)
+            add_ball(point, body.ball, ground, out);
+        else
+            add_rim(point, body.axis, body.disc, ground, out);
+    if (body.points.size() == 2)
+        add_tube({body.points[0], body.points[1]}, std::max(body.ball, body.disc), ground, out);
+}
+
+/// Returns the highest touch of any two convex bodies. The bodies do not overlap if the body is raised above the
+/// smallest value, over all slopes n with n.z = 1, of the farthest point of (ground - body) along n. That is a convex
+/// function of n, whose smallest value is found with cutting planes (Kelley, The cutting-plane method for solving
+/// convex programs, 1960): each farthest point is a plane.
+std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
+{
+    std::vector<MinimaxRow> cuts;
+    std::vector<Vec3> on_body;
+    Vec2 slope = Vec2::Zero();
+    double least = std::numeric_limits<double>::infinity();
+    for (;;) {
+        const Vec3 direction(slope.x(), slope.y(), 1), from = body.support(-direction),
+                   apart = ground.support(direction) - from;
+        least = std::min(least, apart.dot(direction));
+        cuts.push_back({apart.z(), apart.head<2>()});
+        on_body.push_back(from);
+        const Minimax lowest = lowest_of_highest(cuts, steepest);
+        const bool is_found = least - lowest.value <= rounding || lowest.at == slope || int(cuts.size()) == max_cuts;
+        slope = lowest.at;
+        if (!is_found) continue;
+        if (lowest.is_at_limit()) return std::nullopt;
+        Vec3 point = Vec3::Zero();
+        for (std::size_t k = 0; k < 3; ++k)
+            if (lowest.rows[k] >= 0) point += lowest.weights[k] * on_body[std::size_t(lowest.rows[k])];
+        return Touch{lowest.value, point, {slope.x(), slope.y(), 1}};
+    }
+}
+
+}  // namespace
+
+void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out)
+{
+    if (body.is_polyhedron() && ground.is_polyhedron()) return add_polyhedra(body, ground, out);
+    if (ground.is_polyhedron()) return add_round(body, ground, out);
+    if (body.is_polyhedron()) {  // the same seen from below, where the ground is lowered onto the body
+        const std::size_t first = out.size();
+        add_round(upside_down(ground), upside_down(body), out);
+        for (std::size_t k = first; k < out.size(); ++k) {
+            Touch& touch = out[k];
+            touch.body.z() = -touch.body.z() - touch.height;
+            touch.slope.head<2>() *= -1;
+        }
+        return;
+    }
+    const auto add = [&](const Convex& a, const Convex& b) {
+        if (const auto touch = highest_touch(a, b)) out.push_back(*touch);
+    };
+    add(body, ground);
+    for (const Convex& end : ends_of(body)) add(end, ground);
+    for (const Convex& end : ends_of(ground)) add(body, end);
+}
+
+std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid)
+{
+    const auto highest = [](const Convex& a, const Convex& b) {
+        std::vector<Touch> touches;
+        add_touches(a, b, touches);
+        double out = -std::numeric_limits<double>::infinity();
+        for (const Touch& touch : touches) out = std::max(out, touch.height);
+        return out;
+    };
+    const double top = highest(body, solid);
+    if (!std::isfinite(top)) return std::nullopt;
+    return Interval{-highest(upside_down(body), upside_down(solid)), top};
+}
+
+}  // namespace spawnfield
