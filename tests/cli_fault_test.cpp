@@ -211,6 +211,8 @@ TEST_CASE("refused input ends with status 4, and the message names file, place, 
         "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, scale, "
         "solid, "
         "sides, labels, auto_label, unknown";
+    const std::string needed_header =
+        ", needs a header with x,y,z; roll,pitch,yaw (or roll_deg,pitch_deg,yaw_deg, or qx,qy,qz,qw) are optional";
     const Refusal refusals[] = {
         {"bake none.yaml -o map", "spawnfield: none.yaml: does not exist; is the path right?"},
         {"bake no_terrain.yaml -o map",
@@ -226,8 +228,7 @@ TEST_CASE("refused input ends with status 4, and the message names file, place, 
         {"bake scene.yaml -o new --bounds 90,0,-1,95,5,1",
          "spawnfield: scene.yaml: bounds are 90, 0, -1 to 95, 5, 1 m, need to meet the scene: -4, -4, -1 to 4, 4, 1 m"},
         {"check map --poses upper.csv -o out" + husky,
-         "spawnfield: upper.csv: line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw; there is X, but "
-         "names are lower case"},
+         "spawnfield: upper.csv: line 1: column x is missing (there is X, but names are lower case)" + needed_header},
         {"info typo.yaml",
          "spawnfield: typo.yaml: part \"b\": spere is not a known key; known keys: " + keys + " (line 3)"},
         {"info none", "spawnfield: none: does not exist; is the path right?"},
@@ -237,7 +238,7 @@ TEST_CASE("refused input ends with status 4, and the message names file, place, 
         {"check map --poses word.csv -o out" + husky,
          "spawnfield: word.csv: line 3: column y is \"two\", needs a number"},
         {"check map --poses column.csv -o out" + husky,
-         "spawnfield: column.csv: line 1: column y is missing, needs a header x,y,z,roll,pitch,yaw"},
+         "spawnfield: column.csv: line 1: column y is missing" + needed_header},
         {"check map --poses poses.csv -o out --robot robot.yaml",
          "spawnfield: robot.yaml: parts is empty, needs at least one part (line 2)"},
         {"check none --poses poses.csv -o out" + husky, "spawnfield: none: does not exist; is the path right?"},
