@@ -68,7 +68,8 @@ TEST_CASE("wrong usage ends with status 2, and the message names option, value a
     const std::string raster = "raster map -o out --dims 2 --step 1" + husky,
                       raster3 = "raster map -o out --dims 3 --step 1" + husky, sample = "sample map -o out" + husky,
                       experiment = "experiment map -o out" + husky,
-                      search = "search map -o out --min-distance 1" + husky;
+                      search = "search map -o out --min-distance 1" + husky,
+                      steps_form = ", needs FROM:TO:BY, for example 0.5:2:0.5, or one number, m";
     const Refusal refusals[] = {
         {"", "A subcommand is required" + hint},
         {"bake", "scene is required" + hint},
@@ -151,8 +152,9 @@ TEST_CASE("wrong usage ends with status 2, and the message names option, value a
         {"info box:1,1,1 --scale 1", "spawnfield: --scale is only for scenes; box:1,1,1 is a robot"},
         {experiment + "--dims 2", "spawnfield: --steps is missing; give for example --steps 0.5:2:0.5, or --search"},
         {experiment + "--steps 1", "spawnfield: --dims is missing; give --dims 2, --dims 3 or --search"},
-        {experiment + "--dims 2 --steps 0.5:2", "spawnfield: --steps is \"0.5:2\", needs FROM:TO:BY or one number, m"},
-        {experiment + "--dims 2 --steps 0.5:two:1", "spawnfield: --steps: \"two\" is not a finite number"},
+        {experiment + "--dims 2 --steps 0.5:2", "spawnfield: --steps is \"0.5:2\"" + steps_form},
+        {experiment + "--dims 2 --steps 0.5:two:1", "spawnfield: --steps: \"two\" is not a finite number" + steps_form},
+        {experiment + "--dims 2 --steps 1,0.5", "spawnfield: --steps: \"1,0.5\" is not a finite number" + steps_form},
         {experiment + "--dims 2 --steps 0", "spawnfield: --steps is 0, needs > 0"},
         {experiment + "--dims 2 --steps 0:2:1", "spawnfield: --steps: FROM is 0, needs > 0"},
         {experiment + "--dims 2 --steps 1:2:0", "spawnfield: --steps: BY is 0, needs > 0"},
