@@ -416,6 +416,31 @@ TEST_CASE("fewer spawns than requested end with status 3, and those found are wr
     CHECK_FALSE(summary(arena / "s.json", "search").contains("full"));
 }
 
+TEST_CASE("sample gives a notice if many poses are where the scene has ground twice")
+{
+    const TempFolder folder;
+    const auto sample = [&](const std::string& upper, const std::string& options) {
+        folder.write("scene.yaml",
+                     "format: spawnfield-scene/1\nparts:\n  - {name: low, label: terrain, plane: [10, 10]}\n"
+                     "  - {name: high, label: terrain, plane: " +
+                         upper + "}\n");
+        REQUIRE(run_program(folder, "bake scene.yaml -o map --resolution 0.5").status == 0);
+        const ProgramRun run = run_program(folder, "sample map -n 200 --robot box:0.4,0.4,0.3" + options);
+        CHECK(run.status == 0);
+        return run.err;
+    };
+    const std::string notice =
+        " judged poses are on a layer with another layer at most 0.1 m above it (ground twice in one place); there a "
+        "robot collides, or is less than --offset above the ground; --layers top uses only the highest layer of each "
+        "place\n";
+    const std::string twice = "[10, 10], xyz: [0, 0, 0.06]";
+    CHECK_THAT(sample(twice, ""), Contains(notice) && Contains(" 200 valid; "));
+    CHECK_THAT(sample(twice, " --offset 0.02"), Contains(notice) && Contains(" collision; "));
+    CHECK_THAT(sample(twice, " --layers top"), !Contains("notice"));
+    CHECK_THAT(sample("[10, 10], xyz: [0, 0, 0.3]", ""), !Contains("notice"));  // a deck with a low space below it
+    CHECK_THAT(sample("[2, 2], xyz: [0, 0, 0.06]", ""), !Contains("notice"));   // few poses
+}
+
 TEST_CASE("an option that has no effect gets a notice, and changes nothing")
 {
     const Arena arena;
