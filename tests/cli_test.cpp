@@ -196,9 +196,11 @@ TEST_CASE("info reports that a house with a missing face is a shell")
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n", faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\n";
     folder.write("closed.obj", corners + faces + "f 1 4 3\n");
     folder.write("open.obj", corners + faces);
-    CHECK_THAT(run_program(folder, "info closed.obj").out, Contains("closed: mesh, terrain, 4 triangles, 1 solid\n"));
+    CHECK_THAT(run_program(folder, "info closed.obj").out,
+               Contains("\nparts: 1 solid\n  closed: mesh, terrain, 4 triangles, 1 solid\n"));
     CHECK_THAT(run_program(folder, "info open.obj").out,
-               Contains("open: mesh, terrain, 3 triangles, 1 shell (without thickness, not filled; 3 open edges)\n"));
+               Contains("\nparts: 1 with shells (not filled)\n"
+                        "  open: mesh, terrain, 3 triangles, 1 shell (without thickness, not filled; 3 open edges)\n"));
     run_program(folder, "bake closed.obj -o map");
     CHECK_THAT(run_program(folder, "info map").out, Contains(" m, 1 layer; voxels of "));
 }
@@ -283,6 +285,30 @@ TEST_CASE("the program refuses a world with missing includes, and a map of 1 x 1
             .err,
         !Contains(tiny));
     CHECK(run_program(folder, "bake a.world -o map --allow-missing --strict").status == 2);
+}
+
+TEST_CASE("info counts solid parts, parts with shells, sheets and parts that are left out, of scenes and maps")
+{
+    const TempFolder folder;
+    folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
+    std::string text = "format: spawnfield-scene/1\nname: many\nparts:\n";
+    for (int i = 1; i <= 2; ++i) text += "  - {name: s" + std::to_string(i) + ", label: terrain, sphere: 1}\n";
+    text += "  - {name: floor, label: terrain, plane: [4, 4]}\n  - {name: old, label: ignore, sphere: 1}\n";
+    const auto heading = [&](const std::string& what) {
+        const std::string out = run_program(folder, "info " + what).out;
+        const std::size_t start = out.find("\nparts: ") + 1;
+        return out.substr(start, out.find('\n', start) - start);
+    };
+    folder.write("few.yaml", text + "  - {name: house, mesh: open.obj}\n");
+    const std::string few = "parts: 2 solid, 1 with shells (not filled), 1 sheet, 1 left out";
+    CHECK(heading("few.yaml") == few);
+    REQUIRE(run_program(folder, "bake few.yaml -o map --resolution 0.5").status == 0);
+    CHECK(heading("map") == few);
+    for (int i = 3; i <= 60; ++i) text += "  - {name: s" + std::to_string(i) + ", label: terrain, sphere: 1}\n";
+    for (int i = 1; i <= 6; ++i) text += "  - {name: h" + std::to_string(i) + ", mesh: open.obj}\n";
+    folder.write("many.yaml", text);
+    CHECK(heading("many.yaml") ==
+          "parts: 60 solid, 6 with shells (not filled: h1, h2, h3, h4, h5, …), 1 sheet, 1 left out");
 }
 
 TEST_CASE("info lists the first 60 of many parts")
