@@ -68,7 +68,8 @@ TEST_CASE("wrong usage ends with status 2, and the message names option, value a
     const std::string raster = "raster map -o out --dims 2 --step 1" + husky,
                       raster3 = "raster map -o out --dims 3 --step 1" + husky, sample = "sample map -o out" + husky,
                       experiment = "experiment map -o out" + husky,
-                      search = "search map -o out --min-distance 1" + husky;
+                      search = "search map -o out --min-distance 1" + husky,
+                      steps_form = ", needs FROM:TO:BY, for example 0.5:2:0.5, or one number, m";
     const Refusal refusals[] = {
         {"", "A subcommand is required" + hint},
         {"bake", "scene is required" + hint},
@@ -151,8 +152,9 @@ TEST_CASE("wrong usage ends with status 2, and the message names option, value a
         {"info box:1,1,1 --scale 1", "spawnfield: --scale is only for scenes; box:1,1,1 is a robot"},
         {experiment + "--dims 2", "spawnfield: --steps is missing; give for example --steps 0.5:2:0.5, or --search"},
         {experiment + "--steps 1", "spawnfield: --dims is missing; give --dims 2, --dims 3 or --search"},
-        {experiment + "--dims 2 --steps 0.5:2", "spawnfield: --steps is \"0.5:2\", needs FROM:TO:BY or one number, m"},
-        {experiment + "--dims 2 --steps 0.5:two:1", "spawnfield: --steps: \"two\" is not a finite number"},
+        {experiment + "--dims 2 --steps 0.5:2", "spawnfield: --steps is \"0.5:2\"" + steps_form},
+        {experiment + "--dims 2 --steps 0.5:two:1", "spawnfield: --steps: \"two\" is not a finite number" + steps_form},
+        {experiment + "--dims 2 --steps 1,0.5", "spawnfield: --steps: \"1,0.5\" is not a finite number" + steps_form},
         {experiment + "--dims 2 --steps 0", "spawnfield: --steps is 0, needs > 0"},
         {experiment + "--dims 2 --steps 0:2:1", "spawnfield: --steps: FROM is 0, needs > 0"},
         {experiment + "--dims 2 --steps 1:2:0", "spawnfield: --steps: BY is 0, needs > 0"},
@@ -211,6 +213,8 @@ TEST_CASE("refused input ends with status 4, and the message names file, place, 
         "box, sphere, cylinder, capsule, plane, mesh, heightmap, octomap, name, label, xyz, rpy, rpy_deg, up, scale, "
         "solid, "
         "sides, labels, auto_label, unknown";
+    const std::string needed_header =
+        ", needs a header with x,y,z; roll,pitch,yaw (or roll_deg,pitch_deg,yaw_deg, or qx,qy,qz,qw) are optional";
     const Refusal refusals[] = {
         {"bake none.yaml -o map", "spawnfield: none.yaml: does not exist; is the path right?"},
         {"bake no_terrain.yaml -o map",
@@ -226,8 +230,7 @@ TEST_CASE("refused input ends with status 4, and the message names file, place, 
         {"bake scene.yaml -o new --bounds 90,0,-1,95,5,1",
          "spawnfield: scene.yaml: bounds are 90, 0, -1 to 95, 5, 1 m, need to meet the scene: -4, -4, -1 to 4, 4, 1 m"},
         {"check map --poses upper.csv -o out" + husky,
-         "spawnfield: upper.csv: line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw; there is X, but "
-         "names are lower case"},
+         "spawnfield: upper.csv: line 1: column x is missing (there is X, but names are lower case)" + needed_header},
         {"info typo.yaml",
          "spawnfield: typo.yaml: part \"b\": spere is not a known key; known keys: " + keys + " (line 3)"},
         {"info none", "spawnfield: none: does not exist; is the path right?"},
@@ -237,7 +240,7 @@ TEST_CASE("refused input ends with status 4, and the message names file, place, 
         {"check map --poses word.csv -o out" + husky,
          "spawnfield: word.csv: line 3: column y is \"two\", needs a number"},
         {"check map --poses column.csv -o out" + husky,
-         "spawnfield: column.csv: line 1: column y is missing, needs a header x,y,z,roll,pitch,yaw"},
+         "spawnfield: column.csv: line 1: column y is missing" + needed_header},
         {"check map --poses poses.csv -o out --robot robot.yaml",
          "spawnfield: robot.yaml: parts is empty, needs at least one part (line 2)"},
         {"check none --poses poses.csv -o out" + husky, "spawnfield: none: does not exist; is the path right?"},

@@ -196,9 +196,11 @@ TEST_CASE("info reports that a house with a missing face is a shell")
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n", faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\n";
     folder.write("closed.obj", corners + faces + "f 1 4 3\n");
     folder.write("open.obj", corners + faces);
-    CHECK_THAT(run_program(folder, "info closed.obj").out, Contains("closed: mesh, terrain, 4 triangles, 1 solid\n"));
+    CHECK_THAT(run_program(folder, "info closed.obj").out,
+               Contains("\nparts: 1 solid\n  closed: mesh, terrain, 4 triangles, 1 solid\n"));
     CHECK_THAT(run_program(folder, "info open.obj").out,
-               Contains("open: mesh, terrain, 3 triangles, 1 shell (without thickness, not filled; 3 open edges)\n"));
+               Contains("\nparts: 1 with shells (not filled)\n"
+                        "  open: mesh, terrain, 3 triangles, 1 shell (without thickness, not filled; 3 open edges)\n"));
     run_program(folder, "bake closed.obj -o map");
     CHECK_THAT(run_program(folder, "info map").out, Contains(" m, 1 layer; voxels of "));
 }
@@ -283,6 +285,30 @@ TEST_CASE("the program refuses a world with missing includes, and a map of 1 x 1
             .err,
         !Contains(tiny));
     CHECK(run_program(folder, "bake a.world -o map --allow-missing --strict").status == 2);
+}
+
+TEST_CASE("info counts solid parts, parts with shells, sheets and parts that are left out, of scenes and maps")
+{
+    const TempFolder folder;
+    folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
+    std::string text = "format: spawnfield-scene/1\nname: many\nparts:\n";
+    for (int i = 1; i <= 2; ++i) text += "  - {name: s" + std::to_string(i) + ", label: terrain, sphere: 1}\n";
+    text += "  - {name: floor, label: terrain, plane: [4, 4]}\n  - {name: old, label: ignore, sphere: 1}\n";
+    const auto heading = [&](const std::string& what) {
+        const std::string out = run_program(folder, "info " + what).out;
+        const std::size_t start = out.find("\nparts: ") + 1;
+        return out.substr(start, out.find('\n', start) - start);
+    };
+    folder.write("few.yaml", text + "  - {name: house, mesh: open.obj}\n");
+    const std::string few = "parts: 2 solid, 1 with shells (not filled), 1 sheet, 1 left out";
+    CHECK(heading("few.yaml") == few);
+    REQUIRE(run_program(folder, "bake few.yaml -o map --resolution 0.5").status == 0);
+    CHECK(heading("map") == few);
+    for (int i = 3; i <= 60; ++i) text += "  - {name: s" + std::to_string(i) + ", label: terrain, sphere: 1}\n";
+    for (int i = 1; i <= 6; ++i) text += "  - {name: h" + std::to_string(i) + ", mesh: open.obj}\n";
+    folder.write("many.yaml", text);
+    CHECK(heading("many.yaml") ==
+          "parts: 60 solid, 6 with shells (not filled: h1, h2, h3, h4, h5, …), 1 sheet, 1 left out");
 }
 
 TEST_CASE("info lists the first 60 of many parts")
@@ -414,6 +440,31 @@ TEST_CASE("fewer spawns than requested end with status 3, and those found are wr
     CHECK(nlohmann::json::parse(arena("sample map -n 50 --min-distance 15 --format json" + husky).out)["full"] == true);
     CHECK(arena("search map -n 5 --min-distance 100 --max-failures 50 --summary s.json" + husky).status == 3);
     CHECK_FALSE(summary(arena / "s.json", "search").contains("full"));
+}
+
+TEST_CASE("sample gives a notice if many poses are where the scene has ground twice")
+{
+    const TempFolder folder;
+    const auto sample = [&](const std::string& upper, const std::string& options) {
+        folder.write("scene.yaml",
+                     "format: spawnfield-scene/1\nparts:\n  - {name: low, label: terrain, plane: [10, 10]}\n"
+                     "  - {name: high, label: terrain, plane: " +
+                         upper + "}\n");
+        REQUIRE(run_program(folder, "bake scene.yaml -o map --resolution 0.5").status == 0);
+        const ProgramRun run = run_program(folder, "sample map -n 200 --robot box:0.4,0.4,0.3" + options);
+        CHECK(run.status == 0);
+        return run.err;
+    };
+    const std::string notice =
+        " judged poses are on a layer with another layer at most 0.1 m above it (ground twice in one place); there a "
+        "robot collides, or is less than --offset above the ground; --layers top uses only the highest layer of each "
+        "place\n";
+    const std::string twice = "[10, 10], xyz: [0, 0, 0.06]";
+    CHECK_THAT(sample(twice, ""), Contains(notice) && Contains(" 200 valid; "));
+    CHECK_THAT(sample(twice, " --offset 0.02"), Contains(notice) && Contains(" collision; "));
+    CHECK_THAT(sample(twice, " --layers top"), !Contains("notice"));
+    CHECK_THAT(sample("[10, 10], xyz: [0, 0, 0.3]", ""), !Contains("notice"));  // a deck with a low space below it
+    CHECK_THAT(sample("[2, 2], xyz: [0, 0, 0.06]", ""), !Contains("notice"));   // few poses
 }
 
 TEST_CASE("an option that has no effect gets a notice, and changes nothing")

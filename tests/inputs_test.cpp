@@ -242,7 +242,7 @@ TEST_CASE("a CSV file without header, commas or poses is refused, with advice")
     CHECK(complaint("x,y,z,a;b\n1,2,3,\"c;d\"\n").empty());  // a semicolon inside a field
     CHECK(complaint("x,y,z\n") == "a: has a header but no pose; --allow-empty accepts that");
     CHECK(parse_poses("x,y,z\n", "a", true).notices == std::vector<std::string>{"a: has a header but no pose"});
-    CHECK(complaint("") == "a: is empty, needs a header x,y,z,roll,pitch,yaw");
+    CHECK_THAT(complaint(""), Contains("a: is empty, needs a header with x,y,z;"));
     CHECK_THROWS_WITH(parse_region("0;0\n1;0\n0;1\n", "b"), Contains("b: line 1: has fields separated by semicolons"));
     CHECK_THROWS_WITH(parse_region("0,5;0\n1;0\n0;1\n", "b"),
                       Contains("b: line 1: has fields separated by semicolons"));

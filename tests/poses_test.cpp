@@ -109,12 +109,13 @@ TEST_CASE("line ends of Windows, a byte order mark, empty lines and a missing la
 
 TEST_CASE("an invalid poses file is refused by line and column")
 {
-    CHECK(complaint("") == "is empty, needs a header x,y,z,roll,pitch,yaw");
-    CHECK(complaint("\n \n") == "is empty, needs a header x,y,z,roll,pitch,yaw");
-    CHECK(complaint("x,y\n1,2\n") == "line 1: column z is missing, needs a header x,y,z,roll,pitch,yaw");
+    const std::string needs =
+        ", needs a header with x,y,z; roll,pitch,yaw (or roll_deg,pitch_deg,yaw_deg, or qx,qy,qz,qw) are optional";
+    CHECK(complaint("") == "is empty" + needs);
+    CHECK(complaint("\n \n") == "is empty" + needs);
+    CHECK(complaint("x,y\n1,2\n") == "line 1: column z is missing" + needs);
     CHECK(complaint("1,2,3\n4,5,6\n") == "line 1: has numbers, needs a header before them: add the line x,y,z");
-    CHECK(complaint("X,Y,Z\n4,5,6\n") ==
-          "line 1: column x is missing, needs a header x,y,z,roll,pitch,yaw; there is X, but names are lower case");
+    CHECK(complaint("X,Y,Z\n4,5,6\n") == "line 1: column x is missing (there is X, but names are lower case)" + needs);
     CHECK(complaint("x,y,z,x\n1,2,3,4\n") == "line 1: column x is given twice");
     CHECK(complaint("x,y,z,qx,qw\n1,2,3,0,1\n") ==
           "line 1: has some of the columns qx,qy,qz,qw, needs all four or none");
@@ -148,6 +149,17 @@ TEST_CASE("probable mistakes in a poses file get a notice")
     CHECK(notices("id,x,y,z,yaw\n1,2,3,4,5\n").empty());
     CHECK(notices("x,y,z,Yaw\n1,2,3,4\n") ==
           ": column Yaw is copied but not read, because names of columns are lower case (yaw)\n");
+    const auto other_yaw = [](const std::string& name) {
+        return ": column " + name +
+               " is copied but not read, so yaw is 0; if it is the angle from x towards y, name it yaw (rad) or "
+               "yaw_deg (degrees)\n";
+    };
+    for (const std::string name : {"theta", "Heading", "HEADING_DEG", "theta_rad", "heading (deg)", "yaw_radians"})
+        CHECK(notices("x,y,z," + name + "\n1,2,3,4\n") == other_yaw(name));
+    CHECK(notices("x,y,z,heading,roll\n1,2,3,4,5\n") == other_yaw("heading"));
+    for (const std::string names : {"theta,yaw", "yaw_deg,heading", "heading_error,thetas", "roll,pitch"})
+        CHECK(notices("x,y,z," + names + "\n1,2,3,4,5\n").empty());
+    CHECK(notices("x,y,z,heading,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n").empty());
 }
 
 TEST_CASE("verdicts replace older verdicts")

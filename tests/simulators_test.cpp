@@ -362,6 +362,28 @@ TEST_CASE("export writes the poses of a CSV file in every format, with roll, pit
     CHECK_FALSE(fs::exists(arena / "new"));
 }
 
+TEST_CASE("export of poses that are not valid according to their file gives a notice, and exports them")
+{
+    const Arena arena;
+    const std::string rows = "0,3,0.1\n-2,0,0.1\n0,3,9\n", csv = "x,y,z\n" + rows;
+    arena.write("poses.csv", csv);
+    REQUIRE(arena("check map --poses poses.csv -o judged.csv" + husky_option).status == 0);
+    const auto run = [&](const std::string& file) { return arena("export map --format csv --poses " + file); };
+    const ProgramRun judged = run("judged.csv");
+    CHECK(judged.status == 0);
+    CHECK(
+        judged.err.starts_with("notice: judged.csv: 2 of 3 poses are not valid according to the column verdict, but "
+                               "all poses are exported; to export only the valid ones, remove the other rows from "
+                               "the file (docs/simulators.md has a command for it)\n"));
+    CHECK(judged.out == run("poses.csv").out);
+    CHECK_THAT(run("poses.csv").err, !Contains("notice"));
+    arena.write("valid.csv", "x,y,z,verdict\n0,3,0.1,valid\n");
+    CHECK_THAT(run("valid.csv").err, !Contains("notice"));
+    arena.write("own.csv", "x,y,z,verdict\n0,3,0.1,good\n");  // a column of the user with this name
+    CHECK_THAT(run("own.csv").err, !Contains("notice"));
+    CHECK_THAT(run("- <judged.csv").err, Contains("notice: standard input: 2 of 3 poses are not valid"));
+}
+
 TEST_CASE("patches are on the ground below the spawns")
 {
     const Arena arena;

@@ -98,6 +98,8 @@ struct Spawn {
     double yaw;  ///< rad
 };
 
+inline constexpr double double_ground = 0.1;  ///< m between two layers that are likely the same ground twice
+
 struct SpawnList {
     std::vector<Spawn> spawns;       ///< in the order in which they were found
     VerdictCounts counts;            ///< of the positions that were judged
@@ -106,6 +108,9 @@ struct SpawnList {
     std::uint64_t near_avoided = 0;  ///< draws too near to a point of the options' `avoid`
     std::uint64_t too_close = 0;     ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
+    /// Only counted by sample(): judged positions on a layer that has another of the chosen layers at most
+    /// double_ground above it, likely the same ground twice.
+    std::uint64_t on_double_ground = 0;
     /// Only set by sample(): there are fewer than `count` spawns, and it is proven that no other spawn fits.
     bool is_full = false;
     /// Only set by sample(), if there are fewer than `count` spawns without that proof: the horizontal area, m2, in

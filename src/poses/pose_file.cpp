@@ -17,6 +17,8 @@ namespace spawnfield {
 namespace {
 
 constexpr double radians_per_degree = std::numbers::pi / 180;
+constexpr const char* needed_header =
+    "needs a header with x,y,z; roll,pitch,yaw (or roll_deg,pitch_deg,yaw_deg, or qx,qy,qz,qw) are optional";
 
 /// The column of an angle: roll, pitch or yaw.
 struct AngleColumn {
@@ -54,7 +56,7 @@ public:
             if (line.find_first_not_of(" \t") == std::string::npos) continue;
             if (!has_header) {
                 columns = read_header(line);
-                add_case_notices(line, table);
+                add_name_notices(line, columns, table);
                 table.header = line;
                 has_header = true;
                 continue;
@@ -63,7 +65,7 @@ public:
             table.poses.push_back(read_pose(csv_fields(line), columns));
             table.rows.push_back(std::move(line));
         }
-        if (!has_header) throw FileError(file_, "is empty, needs a header x,y,z,roll,pitch,yaw");
+        if (!has_header) throw FileError(file_, std::string("is empty, ") + needed_header);
         add_turn_notices(columns, table);
         if (!table.poses.empty()) return table;
         if (!allow_empty) throw FileError(file_, "has a header but no pose; --allow-empty accepts that");
@@ -97,8 +99,9 @@ private:
             if (axis.first < 0) {
                 const auto other = std::find_if(names.begin(), names.end(),
                                                 [&](const std::string& n) { return lower_case(n) == axis.second; });
-                fail(std::string("column ") + axis.second + " is missing, needs a header x,y,z,roll,pitch,yaw" +
-                     (other == names.end() ? "" : "; there is " + *other + ", but names are lower case"));
+                fail(std::string("column ") + axis.second + " is missing" +
+                     (other == names.end() ? "" : " (there is " + *other + ", but names are lower case)") + ", " +
+                     needed_header);
             }
         const int quaternions = (c.qx >= 0) + (c.qy >= 0) + (c.qz >= 0) + (c.qw >= 0);
         if (quaternions != 0 && quaternions != 4) fail("has some of the columns qx,qy,qz,qw, needs all four or none");
@@ -116,15 +119,33 @@ private:
         return fields == 7 ? "x,y,z,qx,qy,qz,qw" : "x,y,z,roll,pitch,yaw (or roll_deg,pitch_deg,yaw_deg)";
     }
 
-    /// Adds a notice for each column whose name is known except for its case, because such a column is not read.
-    void add_case_notices(const std::string& header, PoseTable& table) const
+    /// Adds a notice for each column that is not read although its name is known except for its case. If the file has
+    /// no yaw, also for each column with another name of the yaw.
+    void add_name_notices(const std::string& header, const PoseColumns& columns, PoseTable& table) const
     {
+        const bool has_yaw = columns.has_quaternion() || columns.angles[2].field >= 0;
         for (const std::string& name : csv_fields(header)) {
-            const std::string lower = lower_case(name);
-            if (name == lower || !is_pose_column(lower)) continue;
-            table.notices.push_back(file_ + ": column " + name +
-                                    " is copied but not read, because names of columns are lower case (" + lower + ")");
+            const std::string lower = lower_case(name), what = file_ + ": column " + name + " is copied but not read, ";
+            if (name != lower && is_pose_column(lower))
+                table.notices.push_back(what + "because names of columns are lower case (" + lower + ")");
+            else if (!has_yaw && is_other_yaw_name(lower))
+                table.notices.push_back(what + "so yaw is 0; if it is the angle from x towards y, name it yaw (rad) " +
+                                        "or yaw_deg (degrees)");
         }
+    }
+
+    /// Returns whether a column with this name is likely a yaw that is not read: theta, heading or yaw, alone or with a
+    /// unit, for example heading_deg or "theta (rad)".
+    static bool is_other_yaw_name(const std::string& lower)
+    {
+        for (const std::string word : {"theta", "heading", "yaw"}) {
+            if (!lower.starts_with(word)) continue;
+            std::string unit = lower.substr(word.size());
+            std::erase_if(unit, [](char c) { return std::string_view(" _-.()[]").find(c) != std::string_view::npos; });
+            constexpr std::array<std::string_view, 7> units{"", "deg", "degree", "degrees", "rad", "radian", "radians"};
+            return std::find(units.begin(), units.end(), unit) != units.end();
+        }
+        return false;
     }
 
     /// Adds a notice for each angle in radians with values beyond a whole turn.

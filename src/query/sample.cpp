@@ -219,17 +219,25 @@ private:
         cells.drop(flags);
     }
 
-    /// Returns the height of the layer in a slot, if there is one. The slots of a column contain, from the top, its
-    /// layers that are ground, chosen by the options and in the area.
-    std::optional<double> layer_in(std::size_t slot, const Column& column, const Vec2& at)
+    struct ChosenLayer {
+        double height;
+        bool is_double_ground;  ///< as counted in SpawnList
+    };
+
+    /// Returns the layer in a slot, if there is one. The slots of a column contain, from the top, its layers that are
+    /// ground, chosen by the options and in the area.
+    std::optional<ChosenLayer> layer_in(std::size_t slot, const Column& column, const Vec2& at)
     {
-        std::optional<double> out;
+        std::optional<ChosenLayer> out;
+        double above = std::numeric_limits<double>::infinity();  // height of the chosen layer above
         std::size_t used = 0;
         const std::span<const double> heights = heights_within(column.layers, ground_z_);
         const int count = int(heights.size());
         for (int layer = 0; layer < count; ++layer) {
             const double height = heights[std::size_t(layer)];
-            if (options_.layers.includes(layer, count) && area_.contains(at, height) && used++ == slot) out = height;
+            if (!options_.layers.includes(layer, count) || !area_.contains(at, height)) continue;
+            if (used++ == slot) out = ChosenLayer{height, above - height <= double_ground};
+            above = height;
         }
         if (used > slots_) overfull_ = true;
         return out;
@@ -246,10 +254,11 @@ private:
         out.off_area = !area_.contains(at);
         if (out.off_area) return out;
         const Column& column = judge.column_at(at);
-        const std::optional<double> layer = layer_in(std::size_t(slot), column, at);
+        const std::optional<ChosenLayer> layer = layer_in(std::size_t(slot), column, at);
         if (!layer) return out;
         out.on_ground = true;
-        out.spawn.position = Vec3(at.x(), at.y(), *layer + offset_);
+        out.on_double_ground = layer->is_double_ground;
+        out.spawn.position = Vec3(at.x(), at.y(), layer->height + offset_);
         out.near_avoided = !avoided_.is_clear(out.spawn.position);
         if (out.near_avoided) return out;
         out.clear = taken_.before().is_clear(out.spawn.position);
@@ -270,6 +279,7 @@ private:
             return false;
         }
         ++out.counts[candidate.verdict];
+        out.on_double_ground += candidate.on_double_ground;
         out.exact_checks += candidate.exact_check;
         if (candidate.verdict != Verdict::Valid) return false;
         taken_.add(candidate.spawn.position);

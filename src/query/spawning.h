@@ -48,7 +48,8 @@ double draw_yaw(const Options& options, Draw& draw)
 
 /// The result of one draw. It has a verdict only if it was far enough from the points that were taken before its batch.
 struct Candidate {
-    bool on_ground = false;  ///< the draw gave a pose; only set by sample()
+    bool on_ground = false;         ///< the draw gave a pose; only set by sample()
+    bool on_double_ground = false;  ///< as counted in SpawnList; only set by sample()
     bool off_area = false;
     bool near_avoided = false;
     bool clear = false;

@@ -29,9 +29,10 @@ struct ExperimentArgs : RasterArgs {
 std::vector<double> parse_steps(const std::string& option, const std::string& text)
 {
     constexpr double most = 10000;
-    const std::vector<double> v = parse_numbers(option, text, ':');
+    const std::string form = ", needs FROM:TO:BY, for example 0.5:2:0.5, or one number, m";
+    const std::vector<double> v = parse_numbers(option, text, ':', form);
     if (v.size() == 1) return {parse_positive(option, v[0])};
-    if (v.size() != 3) throw ArgumentError(option + " is \"" + text + "\", needs FROM:TO:BY or one number, m");
+    if (v.size() != 3) throw ArgumentError(option + " is \"" + text + "\"" + form);
     const double from = parse_positive(option + ": FROM", v[0]), to = v[1], by = parse_positive(option + ": BY", v[2]);
     if (to < from) throw bad_value(option + ": TO", to, "at least FROM");
     const double count = std::floor((to - from) / by + 1e-9) + 1;

@@ -177,6 +177,7 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     picture.format = file.format;
     write_heatmap(session.map, terrain, result, picture, file.path);
     summary.set_verdicts(result.counts, result.exact_checks);
+    if (facing.is_any) summary.extra.push_back(headings + " at each pose, each with its own exact checks");
     summary.extra.insert(summary.extra.begin(), args.out);
     return {};
 }

@@ -244,6 +244,32 @@ std::string part_line(const Json& part)
     return line + "\n";
 }
 
+/// Returns how many parts are filled and how many are not. If the list of parts is cut, also names the first parts with
+/// shells.
+std::string parts_heading(std::span<const Part> parts)
+{
+    constexpr std::size_t most_named = 5;
+    std::size_t solid = 0, shells = 0, sheets = 0, left_out = 0;
+    std::string names;
+    for (const Part& part : parts) {
+        const bool has_shell = part.sheet_pieces > 0 && part.kind == "mesh";
+        if (has_shell && ++shells <= most_named) names += (shells == 1 ? "" : ", ") + part.name;
+        solid += part.sheet_pieces == 0 && part.solid_pieces > 0;
+        sheets += part.sheet_pieces > 0 && !has_shell;
+        left_out += part.sheet_pieces == 0 && part.solid_pieces == 0;
+    }
+    if (shells > most_named) names += ", …";
+    std::string out;
+    const auto add = [&](std::size_t count, const std::string& what) {
+        if (count > 0) out += (out.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+    };
+    add(solid, "solid");
+    add(shells, "with shells (not filled" + (parts.size() > most_lines ? ": " + names : "") + ")");
+    add(sheets, sheets == 1 ? "sheet" : "sheets");
+    add(left_out, "left out");
+    return "parts: " + out + "\n";
+}
+
 std::string more_line(std::size_t count)
 {
     return count > most_lines ? "  … and " + std::to_string(count - most_lines) + " more (--json lists all)\n" : "";
@@ -282,8 +308,8 @@ std::string name_lines(const Json& parts)
     return out + more_line(lines.size());
 }
 
-/// Returns lines about a scene or a map with this many parts; `scene` needs only the first `most_lines` of them.
-std::string scene_lines(const Json& scene, std::size_t part_count)
+/// Returns lines about a scene or a map with these parts; `scene` needs only the first `most_lines` of them.
+std::string scene_lines(const Json& scene, std::span<const Part> all_parts)
 {
     std::string out = "labels\n";
     for (const auto& [label, counts] : scene["labels"].items())
@@ -294,10 +320,10 @@ std::string scene_lines(const Json& scene, std::size_t part_count)
         for (const Json& rule : scene["rules"])
             out += "  " + rule["what"].get<std::string>() + " is " + rule["label"].get<std::string>() + ": " +
                    counted(rule["collisions"], "collision") + "\n";
-    out += "parts\n";
+    out += parts_heading(all_parts);
     const Json& parts = scene["parts"];
     for (std::size_t i = 0; i < std::min(most_lines, parts.size()); ++i) out += part_line(parts[i]);
-    return out + more_line(part_count) + name_lines(parts);
+    return out + more_line(all_parts.size()) + name_lines(parts);
 }
 
 /// Returns a heading, then a line for each floor, the highest first.
@@ -327,13 +353,13 @@ std::string z_limits_line(const Json& map)
            " m: layers beyond them are not ground, poses beyond them are outside\n";
 }
 
-std::string map_lines(const Json& map, std::size_t part_count)
+std::string map_lines(const Json& map, std::span<const Part> parts)
 {
     std::string out = "map " + map["name"].get<std::string>() + " (from " + map["scene"]["file"].get<std::string>() +
                       ", hash " + map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
     out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") +
            "; voxels of " + map["occupancy_resolution"].dump() + " m\n" + z_limits_line(map) + origin_line(map);
-    out += floor_lines(map) + scene_lines(map, part_count) + "files\n";
+    out += floor_lines(map) + scene_lines(map, parts) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
     return out;
@@ -420,7 +446,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
                                                                        : std::optional(picture_file(args.picture));
     const Progress listen = progress_bar(args, "info");
     Json out;
-    std::size_t part_count = 0;  // of a scene or a map
+    std::vector<Part> parts;  // of a scene or a map
     std::vector<std::string> robot_options_of_info = robot_option_names;
     robot_options_of_info.emplace_back("--picture");
     const auto has_one_of = [&](const std::vector<std::string>& options) {
@@ -435,8 +461,8 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         if (args.verify) verify_map(args.what);
         const Map map = read_map(args.what);
         summary.map_hash = map.hash;
-        part_count = map.geometry.parts().size();
-        out = map_json(map, args.verify, args.json ? part_count : most_lines);
+        parts.assign(map.geometry.parts().begin(), map.geometry.parts().end());
+        out = map_json(map, args.verify, args.json ? parts.size() : most_lines);
     } else if (robot_given) {
         refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a robot");
         refuse(command, {"--verify"}, "is only for maps; " + args.what + " is a robot");
@@ -447,20 +473,20 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
     } else {
         refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is not a robot");
         refuse(command, {"--verify"}, "is only for maps; " + args.what + " is not a map");
-        const Scene scene = load_scene(args.what, scene_options(args, args));
+        Scene scene = load_scene(args.what, scene_options(args, args));
         notices(args, scene.notices);
-        part_count = scene.parts.size();
         out = scene_json(scene);
+        parts = std::move(scene.parts);
     }
     listen(1);
     summary.lap("load");
     const std::string kind = out["kind"];
     const std::string text = args.json       ? out.dump(2) + "\n"
-                             : kind == "map" ? map_lines(out, part_count)
+                             : kind == "map" ? map_lines(out, parts)
                              : kind == "robot"
                                  ? robot_lines(out)
                                  : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) +
-                                       origin_line(out) + scene_lines(out, part_count);
+                                       origin_line(out) + scene_lines(out, parts);
     write_output("", [&](const auto& sink) { sink(text); });
     summary.extra = {args.what};
     return {};

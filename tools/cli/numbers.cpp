@@ -21,7 +21,8 @@ ArgumentError bad_value(const std::string& option, double value, const std::stri
     return ArgumentError(option + " is " + number(value) + ", needs " + limit);
 }
 
-std::vector<double> parse_numbers(const std::string& option, const std::string& text, char separator)
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, char separator,
+                                  const std::string& advice)
 {
     std::vector<double> out;
     for (std::size_t start = 0; start <= text.size();) {
@@ -30,7 +31,8 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
         const char* const end = text.data() + between;
         const auto [stop, error] = std::from_chars(text.data() + start, end, value);
         if (error != std::errc{} || stop != end || !std::isfinite(value))
-            throw ArgumentError(option + ": \"" + text.substr(start, between - start) + "\" is not a finite number");
+            throw ArgumentError(option + ": \"" + text.substr(start, between - start) + "\" is not a finite number" +
+                                advice);
         out.push_back(value);
         start = between + 1;
     }

@@ -15,8 +15,9 @@ std::string number(double value);
 /// Returns "1 layer", "2 layers".
 std::string counted(std::uint64_t count, const std::string& noun);
 
-/// Reads finite numbers with `separator` between them. Throws ArgumentError.
-std::vector<double> parse_numbers(const std::string& option, const std::string& text, char separator = ',');
+/// Reads finite numbers with `separator` between them. Throws ArgumentError, whose message ends with `advice`.
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, char separator = ',',
+                                  const std::string& advice = "");
 
 /// Reads "x0,y0,z0,x1,y1,z1", or with `flat_allowed` also "x0,y0,x1,y1", which means all heights. Throws ArgumentError.
 Bounds parse_bounds(const std::string& option, const std::string& text, bool flat_allowed);

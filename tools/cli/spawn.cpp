@@ -139,6 +139,18 @@ SpawnList nothing_drawn(const Map& map, const Bounds& bounds)
     return out;
 }
 
+/// Prints a notice if many samples were judged where the scene seems to have the same ground twice.
+void notice_about_double_ground(const CommonArgs& args, const SpawnList& list)
+{
+    constexpr double noticeable = 0.1;  // share of the judged poses
+    const std::uint64_t all = list.counts.total();
+    if (list.on_double_ground == 0 || double(list.on_double_ground) < noticeable * double(all)) return;
+    notice(args, std::to_string(list.on_double_ground) + " of " + counted(all, "judged pose") +
+                     " are on a layer with another layer at most " + number(double_ground) +
+                     " m above it (ground twice in one place); there a robot collides, or is less than --offset above "
+                     "the ground; --layers top uses only the highest layer of each place");
+}
+
 /// Runs `search` or `sample` with its options.
 template <class Options>
 Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const SpawnArgs& args, const CLI::App& app,
@@ -164,6 +176,7 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
                                             : nothing_drawn(session.map, options.bounds);
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
     summary.lap("query");
+    notice_about_double_ground(args, list);
     if (folder)
         write_thesis(*folder, settings_of(args, session, options, list, command, own), list.counts, summary,
                      [&](const auto& into) { return write_thesis_locations(into, list); });
