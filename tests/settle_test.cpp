@@ -1,16 +1,111 @@
 #include "catch.h"
+#include "random_scene.h"
+#include "settle/minimax.h"
 #include "settle/settle.h"
+#include "settle/touch.h"
 #include "shared_scenes.h"
+#include "worlds/random.h"
 
-#include <spawnfield/scene.h>
+#include <spawnfield/collision.h>
+#include <spawnfield/column.h>
+#include <spawnfield/robot_parts.h>
+#include <spawnfield/scene_parts.h>
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <fstream>
 
 using namespace spawnfield;
 
 // Tests of how a robot comes to rest on the ground.
+
+namespace {
+
+using State = Rest::State;
+
+constexpr double pi = 3.14159265358979323846, tolerance = 1e-6;
+
+double rad(double degrees) { return degrees * pi / 180; }
+
+constexpr double base = 0.512, track = 0.57, wheel = 0.165, wheel_width = 0.114;  // m, of a Husky
+
+/// A box on four wheels, whose axles are parallel to y. The origin is in the middle between the wheels' lowest points.
+Robot wheeled(double mass_x = 0)
+{
+    std::vector<RobotPart> parts{shape_part(box_shape({0.99, 0.67, 0.26}, {{0, 0, 0.26}}), "body")};
+    for (const double x : {-base / 2, base / 2})
+        for (const double y : {-track / 2, track / 2})
+            parts.push_back(shape_part(
+                cylinder_shape(wheel, wheel_width, {{x, y, wheel}, rotation_of_rpy(pi / 2, 0, 0)}), "wheel"));
+    Robot out = make_robot("wheeled", std::move(parts));
+    out.mass_center = Vec3(mass_x, 0, 0.24);
+    return out;
+}
+
+/// A plate on four balls.
+Robot on_balls(double radius)
+{
+    std::vector<RobotPart> parts{shape_part(box_shape({0.5, 0.4, 0.02}, {{0, 0, 2 * radius + 0.1}}))};
+    for (const double x : {-base / 2, base / 2})
+        for (const double y : {-track / 2, track / 2}) parts.push_back(shape_part(sphere_shape(radius, {x, y, radius})));
+    Robot out = make_robot("on_balls", std::move(parts));
+    out.mass_center = Vec3(0, 0, 0.24);
+    return out;
+}
+
+/// A plate on two capsules along x.
+Robot on_skids()
+{
+    std::vector<RobotPart> parts{shape_part(box_shape({0.5, 0.4, 0.02}, {{0, 0, 0.3}}))};
+    for (const double y : {-track / 2, track / 2})
+        parts.push_back(shape_part(capsule_shape(0.05, 0.8, {{0, y, 0.05}, rotation_of_rpy(0, pi / 2, 0)})));
+    return make_robot("on_skids", std::move(parts));
+}
+
+Robot boxy(const Vec3& size) { return make_robot("boxy", {shape_part(box_shape(size, {{0, 0, size.z() / 2}}))}); }
+
+/// Returns a slope that rises towards +x, through the origin.
+Scene slope(double angle)
+{
+    Scene scene;
+    const Mat3 turned = rotation_of_rpy(0, -angle, 0);
+    add_shape(scene, "slope", Label::Terrain, box_shape({12, 12, 0.5}, {turned * Vec3(0, 0, -0.25), turned}));
+    return scene;
+}
+
+void add_block(Scene& scene, const Vec3& low, const Vec3& high)
+{
+    add_shape(scene, "block", Label::Terrain, box_shape(high - low, {(low + high) / 2}));
+}
+
+Rest settled(const Scene& scene, const Robot& robot, double x = 0, double y = 0, double yaw = 0,
+             const Settler::Options& options = {})
+{
+    const Geometry geometry(scene);
+    const Column column = column_at(geometry, x, y);
+    REQUIRE(!column.layers.empty());
+    return Settler(geometry, robot, options).settle(x, y, yaw, column.layers.front());
+}
+
+void check_pose(const Rest& rest, double z, double roll, double pitch)
+{
+    CHECK(rest.state == State::Standing);
+    CHECK(std::abs(rest.z - z) <= tolerance);
+    CHECK(std::abs(rest.roll - roll) <= tolerance);
+    CHECK(std::abs(rest.pitch - pitch) <= tolerance);
+}
+
+/// Returns a scene at another place: its shapes and vertices.
+Scene moved(Scene scene, const Pose& pose)
+{
+    for (Vec3& vertex : scene.vertices) vertex = pose.rotation * vertex + pose.position;
+    for (Primitive& primitive : scene.primitives) primitive.shape.pose = pose * primitive.shape.pose;
+    for (Piece& piece : scene.pieces) piece.bottom += pose.position.z();
+    return scene;
+}
+
+}  // namespace
 
 TEST_CASE("a robot rests as the closed form says")
 {
@@ -18,19 +113,267 @@ TEST_CASE("a robot rests as the closed form says")
     if (!scenes) return;
     const std::filesystem::path folder = scenes->parent_path() / "standing";
     const nlohmann::json cases = nlohmann::json::parse(std::ifstream(folder / "cases.json"));
+    REQUIRE(cases.at("cases").size() >= 27);
     for (const nlohmann::json& expected : cases.at("cases")) {
         INFO(expected.at("name").get<std::string>());
-        const Scene scene = load_scene(folder / expected.at("scene").get<std::string>());
+        const auto value = [&](const char* key) { return expected.at(key).get<double>(); };
         const Robot robot = load_robot((folder / expected.at("robot").get<std::string>()).string());
-        const Geometry geometry(scene);
-        const double x = expected.at("x"), y = expected.at("y"), yaw = expected.at("yaw");
+        const Scene scene = load_scene(folder / expected.at("scene").get<std::string>());
+        const Rest rest = settled(scene, robot, value("x"), value("y"), value("yaw"));
+        CHECK(std::abs(rest.z - value("z")) <= tolerance);
+        CHECK(std::abs(rest.roll - value("roll")) <= tolerance);
+        CHECK(std::abs(rest.pitch - value("pitch")) <= tolerance);
+        CHECK((rest.state == State::Standing) == expected.at("stable").get<bool>());
+        if (!expected.at("margin").is_null()) CHECK(std::abs(rest.margin - value("margin")) <= tolerance);
+    }
+}
+
+TEST_CASE("on a slope, every robot is parallel to it")
+{
+    for (const double angle : {0.0, 3.0, 12.0, 25.0, 40.0})
+        for (const double yaw : {0.0, 20.0, 45.0, 90.0, 135.0, 180.0, -110.0}) {
+            INFO(angle << " degrees, yaw " << yaw);
+            const double a = rad(angle), c = rad(yaw);
+            const double roll = std::asin(-std::sin(a) * std::sin(c)),
+                         pitch = std::atan(-std::tan(a) * std::cos(c));
+            for (const Robot& robot : {wheeled(), on_balls(0.03), boxy({0.9, 0.6, 0.2}), on_skids()}) {
+                INFO(robot.name);
+                check_pose(settled(slope(a), robot, 0, 0, c), 0, roll, pitch);
+                check_pose(settled(slope(a), robot, 1, -0.4, c), std::tan(a), roll, pitch);
+            }
+        }
+}
+
+TEST_CASE("the margin on level ground is the distance of the mass from the side of the support polygon")
+{
+    for (const double mass_x : {0.0, 0.1, -0.2}) {
+        const Rest rest = settled(slope(0), wheeled(mass_x), 0, 0, 0.3);
+        CHECK(std::abs(rest.margin - (base / 2 - std::abs(mass_x))) <= tolerance);
+        CHECK(rest.tilt() <= tolerance);
+    }
+    const Rest box = settled(slope(0), boxy({0.9, 0.6, 0.2}));
+    CHECK(std::abs(box.margin - 0.3) <= tolerance);
+    CHECK(box.contacts.size() == 4);
+}
+
+TEST_CASE("wheels and balls over steps, crests and grooves rest as the closed form says")
+{
+    for (const double height : {0.02, 0.05, 0.1, 0.15}) {
+        INFO("step of " << height << " m");
+        Scene step;
+        add_block(step, {-4, -4, -1}, {0, 4, 0});
+        add_block(step, {0, -4, -1}, {4, 4, height});
+        // The axles stay parallel to the line between the wheels' lowest points.
+        const double pitch = -std::asin(height / base);
+        check_pose(settled(step, wheeled()), height / 2 + wheel * (1 - std::cos(pitch)), 0, pitch);
+        check_pose(settled(step, on_balls(0.03)), height / 2 + 0.03 * (1 - std::cos(pitch)), 0, pitch);
+    }
+    for (const double angle : {2.0, 5.0, 10.0, 14.0}) {
+        INFO("ridge or groove of " << angle << " degrees");
+        const double a = rad(angle), lift = wheel * (1 / std::cos(a) - 1);
+        for (const double sign : {-1.0, 1.0}) {
+            Scene scene;
+            for (const double side : {-1.0, 1.0}) {
+                const Mat3 turned = rotation_of_rpy(0, -sign * side * a, 0);
+                const Vec3 along = turned * Vec3(side * 2, 0, -0.25);
+                add_shape(scene, "side", Label::Terrain, box_shape({4, 8, 0.5}, {along, turned}));
+            }
+            check_pose(settled(scene, wheeled()), sign * base / 2 * std::tan(a) + lift, 0, 0);
+            check_pose(settled(scene, wheeled(), 0, 0, pi), sign * base / 2 * std::tan(a) + lift, 0, 0);
+        }
+    }
+}
+
+TEST_CASE("wheels on a ball touch it with their inner rims")
+{
+    for (const double radius : {1.0, 2.0, 5.0}) {
+        Scene scene;
+        add_shape(scene, "ball", Label::Terrain, sphere_shape(radius, {0, 0, -radius}));
+        const double inner = (track - wheel_width) / 2,
+                     slice = std::sqrt(radius * radius - inner * inner);  // radius of the ball at the inner rim
+        const double axle = std::sqrt((wheel + slice) * (wheel + slice) - base * base / 4);
+        const Rest rest = settled(scene, wheeled());
+        if (radius < 2)
+            CHECK(rest.state == State::Standing);  // here the belly may carry it
+        else
+            check_pose(rest, axle - radius - wheel, 0, 0);
+    }
+    Scene scene;  // and four balls on a ball
+    add_shape(scene, "ball", Label::Terrain, sphere_shape(3, {0, 0, -3}));
+    const double aside = std::hypot(base / 2, track / 2);
+    check_pose(settled(scene, on_balls(0.1)), std::sqrt(3.1 * 3.1 - aside * aside) - 3.1, 0, 0);
+}
+
+TEST_CASE("a robot that finds no hold falls, and one without room is blocked")
+{
+    Scene pole;
+    add_block(pole, {-0.05, -0.05, -3}, {0.05, 0.05, 0});
+    add_block(pole, {-6, -6, -4}, {6, 6, -3});
+    CHECK(settled(pole, wheeled()).state == State::Standing);  // balances on its belly
+    CHECK(settled(pole, wheeled(0.06)).state == State::Falling);
+    CHECK(settled(pole, wheeled(0.06)).margin < 0);
+
+    Scene low_ceiling = slope(0);
+    add_block(low_ceiling, {-6, -6, 0.3}, {6, 6, 0.4});
+    const Geometry geometry(low_ceiling);
+    const Settler settler(geometry, wheeled(), {.max_height = 0.2});
+    CHECK(settler.settle(0, 0, 0, 0).state == State::Blocked);
+    CHECK(settler.settle(0, 0, 0, 0.4).state == State::Standing);
+
+    CHECK(settled(slope(rad(44)), boxy({1, 1, 0.1})).state == State::Standing);
+    CHECK(settled(slope(rad(46)), boxy({1, 1, 0.1})).state == State::Falling);  // the largest tilt is 45 degrees
+    CHECK(settled(slope(rad(35)), boxy({0.2, 0.2, 1})).state == State::Falling);  // its mass is not above its base
+}
+
+TEST_CASE("if the mass is exactly above a diagonal, the documented rule decides")
+{
+    Scene scene;  // a block below the front left wheel
+    add_block(scene, {-4, -4, -1}, {4, 4, 0});
+    add_block(scene, {0.05, 0.05, 0}, {2, 2, 0.08});
+    Robot robot = on_balls(0.01);
+    const Rest rest = settled(scene, robot);
+    CHECK(rest.state == State::Standing);
+    const Rest again = settled(scene, robot);
+    CHECK(again.roll == rest.roll);
+    CHECK(again.pitch == rest.pitch);
+    robot.mass_center = Vec3(-1e-3, 0, 0.24);  // the rule: as if the mass were farther back and to the right
+    const Rest back = settled(scene, robot);
+    CHECK(std::abs(back.pitch - rest.pitch) <= 1e-5);
+    CHECK(std::abs(back.roll - rest.roll) <= 1e-5);
+}
+
+TEST_CASE("dbg", "[dbg]")
+{
+    const Scene scene = random_scene(4);
+    const Robot robot = random_robot(4);
+    const Pose shift{{3, -2, 1}, rotation_of_rpy(0, 0, 0.4)};
+    const Geometry geometry(scene), shifted(moved(scene, shift));
+    for (const Pose& pose : random_poses(scene, 4, 12)) {
+        const double x = pose.position.x(), y = pose.position.y(), yaw = 0.7;
+        if (std::abs(x - 6.53102) > 1e-4) continue;
         const Column column = column_at(geometry, x, y);
-        REQUIRE(!column.layers.empty());
+        const Vec3 place = shift.rotation * Vec3(x, y, column.layers.front()) + shift.position;
+        setenv("DBG", "1", 1);
         const Rest rest = Settler(geometry, robot, {}).settle(x, y, yaw, column.layers.front());
-        CHECK(std::abs(rest.z - expected.at("z").get<double>()) <= 1e-6);
-        CHECK(std::abs(rest.roll - expected.at("roll").get<double>()) <= 1e-6);
-        CHECK(std::abs(rest.pitch - expected.at("pitch").get<double>()) <= 1e-6);
-        CHECK((rest.state == Rest::State::Standing) == expected.at("stable").get<bool>());
-        if (!expected.at("margin").is_null()) CHECK(std::abs(rest.margin - expected.at("margin").get<double>()) <= 1e-6);
+        fprintf(stderr, "----\n");
+        const Rest other = Settler(shifted, robot, {}).settle(place.x(), place.y(), yaw + 0.4, place.z());
+    }
+}
+
+TEST_CASE("turning and shifting the scene and the robot together changes only the frame")
+{
+    int compared = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        const Scene scene = random_scene(seed);
+        const Robot robot = seed % 2 ? wheeled() : random_robot(seed);
+        const double turn = 0.4;
+        const Pose shift{{3, -2, 1}, rotation_of_rpy(0, 0, turn)};
+        const Geometry geometry(scene), shifted(moved(scene, shift));
+        for (const Pose& pose : random_poses(scene, seed, 12)) {
+            const double x = pose.position.x(), y = pose.position.y(), yaw = 0.7;
+            const Column column = column_at(geometry, x, y);
+            if (column.layers.empty()) continue;
+            const Rest rest = Settler(geometry, robot, {}).settle(x, y, yaw, column.layers.front());
+            const Vec3 place = shift.rotation * Vec3(x, y, column.layers.front()) + shift.position;
+            const Rest other = Settler(shifted, robot, {}).settle(place.x(), place.y(), yaw + turn, place.z());
+            if (rest.state != State::Standing || rest.margin < 1e-3) continue;
+            INFO("seed " << seed << " at " << x << ", " << y);
+            ++compared;
+            CHECK(other.state == rest.state);
+            CHECK(std::abs(other.z - rest.z - 1) <= 1e-9);
+            CHECK(std::abs(other.roll - rest.roll) <= 1e-9);
+            CHECK(std::abs(other.pitch - rest.pitch) <= 1e-9);
+            CHECK(std::abs(other.margin - rest.margin) <= 1e-6);
+        }
+    }
+    CHECK(compared >= 50);
+}
+
+TEST_CASE("a robot at rest touches the ground: FCL finds a collision just below it, and none just above it")
+{
+    int standing = 0;
+    for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+        const Scene scene = random_scene(seed);
+        const Robot robot = seed % 3 ? random_robot(seed) : wheeled();
+        const Geometry geometry(scene);
+        const Settler settler(geometry, robot, {});
+        const CollisionChecker checker(geometry, robot);
+        for (const Pose& pose : random_poses(scene, seed, 20)) {
+            const double x = pose.position.x(), y = pose.position.y(), yaw = pose.position.z();
+            for (const double layer : column_at(geometry, x, y).layers) {
+                const Rest rest = settler.settle(x, y, yaw, layer);
+                if (rest.state != State::Standing) continue;
+                INFO("seed " << seed << " at " << x << ", " << y << ", " << yaw << ", layer " << layer);
+                ++standing;
+                const Mat3 rotation = rotation_from_rpy(rest.roll, rest.pitch, yaw);
+                CHECK(!checker.is_free({{x, y, rest.z - 1e-5}, rotation}));
+                const auto hit = checker.find_hit({{x, y, rest.z + 1e-5}, rotation});
+                if (hit) {  // only inside something that is filled: no surface is near
+                    Scene surfaces = scene;
+                    for (Piece& piece : surfaces.pieces) piece.solid = false;
+                    CHECK(CollisionChecker(Geometry(surfaces), robot).is_free({{x, y, rest.z + 1e-5}, rotation}));
+                }
+            }
+        }
+    }
+    CHECK(standing >= 200);
+}
+
+TEST_CASE("the touches of round bodies and polyhedra agree with a general method")
+{
+    Random random(7);
+    const auto anywhere = [&](double reach) {
+        return Vec3(random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach));
+    };
+    const auto turned = [&] { return rotation_of_rpy(random.between(-3, 3), random.between(-1.5, 1.5), random.between(-3, 3)); };
+    int met = 0;
+    for (int k = 0; k < 4000; ++k) {
+        const auto some_body = [&](int kind) {
+            const Pose pose{anywhere(1), turned()};
+            switch (kind) {
+            case 0: return convex_of(box_shape({random.between(0.1, 1), random.between(0.1, 1), 0.5}, pose));
+            case 1: return convex_of(sphere_shape(random.between(0.1, 0.8), pose.position));
+            case 2: return convex_of(cylinder_shape(random.between(0.1, 0.8), random.between(0.1, 1), pose));
+            case 3: return convex_of(capsule_shape(random.between(0.1, 0.8), random.between(0.1, 1), pose));
+            default: return convex_of(std::array<Vec3, 3>{anywhere(1), anywhere(1), anywhere(1)});
+            }
+        };
+        const int first = k % 4, second = k / 4 % 5;
+        const Convex body = some_body(first), ground = some_body(second);
+        std::vector<Touch> touches;
+        add_touches(body, ground, touches);
+        const auto general = highest_touch(body, ground);
+        double highest = -std::numeric_limits<double>::infinity();
+        for (const Touch& touch : touches) highest = std::max(highest, touch.height);
+        INFO("pair " << k << " of kinds " << first << " and " << second);
+        if (!general) {
+            // Only a touch of a wall is left out by one of them.
+            continue;
+        }
+        ++met;
+        // On a steep surface, a small distance to the side is a large one in height.
+        CHECK(std::abs(highest - general->height) <= 1e-9 * general->slope.norm());
+    }
+    CHECK(met >= 1000);
+}
+
+TEST_CASE("the lowest point of the highest plane is at least as low as any other point")
+{
+    Random random(3);
+    for (int k = 0; k < 500; ++k) {
+        std::vector<MinimaxRow> rows;
+        const int count = 1 + k % 40;
+        for (int i = 0; i < count; ++i)
+            rows.push_back({random.between(-1, 1), {random.between(-1, 1), random.between(-1, 1)}});
+        const auto height = [&](const Vec2& at) {
+            double out = -std::numeric_limits<double>::infinity();
+            for (const MinimaxRow& row : rows) out = std::max(out, row.height + row.gradient.dot(at));
+            return out;
+        };
+        const Minimax lowest = lowest_of_highest(rows, 2);
+        CHECK(lowest.at.lpNorm<Eigen::Infinity>() <= 2 + 1e-12);
+        CHECK(std::abs(height(lowest.at) - lowest.value) <= 1e-12);
+        for (int i = 0; i < 200; ++i)
+            CHECK(height({random.between(-2, 2), random.between(-2, 2)}) >= lowest.value - 1e-12);
     }
 }

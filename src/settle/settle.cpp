@@ -5,6 +5,7 @@
 #include "settle/touch.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,7 @@ namespace spawnfield {
 namespace {
 
 constexpr double contact_tolerance = 1e-9;  // m: touches that are at most this much lower than the highest are contacts
-constexpr double tie = 2e-12;               // m: touches of one height, up to rounding
+constexpr double tie = 1e-12;               // m: touches of one height, up to rounding
 constexpr double smallest_turn = 1e-11;     // rad
 constexpr double first_turn = 0.1, largest_turn = 0.3;  // rad: limits of one step
 constexpr double seen_below = 0.2;  // m: touches that much below the highest may soon carry the robot
@@ -24,7 +25,7 @@ constexpr int max_steps = 300;
 const Vec3 preference(-1e-7, -0.5e-7, 0);
 
 /// A part of the scene near a robot, relative to the place where the robot is let down.
-struct Solid {
+struct NearSolid {
     Convex body;
     Bounds bounds;
     std::uint32_t part;
@@ -111,7 +112,7 @@ Vec3 mass_center_of(const Robot& robot)
 /// One robot on its way down.
 class Settler::Descent {
 public:
-    Descent(const Settler& settler, std::vector<Solid> solids, double yaw)
+    Descent(const Settler& settler, std::vector<NearSolid> solids, double yaw)
         : settler_(settler), solids_(std::move(solids)), yaw_(yaw)
     {
     }
@@ -122,32 +123,28 @@ public:
         if (!at_.has_room) return {};
         balance_ = at_;
         double limit = first_turn;
-        std::optional<Edge> edge;  // it tips over this edge
         for (int step = 0; step < max_steps; ++step) {
             if (at_.touches.empty() || tilt(at_) > settler_.options_.max_tilt)
                 return rest(balance_, Rest::State::Falling);
-            if (stands()) return rest(at_, Rest::State::Standing);
-            const std::vector<MinimaxRow> rows = rows_at(at_);
-            Vec2 aim = Vec2::Zero();
-            if (!edge) aim = lowest_of_highest(rows, limit).at;
-            const bool tips = aim.norm() < smallest_turn;
-            if (tips) {
-                // The contacts slope so much that the mass would rise if x and y stayed the same. But friction holds
-                // the robot, so from here on it tips over one edge of its support polygon after the other.
-                if (const auto next_edge = support_edge()) edge = next_edge;
-                if (!edge) return rest(at_, Rest::State::Falling);
-                aim = tipping_turn(*edge, limit);
+            if (stands()) {
+                level_contacts();
+                return rest(at_, Rest::State::Standing);
             }
-            const auto [share, is_kink] = way_to_kink(rows, aim);
+            const std::vector<MinimaxRow> rows = touch_rows();
+            const Vec2 aim = falling_turn(rows, limit);
+            if (getenv("DBG")) fprintf(stderr, "step %d angles %.9g %.9g z %.9g contacts %zu margin %g limit %g aim %g %g\n", step, at_.angles[0], at_.angles[1], at_.z, contacts(at_).size(), rest(at_, Rest::State::Falling).margin, limit, aim[0], aim[1]);
+            if (aim.norm() < smallest_turn) break;
+            const auto [share, is_kink] = way_to_kink(aim);
             const Vec2 turn = share * aim;
             Lowered next = turned(turn);
-            const double height = mass_height(at_), expected = height_after(rows, turn);
-            if (!next.has_room || (!tips && mass_height(next) > height - 0.25 * (height - expected))) {
+            // The mass must sink at least by a part of what the touches let expect.
+            const double sinks = at_.z - next.z - drift_.dot(turn), expected = at_.z - expected_z(turn) - drift_.dot(turn);
+            if (!next.has_room || sinks < 0.25 * expected - tie) {
+                if (getenv("DBG")) fprintf(stderr, "  refused turn %g %g room %d sinks %g expected %g\n", turn[0],turn[1],next.has_room,sinks,expected);
                 limit = turn.lpNorm<Eigen::Infinity>() / 4;
-                if (limit < smallest_turn) return rest(at_, Rest::State::Falling);
                 continue;
             }
-            limit = std::min(largest_turn, std::max(limit, 2 * turn.lpNorm<Eigen::Infinity>()));
+            limit = std::min(largest_turn, 2 * std::max(limit, turn.lpNorm<Eigen::Infinity>()));
             at_ = std::move(next);
             if (is_kink) land(turn);
         }
@@ -160,7 +157,6 @@ private:
     static double tilt(const Lowered& at) { return std::acos(std::cos(at.angles[0]) * std::cos(at.angles[1])); }
 
     Vec3 mass_center(const Vec2& angles) const { return rotation(angles) * (settler_.mass_center_ + preference); }
-    double mass_height(const Lowered& at) const { return at.z + mass_center(at.angles).z(); }
 
     std::vector<Convex> parts(const Vec2& angles) const
     {
@@ -181,7 +177,7 @@ private:
             const Bounds bounds = part.bounds();
             top = std::max(top, bounds.max.z());
             if (const auto around = blocked_heights(part, layer)) z = std::max(z, around->top);
-            for (const Solid& solid : solids_)
+            for (const NearSolid& solid : solids_)
                 if (bounds.meets(solid.bounds, 2))
                     if (const auto heights = blocked_heights(part, solid.body)) blocked.push_back(*heights);
         }
@@ -227,17 +223,6 @@ private:
         return out;
     }
 
-    /// Returns how the height of the mass changes near a pose for each touch, if only this touch carries the robot.
-    std::vector<MinimaxRow> rows_at(const Lowered& at) const
-    {
-        const Vec2 mass = gradient(at.angles, mass_center(at.angles), -Vec3::UnitZ());
-        const double height = mass_center(at.angles).z();
-        std::vector<MinimaxRow> out;
-        for (const RestTouch& t : at.touches)
-            out.push_back({t.touch.height + height, gradient(at.angles, t.touch.body, t.touch.slope) + mass});
-        return out;
-    }
-
     /// Returns the derivative by roll and pitch of how much the robot must be raised so that its point `r` stays above
     /// a plane with this slope.
     Vec2 gradient(const Vec2& angles, const Vec3& r, const Vec3& slope) const
@@ -255,22 +240,21 @@ private:
         return out;
     }
 
-    static double height_after(const std::vector<MinimaxRow>& rows, const Vec2& turn)
+    Vec2 gradient(const RestTouch& t) const { return gradient(at_.angles, t.touch.body, t.touch.slope); }
+
+    /// Returns how the mass rises with roll and pitch while the robot turns about one of its points.
+    Vec2 rise_of_mass(const Vec3& about) const
     {
-        double out = -std::numeric_limits<double>::infinity();
-        for (const MinimaxRow& row : rows) out = std::max(out, row.height + row.gradient.dot(turn));
-        return out;
+        return gradient(at_.angles, mass_center(at_.angles) - about, -Vec3::UnitZ());
     }
 
-    /// The touch that carries the robot when it begins to turn: the highest one, and of equal ones the one that rises
-    /// most.
-    static const MinimaxRow& carrier(const std::vector<MinimaxRow>& rows, const Vec2& turn)
+    /// Returns the touch that carries the robot when it begins to turn: the highest one, and of equal ones the one that
+    /// rises most.
+    const RestTouch& carrier(const Vec2& turn) const
     {
-        double highest = -std::numeric_limits<double>::infinity();
-        for (const MinimaxRow& row : rows) highest = std::max(highest, row.height);
-        const MinimaxRow* out = nullptr;
-        for (const MinimaxRow& row : rows)
-            if (row.height >= highest - tie && (!out || row.gradient.dot(turn) > out->gradient.dot(turn))) out = &row;
+        const RestTouch* out = nullptr;
+        for (const RestTouch& t : at_.touches)
+            if (t.touch.height >= at_.z - tie && (!out || gradient(t).dot(turn) > gradient(*out).dot(turn))) out = &t;
         return *out;
     }
 
@@ -281,14 +265,14 @@ private:
 
     /// Returns the share of a turn up to which the touch that carries the robot does so, and whether another one takes
     /// over there.
-    static std::pair<double, bool> way_to_kink(const std::vector<MinimaxRow>& rows, const Vec2& turn)
+    std::pair<double, bool> way_to_kink(const Vec2& turn) const
     {
-        const MinimaxRow& carried = carrier(rows, turn);
+        const RestTouch& carried = carrier(turn);
         double share = 1;
-        for (const MinimaxRow& row : rows) {
-            const double faster = (row.gradient - carried.gradient).dot(turn);
+        for (const RestTouch& t : at_.touches) {
+            const double faster = (gradient(t) - gradient(carried)).dot(turn);
             if (faster <= 0) continue;
-            const double there = (carried.height - row.height) / faster;
+            const double there = (carried.touch.height - t.touch.height) / faster;
             if (there * turn.norm() >= smallest_turn) share = std::min(share, there);
         }
         return {share, share < 1};
@@ -298,7 +282,7 @@ private:
     void land(const Vec2& turn)
     {
         for (int step = 0; step < 8; ++step) {
-            const double share = nearest_kink(rows_at(at_), turn);
+            const double share = nearest_kink(turn);
             if (std::abs(share) * turn.norm() < smallest_turn) return;
             Lowered next = turned(share * turn);
             if (!next.has_room) return;
@@ -308,83 +292,102 @@ private:
 
     /// Returns how far, as a share of `turn`, it is to the nearest place along it where another touch is as high as the
     /// one that carries the robot; negative: back.
-    static double nearest_kink(const std::vector<MinimaxRow>& rows, const Vec2& turn)
+    double nearest_kink(const Vec2& turn) const
     {
-        const MinimaxRow& carried = carrier(rows, turn);
+        const RestTouch& carried = carrier(turn);
         double nearest = std::numeric_limits<double>::infinity();
-        for (const MinimaxRow& row : rows) {
-            const double faster = (row.gradient - carried.gradient).dot(turn);
+        for (const RestTouch& t : at_.touches) {
+            const double faster = (gradient(t) - gradient(carried)).dot(turn);
             if (std::abs(faster) < 1e-6 * turn.norm()) continue;
-            const double there = (carried.height - row.height) / faster;
+            const double there = (carried.touch.height - t.touch.height) / faster;
             if (std::abs(there) < std::abs(nearest)) nearest = there;
         }
         return std::abs(nearest) < 0.5 ? nearest : 0;
     }
 
-    /// Two touches over whose line the robot tips.
-    using Edge = std::array<RestTouch, 2>;
-
-    /// Returns the edge of the support polygon that is nearest to the mass, which lies outside. Returns nothing if the
-    /// contacts span no line.
-    std::optional<Edge> support_edge() const
+    /// Returns the contact that is nearest to a point, seen from above.
+    RestTouch contact_at(const Vec2& place) const
     {
         const std::vector<RestTouch> found = contacts(at_);
-        const Polygon2 polygon = support_polygon(at_);
-        if (polygon.size() < 2) return std::nullopt;
-        const Vec2 mass = mass_center(at_.angles).head<2>();
-        double farthest = -std::numeric_limits<double>::infinity();
-        std::size_t edge = 0;
-        const auto corner = [&](std::size_t k) -> const Vec2& { return polygon[k % polygon.size()]; };
-        for (std::size_t k = 0; k < polygon.size(); ++k) {
-            const Vec2 along = corner(k + 1) - corner(k);
-            const double outside = -cross(along, mass - corner(k)) / along.norm();
-            if (outside <= farthest) continue;
-            farthest = outside;
-            edge = k;
+        const auto distance = [&](const RestTouch& t) { return (t.touch.body.head<2>() - place).squaredNorm(); };
+        return *std::min_element(found.begin(), found.end(), [&](const RestTouch& l, const RestTouch& r) {
+            return distance(l) < distance(r);
+        });
+    }
+
+    /// Turns the standing robot until three contacts around its mass are equally high up to rounding.
+    void level_contacts()
+    {
+        for (int step = 0; step < 4; ++step) {
+            const Polygon2 polygon = support_polygon(at_);
+            const Vec2 mass = mass_center(at_.angles).head<2>();
+            std::size_t k = 1;
+            while (k + 2 < polygon.size() && cross(polygon[k + 1] - polygon[0], mass - polygon[0]) > 0) ++k;
+            if (polygon.size() < 3) return;
+            const std::array corners{contact_at(polygon[0]), contact_at(polygon[k]), contact_at(polygon[k + 1])};
+            Eigen::Matrix2d slopes;
+            Vec2 rises;
+            for (int row = 0; row < 2; ++row) {
+                const RestTouch& other = corners[std::size_t(row) + 1];
+                slopes.row(row) = (gradient(other) - gradient(corners[0])).transpose();
+                rises[row] = corners[0].touch.height - other.touch.height;
+            }
+            const Vec2 turn = slopes.inverse() * rises;
+            if (!(turn.norm() > 1e-15) || !(turn.norm() < 1e-6)) return;
+            Lowered next = turned(turn);
+            if (!next.has_room) return;
+            at_ = std::move(next);
         }
-        const auto touch_at = [&](const Vec2& place) -> const RestTouch& {
-            return *std::find_if(found.begin(), found.end(),
-                                 [&](const RestTouch& t) { return t.touch.body.head<2>() == place; });
-        };
-        return Edge{touch_at(corner(edge)), touch_at(corner(edge + 1))};
     }
 
-    /// Returns the turn with which the robot tips over an edge, at most `limit` in roll and pitch: both touches of the
-    /// edge keep carrying it, and its mass sinks.
-    Vec2 tipping_turn(const Edge& edge, double limit) const
+    /// Returns, for each touch, its height and how it rises with roll and pitch.
+    std::vector<MinimaxRow> touch_rows() const
     {
-        // The touches of the same parts, where the robot is now.
-        const auto now = [&](const RestTouch& then) {
-            const RestTouch* out = nullptr;
-            for (const RestTouch& t : at_.touches)
-                if (t.part == then.part && t.solid == then.solid && (!out || t.touch.height > out->touch.height))
-                    out = &t;
-            return out ? out->touch : then.touch;
-        };
-        const Touch first = now(edge[0]), second = now(edge[1]);
-        const Vec2 apart = gradient(at_.angles, first.body, first.slope) -
-                           gradient(at_.angles, second.body, second.slope);
-        if (apart.norm() < 1e-9) return Vec2::Zero();
-        const Vec2 along = Vec2(-apart.y(), apart.x()) / apart.lpNorm<Eigen::Infinity>();
-        const double sinks = gradient(at_.angles, mass_center(at_.angles) - first.body, Vec3::UnitZ()).dot(along);
-        const Vec2 level = (second.height - first.height) / apart.squaredNorm() * apart;
-        const Vec2 turn = (sinks > 0 ? 1 : -1) * limit * along;
-        return level.lpNorm<Eigen::Infinity>() < limit ? Vec2(turn + level) : turn;
-    }
-
-    /// Returns the touches that carry the robot.
-    std::vector<RestTouch> contacts(const Lowered& at) const
-    {
-        std::vector<RestTouch> out;
-        for (const RestTouch& t : at.touches)
-            if (t.touch.height >= at.z - contact_tolerance) out.push_back(t);
+        std::vector<MinimaxRow> out;
+        for (const RestTouch& t : at_.touches) out.push_back({t.touch.height, gradient(t)});
         return out;
     }
 
-    Polygon2 support_polygon(const Lowered& at) const
+    /// Returns the turn with which the mass sinks most, at most `limit` in roll and pitch. The mass sinks as it does
+    /// while the robot turns about its contacts, which friction holds: as if all touching surfaces were level. But x
+    /// and y stay the same, so on a slope the robot also rises or sinks because the contacts move along it. `drift_` is
+    /// the gradient of the mass's height without that. It depends on how the weight is spread over the touches, which
+    /// the linear program returns; so that is repeated a few times.
+    Vec2 falling_turn(const std::vector<MinimaxRow>& touches, double limit)
+    {
+        Vec2 turn = Vec2::Zero();
+        for (int round = 0; round < 4; ++round) {
+            std::vector<MinimaxRow> rows = touches;
+            for (MinimaxRow& row : rows) row.gradient += drift_;
+            const Minimax lowest = lowest_of_highest(rows, limit);
+            turn = lowest.at;
+            Vec2 drift = Vec2::Zero();
+            double weights = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (lowest.rows[k] < 0) continue;
+                const RestTouch& t = at_.touches[std::size_t(lowest.rows[k])];
+                drift += lowest.weights[k] * (rise_of_mass(t.touch.body) - gradient(t));
+                weights += lowest.weights[k];
+            }
+            if ((drift / weights - drift_).norm() < 1e-12) break;
+            drift_ = drift / weights;
+        }
+        return turn;
+    }
+
+    /// Returns the touches that carry the robot.
+    static std::vector<RestTouch> contacts(const Lowered& at, double tolerance = contact_tolerance)
+    {
+        std::vector<RestTouch> out;
+        for (const RestTouch& t : at.touches)
+            if (t.touch.height >= at.z - tolerance) out.push_back(t);
+        return out;
+    }
+
+    static Polygon2 support_polygon(const Lowered& at, double tolerance = contact_tolerance)
     {
         Polygon2 points;
-        for (const RestTouch& t : contacts(at)) points.push_back(t.touch.body.head<2>());
+        for (const RestTouch& t : contacts(at, tolerance)) points.push_back(t.touch.body.head<2>());
         return convex_hull(std::move(points));
     }
 
@@ -414,9 +417,10 @@ private:
     }
 
     const Settler& settler_;
-    const std::vector<Solid> solids_;
+    const std::vector<NearSolid> solids_;
     const double yaw_;
     Lowered at_, balance_;
+    Vec2 drift_ = Vec2::Zero();  ///< see falling_turn()
 };
 
 Settler::Settler(const Geometry& geometry, const Robot& robot, const Options& options)
@@ -432,11 +436,11 @@ Settler::Settler(const Geometry& geometry, const Robot& robot, const Options& op
 Rest Settler::settle(double x, double y, double yaw, double layer) const
 {
     const Vec3 origin(x, y, layer);
-    std::vector<Solid> solids;
+    std::vector<NearSolid> solids;
     const Geometry::Impl& geometry = geometry_.impl();
     geometry.visit_in(x - reach_, y - reach_, x + reach_, y + reach_, [&](const Tile& tile, std::uint32_t element) {
         if (tile.label(element) == Label::Water || tile.label(element) == Label::Ignore) return;
-        Solid solid{{}, {}, tile.part(element), tile.label(element)};
+        NearSolid solid{{}, {}, tile.part(element), tile.label(element)};
         if (tile.is_triangle(element)) {
             std::array<Vec3, 3> corners = tile.corners(element);
             for (Vec3& corner : corners) corner -= origin;

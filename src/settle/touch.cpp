@@ -13,7 +13,7 @@ namespace {
 constexpr double steepest = 1e5;      ///< largest slope of a touching surface; a steeper one is a wall
 constexpr double rounding = 1e-12;    // m
 constexpr double parallel = 1e-12;    // of the product of lengths: sine of the angle between parallel edges
-constexpr int max_cuts = 200;
+constexpr int max_cuts = 1000;
 
 /// The lower or the upper end of a vertical line in a polyhedron.
 struct End {
@@ -216,8 +216,9 @@ void add_round(const Convex& body, const Convex& ground, std::vector<Touch>& out
         add_tube({body.points[0], body.points[1]}, std::max(body.ball, body.disc), ground, out);
 }
 
-/// Returns the highest touch of any two convex bodies. The bodies do not overlap if the body is raised above the
-/// smallest value, over all slopes n with n.z = 1, of the farthest point of (ground - body) along n. That is a convex
+}  // namespace
+
+/// The bodies do not overlap if the body is raised above the smallest value, over all slopes n with n.z = 1, of the farthest point of (ground - body) along n. That is a convex
 /// function of n, whose smallest value is found with cutting planes (Kelley, The cutting-plane method for solving
 /// convex programs, 1960): each farthest point is a plane.
 std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
@@ -226,25 +227,32 @@ std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
     std::vector<Vec3> on_body;
     Vec2 slope = Vec2::Zero();
     double least = std::numeric_limits<double>::infinity();
-    for (;;) {
+    for (int cut = 0;; ++cut) {
         const Vec3 direction(slope.x(), slope.y(), 1), from = body.support(-direction),
                    apart = ground.support(direction) - from;
         least = std::min(least, apart.dot(direction));
         cuts.push_back({apart.z(), apart.head<2>()});
         on_body.push_back(from);
         const Minimax lowest = lowest_of_highest(cuts, steepest);
-        const bool is_found = least - lowest.value <= rounding || lowest.at == slope || int(cuts.size()) == max_cuts;
+        const bool is_found = least - lowest.value <= rounding || lowest.at == slope || cut == max_cuts;
         slope = lowest.at;
-        if (!is_found) continue;
-        if (lowest.is_at_limit()) return std::nullopt;
+        std::vector<MinimaxRow> kept;  // the others do not hold the point up
+        std::vector<Vec3> kept_on_body;
         Vec3 point = Vec3::Zero();
         for (std::size_t k = 0; k < 3; ++k)
-            if (lowest.rows[k] >= 0) point += lowest.weights[k] * on_body[std::size_t(lowest.rows[k])];
+            if (lowest.rows[k] >= 0) {
+                const auto row = std::size_t(lowest.rows[k]);
+                kept.push_back(cuts[row]);
+                kept_on_body.push_back(on_body[row]);
+                point += lowest.weights[k] * on_body[row];
+            }
+        cuts = std::move(kept);
+        on_body = std::move(kept_on_body);
+        if (!is_found) continue;
+        if (lowest.is_at_limit()) return std::nullopt;
         return Touch{lowest.value, point, {slope.x(), slope.y(), 1}};
     }
 }
-
-}  // namespace
 
 void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out)
 {

@@ -17,6 +17,9 @@ struct Touch {
 /// and ground do not overlap seen from above.
 void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out);
 
+/// Returns the highest of these touches for any two bodies, by a general method that takes longer.
+std::optional<Touch> highest_touch(const Convex& body, const Convex& ground);
+
 /// Returns the heights between which the body must not be, because it would touch the solid. Returns nothing if they do
 /// not overlap seen from above.
 std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid);
