@@ -48,7 +48,8 @@ Robot on_balls(double radius)
 {
     std::vector<RobotPart> parts{shape_part(box_shape({0.5, 0.4, 0.02}, {{0, 0, 2 * radius + 0.1}}))};
     for (const double x : {-base / 2, base / 2})
-        for (const double y : {-track / 2, track / 2}) parts.push_back(shape_part(sphere_shape(radius, {x, y, radius})));
+        for (const double y : {-track / 2, track / 2})
+            parts.push_back(shape_part(sphere_shape(radius, {x, y, radius})));
     Robot out = make_robot("on_balls", std::move(parts));
     out.mass_center = Vec3(0, 0, 0.24);
     return out;
@@ -134,8 +135,7 @@ TEST_CASE("on a slope, every robot is parallel to it")
         for (const double yaw : {0.0, 20.0, 45.0, 90.0, 135.0, 180.0, -110.0}) {
             INFO(angle << " degrees, yaw " << yaw);
             const double a = rad(angle), c = rad(yaw);
-            const double roll = std::asin(-std::sin(a) * std::sin(c)),
-                         pitch = std::atan(-std::tan(a) * std::cos(c));
+            const double roll = std::asin(-std::sin(a) * std::sin(c)), pitch = std::atan(-std::tan(a) * std::cos(c));
             for (const Robot& robot : {wheeled(), on_balls(0.03), boxy({0.9, 0.6, 0.2}), on_skids()}) {
                 INFO(robot.name);
                 check_pose(settled(slope(a), robot, 0, 0, c), 0, roll, pitch);
@@ -221,7 +221,7 @@ TEST_CASE("a robot that finds no hold falls, and one without room is blocked")
     CHECK(settler.settle(0, 0, 0, 0.4).state == State::Standing);
 
     CHECK(settled(slope(rad(44)), boxy({1, 1, 0.1})).state == State::Standing);
-    CHECK(settled(slope(rad(46)), boxy({1, 1, 0.1})).state == State::Falling);  // the largest tilt is 45 degrees
+    CHECK(settled(slope(rad(46)), boxy({1, 1, 0.1})).state == State::Falling);    // the largest tilt is 45 degrees
     CHECK(settled(slope(rad(35)), boxy({0.2, 0.2, 1})).state == State::Falling);  // its mass is not above its base
 }
 
@@ -240,24 +240,6 @@ TEST_CASE("if the mass is exactly above a diagonal, the documented rule decides"
     const Rest back = settled(scene, robot);
     CHECK(std::abs(back.pitch - rest.pitch) <= 1e-5);
     CHECK(std::abs(back.roll - rest.roll) <= 1e-5);
-}
-
-TEST_CASE("dbg", "[dbg]")
-{
-    const Scene scene = random_scene(4);
-    const Robot robot = random_robot(4);
-    const Pose shift{{3, -2, 1}, rotation_of_rpy(0, 0, 0.4)};
-    const Geometry geometry(scene), shifted(moved(scene, shift));
-    for (const Pose& pose : random_poses(scene, 4, 12)) {
-        const double x = pose.position.x(), y = pose.position.y(), yaw = 0.7;
-        if (std::abs(x - 6.53102) > 1e-4) continue;
-        const Column column = column_at(geometry, x, y);
-        const Vec3 place = shift.rotation * Vec3(x, y, column.layers.front()) + shift.position;
-        setenv("DBG", "1", 1);
-        const Rest rest = Settler(geometry, robot, {}).settle(x, y, yaw, column.layers.front());
-        fprintf(stderr, "----\n");
-        const Rest other = Settler(shifted, robot, {}).settle(place.x(), place.y(), yaw + 0.4, place.z());
-    }
 }
 
 TEST_CASE("turning and shifting the scene and the robot together changes only the frame")
@@ -325,7 +307,9 @@ TEST_CASE("the touches of round bodies and polyhedra agree with a general method
     const auto anywhere = [&](double reach) {
         return Vec3(random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach));
     };
-    const auto turned = [&] { return rotation_of_rpy(random.between(-3, 3), random.between(-1.5, 1.5), random.between(-3, 3)); };
+    const auto turned = [&] {
+        return rotation_of_rpy(random.between(-3, 3), random.between(-1.5, 1.5), random.between(-3, 3));
+    };
     int met = 0;
     for (int k = 0; k < 4000; ++k) {
         const auto some_body = [&](int kind) {

@@ -50,9 +50,10 @@ Vec3 Convex::support(const Vec3& direction) const
     }
     if (ball > 0) return *best + ball * direction.normalized();
     if (disc == 0) return *best;
-    const Vec3 across = direction - direction.dot(axis) * axis;
-    const double length = across.norm();
-    return length > 1e-14 * direction.norm() ? Vec3(*best + disc / length * across) : *best;
+    Vec3 across = direction - direction.dot(axis) * axis;
+    if (across.norm() <= 1e-14 * direction.norm()) return *best;
+    across -= across.dot(axis) * axis;  // again: of a short vector, rounding would be a large part
+    return *best + disc * across.normalized();
 }
 
 Bounds Convex::bounds() const
@@ -71,8 +72,8 @@ Convex convex_of(const Shape& shape)
     switch (shape.kind) {
     case ShapeKind::Box: {
         for (int corner = 0; corner < 8; ++corner)
-            out.points.push_back(0.5 * shape.size.cwiseProduct(Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1,
-                                                                    corner & 4 ? 1 : -1)));
+            out.points.push_back(
+                0.5 * shape.size.cwiseProduct(Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1)));
         for (int corner = 0; corner < 8; ++corner)
             for (const int bit : {1, 2, 4})
                 if (!(corner & bit)) out.edges.push_back({corner, corner | bit});

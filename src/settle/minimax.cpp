@@ -43,9 +43,8 @@ bool Minimax::is_at_limit() const
 
 Minimax lowest_of_highest(std::span<const MinimaxRow> rows, double limit)
 {
-    const auto highest = std::max_element(rows.begin(), rows.end(), [](const MinimaxRow& a, const MinimaxRow& b) {
-        return a.height < b.height;
-    });
+    const auto highest = std::max_element(rows.begin(), rows.end(),
+                                          [](const MinimaxRow& a, const MinimaxRow& b) { return a.height < b.height; });
     const auto first = std::size_t(highest - rows.begin());
     const Vec2& slope = rows[first].gradient;
     std::array<Inequality, 3> basis{of_plane(rows, first), of_limit(0, slope.x() < 0 ? -1 : 1, limit),

@@ -19,7 +19,7 @@ constexpr double tie = 1e-12;               // m: touches of one height, up to r
 constexpr double smallest_turn = 1e-11;     // rad
 constexpr double first_turn = 0.1, largest_turn = 0.3;  // rad: limits of one step
 constexpr double seen_below = 0.2;  // m: touches that much below the highest may soon carry the robot
-constexpr int max_steps = 300;
+constexpr int max_turns = 300;
 /// Where the mass is exactly above an edge between two ways to rest, the robot turns as if its centre of mass were this
 /// much farther back and to the right, m.
 const Vec3 preference(-1e-7, -0.5e-7, 0);
@@ -81,9 +81,7 @@ Weight weight_of(const RobotPart& part)
     Weight out{0, Vec3::Zero()};
     const Vec3 middle = part.centre();
     for (const auto& face : part.hull_faces) {  // tetrahedra from a point inside to each face
-        const auto corner = [&](std::size_t k) -> Vec3 {
-            return part.hull_vertices[std::size_t(face[k])] - middle;
-        };
+        const auto corner = [&](std::size_t k) -> Vec3 { return part.hull_vertices[std::size_t(face[k])] - middle; };
         const double volume = corner(0).dot(corner(1).cross(corner(2))) / 6;
         out.volume += volume;
         out.centre += volume * (corner(0) + corner(1) + corner(2)) / 4;
@@ -123,7 +121,7 @@ public:
         if (!at_.has_room) return {};
         balance_ = at_;
         double limit = first_turn;
-        for (int step = 0; step < max_steps; ++step) {
+        for (int step = 0; step < max_turns; ++step) {
             if (at_.touches.empty() || tilt(at_) > settler_.options_.max_tilt)
                 return rest(balance_, Rest::State::Falling);
             if (stands()) {
@@ -132,15 +130,14 @@ public:
             }
             const std::vector<MinimaxRow> rows = touch_rows();
             const Vec2 aim = falling_turn(rows, limit);
-            if (getenv("DBG")) fprintf(stderr, "step %d angles %.9g %.9g z %.9g contacts %zu margin %g limit %g aim %g %g\n", step, at_.angles[0], at_.angles[1], at_.z, contacts(at_).size(), rest(at_, Rest::State::Falling).margin, limit, aim[0], aim[1]);
             if (aim.norm() < smallest_turn) break;
             const auto [share, is_kink] = way_to_kink(aim);
             const Vec2 turn = share * aim;
             Lowered next = turned(turn);
             // The mass must sink at least by a part of what the touches let expect.
-            const double sinks = at_.z - next.z - drift_.dot(turn), expected = at_.z - expected_z(turn) - drift_.dot(turn);
+            const double sinks = at_.z - next.z - drift_.dot(turn),
+                         expected = at_.z - expected_z(turn) - drift_.dot(turn);
             if (!next.has_room || sinks < 0.25 * expected - tie) {
-                if (getenv("DBG")) fprintf(stderr, "  refused turn %g %g room %d sinks %g expected %g\n", turn[0],turn[1],next.has_room,sinks,expected);
                 limit = turn.lpNorm<Eigen::Infinity>() / 4;
                 continue;
             }
@@ -182,7 +179,8 @@ private:
                     if (const auto heights = blocked_heights(part, solid.body)) blocked.push_back(*heights);
         }
         if (!std::isfinite(z)) z = -top;  // nothing of the robot is above its origin
-        std::sort(blocked.begin(), blocked.end(), [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
+        std::sort(blocked.begin(), blocked.end(),
+                  [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
         for (const Interval& heights : blocked)
             if (heights.bottom < z + contact_tolerance) z = std::max(z, heights.top);
         if (z > settler_.options_.max_height) return {};
@@ -310,9 +308,8 @@ private:
     {
         const std::vector<RestTouch> found = contacts(at_);
         const auto distance = [&](const RestTouch& t) { return (t.touch.body.head<2>() - place).squaredNorm(); };
-        return *std::min_element(found.begin(), found.end(), [&](const RestTouch& l, const RestTouch& r) {
-            return distance(l) < distance(r);
-        });
+        return *std::min_element(found.begin(), found.end(),
+                                 [&](const RestTouch& l, const RestTouch& r) { return distance(l) < distance(r); });
     }
 
     /// Turns the standing robot until three contacts around its mass are equally high up to rounding.

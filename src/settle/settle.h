@@ -8,11 +8,11 @@ namespace spawnfield {
 
 /// A place where a robot at rest touches the ground.
 struct RestContact {
-    Vec3 point;           ///< m, in the scene's frame
-    Vec3 normal;          ///< from the ground to the robot, of length 1
-    std::size_t part;     ///< of the robot
-    std::uint32_t ground; ///< part of the scene
-    Label label;          ///< of what it touches
+    Vec3 point;            ///< m, in the scene's frame
+    Vec3 normal;           ///< from the ground to the robot, of length 1
+    std::size_t part;      ///< of the robot
+    std::uint32_t ground;  ///< part of the scene
+    Label label;           ///< of what it touches
 };
 
 /// How a robot comes to rest that is let down at a place with a yaw.
@@ -24,7 +24,8 @@ struct Rest {
     };
     State state = State::Blocked;
     double z = 0, roll = 0, pitch = 0;  ///< of the robot's origin, m and rad. Falling: where it would have to balance
-    double margin = 0;  ///< m from the projected centre of mass to the nearest edge of the support polygon; < 0: outside
+    double margin =
+        0;  ///< m from the projected centre of mass to the nearest edge of the support polygon; < 0: outside
     std::vector<RestContact> contacts;  ///< the corners of the support polygon, counterclockwise
 
     double tilt() const;  ///< angle between the robot's z axis and the vertical, rad

@@ -10,10 +10,11 @@
 namespace spawnfield {
 namespace {
 
-constexpr double steepest = 1e5;      ///< largest slope of a touching surface; a steeper one is a wall
-constexpr double rounding = 1e-12;    // m
-constexpr double parallel = 1e-12;    // of the product of lengths: sine of the angle between parallel edges
-constexpr int max_cuts = 1000;
+constexpr double steepest = 1e5;         ///< largest slope of a touching surface; a steeper one is a wall
+constexpr double rounding = 1e-12;       // m
+constexpr double parallel = 1e-12;       // of the product of lengths: sine of the angle between parallel edges
+constexpr int max_steps = 500;           // of the general method
+constexpr std::size_t most_planes = 12;  // kept from step to step
 
 /// The lower or the upper end of a vertical line in a polyhedron.
 struct End {
@@ -48,10 +49,7 @@ std::optional<End> end_of(const Convex& body, double x, double y, double sign)
     return End{sign > 0 ? high : low, face->normal};
 }
 
-Touch touch_at(double height, const Vec3& body, const Vec3& normal)
-{
-    return {height, body, normal / normal.z()};
-}
+Touch touch_at(double height, const Vec3& body, const Vec3& normal) { return {height, body, normal / normal.z()}; }
 
 /// Returns the height of a polyhedron's top at the x and y of a point, if it is on the face with this plane.
 std::optional<double> height_on(const Convex::Plane& plane, const Convex& ground, const Vec3& point)
@@ -80,7 +78,8 @@ void add_polyhedra(const Convex& body, const Convex& ground, std::vector<Touch>&
                 std::abs(normal.z()) * steepest < normal.norm())
                 continue;
             const Vec2 apart = (other - from).head<2>();
-            const double s = cross(apart, across.head<2>()) / normal.z(), t = cross(apart, along.head<2>()) / normal.z();
+            const double s = cross(apart, across.head<2>()) / normal.z(),
+                         t = cross(apart, along.head<2>()) / normal.z();
             if (s < 0 || s > 1 || t < 0 || t > 1) continue;
             const Vec3 point = from + s * along;
             out.push_back(touch_at(other.z() + t * across.z() - point.z(), point, normal));
@@ -129,8 +128,8 @@ void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& grou
         if (normal.z() * steepest >= normal.norm()) out.push_back(touch_at(on_ground.z() - point.z(), point, normal));
     };
     for (const Vec3& corner : ground.points) {
-        // Along the vertical line (corner.x, corner.y, z), the distance from the axis is |off + z * rise|, and the place
-        // along the axis is `place + z * axis.z`.
+        // Along the vertical line (corner.x, corner.y, z), the distance from the axis is |off + z * rise|, and the
+        // place along the axis is `place + z * axis.z`.
         const Vec3 from(corner.x() - ends[0].x(), corner.y() - ends[0].y(), -ends[0].z());
         const double place = from.dot(axis);
         const Vec3 off = from - place * axis, rise = Vec3::UnitZ() - axis.z() * axis;
@@ -218,39 +217,58 @@ void add_round(const Convex& body, const Convex& ground, std::vector<Touch>& out
 
 }  // namespace
 
-/// The bodies do not overlap if the body is raised above the smallest value, over all slopes n with n.z = 1, of the farthest point of (ground - body) along n. That is a convex
-/// function of n, whose smallest value is found with cutting planes (Kelley, The cutting-plane method for solving
-/// convex programs, 1960): each farthest point is a plane.
+/// The bodies do not overlap if the body is raised above the smallest value, over all slopes n with n.z = 1, of the
+/// farthest point of (ground - body) along n. That is a convex function of n, whose smallest value is found with
+/// cutting planes (Kelley, The cutting-plane method for solving convex programs, 1960): each farthest point is a plane.
 std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
 {
-    std::vector<MinimaxRow> cuts;
-    std::vector<Vec3> on_body;
-    Vec2 slope = Vec2::Zero();
-    double least = std::numeric_limits<double>::infinity();
-    for (int cut = 0;; ++cut) {
-        const Vec3 direction(slope.x(), slope.y(), 1), from = body.support(-direction),
-                   apart = ground.support(direction) - from;
-        least = std::min(least, apart.dot(direction));
-        cuts.push_back({apart.z(), apart.head<2>()});
-        on_body.push_back(from);
-        const Minimax lowest = lowest_of_highest(cuts, steepest);
-        const bool is_found = least - lowest.value <= rounding || lowest.at == slope || cut == max_cuts;
-        slope = lowest.at;
-        std::vector<MinimaxRow> kept;  // the others do not hold the point up
-        std::vector<Vec3> kept_on_body;
-        Vec3 point = Vec3::Zero();
-        for (std::size_t k = 0; k < 3; ++k)
-            if (lowest.rows[k] >= 0) {
-                const auto row = std::size_t(lowest.rows[k]);
-                kept.push_back(cuts[row]);
-                kept_on_body.push_back(on_body[row]);
-                point += lowest.weights[k] * on_body[row];
+    struct Farthest {
+        Vec3 on_body, apart;  ///< of (ground - body)
+    };
+    const auto farthest = [&](const Vec2& slope) {
+        const Vec3 direction(slope.x(), slope.y(), 1), on_body = body.support(-direction);
+        return Farthest{on_body, ground.support(direction) - on_body};
+    };
+    const auto reach = [](const Farthest& at, const Vec2& slope) {
+        return at.apart.head<2>().dot(slope) + at.apart.z();
+    };
+    Vec2 best = Vec2::Zero();
+    std::vector<Farthest> planes{farthest(best)};
+    double least = reach(planes[0], best), limit = 1;  // of a step from the best slope
+    for (int step = 0;; ++step) {
+        std::vector<MinimaxRow> rows;
+        for (const Farthest& plane : planes) rows.push_back({reach(plane, best) - least, plane.apart.head<2>()});
+        const Minimax lowest = lowest_of_highest(rows, limit);
+        const bool is_found = lowest.value >= -rounding || step == max_steps;
+        if (is_found) {
+            Vec3 point = Vec3::Zero();
+            double weights = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (lowest.rows[k] < 0) continue;
+                point += lowest.weights[k] * planes[std::size_t(lowest.rows[k])].on_body;
+                weights += lowest.weights[k];
             }
-        cuts = std::move(kept);
-        on_body = std::move(kept_on_body);
-        if (!is_found) continue;
-        if (lowest.is_at_limit()) return std::nullopt;
-        return Touch{lowest.value, point, {slope.x(), slope.y(), 1}};
+            return Touch{least, point / weights, {best.x(), best.y(), 1}};
+        }
+        const Vec2 slope = best + lowest.at;
+        if (slope.norm() > steepest) return std::nullopt;
+        const Farthest there = farthest(slope);
+        const double sinks = least - reach(there, slope);
+        if (sinks < lowest.value)
+            limit = lowest.at.lpNorm<Eigen::Infinity>() / 2;
+        else if (lowest.is_at_limit())
+            limit *= 4;
+        if (sinks > 0) {
+            best = slope;
+            least -= sinks;
+        }
+        std::vector<Farthest> kept;
+        for (std::size_t k = planes.size() > most_planes ? planes.size() - most_planes : 0; k < planes.size(); ++k)
+            kept.push_back(planes[k]);
+        for (const int row : lowest.rows)
+            if (row >= 0 && std::size_t(row) + most_planes < planes.size()) kept.push_back(planes[std::size_t(row)]);
+        kept.push_back(there);
+        planes = std::move(kept);
     }
 }
 
