@@ -15,8 +15,11 @@ namespace spawnfield {
 namespace {
 
 constexpr double contact_tolerance = 1e-9;  // m: touches that are at most this much lower than the highest are contacts
-constexpr double tie = 1e-12;               // m: touches of one height, up to rounding
-constexpr double smallest_turn = 1e-11;     // rad
+/// The margin also counts wheels and feet that are at most this far above the ground, m: real ones give way by so much,
+/// and the vertices of real meshes are not more precise.
+constexpr double contact_gap = 1e-3;
+constexpr double tie = 1e-12;                           // m: touches of one height, up to rounding
+constexpr double smallest_turn = 1e-11;                 // rad
 constexpr double first_turn = 0.1, largest_turn = 0.3;  // rad: limits of one step
 constexpr double seen_below = 0.2;  // m: touches that much below the highest may soon carry the robot
 constexpr int max_turns = 300;
@@ -35,7 +38,28 @@ struct NearSolid {
 /// A touch between a part of the robot and a solid.
 struct RestTouch {
     Touch touch;
+    Vec2 rise;  ///< derivative of touch.height by roll and pitch, m/rad
     std::size_t part, solid;
+};
+
+/// The rotation of a robot.
+struct Attitude {
+    Mat3 rotation;
+    Vec3 roll_axis, pitch_axis;  ///< about which the robot turns if its roll or its pitch changes
+
+    Attitude(const Vec2& angles, double yaw)
+        : rotation(rotation_from_rpy(angles[0], angles[1], yaw)), roll_axis(rotation.col(0)),
+          pitch_axis(-std::sin(yaw), std::cos(yaw), 0)
+    {
+    }
+
+    /// Returns the derivative by roll and pitch of how much the robot must be raised so that its point `r` stays above
+    /// a plane with this slope (see Touch).
+    Vec2 rise(const Vec3& r, const Vec3& slope) const
+    {
+        const Vec3 arm = r.cross(slope);
+        return {-roll_axis.dot(arm), -pitch_axis.dot(arm)};
+    }
 };
 
 /// The robot with a roll and a pitch, lowered onto the solids below it.
@@ -155,10 +179,10 @@ private:
 
     Vec3 mass_center(const Vec2& angles) const { return rotation(angles) * (settler_.mass_center_ + preference); }
 
-    std::vector<Convex> parts(const Vec2& angles) const
+    std::vector<Convex> parts(const Attitude& attitude) const
     {
         std::vector<Convex> out;
-        for (const Convex& part : settler_.parts_) out.push_back(moved(part, {Vec3::Zero(), rotation(angles)}));
+        for (const Convex& part : settler_.parts_) out.push_back(moved(part, {Vec3::Zero(), attitude.rotation}));
         return out;
     }
 
@@ -166,7 +190,7 @@ private:
     Lowered level() const
     {
         std::vector<Interval> blocked;
-        const std::vector<Convex> robot = parts(Vec2::Zero());
+        const std::vector<Convex> robot = parts(Attitude(Vec2::Zero(), yaw_));
         Convex layer;
         layer.points = {Vec3::Zero()};
         double z = -std::numeric_limits<double>::infinity(), top = z;
@@ -195,13 +219,14 @@ private:
         out.angles = angles;
         out.z = -std::numeric_limits<double>::infinity();
         double ceiling = std::numeric_limits<double>::infinity();
-        const std::vector<Convex> robot = parts(angles);
+        const Attitude attitude(angles, yaw_);
+        const std::vector<Convex> robot = parts(attitude);
         std::vector<Touch> found;
         for (std::size_t p = 0; p < robot.size(); ++p) {
             const Bounds bounds = robot[p].bounds();
             for (std::size_t s = 0; s < solids_.size(); ++s) {
                 const Bounds& around = solids_[s].bounds;
-                if (!bounds.meets(around, 2) || around.max.z() - bounds.min.z() < std::max(out.z, z) - seen_below)
+                if (!bounds.meets(around, 2) || around.max.z() - bounds.min.z() < std::max(out.z, z - rise) - seen_below)
                     continue;
                 found.clear();
                 add_touches(robot[p], solids_[s].body, found);
@@ -214,36 +239,25 @@ private:
                     continue;
                 }
                 out.z = std::max(out.z, highest);
-                for (const Touch& touch : found) out.touches.push_back({touch, p, s});
+                for (const Touch& touch : found)
+                    out.touches.push_back({touch, attitude.rise(touch.body, touch.slope), p, s});
             }
         }
         out.has_room = out.z <= ceiling;
         return out;
     }
 
-    /// Returns the derivative by roll and pitch of how much the robot must be raised so that its point `r` stays above
-    /// a plane with this slope.
-    Vec2 gradient(const Vec2& angles, const Vec3& r, const Vec3& slope) const
-    {
-        const Mat3 of_yaw = rotation_from_rpy(0, 0, yaw_), of_pitch = rotation_from_rpy(0, angles[1], yaw_);
-        const Vec3 roll_axis = of_pitch.col(0), pitch_axis = of_yaw.col(1), arm = r.cross(slope);
-        return {-roll_axis.dot(arm), -pitch_axis.dot(arm)};
-    }
-
     double expected_z(const Vec2& turn) const
     {
         double out = -std::numeric_limits<double>::infinity();
-        for (const RestTouch& t : at_.touches)
-            out = std::max(out, t.touch.height + gradient(at_.angles, t.touch.body, t.touch.slope).dot(turn));
+        for (const RestTouch& t : at_.touches) out = std::max(out, t.touch.height + t.rise.dot(turn));
         return out;
     }
-
-    Vec2 gradient(const RestTouch& t) const { return gradient(at_.angles, t.touch.body, t.touch.slope); }
 
     /// Returns how the mass rises with roll and pitch while the robot turns about one of its points.
     Vec2 rise_of_mass(const Vec3& about) const
     {
-        return gradient(at_.angles, mass_center(at_.angles) - about, -Vec3::UnitZ());
+        return Attitude(at_.angles, yaw_).rise(mass_center(at_.angles) - about, -Vec3::UnitZ());
     }
 
     /// Returns the touch that carries the robot when it begins to turn: the highest one, and of equal ones the one that
@@ -252,7 +266,7 @@ private:
     {
         const RestTouch* out = nullptr;
         for (const RestTouch& t : at_.touches)
-            if (t.touch.height >= at_.z - tie && (!out || gradient(t).dot(turn) > gradient(*out).dot(turn))) out = &t;
+            if (t.touch.height >= at_.z - tie && (!out || t.rise.dot(turn) > out->rise.dot(turn))) out = &t;
         return *out;
     }
 
@@ -268,7 +282,7 @@ private:
         const RestTouch& carried = carrier(turn);
         double share = 1;
         for (const RestTouch& t : at_.touches) {
-            const double faster = (gradient(t) - gradient(carried)).dot(turn);
+            const double faster = (t.rise - carried.rise).dot(turn);
             if (faster <= 0) continue;
             const double there = (carried.touch.height - t.touch.height) / faster;
             if (there * turn.norm() >= smallest_turn) share = std::min(share, there);
@@ -295,7 +309,7 @@ private:
         const RestTouch& carried = carrier(turn);
         double nearest = std::numeric_limits<double>::infinity();
         for (const RestTouch& t : at_.touches) {
-            const double faster = (gradient(t) - gradient(carried)).dot(turn);
+            const double faster = (t.rise - carried.rise).dot(turn);
             if (std::abs(faster) < 1e-6 * turn.norm()) continue;
             const double there = (carried.touch.height - t.touch.height) / faster;
             if (std::abs(there) < std::abs(nearest)) nearest = there;
@@ -326,7 +340,7 @@ private:
             Vec2 rises;
             for (int row = 0; row < 2; ++row) {
                 const RestTouch& other = corners[std::size_t(row) + 1];
-                slopes.row(row) = (gradient(other) - gradient(corners[0])).transpose();
+                slopes.row(row) = (other.rise - corners[0].rise).transpose();
                 rises[row] = corners[0].touch.height - other.touch.height;
             }
             const Vec2 turn = slopes.inverse() * rises;
@@ -341,7 +355,7 @@ private:
     std::vector<MinimaxRow> touch_rows() const
     {
         std::vector<MinimaxRow> out;
-        for (const RestTouch& t : at_.touches) out.push_back({t.touch.height, gradient(t)});
+        for (const RestTouch& t : at_.touches) out.push_back({t.touch.height, t.rise});
         return out;
     }
 
@@ -363,7 +377,7 @@ private:
             for (std::size_t k = 0; k < 3; ++k) {
                 if (lowest.rows[k] < 0) continue;
                 const RestTouch& t = at_.touches[std::size_t(lowest.rows[k])];
-                drift += lowest.weights[k] * (rise_of_mass(t.touch.body) - gradient(t));
+                drift += lowest.weights[k] * (rise_of_mass(t.touch.body) - t.rise);
                 weights += lowest.weights[k];
             }
             if ((drift / weights - drift_).norm() < 1e-12) break;
@@ -404,10 +418,10 @@ private:
         out.z = at.z;
         out.roll = at.angles[0];
         out.pitch = at.angles[1];
-        const Polygon2 polygon = support_polygon(at);
+        const Polygon2 polygon = support_polygon(at, contact_gap);
         const Vec2 mass = (rotation(at.angles) * settler_.mass_center_).head<2>();
         out.margin = polygon.size() < 3 ? 0 : margin_of(polygon, mass);
-        for (const RestTouch& t : contacts(at))
+        for (const RestTouch& t : contacts(at, contact_gap))
             out.contacts.push_back({t.touch.body + at.z * Vec3::UnitZ(), t.touch.slope.normalized(), t.part,
                                     solids_[t.solid].part, solids_[t.solid].label});
         return out;

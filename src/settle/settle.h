@@ -24,15 +24,16 @@ struct Rest {
     };
     State state = State::Blocked;
     double z = 0, roll = 0, pitch = 0;  ///< of the robot's origin, m and rad. Falling: where it would have to balance
-    double margin =
-        0;  ///< m from the projected centre of mass to the nearest edge of the support polygon; < 0: outside
-    std::vector<RestContact> contacts;  ///< the corners of the support polygon, counterclockwise
+    /// Distance of the projected centre of mass from the nearest edge of the support polygon, m; negative: outside. The
+    /// polygon also counts wheels and feet that are at most 1 mm above the ground.
+    double margin = 0;
+    std::vector<RestContact> contacts;  ///< those that the margin counts
 
     double tilt() const;  ///< angle between the robot's z axis and the vertical, rad
 };
 
 /// Returns the centre of mass of a robot: Robot::mass_center, or the centroid of the volume of its parts.
-SPAWNFIELD_API Vec3 mass_center_of(const Robot& robot);
+Vec3 mass_center_of(const Robot& robot);
 
 /// Lets robots down on the ground of a scene.
 class Settler {
@@ -42,11 +43,11 @@ public:
         double max_height = 1;                  ///< m; the level robot must find room within this height of its layer
     };
 
-    SPAWNFIELD_MODULE_API Settler(const Geometry& geometry, const Robot& robot, const Options& options);
+    Settler(const Geometry& geometry, const Robot& robot, const Options& options);
 
     /// Lets the robot down at (x, y) with this yaw onto the terrain layer at a height. It moves only in z, roll and
     /// pitch: level down to the first contact, then it turns about its contacts so that its centre of mass sinks.
-    SPAWNFIELD_MODULE_API Rest settle(double x, double y, double yaw, double layer) const;
+    Rest settle(double x, double y, double yaw, double layer) const;
 
 private:
     class Descent;
