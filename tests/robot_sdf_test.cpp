@@ -52,6 +52,23 @@ const std::string small_box = "<box><size>0.2 0.4 0.6</size></box>";
 
 }  // namespace
 
+TEST_CASE("the centre of mass of an SDF model is that of the links that have an <inertial>")
+{
+    const TempFolder folder;
+    const auto inertial = [](const std::string& mass, const std::string& pose) {
+        return "<inertial><pose>" + pose + "</pose><mass>" + mass + "</mass></inertial>";
+    };
+    const std::string links = link_of("base", inertial("3", "0 0 0.2 0 0 0") + collision(small_box)) +
+                              link_of("arm", inertial("1", "2 0 0 0 0 0"), "<pose>1 0 1 0 0 0</pose>") +
+                              link_of("plain", collision(small_box), "<pose>9 9 9 0 0 0</pose>") +
+                              joint("turn", "revolute", "base", "arm", "<axis><xyz>0 0 1</xyz></axis>");
+    REQUIRE(load(folder, links).mass_center.has_value());
+    CHECK((*load(folder, links).mass_center - Vec3(0.75, 0, 0.4)).norm() < 1e-12);
+    const Robot turned = load(folder, links, {.joints = {{"turn", std::numbers::pi / 2}}});
+    CHECK((*turned.mass_center - Vec3(0.25, 0.5, 0.4)).norm() < 1e-12);
+    CHECK(!load(folder, link_of("base", collision(small_box))).mass_center);
+}
+
 TEST_CASE("an SDF model is the union of the collisions of its links in its own frame, independent of its <pose>")
 {
     const TempFolder folder;

@@ -198,6 +198,43 @@ TEST_CASE("a URDF is the union of the collision shapes of its links with all joi
     check_bounds(robot.parts[1].bounds(), {-0.5, 2.5, -0.5}, {0.5, 3.5, 0.5});
 }
 
+TEST_CASE("the centre of mass of a URDF is that of all its links with the joints at their positions")
+{
+    const TempFolder folder;
+    const auto link = [](const std::string& name, const std::string& mass, const std::string& origin) {
+        return "<link name=\"" + name + "\"><inertial><origin xyz=\"" + origin + "\"/><mass value=\"" + mass +
+               "\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "
+               "izz=\"1\"/></inertial><collision><geometry>"
+               "<box size=\"1 1 1\"/></geometry></collision></link>\n";
+    };
+    const std::string arm = link("base", "3", "0 0 0.2") + link("arm", "1", "2 0 0") +
+                            axis_joint("turn", "continuous", "base", "arm", "xyz=\"1 0 1\"", "0 0 1") +
+                            link_of("empty", "<box size=\"9 9 9\"/>") + joint_of("base", "empty", "xyz=\"5 5 5\"");
+    const auto centre = [&](const RobotOptions& options) { return mass_center_of(load_urdf(folder, arm, options)); };
+    CHECK((centre({}) - Vec3(0.75, 0, 0.4)).norm() < 1e-12);  // (3 * (0, 0, 0.2) + (3, 0, 1)) / 4
+    CHECK((centre({.joints = {{"turn", std::numbers::pi / 2}}}) - Vec3(0.25, 0.5, 0.4)).norm() < 1e-12);
+    CHECK(!load_urdf(folder, link_of("base", "<box size=\"1 1 1\"/>")).mass_center);
+    CHECK_THROWS_WITH(load_urdf(folder, link("base", "-2", "0 0 0")),
+                      Catch::Matchers::Contains("link \"base\": <mass> is -2, needs >= 0 kg"));
+}
+
+TEST_CASE("without a centre of mass, that of the volume of all parts counts")
+{
+    const TempFolder folder;
+    const std::string parts =
+        "  - {box: [1, 1, 2], xyz: [0, 0, 1]}\n  - {sphere: 0.5, xyz: [3, 0, 0]}\n"
+        "  - {cylinder: {radius: 0.5, length: 2}, xyz: [0, 3, 0]}\n"
+        "  - {capsule: {radius: 0.5, length: 2}, xyz: [0, -3, 1]}\n";
+    const double ball = std::numbers::pi / 6, tube = std::numbers::pi / 2, all = 2 + 2 * ball + 2 * tube;
+    const Vec3 sum = 2 * Vec3(0, 0, 1) + ball * Vec3(3, 0, 0) + tube * Vec3(0, 3, 0) + (tube + ball) * Vec3(0, -3, 1);
+    CHECK((mass_center_of(load_parts(folder, parts)) - sum / all).norm() < 1e-12);
+    CHECK(mass_center_of(load_parts(folder, parts, "mass_center: [1, 2, 3]\n")) == Vec3(1, 2, 3));
+
+    folder.write("wedge.obj", "v 0 0 0\nv 3 0 0\nv 0 3 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    const Robot wedge = load_parts(folder, "  - {mesh: wedge.obj, xyz: [1, 0, 0]}\n");
+    CHECK((mass_center_of(wedge) - Vec3(1.75, 0.75, 0.75)).norm() < 1e-9);
+}
+
 TEST_CASE("several collisions of one link all count")
 {
     const TempFolder folder;

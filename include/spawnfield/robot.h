@@ -46,7 +46,9 @@ struct Robot {
     std::vector<MeshFit> meshes = {};        ///< one for each mesh collision
     std::vector<JointPosition> joints = {};  ///< the RobotOptions::joints with which it was read
     int mesh_parts = 1;                      ///< the RobotOptions::mesh_parts with which it was read
-    std::optional<Vec3> mass_center = {};    ///< m; empty: the file says nothing about it
+    /// The centre of mass in the robot's frame, m: that of robot.yaml, or of all links of a URDF or SDF file that have
+    /// an <inertial>. Empty: the file says nothing about it.
+    std::optional<Vec3> mass_center = {};
 
     SPAWNFIELD_API Bounds bounds() const;
 };
@@ -77,5 +79,9 @@ struct RobotContacts {
     bool given = false;
 };
 SPAWNFIELD_API RobotContacts robot_contacts(const Robot& robot);
+
+/// Returns Robot::mass_center. If that is empty, returns the centroid of the volume of the robot's parts; volume in
+/// which parts overlap counts for each of them.
+SPAWNFIELD_API Vec3 mass_center_of(const Robot& robot);
 
 }  // namespace spawnfield

@@ -13,6 +13,14 @@ struct JointedModel {
     std::string name;
     std::vector<CollisionBody> bodies;  ///< names: model, link, collision; the last may be empty
     std::vector<std::string> notices;
+    double mass = 0;                  ///< of all links with <inertial>, kg
+    Vec3 mass_moment = Vec3::Zero();  ///< the sum of their masses times their centres of mass, kg m
+
+    void add_mass(double kilograms, const Vec3& centre)
+    {
+        mass += kilograms;
+        mass_moment += kilograms * centre;
+    }
 };
 
 /// Reads a URDF. Poses are in the frame of its root link. The given joints have their given positions, all others 0.

@@ -148,6 +148,7 @@ private:
             const auto [link, robot_from_link] = open.back();
             open.pop_back();
             add_collisions(*link, robot_from_link);
+            add_mass(*link, robot_from_link);
             for (auto joint = link->child_joints.rbegin(); joint != link->child_joints.rend(); ++joint)
                 for (const auto& child : link->child_links)
                     if (child->name == (*joint)->child_link_name)
@@ -166,6 +167,14 @@ private:
                                    robot_from_link * pose_of(collision->origin),
                                    geometry_of(*collision->geometry, file_.parent_path())});
         }
+    }
+
+    void add_mass(const urdf::Link& link, const Pose& robot_from_link)
+    {
+        if (!link.inertial) return;
+        const double mass = link.inertial->mass;
+        if (!(mass >= 0) || !std::isfinite(mass)) fail(link, "<mass> is " + number(mass) + ", needs >= 0 kg");
+        out_.add_mass(mass, (robot_from_link * pose_of(link.inertial->origin)).position);
     }
 
     Pose motion_of(const urdf::Link& link, const urdf::Joint& joint) const

@@ -146,6 +146,7 @@ Robot read_model_robot(const std::filesystem::path& file_or_folder, const RobotO
     Robot robot;
     robot.name = model.name;
     robot.notices = std::move(model.notices);
+    if (model.mass > 0) robot.mass_center = model.mass_moment / model.mass;
     for (const CollisionBody& body : model.bodies) append_body(robot, body, paths, file.string(), options.mesh_parts);
     if (robot.parts.empty())
         throw FileError(file.string(), "has no <collision>, needs at least one (<visual> elements are not used)");

@@ -170,6 +170,11 @@ private:
 
     void add_link(const Link& link)
     {
+        // libsdformat gives a link without <inertial> a mass of 1 kg.
+        if (link.link->Element()->HasElement("inertial")) {
+            const ignition::math::Inertiald& inertial = link.link->Inertial();
+            out_.add_mass(inertial.MassMatrix().Mass(), (link.robot_from_link * pose_of(inertial.Pose())).position);
+        }
         for (std::uint64_t k = 0; k < link.link->CollisionCount(); ++k) {
             const sdf::Collision& collision = *link.link->CollisionByIndex(k);
             if (touches_nothing(collision)) {

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace spawnfield {
 namespace {
@@ -85,51 +84,9 @@ double margin_of(const Polygon2& polygon, const Vec2& point)
     return is_inside ? nearest : -nearest;
 }
 
-struct Weight {
-    double volume;
-    Vec3 centre;
-};
-
-Weight weight_of(const RobotPart& part)
-{
-    const Vec3& size = part.shape.size;
-    constexpr double pi = std::numbers::pi;
-    const double ball = 4 * pi / 3 * std::pow(size[0], 3), tube = pi * size[0] * size[0] * size[1];
-    switch (part.shape.kind) {
-    case ShapeKind::Box: return {size.prod(), part.shape.pose.position};
-    case ShapeKind::Sphere: return {ball, part.shape.pose.position};
-    case ShapeKind::Cylinder: return {tube, part.shape.pose.position};
-    case ShapeKind::Capsule: return {tube + ball, part.shape.pose.position};
-    case ShapeKind::Hull: break;
-    }
-    Weight out{0, Vec3::Zero()};
-    const Vec3 middle = part.centre();
-    for (const auto& face : part.hull_faces) {  // tetrahedra from a point inside to each face
-        const auto corner = [&](std::size_t k) -> Vec3 { return part.hull_vertices[std::size_t(face[k])] - middle; };
-        const double volume = corner(0).dot(corner(1).cross(corner(2))) / 6;
-        out.volume += volume;
-        out.centre += volume * (corner(0) + corner(1) + corner(2)) / 4;
-    }
-    out.centre = out.centre / out.volume + middle;
-    return out;
-}
-
 }  // namespace
 
 double Rest::tilt() const { return std::acos(std::clamp(std::cos(roll) * std::cos(pitch), -1.0, 1.0)); }
-
-Vec3 mass_center_of(const Robot& robot)
-{
-    if (robot.mass_center) return *robot.mass_center;
-    double volume = 0;
-    Vec3 sum = Vec3::Zero();
-    for (const RobotPart& part : robot.parts) {
-        const Weight weight = weight_of(part);
-        volume += weight.volume;
-        sum += weight.volume * weight.centre;
-    }
-    return sum / volume;
-}
 
 /// One robot on its way down.
 class Settler::Descent {
@@ -226,7 +183,8 @@ private:
             const Bounds bounds = robot[p].bounds();
             for (std::size_t s = 0; s < solids_.size(); ++s) {
                 const Bounds& around = solids_[s].bounds;
-                if (!bounds.meets(around, 2) || around.max.z() - bounds.min.z() < std::max(out.z, z - rise) - seen_below)
+                if (!bounds.meets(around, 2) ||
+                    around.max.z() - bounds.min.z() < std::max(out.z, z - rise) - seen_below)
                     continue;
                 found.clear();
                 add_touches(robot[p], solids_[s].body, found);

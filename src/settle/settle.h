@@ -32,9 +32,6 @@ struct Rest {
     double tilt() const;  ///< angle between the robot's z axis and the vertical, rad
 };
 
-/// Returns the centre of mass of a robot: Robot::mass_center, or the centroid of the volume of its parts.
-Vec3 mass_center_of(const Robot& robot);
-
 /// Lets robots down on the ground of a scene.
 class Settler {
 public:

@@ -185,6 +185,8 @@ Json robot_json(const Robot& robot)
         out["meshes"].push_back(entry);
     }
     out["turning_radius"] = turning_radius(robot);
+    out["mass_center"] = json_of(mass_center_of(robot));
+    out["mass_center_given"] = robot.mass_center.has_value();
     out["contacts"] = Json::array();
     for (const Vec3& contact : robot.contacts) out["contacts"].push_back(json_of(contact));
     if (const RobotContacts contacts = robot_contacts(robot); !contacts.given)
@@ -393,6 +395,9 @@ std::string robot_lines(const Json& robot)
     if (!robot["meshes"].empty()) out += "meshes\n";
     for (const Json& mesh : robot["meshes"]) out += mesh_line(mesh);
     out += "footprint\n  turns within " + metres(Json::array({robot["turning_radius"]})) + " m of its origin\n";
+    out += "centre of mass\n  " + metres(robot["mass_center"]) + " m, " +
+           (robot["mass_center_given"] ? "as its file says" : "the centroid of its parts' volume: its file has none") +
+           "\n";
     out += "contacts\n";
     const bool are_taken = robot.contains("contacts_taken");
     if (are_taken)
