@@ -2,6 +2,8 @@
 
 #include "base/polygon2.h"
 
+#include <spawnfield/types.h>
+
 #include <array>
 #include <span>
 

@@ -1,5 +1,6 @@
 #include "settle/settle.h"
 
+#include "base/polygon2.h"
 #include "geometry/geometry_impl.h"
 #include "settle/minimax.h"
 #include "settle/touch.h"
@@ -8,7 +9,9 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace spawnfield {
 namespace {

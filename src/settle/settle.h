@@ -4,6 +4,8 @@
 
 #include <spawnfield/geometry.h>
 
+#include <vector>
+
 namespace spawnfield {
 
 /// A place where a robot at rest touches the ground.

@@ -1,11 +1,13 @@
 #include "settle/touch.h"
 
+#include "base/polygon2.h"
 #include "settle/minimax.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace spawnfield {
 namespace {

@@ -2,6 +2,9 @@
 
 #include "settle/convex.h"
 
+#include <optional>
+#include <vector>
+
 namespace spawnfield {
 
 /// A way in which a body touches the ground when it is lowered: the body at `height` touches it at this place.
