@@ -5,6 +5,7 @@
 #include "numbers.h"
 #include "output.h"
 #include "spelling.h"
+#include "streams.h"
 
 #include <spawnfield/input_file.h>
 
