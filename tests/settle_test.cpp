@@ -213,6 +213,12 @@ TEST_CASE("a robot that finds no hold falls, and one without room is blocked")
     CHECK(settled(pole, wheeled(0.06)).state == State::Falling);
     CHECK(settled(pole, wheeled(0.06)).margin < 0);
 
+    Scene lone_pole;  // with nothing below the robot when it has tipped
+    add_block(lone_pole, {-0.05, -0.05, -3}, {0.05, 0.05, 0});
+    const Rest tipped = settled(lone_pole, wheeled(0.06));
+    CHECK(tipped.state == State::Falling);
+    CHECK(std::isfinite(tipped.z));
+
     Scene low_ceiling = slope(0);
     add_block(low_ceiling, {-6, -6, 0.3}, {6, 6, 0.4});
     const Geometry geometry(low_ceiling);

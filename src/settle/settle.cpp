@@ -127,7 +127,7 @@ public:
             }
             limit = std::min(largest_turn, 2 * std::max(limit, turn.lpNorm<Eigen::Infinity>()));
             at_ = std::move(next);
-            if (is_kink) land(turn);
+            if (is_kink && !at_.touches.empty()) land(turn);
         }
         return rest(at_, Rest::State::Falling);
     }
@@ -204,6 +204,7 @@ private:
                     out.touches.push_back({touch, attitude.rise(touch.body, touch.slope), p, s});
             }
         }
+        if (out.touches.empty()) out.z = z;  // nothing is below it
         out.has_room = out.z <= ceiling;
         return out;
     }
@@ -258,7 +259,7 @@ private:
             const double share = nearest_kink(turn);
             if (std::abs(share) * turn.norm() < smallest_turn) return;
             Lowered next = turned(share * turn);
-            if (!next.has_room) return;
+            if (!next.has_room || next.touches.empty()) return;
             at_ = std::move(next);
         }
     }
@@ -307,7 +308,7 @@ private:
             const Vec2 turn = slopes.inverse() * rises;
             if (!(turn.norm() > 1e-15) || !(turn.norm() < 1e-6)) return;
             Lowered next = turned(turn);
-            if (!next.has_room) return;
+            if (!next.has_room || next.touches.empty()) return;
             at_ = std::move(next);
         }
     }
