@@ -72,24 +72,28 @@ struct Lowered {
     bool has_room = false;
 };
 
+/// Returns the angle between the robot's z axis and the vertical for this roll and pitch, rad.
+double tilt_of(const Vec2& angles)
+{
+    return std::acos(std::clamp(std::cos(angles[0]) * std::cos(angles[1]), -1.0, 1.0));
+}
+
 /// Returns the distance of a point to the boundary of a convex polygon (counterclockwise, 3 or more corners); negative
 /// if it is outside.
 double margin_of(const Polygon2& polygon, const Vec2& point)
 {
     double nearest = std::numeric_limits<double>::infinity();
-    bool is_inside = true;
     for (std::size_t k = 0; k < polygon.size(); ++k) {
         const Vec2 &p = polygon[k], along = polygon[k + 1 < polygon.size() ? k + 1 : 0] - p;
         const double t = std::clamp(along.dot(point - p) / along.squaredNorm(), 0.0, 1.0);
         nearest = std::min(nearest, (point - p - t * along).norm());
-        is_inside = is_inside && cross(along, point - p) >= 0;
     }
-    return is_inside ? nearest : -nearest;
+    return contains(polygon, point) ? nearest : -nearest;
 }
 
 }  // namespace
 
-double Rest::tilt() const { return std::acos(std::clamp(std::cos(roll) * std::cos(pitch), -1.0, 1.0)); }
+double Rest::tilt() const { return tilt_of({roll, pitch}); }
 
 /// One robot on its way down.
 class Settler::Descent {
@@ -106,14 +110,13 @@ public:
         balance_ = at_;
         double limit = first_turn;
         for (int step = 0; step < max_turns; ++step) {
-            if (at_.touches.empty() || tilt(at_) > settler_.options_.max_tilt)
+            if (at_.touches.empty() || tilt_of(at_.angles) > settler_.options_.max_tilt)
                 return rest(balance_, Rest::State::Falling);
             if (stands()) {
                 level_contacts();
                 return rest(at_, Rest::State::Standing);
             }
-            const std::vector<MinimaxRow> rows = touch_rows();
-            const Vec2 aim = falling_turn(rows, limit);
+            const Vec2 aim = falling_turn(limit);
             if (aim.norm() < smallest_turn) break;
             const auto [share, is_kink] = way_to_kink(aim);
             const Vec2 turn = share * aim;
@@ -134,8 +137,6 @@ public:
 
 private:
     Mat3 rotation(const Vec2& angles) const { return rotation_from_rpy(angles[0], angles[1], yaw_); }
-
-    static double tilt(const Lowered& at) { return std::acos(std::cos(at.angles[0]) * std::cos(at.angles[1])); }
 
     Vec3 mass_center(const Vec2& angles) const { return rotation(angles) * (settler_.mass_center_ + preference); }
 
@@ -214,12 +215,6 @@ private:
         double out = -std::numeric_limits<double>::infinity();
         for (const RestTouch& t : at_.touches) out = std::max(out, t.touch.height + t.rise.dot(turn));
         return out;
-    }
-
-    /// Returns how the mass rises with roll and pitch while the robot turns about one of its points.
-    Vec2 rise_of_mass(const Vec3& about) const
-    {
-        return Attitude(at_.angles, yaw_).rise(mass_center(at_.angles) - about, -Vec3::UnitZ());
     }
 
     /// Returns the touch that carries the robot when it begins to turn: the highest one, and of equal ones the one that
@@ -313,25 +308,23 @@ private:
         }
     }
 
-    /// Returns, for each touch, its height and how it rises with roll and pitch.
-    std::vector<MinimaxRow> touch_rows() const
-    {
-        std::vector<MinimaxRow> out;
-        for (const RestTouch& t : at_.touches) out.push_back({t.touch.height, t.rise});
-        return out;
-    }
-
     /// Returns the turn with which the mass sinks most, at most `limit` in roll and pitch. The mass sinks as it does
     /// while the robot turns about its contacts, which friction holds: as if all touching surfaces were level. But x
     /// and y stay the same, so on a slope the robot also rises or sinks because the contacts move along it. `drift_` is
     /// the gradient of the mass's height without that. It depends on how the weight is spread over the touches, which
     /// the linear program returns; so that is repeated a few times.
-    Vec2 falling_turn(const std::vector<MinimaxRow>& touches, double limit)
+    Vec2 falling_turn(double limit)
     {
+        const Attitude attitude(at_.angles, yaw_);
+        const Vec3 mass = attitude.rotation * (settler_.mass_center_ + preference);
+        // How the mass rises with roll and pitch while the robot turns about one of its points.
+        const auto rise_of_mass = [&](const Vec3& about) -> Vec2 {
+            return attitude.rise(mass - about, -Vec3::UnitZ());
+        };
         Vec2 turn = Vec2::Zero();
         for (int round = 0; round < 4; ++round) {
-            std::vector<MinimaxRow> rows = touches;
-            for (MinimaxRow& row : rows) row.gradient += drift_;
+            std::vector<MinimaxRow> rows;
+            for (const RestTouch& t : at_.touches) rows.push_back({t.touch.height, t.rise + drift_});
             const Minimax lowest = lowest_of_highest(rows, limit);
             turn = lowest.at;
             Vec2 drift = Vec2::Zero();
