@@ -10,7 +10,11 @@ using namespace spawnfield;
 
 namespace {
 
-namespace fs = std::filesystem;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::size_t spawn_count = 20;  // the decisions below are 20 times slower with them
+#else
+constexpr std::size_t spawn_count = 200;
+#endif
 
 /// A file as its makers publish it, and how a robot should stand there.
 struct Case {
@@ -85,7 +89,7 @@ Scene near(const Scene& scene, const Vec3& place, double reach)
 
 }  // namespace
 
-TEST_CASE("200 spawns in each shared world, as its makers publish it, are valid by the independent decision")
+TEST_CASE("Spawns in each shared world, as its makers publish it, are valid by the independent decision")
 {
     const auto folder = shared_scenes();
     if (!folder) return;
@@ -95,9 +99,10 @@ TEST_CASE("200 spawns in each shared world, as its makers publish it, are valid 
         const Scene scene = load_scene(*folder / item.file, {.labels = item.labels});
         const TestMap map = map_of(scene, item.resolution, scene.map_bounds);
         const Judge judge(map, robot);
-        SampleOptions options{.count = 200, .min_distance = 0.1, .random_yaw = true, .seed = 6, .offset = item.offset};
+        SampleOptions options{
+            .count = spawn_count, .min_distance = 0.1, .random_yaw = true, .seed = 6, .offset = item.offset};
         const SpawnList list = sample(judge, options);
-        CHECK(list.spawns.size() == 200);
+        CHECK(list.spawns.size() == spawn_count);
         std::size_t decided = 0, wrong = 0;
         for (const Spawn& spawn : list.spawns) {
             const Pose pose{spawn.position, rotation_from_rpy(0, 0, spawn.yaw)};
@@ -109,7 +114,7 @@ TEST_CASE("200 spawns in each shared world, as its makers publish it, are valid 
         }
         CAPTURE(decided);
         CHECK(wrong == 0);
-        CHECK(decided >= 150);  // the others are too close to a limit for the independent decision
+        CHECK(4 * decided >= 3 * spawn_count);  // the others are too close to a limit for the independent decision
         std::cout << item.file << ": " << list.spawns.size() << " spawns, " << decided << " decided\n";
     }
 }
