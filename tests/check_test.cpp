@@ -266,3 +266,72 @@ TEST_CASE("reports of many poses, which are written in several pieces, are compl
     CHECK(cases[5999].name == "wall (pose 6000)");
     CHECK(nlohmann::json::parse(json)["poses"][5999]["row"] == 6000);
 }
+
+TEST_CASE("check --settle writes how the robot rests at each pose")
+{
+    const Arena arena;
+    arena.write("poses.csv", "name,x,y,z,yaw,margin\nstart,0,3,0.1,0.5,old\nwall,-6.5,-5,0.1,0,\nsky,0,3,2.5,0,\n");
+    const ProgramRun run = arena("check map --poses poses.csv --settle" + husky_option);
+    INFO(run.err);
+    CHECK(run.status == 0);
+    CHECK_THAT(run.err, Contains("poses.csv: the new column margin replaces the old one"));
+    CHECK_THAT(run.err, Contains("husky has no centre of mass; that of its parts' volume is used"));
+    CHECK_THAT(run.err, Contains("3 poses: 1 valid, 1 collision, 1 aerial"));
+    std::istringstream lines(run.out);
+    std::string line;
+    std::getline(lines, line);
+    CHECK(line ==
+          "name,x,y,z,yaw,verdict,ground,height_above,hit,settled_z,settled_roll,settled_pitch,tilt,margin,"
+          "contacts,tip_over,belly");
+    std::getline(lines, line);
+    CHECK(line.starts_with("start,0,3,0.1,0.5,valid,-0.05,0,,-0.05,0,0,0,0.335,"));
+    CHECK_THAT(line, Contains(" on floor; "));
+    CHECK(line.ends_with(",0"));
+    std::getline(lines, line);
+    CHECK(line == "wall,-6.5,-5,0.1,0,collision,-0.05,,thin_wall,,,,,,,,");
+    std::getline(lines, line);
+    CHECK(line == "sky,0,3,2.5,0,aerial,-0.05,,,,,,,,,,");
+
+    const ProgramRun json = arena("check map --poses poses.csv --stance settled --drop 2 --format json -q" +
+                                  husky_option);
+    CHECK(json.status == 0);
+    const nlohmann::json report = nlohmann::json::parse(json.out);
+    CHECK(report.at("settings").at("stance") == "settled");
+    CHECK(report.at("settings").at("drop") == 2);
+    CHECK(report.at("counts").at("obstructed") == 0);
+    const nlohmann::json& rest = report.at("poses")[0].at("settled");
+    CHECK(rest.at("position")[2] == -0.05);
+    CHECK(rest.at("contacts").size() == 4);
+    CHECK(rest.at("contacts")[0].at("ground") == "floor");
+    CHECK(std::abs(rest.at("margin").get<double>() - 0.335) <= 1e-9);
+    CHECK(report.at("poses")[1].at("settled").is_null());
+
+    const ProgramRun junit = arena("check map --poses poses.csv --settle --format junit -q" + husky_option);
+    const std::vector<Case> cases = cases_of(junit.out);
+    REQUIRE(cases.size() == 3);
+    CHECK(cases[1].message == "collision: it has no room to settle, because of thin_wall");
+}
+
+TEST_CASE("options of settled poses are refused or reported if they cannot have an effect")
+{
+    const Arena arena;
+    arena.write("poses.csv", header + start);
+    arena.write("tilted.csv", "x,y,z,roll\n0,3,0.1,0.2\n");
+    const std::string command = "check map --poses poses.csv" + husky_option;
+    CHECK_THAT(arena(command + "--lift 0.1").err,
+               Contains("--lift has no effect: it is only for settled poses (--settle)"));
+    CHECK_THAT(arena("check map --poses tilted.csv --settle" + husky_option).err,
+               Contains("tilted.csv: roll and pitch of 1 pose are not used, because the robot is let down level"));
+    const auto refused = [&](const std::string& options, const std::string& message) {
+        const ProgramRun run = arena(command + options);
+        INFO(run.err);
+        CHECK(run.status == 2);
+        CHECK_THAT(run.err, Contains(message));
+    };
+    refused("--settle --collision octree", "--collision is octree, but settled poses need geometry");
+    refused("--settle --lift=-1", "--lift is -1, needs >= 0 m");
+    refused("--settle --max-tilt 90", "--max-tilt is 90, needs > 0 and < 90 degrees");
+    refused("--settle --min-stability=-1", "--min-stability is -1, needs >= 0 m");
+    refused("--settle --drop 0", "--drop is 0, needs > 0 m");
+    refused("--settle --stance level", "--settle");
+}

@@ -547,14 +547,14 @@ TEST_CASE("a PLY has the poses of the raster as points, bit by bit, with the col
     std::string bytes;
     write_ply(result, {"two\nlines"}, [&](std::string_view piece) { bytes += piece; });
     const std::size_t body = bytes.find("end_header\n") + 11;
-    CHECK(
-        bytes.substr(0, body) ==
-        "ply\nformat binary_little_endian 1.0\ncomment two lines\n"
-        "comment verdict: 0 outside, 1 aerial, 2 off_terrain, 3 submerged, 4 collision, 5 steep, 6 unstable, 7 valid\n"
-        "element vertex " +
-            std::to_string(result.poses.size()) +
-            "\nproperty double x\nproperty double y\nproperty double z\n"
-            "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar verdict\nend_header\n");
+    CHECK(bytes.substr(0, body) ==
+          "ply\nformat binary_little_endian 1.0\ncomment two lines\n"
+          "comment verdict: 0 outside, 1 aerial, 2 off_terrain, 3 submerged, 4 collision, 5 steep, 6 unstable, 7 "
+          "valid, 8 obstructed\n"
+          "element vertex " +
+              std::to_string(result.poses.size()) +
+              "\nproperty double x\nproperty double y\nproperty double z\n"
+              "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar verdict\nend_header\n");
     constexpr std::size_t point = 3 * sizeof(double) + 4;
     REQUIRE(bytes.size() == body + point * result.poses.size());
     REQUIRE((result.counts[Verdict::Valid] > 100 && result.counts[Verdict::Collision] > 100));

@@ -422,7 +422,8 @@ TEST_CASE("random poses give every verdict except footings, and few are too clos
         }
     }
     for (const Verdict verdict : all_verdicts) {
-        const bool of_footing = verdict == Verdict::Steep || verdict == Verdict::Unstable;
+        const bool of_footing = verdict == Verdict::Steep || verdict == Verdict::Unstable ||
+                                verdict == Verdict::Obstructed;
         INFO(to_string(verdict));
         CHECK((of_footing ? counts[verdict] == 0 : counts[verdict] > 5));
     }

@@ -61,10 +61,11 @@ TEST_CASE("Unity's frame is left-handed with y up")
 TEST_CASE("in the terms of the thesis valid is valid, aerial and off_terrain are aerial, and all others are invalid")
 {
     const std::map<Verdict, ThesisClass> classes = {
-        {Verdict::Outside, ThesisClass::Invalid},   {Verdict::Aerial, ThesisClass::Aerial},
-        {Verdict::OffTerrain, ThesisClass::Aerial}, {Verdict::Submerged, ThesisClass::Invalid},
-        {Verdict::Collision, ThesisClass::Invalid}, {Verdict::Steep, ThesisClass::Invalid},
-        {Verdict::Unstable, ThesisClass::Invalid},  {Verdict::Valid, ThesisClass::Valid},
+        {Verdict::Outside, ThesisClass::Invalid},    {Verdict::Aerial, ThesisClass::Aerial},
+        {Verdict::OffTerrain, ThesisClass::Aerial},  {Verdict::Submerged, ThesisClass::Invalid},
+        {Verdict::Collision, ThesisClass::Invalid},  {Verdict::Steep, ThesisClass::Invalid},
+        {Verdict::Unstable, ThesisClass::Invalid},   {Verdict::Valid, ThesisClass::Valid},
+        {Verdict::Obstructed, ThesisClass::Invalid},
     };
     CHECK(classes.size() == verdict_count);  // every verdict is there
     for (const auto& [verdict, expected] : classes) CHECK(thesis_class_of(verdict) == expected);

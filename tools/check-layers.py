@@ -20,6 +20,7 @@ OWNERS = {  # public headers that have no .cpp file of the same name
     "map": "map",
     "map_export": "export",
     "query": "query",
+    "settled_pose": "settle",
     "simulators": "simulators",
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"/]+)/[^"]+"|<spawnfield/(\w+)\.h>)', re.MULTILINE)

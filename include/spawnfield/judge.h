@@ -3,6 +3,7 @@
 #include <spawnfield/export.h>
 #include <spawnfield/collision.h>
 #include <spawnfield/map.h>
+#include <spawnfield/settled_pose.h>
 
 #include <atomic>
 #include <memory>
@@ -45,6 +46,7 @@ struct JudgeOptions {
     /// lie at most 2 cm + 10 % of the range of their heights from it (an even slope). So a larger max_slope never makes
     /// a valid pose invalid. Ground between the contacts is not examined.
     double max_slope = std::numeric_limits<double>::infinity();
+    StandLimits stand = {};  ///< of settled poses; they do not use max_slope
     Obstacles obstacles = Obstacles::Geometry;
     bool exhaustive = false;  ///< FCL decides every collision, without mask and axis test: same answers, but slower
     ExactTime* exact_time = nullptr;  ///< if given, the time of exact checks is added to it
@@ -83,9 +85,17 @@ public:
     /// check(): the mask can prove a collision, but not with which part.
     bool is_valid(const Pose& scene_from_robot) const;
 
+    /// Lets the robot down at a place with a yaw (rad), onto the ground at or below place.z (m), and returns how it
+    /// comes to rest there. The first verdicts are those of a pose at the place: `outside`, `aerial`, `off_terrain`,
+    /// `submerged`. See docs/standing.md. Throws ArgumentError if JudgeOptions::obstacles is Voxels.
+    SettledPose settle(const Vec3& place, double yaw) const;
+    /// The same for each pose, in their order. Rolls and pitches are not used. Throws what options.progress throws.
+    std::vector<SettledPose> settle(std::span<const Pose> poses, const RunOptions& options = {}) const;
+
     /// Returns the verdict and its cause in words, for example "collision with thin_wall". `judgement` must be that of
     /// the pose.
     std::string describe(const Pose& pose, const Judgement& judgement) const;
+    std::string describe(const SettledPose& pose) const;
 
     const Map& map() const;
     const Robot& robot() const;
@@ -97,6 +107,9 @@ public:
 private:
     std::shared_ptr<const Impl> impl_;
 };
+
+/// Returns the part of a settled pose that poses as given have, too.
+SPAWNFIELD_API Judgement judgement_of(const SettledPose& pose);
 
 /// Returns the name of the part of the scene that was hit, or "occupancy" for voxels.
 SPAWNFIELD_API std::string name_of(const CollisionHit& hit, const Map& map);

@@ -44,13 +44,20 @@ SPAWNFIELD_API std::vector<RobotStart> robot_starts(const PoseTable& table, cons
 /// Throws FileError with the name of the file from which the table was read.
 SPAWNFIELD_API std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::path& file);
 
-/// Returns the names of the table's columns that verdicts_csv() replaces by columns of its own.
-SPAWNFIELD_API std::vector<std::string> replaced_columns(const PoseTable& table);
+/// Returns the names of the table's columns that verdicts_csv() or, if `settled`, settled_csv() replaces by columns of
+/// its own.
+SPAWNFIELD_API std::vector<std::string> replaced_columns(const PoseTable& table, bool settled = false);
 
 /// Returns the table's columns, except the replaced ones, and then verdict,ground,height_above,hit. Numbers read back
 /// to the same double.
 SPAWNFIELD_API std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements,
                                         const Map& map);
+
+/// The same for robots that were let down at the poses: height_above is that of the settled pose, and the columns
+/// settled_z,settled_roll,settled_pitch,tilt,margin,contacts,tip_over,belly follow; m and rad. They are empty if the
+/// robot was not let down or has no room. `contacts` lists "x y z PART on GROUND", separated by "; ".
+SPAWNFIELD_API std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Map& map,
+                                       const Robot& robot);
 
 /// Writes x,y,z,yaw,layer,verdict. Passes the text to `sink` in pieces. `layer` is empty if the ground is not a layer.
 /// With `aerial`, also writes the aerial poses of a 3D raster that are not in raster.poses, at their places in the

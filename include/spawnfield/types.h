@@ -78,23 +78,24 @@ inline Pose operator*(const Pose& outer, const Pose& inner)
 /// The meaning of a surface for a robot.
 enum class Label : std::uint8_t { Terrain, Obstacle, Water, Ignore };
 
-/// The verdict on a pose: the first of these that applies.
+/// The verdict on a pose. The numbers are those in files, so they never change.
 enum class Verdict : std::uint8_t {
-    Outside,     ///< beyond the map's bounds in x and y, or beyond its z limits
-    Aerial,      ///< no ground below the origin, or more than JudgeOptions::max_height below it
-    OffTerrain,  ///< the ground is an obstacle
-    Submerged,   ///< the ground is under water, at most JudgeOptions::max_water_depth deep
-    Collision,   ///< the robot touches or overlaps something solid, or is inside it
-    Steep,       ///< only with JudgeOptions::max_slope: the ground under the contacts is too steep
-    Unstable,    ///< only with JudgeOptions::max_slope: a contact hangs over an edge or stands against a wall
-    Valid        ///< none of the others applies
+    Outside = 0,     ///< beyond the map's bounds in x and y, or beyond its z limits
+    Aerial = 1,      ///< no ground below the origin, or more than JudgeOptions::max_height below it
+    OffTerrain = 2,  ///< the ground is an obstacle, or the robot comes to rest on one
+    Submerged = 3,   ///< the ground is under water, at most JudgeOptions::max_water_depth deep
+    Collision = 4,   ///< the robot touches or overlaps something solid, or is inside it, or has no room to settle
+    Steep = 5,       ///< the robot at rest, or the ground under its contacts, is too steep
+    Unstable = 6,    ///< the robot tips over, or a contact hangs over an edge or stands against a wall
+    Obstructed = 8,  ///< only settled poses: the robot cannot be raised off its rest, or cannot drop onto it
+    Valid = 7        ///< none of the others applies
 };
-inline constexpr std::size_t verdict_count = 8;
+inline constexpr std::size_t verdict_count = 9;
 
-/// All verdicts in their order.
+/// All verdicts in the order of the definition: a pose has the first one that applies.
 inline constexpr std::array<Verdict, verdict_count> all_verdicts{
-    Verdict::Outside,   Verdict::Aerial, Verdict::OffTerrain, Verdict::Submerged,
-    Verdict::Collision, Verdict::Steep,  Verdict::Unstable,   Verdict::Valid};
+    Verdict::Outside, Verdict::Aerial,   Verdict::OffTerrain, Verdict::Submerged, Verdict::Collision,
+    Verdict::Steep,   Verdict::Unstable, Verdict::Obstructed, Verdict::Valid};
 
 /// Number of poses for each verdict.
 class VerdictCounts {

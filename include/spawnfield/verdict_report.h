@@ -5,19 +5,25 @@
 
 namespace spawnfield {
 
-/// The poses of a table, their judgements, and the judge that made them. Refers to all three.
+/// The poses of a table, their judgements, and the judge that made them. Refers to all of them.
 struct VerdictReport {
     const PoseTable& table;
     const std::vector<Judgement>& judgements;  ///< one for each pose of the table
     const Judge& judge;
+    /// If given: how the robots rest that were let down at the poses, one for each. The judgements are of these.
+    const std::vector<SettledPose>* settled = nullptr;
 };
 
 /// Returns a name for each pose: the text in the table's column `name`, or "pose N" if there is none; N begins with 1.
 /// If several poses have the same name, " (pose N)" is added to it.
 SPAWNFIELD_API std::vector<std::string> pose_names(const PoseTable& table);
 
+/// Returns the verdict on a pose of the report and its cause in words.
+SPAWNFIELD_API std::string reason(const VerdictReport& report, std::size_t index);
+
 /// Writes JSON in the format spawnfield-verdicts/1: the map, robot and settings, and the counts. For each pose, it has
-/// one line with the row, name, pose, verdict, ground, hit and the fields of the row as text. Passes the text to `sink`
+/// one line with the row, name, pose, verdict, ground, hit, the settled pose if there is one, and the fields of the
+/// row as text. Passes the text to `sink`
 /// in pieces.
 SPAWNFIELD_API void write_verdicts_json(const VerdictReport& report, const std::function<void(std::string_view)>& sink);
 

@@ -1,3 +1,5 @@
+#include "base/rotation.h"
+
 #include <spawnfield/frames.h>
 
 #include <array>
@@ -51,7 +53,7 @@ Mat3 rotation_from(const Rpy& rpy) { return rotation_from_rpy(rpy.roll, rpy.pitc
 Rpy rpy_from(const Mat3& rotation)
 {
     Rpy rpy;
-    rpy.yaw = std::atan2(rotation(1, 0), rotation(0, 0));
+    rpy.yaw = yaw_of(rotation);
     rpy.pitch = std::atan2(-rotation(2, 0), std::hypot(rotation(0, 0), rotation(1, 0)));
     // Removes the yaw from the rotation; what remains is Ry(pitch) Rx(roll), and its middle row gives the roll. This
     // holds for any yaw, also where the yaw is arbitrary because the nose points straight up or down.

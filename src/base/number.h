@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstdio>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,14 @@ inline std::string number(double value)
 {
     std::string text;
     append_number(text, value);
+    return text;
+}
+
+/// Returns a number with six digits, which are enough for readers.
+inline std::string rounded(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value + 0.0);  // never -0
     return text;
 }
 

@@ -162,11 +162,17 @@ void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend
 /// Returns a legend of the kinds that occur or are usual, with the number of columns of each kind.
 Legend verdict_legend(const RasterResult& raster, const Kinds& kinds, const HeatmapOptions& options)
 {
-    constexpr std::array order{kind_of(Verdict::Valid),     some_headings,
-                               kind_of(Verdict::Steep),     kind_of(Verdict::Unstable),
-                               kind_of(Verdict::Collision), obstacle,
-                               kind_of(Verdict::Submerged), kind_of(Verdict::OffTerrain),
-                               kind_of(Verdict::Aerial),    kind_of(Verdict::Outside)};
+    constexpr std::array order{kind_of(Verdict::Valid),
+                               some_headings,
+                               kind_of(Verdict::Steep),
+                               kind_of(Verdict::Unstable),
+                               kind_of(Verdict::Obstructed),
+                               kind_of(Verdict::Collision),
+                               obstacle,
+                               kind_of(Verdict::Submerged),
+                               kind_of(Verdict::OffTerrain),
+                               kind_of(Verdict::Aerial),
+                               kind_of(Verdict::Outside)};
     constexpr std::array always{kind_of(Verdict::Valid), kind_of(Verdict::Collision), kind_of(Verdict::Submerged),
                                 kind_of(Verdict::OffTerrain)};
     const KindCounts counts = counts_of(kinds);
@@ -311,14 +317,13 @@ void append_spawns(const HeatmapOptions& options, const VisibleSpawns& visible, 
         return;
     }
     legend.symbols.push_back({text});
-    for (std::size_t v = verdict_count; v-- > 0;) {
-        const auto count = std::count_if(visible.indices.begin(), visible.indices.end(), [&](std::size_t i) {
-            return options.spawn_verdicts[i] == static_cast<Verdict>(v);
-        });
+    for (auto verdict = all_verdicts.rbegin(); verdict != all_verdicts.rend(); ++verdict) {
+        const auto count = std::count_if(visible.indices.begin(), visible.indices.end(),
+                                         [&](std::size_t i) { return options.spawn_verdicts[i] == *verdict; });
         if (count > 0)
             legend.symbols.push_back(
-                {with_commas(static_cast<std::uint64_t>(count)) + ' ' + name_of(static_cast<Kind>(v), {}), later,
-                 colour_of(static_cast<Kind>(v))});
+                {with_commas(static_cast<std::uint64_t>(count)) + ' ' + name_of(kind_of(*verdict), {}), later,
+                 colour_of(kind_of(*verdict))});
     }
 }
 

@@ -1,4 +1,5 @@
 #include "base/bits.h"
+#include "base/rotation.h"
 #include "free_space/mask.h"
 
 #include <algorithm>
@@ -131,7 +132,7 @@ void Mask::set_every_yaw() { set_footprints(space_.every_yaw, 1, 0); }
 void Mask::set_rotation(const Mat3& rotation)
 {
     if (rotation(2, 2) == 1)
-        set_rotation(std::atan2(rotation(1, 0), rotation(0, 0)));
+        set_rotation(yaw_of(rotation));
     else
         set_footprints(footprints(space_.robot, rotation, false), 1, 0);
 }

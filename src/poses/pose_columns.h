@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <vector>
 
 namespace spawnfield {
 
@@ -14,11 +15,17 @@ inline bool is_pose_column(const std::string& name)
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Returns whether `check` writes a column with this name.
-inline bool is_verdict_column(const std::string& name)
+/// The columns that `check` writes, and those that it adds for robots that it lets down.
+inline const std::vector<std::string> verdict_columns{"verdict", "ground", "height_above", "hit"};
+inline const std::vector<std::string> settled_columns{"settled_z", "settled_roll", "settled_pitch", "tilt",
+                                                      "margin",    "contacts",     "tip_over",      "belly"};
+
+/// Returns whether `check` writes a column with this name: one of the pose as given, or, if `settled`, also one of a
+/// robot that was let down.
+inline bool is_verdict_column(const std::string& name, bool settled)
 {
-    constexpr std::array names{"verdict", "ground", "height_above", "hit"};
-    return std::find(names.begin(), names.end(), name) != names.end();
+    const auto is_in = [&](const auto& names) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    return is_in(verdict_columns) || (settled && is_in(settled_columns));
 }
 
 }  // namespace spawnfield

@@ -33,6 +33,12 @@ Json pose_json(const RobotStart& robot)
     return out;
 }
 
+std::string part_name(const Robot& robot, std::size_t part)
+{
+    const std::string& name = robot.parts[part].name;
+    return name.empty() ? "part " + std::to_string(part + 1) : name;
+}
+
 std::string json_text(const Json& value, int indent)
 {
     return value.dump(indent, ' ', false, Json::error_handler_t::replace);

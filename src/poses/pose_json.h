@@ -18,6 +18,9 @@ Json json_head(const std::string& command, const Map& map, const Robot& robot, J
 /// Returns name and namespace if they are not empty, position, quaternion and rpy.
 Json pose_json(const RobotStart& robot);
 
+/// Returns the name of a robot's part, or its number from 1 on.
+std::string part_name(const Robot& robot, std::size_t part);
+
 /// Returns the text of a value. Bytes in names that are not UTF-8 become U+FFFD. `indent` -1: on one line.
 std::string json_text(const Json& value, int indent);
 

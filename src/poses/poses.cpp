@@ -1,6 +1,7 @@
 #include "base/csv.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "base/rotation.h"
 #include "poses/pose_columns.h"
 #include "poses/pose_json.h"
 
@@ -117,6 +118,52 @@ std::string finished(Json out, const std::optional<VerdictCounts>& counts, std::
     return json_text(out, 2) + "\n";
 }
 
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+/// Returns the table with the columns that append(text, index) writes.
+template <class Append>
+std::string table_csv(const PoseTable& table, bool settled, const Append& append)
+{
+    std::vector<std::uint8_t> replaced;
+    for (const std::string& name : csv_fields(table.header)) replaced.push_back(is_verdict_column(name, settled));
+    std::vector<std::string> names = verdict_columns;
+    if (settled) names.insert(names.end(), settled_columns.begin(), settled_columns.end());
+    std::string text;
+    append_fields(text, table.header, replaced);
+    for (std::size_t k = 0; k < names.size(); ++k) text += (k > 0 ? "," : "") + names[k];
+    text += '\n';
+    for (std::size_t i = 0; i < table.poses.size(); ++i) {
+        append_fields(text, table.rows[i], replaced);
+        append(text, i);
+        text += '\n';
+    }
+    return text;
+}
+
+/// Appends verdict,ground,height_above,hit.
+void append_verdict(std::string& text, const Judgement& judged, const Map& map, double height_above)
+{
+    text += to_string(judged.verdict);
+    text += ',';
+    if (judged.ground) append_number(text, judged.ground->height);
+    text += ',';
+    if (!std::isnan(height_above)) append_number(text, height_above);
+    text += ',';
+    if (judged.hit) text += csv_quoted(name_of(*judged.hit, map));
+}
+
+/// Returns "x y z PART on GROUND; …".
+std::string contacts_text(const SettledPose& pose, const Map& map, const Robot& robot)
+{
+    std::string text;
+    for (const RestContact& contact : pose.contacts) {
+        if (!text.empty()) text += "; ";
+        for (int axis = 0; axis < 3; ++axis) (text += number(contact.point[axis])) += ' ';
+        text += part_name(robot, contact.part) + " on " + map.geometry.parts()[contact.ground].name;
+    }
+    return text;
+}
+
 void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& names,
               const std::vector<std::string>& name_spaces)
 {
@@ -129,8 +176,7 @@ void name_all(std::vector<RobotStart>& robots, const std::vector<std::string>& n
 std::vector<Spawn> spawns_of(const PoseTable& table)
 {
     std::vector<Spawn> out;
-    for (const Pose& pose : table.poses)
-        out.push_back({pose.position, std::atan2(pose.rotation(1, 0), pose.rotation(0, 0))});
+    for (const Pose& pose : table.poses) out.push_back({pose.position, yaw_of(pose.rotation)});
     return out;
 }
 
@@ -158,34 +204,40 @@ std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::
     return out;
 }
 
-std::vector<std::string> replaced_columns(const PoseTable& table)
+std::vector<std::string> replaced_columns(const PoseTable& table, bool settled)
 {
     std::vector<std::string> names = csv_fields(table.header);
-    std::erase_if(names, [](const std::string& name) { return !is_verdict_column(name); });
+    std::erase_if(names, [&](const std::string& name) { return !is_verdict_column(name, settled); });
     return names;
 }
 
 std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Map& map)
 {
-    std::vector<std::uint8_t> replaced;
-    for (const std::string& name : csv_fields(table.header)) replaced.push_back(is_verdict_column(name));
-    std::string text;
-    append_fields(text, table.header, replaced);
-    text += "verdict,ground,height_above,hit\n";
-    for (std::size_t i = 0; i < judgements.size(); ++i) {
+    const auto append = [&](std::string& text, std::size_t i) {
         const Judgement& judged = judgements[i];
-        append_fields(text, table.rows[i], replaced);
-        text += to_string(judged.verdict);
+        append_verdict(text, judged, map,
+                       judged.ground ? table.poses[i].position.z() - judged.ground->height : no_number);
+    };
+    return table_csv(table, false, append);
+}
+
+std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Map& map,
+                        const Robot& robot)
+{
+    const auto append = [&](std::string& text, std::size_t i) {
+        const SettledPose& pose = poses[i];
+        append_verdict(text, judgement_of(pose), map,
+                       pose.has_pose ? pose.position.z() - pose.ground->height : no_number);
         text += ',';
-        if (judged.ground)
-            append_numbers(text, {judged.ground->height, table.poses[i].position.z() - judged.ground->height});
-        else
-            text += ',';
-        text += ',';
-        if (judged.hit) text += csv_quoted(name_of(*judged.hit, map));
-        text += '\n';
-    }
-    return text;
+        if (!pose.has_pose) {
+            text.append(settled_columns.size() - 1, ',');
+            return;
+        }
+        append_numbers(text, {pose.position.z(), pose.roll, pose.pitch, pose.tilt, pose.margin});
+        text += ',' + csv_quoted(contacts_text(pose, map, robot)) + ',';
+        append_numbers(text, {pose.tip_over, pose.belly});
+    };
+    return table_csv(table, true, append);
 }
 
 void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink,

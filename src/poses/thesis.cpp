@@ -55,7 +55,8 @@ ThesisClass thesis_class_of(Verdict verdict)
     case Verdict::Submerged:
     case Verdict::Collision:
     case Verdict::Steep:
-    case Verdict::Unstable: break;
+    case Verdict::Unstable:
+    case Verdict::Obstructed: break;
     }
     return ThesisClass::Invalid;
 }

@@ -1,4 +1,5 @@
 #include "base/csv.h"
+#include "base/number.h"
 #include "base/text.h"
 #include "poses/pose_json.h"
 
@@ -18,22 +19,20 @@ namespace {
 using Sink = std::function<void(std::string_view)>;
 constexpr std::size_t piece = 1 << 20;  // bytes
 
-/// Returns a number with six digits, which are enough for readers.
-std::string rounded(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value + 0.0);  // never -0
-    return text;
-}
-
 std::string listed(const Vec3& values)
 {
     return rounded(values.x()) + ", " + rounded(values.y()) + ", " + rounded(values.z());
 }
 
-double height_above(const VerdictReport& report, std::size_t index)
+/// Returns how high the robot's origin is above its ground, m: at the pose, or where it rests. Nothing if it has no
+/// ground, or no room to rest.
+std::optional<double> height_above(const VerdictReport& report, std::size_t index)
 {
-    return report.table.poses[index].position.z() - report.judgements[index].ground->height;
+    const std::optional<Ground>& ground = report.judgements[index].ground;
+    if (!ground) return std::nullopt;
+    if (report.settled == nullptr) return report.table.poses[index].position.z() - ground->height;
+    const SettledPose& settled = (*report.settled)[index];
+    return settled.has_pose ? std::optional(settled.position.z() - ground->height) : std::nullopt;
 }
 
 VerdictCounts counts_of(const VerdictReport& report)
@@ -48,8 +47,38 @@ Json settings_json(const VerdictReport& report)
     const JudgeOptions& options = report.judge.options();
     Json out = {{"max_height", options.max_height}};
     if (std::isfinite(options.max_water_depth)) out["max_water_depth"] = options.max_water_depth;
-    if (std::isfinite(options.max_slope)) out["max_slope"] = options.max_slope;
+    if (report.settled != nullptr) {
+        const StandLimits& stand = options.stand;
+        out["stance"] = "settled";
+        out["lift"] = stand.lift;
+        out["max_slope"] = stand.max_slope;
+        out["max_tilt"] = stand.max_tilt;
+        out["min_stability"] = stand.min_stability;
+        if (stand.drop) out["drop"] = *stand.drop;
+    } else if (std::isfinite(options.max_slope)) {
+        out["max_slope"] = options.max_slope;
+    }
     out["collision"] = options.obstacles == Obstacles::Voxels ? "octree" : "geometry";
+    return out;
+}
+
+Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+/// Returns how a robot rests; null if it was not let down or has no room.
+Json settled_json(const VerdictReport& report, const SettledPose& pose)
+{
+    if (!pose.has_pose) return {};
+    Json out = pose_json({{}, {}, pose.position, {pose.roll, pose.pitch, pose.yaw}});
+    out["tilt"] = pose.tilt;
+    out["margin"] = pose.margin;
+    out["tip_over"] = pose.tip_over;
+    out["belly"] = pose.belly;
+    out["contacts"] = Json::array();
+    for (const RestContact& contact : pose.contacts)
+        out["contacts"].push_back({{"point", vector_json(contact.point)},
+                                   {"normal", vector_json(contact.normal)},
+                                   {"part", part_name(report.judge.robot(), contact.part)},
+                                   {"ground", report.judge.map().geometry.parts()[contact.ground].name}});
     return out;
 }
 
@@ -57,7 +86,7 @@ Json settings_json(const VerdictReport& report)
 Json fields_json(const VerdictReport& report, std::size_t index, const std::vector<std::string>& columns)
 {
     const std::vector<std::string> fields = csv_fields(report.table.rows[index]);
-    const std::vector<std::string> replaced = replaced_columns(report.table);
+    const std::vector<std::string> replaced = replaced_columns(report.table, report.settled != nullptr);
     Json out = Json::object();
     for (std::size_t i = 0; i < columns.size(); ++i)
         if (std::count(replaced.begin(), replaced.end(), columns[i]) == 0) out[columns[i]] = fields[i];
@@ -73,8 +102,10 @@ Json verdict_json(const VerdictReport& report, std::size_t index, const std::str
     out.update(pose_json({name, {}, pose.position, rpy_from(pose.rotation)}));
     out["verdict"] = to_string(judged.verdict);
     out["ground"] = judged.ground ? Json(judged.ground->height) : Json();
-    out["height_above"] = judged.ground ? Json(height_above(report, index)) : Json();
+    const std::optional<double> above = height_above(report, index);
+    out["height_above"] = above ? Json(*above) : Json();
     out["hit"] = judged.hit ? Json(name_of(*judged.hit, report.judge.map())) : Json();
+    if (report.settled != nullptr) out["settled"] = settled_json(report, (*report.settled)[index]);
     out["columns"] = fields_json(report, index, columns);
     return out;
 }
@@ -160,7 +191,7 @@ private:
         if (verdict != Verdict::Valid) {
             printer_.OpenElement("failure");
             push("type", to_string(verdict));
-            push("message", report_.judge.describe(report_.table.poses[index], report_.judgements[index]));
+            push("message", reason(report_, index));
             printer_.PushText(details(index).c_str());
             printer_.CloseElement();
         }
@@ -176,11 +207,9 @@ private:
         std::string text = "row " + std::to_string(index + 1) + ": " + xml_text(report_.table.rows[index]) + "\n";
         text += "position " + listed({p.x(), p.y(), p.z()}) + " m; ";
         text += "roll, pitch, yaw " + listed({rpy.roll, rpy.pitch, rpy.yaw}) + " rad\n";
-        if (judged.ground)
-            text += "ground at " + rounded(judged.ground->height) + " m, " + rounded(height_above(report_, index)) +
-                    " m below the origin\n";
-        else
-            text += "no ground below the origin\n";
+        text += judged.ground ? "ground at " + rounded(judged.ground->height) + " m" : "no ground below the origin";
+        if (const auto above = height_above(report_, index)) text += ", " + rounded(*above) + " m below the origin";
+        text += "\n";
         if (judged.hit) text += "hit " + xml_text(name_of(*judged.hit, report_.judge.map())) + "\n";
         return text;
     }
@@ -217,6 +246,12 @@ std::vector<std::string> pose_names(const PoseTable& table)
     for (std::size_t i = 0; i < names.size(); ++i)
         if (uses[names[i]] > 1) names[i] += " (pose " + std::to_string(i + 1) + ")";
     return names;
+}
+
+std::string reason(const VerdictReport& report, std::size_t index)
+{
+    return report.settled != nullptr ? report.judge.describe((*report.settled)[index])
+                                     : report.judge.describe(report.table.poses[index], report.judgements[index]);
 }
 
 void write_verdicts_json(const VerdictReport& report, const Sink& sink)

@@ -1,12 +1,13 @@
+#include "base/number.h"
+#include "base/rotation.h"
 #include "query/neighbourhoods.h"
-#include "query/pose_judge.h"
+#include "query/stand_judge.h"
+#include "query/timed_part.h"
 
 #include <spawnfield/error.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 namespace spawnfield {
@@ -23,6 +24,14 @@ const JudgeOptions& checked(const JudgeOptions& options)
     require(options.max_water_depth >= 0, "max_water_depth", options.max_water_depth, ">= 0 m");
     require(!has_max_slope(options) || (options.max_slope > 0 && options.max_slope < std::numbers::pi / 2), "max_slope",
             options.max_slope, "> 0 and < pi/2 rad, or infinite");
+    const StandLimits& stand = options.stand;
+    const auto is_angle = [](double angle) { return angle > 0 && angle < std::numbers::pi / 2; };
+    const auto is_length = [](double length) { return length >= 0 && std::isfinite(length); };
+    require(is_length(stand.lift), "stand.lift", stand.lift, ">= 0 m");
+    require(is_angle(stand.max_slope), "stand.max_slope", stand.max_slope, "> 0 and < pi/2 rad");
+    require(is_angle(stand.max_tilt), "stand.max_tilt", stand.max_tilt, "> 0 and < pi/2 rad");
+    require(is_length(stand.min_stability), "stand.min_stability", stand.min_stability, ">= 0 m");
+    require(!stand.drop || (is_length(*stand.drop) && *stand.drop > 0), "stand.drop", stand.drop.value_or(0), "> 0 m");
     return options;
 }
 
@@ -56,23 +65,6 @@ bool is_submerged(double ground, double water, double max_water_depth)
     return water >= ground - touch_tolerance && water <= ground + max_water_depth + touch_tolerance;
 }
 
-/// Adds the time from its construction to its destruction to a total, unless the total is nullptr.
-class TimedPart {
-public:
-    explicit TimedPart(ExactTime* total) : total_(total), start_(total ? Clock::now() : Clock::time_point{}) {}
-    TimedPart(const TimedPart&) = delete;
-    TimedPart& operator=(const TimedPart&) = delete;
-    ~TimedPart()
-    {
-        if (total_) total_->nanoseconds += std::chrono::nanoseconds(Clock::now() - start_).count();
-    }
-
-private:
-    using Clock = std::chrono::steady_clock;
-    ExactTime* const total_;
-    const Clock::time_point start_;
-};
-
 }  // namespace
 
 Judge::Impl::Impl(Map map_, Robot robot_, const JudgeOptions& options_)
@@ -80,6 +72,19 @@ Judge::Impl::Impl(Map map_, Robot robot_, const JudgeOptions& options_)
       checker(checker_of(map, robot, options)), space(mask_of(map, robot, options)),
       footing(footing_of(map, robot, options))
 {
+}
+
+const Settler& Judge::Impl::settler() const
+{
+    if (options.obstacles != Obstacles::Geometry)
+        throw ArgumentError("Judge", "settled poses need the scene's own geometry, but the obstacles are voxels");
+    std::call_once(settler_made_, [&] {
+        settler_.emplace(map.geometry, robot,
+                         Settler::Options{.max_tilt = options.stand.max_tilt,
+                                          .max_height = options.max_height,
+                                          .min_stability = options.stand.min_stability});
+    });
+    return *settler_;
 }
 
 bool Judge::Impl::is_sparse(std::uint64_t poses) const
@@ -129,9 +134,9 @@ Judgement PoseJudge::judge(const ColumnView& column, const Vec3& position, bool 
     return out;
 }
 
-bool PoseJudge::judge_ground(const ColumnView& column, const Vec3& position, Judgement& out) const
+bool PoseJudge::judge_ground(const ColumnView& column, const Vec3& position, Judgement& out, double above) const
 {
-    out.ground = ground_below(column, position.z());
+    out.ground = ground_below(column, position.z() + above);
     out.verdict = Verdict::Outside;
     if (!is_within(shared_.map, position)) return false;
     out.verdict = Verdict::Aerial;
@@ -251,33 +256,53 @@ bool Judge::is_valid(const Pose& pose) const
     return judge.judge(pose.position).verdict == Verdict::Valid;
 }
 
-std::vector<Judgement> Judge::check(std::span<const Pose> poses, const RunOptions& options) const
+namespace {
+
+/// Calls make() once for a batch of poses in several threads, and then judge(index, made) for each pose of the batch.
+/// Poses of a batch are near to each other.
+template <class Make, class JudgeOne>
+void judge_all(std::span<const Pose> poses, const RunOptions& options, const Make& make, const JudgeOne& judge_one)
 {
-    std::vector<Judgement> out(poses.size());
     std::vector<Vec2> places;
     places.reserve(poses.size());
     for (const Pose& pose : poses) places.push_back(pose.position.head<2>());
     const std::vector<std::uint32_t> order = in_neighbourhoods(places);
     constexpr std::size_t batch = 256;
     parallel_for((poses.size() + batch - 1) / batch, options.threads, options.progress, [&](std::size_t b) {
-        PoseJudge judge(*impl_, 0);
-        for (const std::uint32_t i : std::span(order).subspan(b * batch, std::min(batch, poses.size() - b * batch))) {
+        auto made = make();
+        for (const std::uint32_t i : std::span(order).subspan(b * batch, std::min(batch, poses.size() - b * batch)))
+            judge_one(i, made);
+    });
+}
+
+}  // namespace
+
+std::vector<Judgement> Judge::check(std::span<const Pose> poses, const RunOptions& options) const
+{
+    std::vector<Judgement> out(poses.size());
+    judge_all(
+        poses, options, [&] { return PoseJudge(*impl_, 0); },
+        [&](std::uint32_t i, PoseJudge& judge) {
             judge.set_rotation(poses[i].rotation);
             out[i] = judge.judge(poses[i].position, true);
-        }
-    });
+        });
+    return out;
+}
+
+SettledPose Judge::settle(const Vec3& place, double yaw) const { return StandJudge(*impl_).judge(place, yaw); }
+
+std::vector<SettledPose> Judge::settle(std::span<const Pose> poses, const RunOptions& options) const
+{
+    std::vector<SettledPose> out(poses.size());
+    judge_all(
+        poses, options, [&] { return StandJudge(*impl_); },
+        [&](std::uint32_t i, StandJudge& judge) {
+            out[i] = judge.judge(poses[i].position, yaw_of(poses[i].rotation));
+        });
     return out;
 }
 
 namespace {
-
-/// Returns a number with six digits, which are enough for readers.
-std::string rounded(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value + 0.0);  // never -0
-    return text;
-}
 
 /// Returns a hint if all ground of a column is above the origin: the robot may have sunk into it.
 std::string ground_above(const Map& map, const Vec3& origin)
@@ -306,6 +331,34 @@ std::string Judge::describe(const Pose& pose, const Judgement& judgement) const
     default: return verdict;
     }
 }
+
+std::string Judge::describe(const SettledPose& pose) const
+{
+    const auto degrees = [](double angle) { return rounded(angle * 180 / std::numbers::pi) + " degrees"; };
+    const StandLimits& limits = impl_->options.stand;
+    const std::string verdict = to_string(pose.verdict),
+                      what = pose.hit ? name_of(*pose.hit, impl_->map) : std::string();
+    switch (pose.verdict) {
+    case Verdict::OffTerrain:
+        if (pose.hit) return verdict + ": it comes to rest on " + what;
+        break;
+    case Verdict::Collision:
+        if (!pose.has_pose) return verdict + ": it has no room to settle" + (pose.hit ? ", because of " + what : "");
+        if (!pose.hit) return verdict + ": it comes to rest on the layer above";
+        return verdict + ": it is inside " + what;
+    case Verdict::Steep:
+        return verdict + ": it tilts by " + degrees(pose.tilt) + ", the limit is " + degrees(limits.max_slope);
+    case Verdict::Unstable:
+        if (pose.margin >= limits.min_stability || pose.contacts.size() < 3) return verdict + ": it tips over";
+        return verdict + ": its margin is " + rounded(pose.margin) + " m, the limit is " +
+               rounded(limits.min_stability) + " m";
+    case Verdict::Obstructed: return verdict + (pose.hit ? " by " + what : "");
+    default: break;
+    }
+    return describe(Pose{.position = pose.position}, judgement_of(pose));
+}
+
+Judgement judgement_of(const SettledPose& pose) { return {pose.verdict, pose.ground, pose.hit, pose.exact_check}; }
 
 std::string name_of(const CollisionHit& hit, const Map& map)
 {

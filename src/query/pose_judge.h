@@ -5,8 +5,11 @@
 #include "column/columns.h"
 #include "free_space/mask.h"
 #include "query/footing.h"
+#include "settle/settle.h"
 
 #include <spawnfield/judge.h>
+
+#include <mutex>
 
 namespace spawnfield {
 
@@ -69,7 +72,8 @@ public:
 
     // The steps of judge():
     /// Sets the ground, and decides the verdicts that come before `collision`. Returns true if none of them applies.
-    bool judge_ground(const ColumnView& column, const Vec3& position, Judgement& out) const;
+    /// The ground is at most `above` higher than the position, m.
+    bool judge_ground(const ColumnView& column, const Vec3& position, Judgement& out, double above = 0) const;
     /// Sets Valid or Collision.
     void judge_collision(const ColumnView& column, const Vec3& position, bool with_hit, Judgement& out);
     /// Changes Valid to Steep or Unstable, if the footing of the pose is.
@@ -99,6 +103,10 @@ struct Judge::Impl {
     /// meets many elements.
     bool is_sparse(std::uint64_t poses) const;
 
+    /// Returns what lets the robot down. It is made at the first call. Throws ArgumentError if the obstacles are
+    /// voxels.
+    const Settler& settler() const;
+
     const Map map;
     const Robot robot;
     const JudgeOptions options;
@@ -106,6 +114,10 @@ struct Judge::Impl {
     const std::optional<FreeSpace> space;  ///< empty: every pose is checked exactly
     const std::optional<Footing> footing;  ///< empty: footings are not examined; each PoseJudge has its own copy
     mutable PerThread<PoseJudge> pose_judges{[this] { return PoseJudge(*this, 0); }};  ///< for calls with one pose
+
+private:
+    mutable std::once_flag settler_made_;
+    mutable std::optional<Settler> settler_;
 };
 
 }  // namespace spawnfield

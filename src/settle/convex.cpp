@@ -121,6 +121,13 @@ Convex convex_of(const std::array<Vec3, 3>& triangle)
     return out;
 }
 
+Convex convex_of(const Vec3& point)
+{
+    Convex out;
+    out.points = {point};
+    return out;
+}
+
 Convex moved(const Convex& body, const Pose& parent_from_body)
 {
     Convex out = body;

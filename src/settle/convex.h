@@ -32,6 +32,7 @@ struct Convex {
 Convex convex_of(const RobotPart& part);  ///< in the robot's frame
 Convex convex_of(const Shape& shape);     ///< in the shape's parent frame; not for hulls
 Convex convex_of(const std::array<Vec3, 3>& triangle);
+Convex convex_of(const Vec3& point);
 
 /// Returns the body at another place: parent_from_body * body.
 Convex moved(const Convex& body, const Pose& parent_from_body);

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace spawnfield {
 namespace {
@@ -25,6 +26,11 @@ constexpr double smallest_turn = 1e-11;                 // rad
 constexpr double first_turn = 0.1, largest_turn = 0.3;  // rad: limits of one step
 constexpr double seen_below = 0.2;  // m: touches that much below the highest may soon carry the robot
 constexpr int max_turns = 300;
+// A robot whose mass is near an edge of the support polygon may rock onto another contact. It still stands there if it
+// moves by no more than this.
+constexpr double rocking_rise = 0.05;                        // m
+constexpr double rocking_turn = 3 * std::numbers::pi / 180;  // rad
+constexpr int max_rockings = 4;
 /// Where the mass is exactly above an edge between two ways to rest, the robot turns as if its centre of mass were this
 /// much farther back and to the right, m.
 const Vec3 preference(-1e-7, -0.5e-7, 0);
@@ -70,6 +76,8 @@ struct Lowered {
     double z = 0;                ///< of its origin, m
     std::vector<RestTouch> touches;
     bool has_room = false;
+    double ceiling = std::numeric_limits<double>::infinity();  ///< height of its origin at which it meets something
+    std::optional<std::uint32_t> wall = {};                    ///< if it has no room: the part of the scene
 };
 
 /// Returns the angle between the robot's z axis and the vertical for this roll and pitch, rad.
@@ -78,17 +86,24 @@ double tilt_of(const Vec2& angles)
     return std::acos(std::clamp(std::cos(angles[0]) * std::cos(angles[1]), -1.0, 1.0));
 }
 
-/// Returns the distance of a point to the boundary of a convex polygon (counterclockwise, 3 or more corners); negative
-/// if it is outside.
-double margin_of(const Polygon2& polygon, const Vec2& point)
+/// The edge of a polygon that is nearest to a point.
+struct NearestEdge {
+    double distance = std::numeric_limits<double>::infinity();  ///< negative: the point is outside
+    Vec2 outward = Vec2::Zero();                                ///< normal of the edge, of length 1
+};
+
+/// Returns the nearest edge of a convex polygon (counterclockwise, 3 or more corners).
+NearestEdge nearest_edge(const Polygon2& polygon, const Vec2& point)
 {
-    double nearest = std::numeric_limits<double>::infinity();
+    NearestEdge out;
     for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec2 &p = polygon[k], along = polygon[k + 1 < polygon.size() ? k + 1 : 0] - p;
-        const double t = std::clamp(along.dot(point - p) / along.squaredNorm(), 0.0, 1.0);
-        nearest = std::min(nearest, (point - p - t * along).norm());
+        const Vec2 &p = polygon[k], &q = polygon[k + 1 < polygon.size() ? k + 1 : 0], along = q - p;
+        const double t = std::clamp(along.dot(point - p) / along.squaredNorm(), 0.0, 1.0),
+                     distance = (point - p - t * along).norm();
+        if (distance < out.distance) out = {distance, edge_normal(p, q).normalized()};
     }
-    return contains(polygon, point) ? nearest : -nearest;
+    if (!contains(polygon, point)) out.distance = -out.distance;
+    return out;
 }
 
 }  // namespace
@@ -99,23 +114,39 @@ double Rest::tilt() const { return tilt_of({roll, pitch}); }
 class Settler::Descent {
 public:
     Descent(const Settler& settler, std::vector<NearSolid> solids, double yaw)
-        : settler_(settler), solids_(std::move(solids)), yaw_(yaw)
+        : settler_(settler), solids_(std::move(solids)), yaw_(yaw), mass_(settler.mass_center_ + preference)
     {
     }
 
     Rest run()
     {
         at_ = level();
-        if (!at_.has_room) return {};
+        const double drop_z = at_.ceiling;
+        Rest::State state = at_.has_room ? descend() : Rest::State::Blocked;
+        if (state == Rest::State::Standing) level_contacts();
+        Rest out = rest(state);
+        out.drop_z = drop_z;
+        if (state == Rest::State::Standing && out.margin < settler_.options_.min_stability) rock(out);
+        return out;
+    }
+
+private:
+    Mat3 rotation(const Vec2& angles) const { return rotation_from_rpy(angles[0], angles[1], yaw_); }
+
+    Vec3 mass_center(const Vec2& angles) const { return rotation(angles) * mass_; }
+
+    /// Turns the robot until it stands or falls, or until a wall stops it.
+    Rest::State descend()
+    {
         balance_ = at_;
         double limit = first_turn;
+        std::optional<std::uint32_t> wall;
         for (int step = 0; step < max_turns; ++step) {
-            if (at_.touches.empty() || tilt_of(at_.angles) > settler_.options_.max_tilt)
-                return rest(balance_, Rest::State::Falling);
-            if (stands()) {
-                level_contacts();
-                return rest(at_, Rest::State::Standing);
+            if (at_.touches.empty() || tilt_of(at_.angles) > settler_.options_.max_tilt) {
+                at_ = balance_;
+                return Rest::State::Falling;
             }
+            if (stands()) return Rest::State::Standing;
             const Vec2 aim = falling_turn(limit);
             if (aim.norm() < smallest_turn) break;
             const auto [share, is_kink] = way_to_kink(aim);
@@ -125,20 +156,56 @@ public:
             const double sinks = at_.z - next.z - drift_.dot(turn),
                          expected = at_.z - expected_z(turn) - drift_.dot(turn);
             if (!next.has_room || sinks < 0.25 * expected - tie) {
+                wall = next.wall;
                 limit = turn.lpNorm<Eigen::Infinity>() / 4;
                 continue;
             }
+            wall.reset();
             limit = std::min(largest_turn, 2 * std::max(limit, turn.lpNorm<Eigen::Infinity>()));
             at_ = std::move(next);
             if (is_kink && !at_.touches.empty()) land(turn);
         }
-        return rest(at_, Rest::State::Falling);
+        at_.wall = wall;
+        return wall ? Rest::State::Blocked : Rest::State::Falling;
     }
 
-private:
-    Mat3 rotation(const Vec2& angles) const { return rotation_from_rpy(angles[0], angles[1], yaw_); }
+    /// If the mass were beyond the nearest edge of the support polygon, the robot would turn about that edge. If it
+    /// then comes to rest after little motion, it stands on the contacts of both poses. Adds them to a rest with a
+    /// margin that is too small.
+    void rock(Rest& rest)
+    {
+        const Lowered rested = at_;
+        Polygon2 polygon = support_polygon(rested, contact_gap);
+        const Vec3 mass = settler_.mass_center_;
+        const Mat3 rotated = rotation(rested.angles);
+        for (int k = 0; k < max_rockings && polygon.size() >= 3; ++k) {
+            const NearestEdge edge = nearest_edge(polygon, (rotated * mass).head<2>());
+            rest.margin = edge.distance;
+            if (edge.distance >= settler_.options_.min_stability) break;
+            const Vec3 beyond(edge.outward.x(), edge.outward.y(), 0);
+            mass_ = mass + rotated.transpose() * (settler_.options_.min_stability * beyond);
+            at_ = rested;
+            drift_ = Vec2::Zero();
+            if (descend() != Rest::State::Standing || is_far(at_, rested)) break;
+            const std::size_t before = rest.contacts.size();
+            for (const RestContact& contact : rest_contacts(at_)) {
+                const auto is_there = [&](const RestContact& other) {
+                    return (other.point - contact.point).head<2>().norm() < rocking_rise;
+                };
+                if (std::any_of(rest.contacts.begin(), rest.contacts.end(), is_there)) continue;
+                rest.contacts.push_back(contact);
+                polygon.push_back(contact.point.head<2>());
+            }
+            if (rest.contacts.size() == before) break;
+            polygon = convex_hull(std::move(polygon));
+        }
+    }
 
-    Vec3 mass_center(const Vec2& angles) const { return rotation(angles) * (settler_.mass_center_ + preference); }
+    bool is_far(const Lowered& a, const Lowered& b) const
+    {
+        const double trace = (rotation(a.angles).transpose() * rotation(b.angles)).trace();
+        return std::abs(a.z - b.z) > rocking_rise || (trace - 1) / 2 < std::cos(rocking_turn);
+    }
 
     std::vector<Convex> parts(const Attitude& attitude) const
     {
@@ -150,25 +217,32 @@ private:
     /// Returns the level robot at the lowest height where it has room above its layer.
     Lowered level() const
     {
-        std::vector<Interval> blocked;
+        struct Blocked {
+            Interval heights;
+            std::uint32_t part;
+        };
+        std::vector<Blocked> blocked;
         const std::vector<Convex> robot = parts(Attitude(Vec2::Zero(), yaw_));
-        Convex layer;
-        layer.points = {Vec3::Zero()};
         double z = -std::numeric_limits<double>::infinity(), top = z;
         for (const Convex& part : robot) {
             const Bounds bounds = part.bounds();
             top = std::max(top, bounds.max.z());
-            if (const auto around = blocked_heights(part, layer)) z = std::max(z, around->top);
+            if (const auto around = blocked_heights(part, convex_of(Vec3(0, 0, 0)))) z = std::max(z, around->top);
             for (const NearSolid& solid : solids_)
                 if (bounds.meets(solid.bounds, 2))
-                    if (const auto heights = blocked_heights(part, solid.body)) blocked.push_back(*heights);
+                    if (const auto heights = blocked_heights(part, solid.body))
+                        blocked.push_back({*heights, solid.part});
         }
         if (!std::isfinite(z)) z = -top;  // nothing of the robot is above its origin
         std::sort(blocked.begin(), blocked.end(),
-                  [](const Interval& l, const Interval& r) { return l.bottom < r.bottom; });
-        for (const Interval& heights : blocked)
-            if (heights.bottom < z + contact_tolerance) z = std::max(z, heights.top);
-        if (z > settler_.options_.max_height) return {};
+                  [](const Blocked& l, const Blocked& r) { return l.heights.bottom < r.heights.bottom; });
+        Lowered out;
+        for (const auto& [heights, part] : blocked) {
+            if (heights.bottom >= z + contact_tolerance || heights.top <= z) continue;
+            z = heights.top;
+            out.wall = part;
+        }
+        if (z > settler_.options_.max_height) return out;
         return lowered(Vec2::Zero(), z, contact_tolerance);
     }
 
@@ -179,7 +253,6 @@ private:
         Lowered out;
         out.angles = angles;
         out.z = -std::numeric_limits<double>::infinity();
-        double ceiling = std::numeric_limits<double>::infinity();
         const Attitude attitude(angles, yaw_);
         const std::vector<Convex> robot = parts(attitude);
         std::vector<Touch> found;
@@ -196,8 +269,11 @@ private:
                 for (const Touch& touch : found) highest = std::max(highest, touch.height);
                 if (highest > z + rise) {
                     const auto blocked = blocked_heights(robot[p], solids_[s].body);
+                    if (blocked && blocked->bottom < out.ceiling) {
+                        out.ceiling = blocked->bottom;
+                        out.wall = solids_[s].part;
+                    }
                     if (blocked && blocked->bottom < z - rise) return out;
-                    if (blocked) ceiling = std::min(ceiling, blocked->bottom);
                     continue;
                 }
                 out.z = std::max(out.z, highest);
@@ -206,7 +282,7 @@ private:
             }
         }
         if (out.touches.empty()) out.z = z;  // nothing is below it
-        out.has_room = out.z <= ceiling;
+        out.has_room = out.z <= out.ceiling;
         return out;
     }
 
@@ -316,7 +392,7 @@ private:
     Vec2 falling_turn(double limit)
     {
         const Attitude attitude(at_.angles, yaw_);
-        const Vec3 mass = attitude.rotation * (settler_.mass_center_ + preference);
+        const Vec3 mass = attitude.rotation * mass_;
         // How the mass rises with roll and pitch while the robot turns about one of its points.
         const auto rise_of_mass = [&](const Vec3& about) -> Vec2 {
             return attitude.rise(mass - about, -Vec3::UnitZ());
@@ -363,28 +439,94 @@ private:
         const Polygon2 polygon = support_polygon(at_);
         if (polygon.size() < 3) return false;
         balance_ = at_;
-        return margin_of(polygon, mass_center(at_.angles).head<2>()) >= 0;
+        return contains(polygon, mass_center(at_.angles).head<2>());
     }
 
-    Rest rest(const Lowered& at, Rest::State state) const
+    std::vector<RestContact> rest_contacts(const Lowered& at) const
+    {
+        std::vector<RestContact> out;
+        for (const RestTouch& t : contacts(at, contact_gap))
+            out.push_back({t.touch.body + at.z * Vec3::UnitZ(), t.touch.slope.normalized(), t.part,
+                           solids_[t.solid].part, solids_[t.solid].label});
+        return out;
+    }
+
+    /// Returns the angle by which the robot must be turned about an edge of the support polygon until its mass is above
+    /// the edge: the smallest of all edges.
+    double tip_over(const Polygon2& polygon, const std::vector<RestContact>& contacts, const Vec3& mass) const
+    {
+        std::vector<Vec3> corners;
+        for (const Vec2& corner : polygon)
+            for (const RestContact& contact : contacts)
+                if (contact.point.head<2>() == corner) {
+                    corners.push_back(contact.point);
+                    break;
+                }
+        double out = std::numbers::pi / 2;
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const Vec3 &p = corners[k], along = (corners[k + 1 < corners.size() ? k + 1 : 0] - p).normalized();
+            const Vec3 up = Vec3::UnitZ() - along.z() * along, inward = up.cross(along), arm = mass - p;
+            out = std::min(out, std::atan2(arm.dot(inward), arm.dot(up)));
+        }
+        return out;
+    }
+
+    /// Returns the smallest vertical distance of the solids from the parts of the robot that do not touch them.
+    double belly(const std::vector<RestContact>& contacts) const
+    {
+        double out = std::numeric_limits<double>::infinity();
+        const std::vector<Convex> robot = parts(Attitude(at_.angles, yaw_));
+        std::vector<Touch> touches;
+        for (std::size_t p = 0; p < robot.size(); ++p) {
+            if (std::any_of(contacts.begin(), contacts.end(), [&](const RestContact& c) { return c.part == p; }))
+                continue;
+            const Bounds bounds = robot[p].bounds();
+            for (const NearSolid& solid : solids_) {
+                if (!bounds.meets(solid.bounds, 2)) continue;
+                touches.clear();
+                add_touches(robot[p], solid.body, touches);
+                double highest = -std::numeric_limits<double>::infinity();
+                for (const Touch& touch : touches) highest = std::max(highest, touch.height);
+                if (highest <= at_.z) out = std::min(out, at_.z - highest);
+            }
+        }
+        return std::isfinite(out) ? out : 0;
+    }
+
+    double underside() const
+    {
+        double highest = -std::numeric_limits<double>::infinity();
+        for (const Convex& part : parts(Attitude(at_.angles, yaw_)))
+            if (const auto around = blocked_heights(part, convex_of(Vec3(0, 0, 0))))
+                highest = std::max(highest, around->top);
+        return std::isfinite(highest) ? -highest : 0;
+    }
+
+    Rest rest(Rest::State state) const
     {
         Rest out;
         out.state = state;
-        out.z = at.z;
-        out.roll = at.angles[0];
-        out.pitch = at.angles[1];
-        const Polygon2 polygon = support_polygon(at, contact_gap);
-        const Vec2 mass = (rotation(at.angles) * settler_.mass_center_).head<2>();
-        out.margin = polygon.size() < 3 ? 0 : margin_of(polygon, mass);
-        for (const RestTouch& t : contacts(at, contact_gap))
-            out.contacts.push_back({t.touch.body + at.z * Vec3::UnitZ(), t.touch.slope.normalized(), t.part,
-                                    solids_[t.solid].part, solids_[t.solid].label});
+        out.wall = at_.wall;
+        out.z = at_.z;
+        out.roll = at_.angles[0];
+        out.pitch = at_.angles[1];
+        if (state == Rest::State::Blocked) return out;
+        const Polygon2 polygon = support_polygon(at_, contact_gap);
+        const Vec3 mass = rotation(at_.angles) * settler_.mass_center_;
+        out.headroom = at_.ceiling - at_.z;
+        out.contacts = rest_contacts(at_);
+        out.belly = belly(out.contacts);
+        out.underside = underside();
+        if (polygon.size() < 3) return out;
+        out.margin = nearest_edge(polygon, mass.head<2>()).distance;
+        out.tip_over = tip_over(polygon, out.contacts, mass + at_.z * Vec3::UnitZ());
         return out;
     }
 
     const Settler& settler_;
     const std::vector<NearSolid> solids_;
     const double yaw_;
+    Vec3 mass_;  ///< the centre of mass in the robot's frame, moved a little
     Lowered at_, balance_;
     Vec2 drift_ = Vec2::Zero();  ///< see falling_turn()
 };
@@ -419,6 +561,7 @@ Rest Settler::settle(double x, double y, double yaw, double layer) const
     });
     Rest out = Descent(*this, std::move(solids), yaw).run();
     out.z += layer;
+    out.drop_z += layer;
     for (RestContact& contact : out.contacts) contact.point += origin;
     return out;
 }

@@ -3,33 +3,37 @@
 #include "settle/convex.h"
 
 #include <spawnfield/geometry.h>
+#include <spawnfield/settled_pose.h>
 
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace spawnfield {
-
-/// A place where a robot at rest touches the ground.
-struct RestContact {
-    Vec3 point;            ///< m, in the scene's frame
-    Vec3 normal;           ///< from the ground to the robot, of length 1
-    std::size_t part;      ///< of the robot
-    std::uint32_t ground;  ///< part of the scene
-    Label label;           ///< of what it touches
-};
 
 /// How a robot comes to rest that is let down at a place with a yaw.
 struct Rest {
     enum class State {
         Standing,  ///< it stands on three or more contacts, and its centre of mass is above them
         Falling,   ///< it tips over: by more than the largest tilt, or on a point or a line
-        Blocked    ///< there is no room for the level robot near the layer
+        Blocked    ///< there is no room for the level robot near the layer, or a wall stops it while it turns
     };
     State state = State::Blocked;
     double z = 0, roll = 0, pitch = 0;  ///< of the robot's origin, m and rad. Falling: where it would have to balance
     /// Distance of the projected centre of mass from the nearest edge of the support polygon, m; negative: outside. The
-    /// polygon also counts wheels and feet that are at most 1 mm above the ground.
+    /// polygon also counts wheels and feet that are at most 1 mm above the ground. If the distance is below
+    /// Options::min_stability, it also counts contacts onto which the robot rocks with little motion.
     double margin = 0;
+    /// How far the robot can be raised straight up from its rest until it meets something, m.
+    double headroom = std::numeric_limits<double>::infinity();
+    /// Largest height of the level robot's origin from which it falls freely onto its first contacts, m.
+    double drop_z = std::numeric_limits<double>::infinity();
+    double tip_over = 0, belly = 0;  ///< as in SettledPose
+    /// Height of the robot's lowest point on the vertical line through its origin above the origin, m; 0: no such
+    /// point.
+    double underside = 0;
     std::vector<RestContact> contacts;  ///< those that the margin counts
+    std::optional<std::uint32_t> wall;  ///< Blocked: the part of the scene that leaves no room
 
     double tilt() const;  ///< angle between the robot's z axis and the vertical, rad
 };
@@ -40,6 +44,7 @@ public:
     struct Options {
         double max_tilt = 0.78539816339744831;  ///< rad; a robot that tilts more is falling
         double max_height = 1;                  ///< m; the level robot must find room within this height of its layer
+        double min_stability = 0;               ///< m; see Rest::margin
     };
 
     Settler(const Geometry& geometry, const Robot& robot, const Options& options);

@@ -40,6 +40,9 @@ spawnfield check results/low --robot $robot --poses results/low_search.csv --max
 spawnfield check results/training --robot $robot --poses results/training_3d.csv --format json \
   -o results/training_check.json
 spawnfield check results/district --robot box:2,2,1 --poses results/district_2d.csv -o results/district_check.csv
+spawnfield check results/low --robot $robot --poses results/low_2d.csv --settle -o results/low_settled.csv
+spawnfield check results/training --robot maps/robots/cart.urdf --poses results/training_2d.csv --settle --drop 1 \
+  --format json -o results/training_settled.json
 poses="--robot maps/robots/cart.urdf --poses results/training_sample.csv"
 spawnfield export results/yard --format ros2-launch-py $poses --topic robot_description -o results/yard_launch.py
 spawnfield export results/yard --format sdf $poses --robot-uri model://cart -o results/yard.sdf

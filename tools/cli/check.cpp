@@ -8,6 +8,8 @@
 
 #include <spawnfield/verdict_report.h>
 
+#include <algorithm>
+
 namespace spawnfield::cli {
 namespace {
 
@@ -23,6 +25,8 @@ void write_verdicts(const CheckArgs& args, const VerdictReport& report)
             write_verdicts_json(report, sink);
         else if (args.format == "junit")
             write_verdicts_junit(report, sink);
+        else if (report.settled != nullptr)
+            sink(settled_csv(report.table, *report.settled, report.judge.map(), report.judge.robot()));
         else
             sink(verdicts_csv(report.table, report.judgements, report.judge.map()));
     });
@@ -37,21 +41,40 @@ std::string not_valid_words(const VerdictReport& report)
     std::size_t count = 0;
     for (std::size_t i = 0; i < names.size(); ++i)
         if (report.judgements[i].verdict != Verdict::Valid && ++count <= shown)
-            first += "\n  " + names[i] + ": " + report.judge.describe(report.table.poses[i], report.judgements[i]);
+            first += "\n  " + names[i] + ": " + reason(report, i);
     if (count > shown) first += "\n  and " + std::to_string(count - shown) + " more";
     return "--require-valid: " + std::to_string(count) + " of " + counted(names.size(), "pose") +
            (count == 1 ? " is" : " are") + " not valid:" + first;
 }
 
-Ending run_check(const CheckArgs& args, const CLI::App&, Summary& summary)
+/// Prints a notice if poses are tilted although the robot is let down level.
+void notice_about_tilted(const CheckArgs& args, const PoseTable& table)
+{
+    const auto is_tilted = [](const Pose& pose) { return pose.rotation(2, 2) < 1 - 1e-12; };
+    const auto count = std::count_if(table.poses.begin(), table.poses.end(), is_tilted);
+    if (count > 0)
+        notice(args, input_name(args.poses) + ": roll and pitch of " + counted(std::uint64_t(count), "pose") +
+                         " are not used, because the robot is let down level");
+}
+
+Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summary)
 {
     const PoseTable table = open_poses(args, args.poses);
-    for (const std::string& name : replaced_columns(table))
+    for (const std::string& name : replaced_columns(table, args.is_settled()))
         notice(args, input_name(args.poses) + ": the new column " + name + " replaces the old one");
+    if (args.is_settled()) notice_about_tilted(args, table);
     const Session session = open_session(args, summary);
+    notices_about_stance(args, command, session.robot);
     summary.lap("load");
-    const std::vector<Judgement> judgements = session.judge->check(
-        table.poses, {.threads = args.threads, .progress = progress_bar(args, "check")});
+    const RunOptions run{.threads = args.threads, .progress = progress_bar(args, "check")};
+    std::vector<SettledPose> settled;
+    std::vector<Judgement> judgements;
+    if (args.is_settled()) {
+        settled = session.judge->settle(table.poses, run);
+        for (const SettledPose& pose : settled) judgements.push_back(judgement_of(pose));
+    } else {
+        judgements = session.judge->check(table.poses, run);
+    }
     summary.lap("query");
     VerdictCounts counts;
     std::uint64_t exact_checks = 0;
@@ -60,7 +83,7 @@ Ending run_check(const CheckArgs& args, const CLI::App&, Summary& summary)
         exact_checks += judged.exact_check;
     }
     summary.set_verdicts(counts, exact_checks);
-    const VerdictReport report{table, judgements, *session.judge};
+    const VerdictReport report{table, judgements, *session.judge, args.is_settled() ? &settled : nullptr};
     write_verdicts(args, report);
     if (!args.require_valid || counts[Verdict::Valid] == judgements.size()) return {};
     return {.status = not_valid, .complaint = not_valid_words(report)};
@@ -86,6 +109,7 @@ void add_check(CLI::App& app, ChosenCommand& chosen)
     command.add_flag("--require-valid", args->require_valid,
                      "End with status 3 if a pose is not valid; all rows are written in any case");
     add_verdict_options(command, *args);
+    add_stance(command, *args);
     add_robot_and_run(command, *args);
     add_allow_empty(command, *args);
     command.footer(

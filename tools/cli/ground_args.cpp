@@ -20,14 +20,6 @@ Floor floor_of(const GroundArgs& args, const Map& map)
                         counted(floors.size(), "floor") + list);
 }
 
-/// Returns six digits, because an automatic offset is not a round number.
-std::string rounded(double metres)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", metres);
-    return text;
-}
-
 }  // namespace
 
 void add_ground(CLI::App& command, GroundArgs& args, const std::string& layers_help)

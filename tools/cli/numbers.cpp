@@ -11,6 +11,13 @@ std::string number(double value)
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
+std::string rounded(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value + 0.0);  // never -0
+    return text;
+}
+
 std::string counted(std::uint64_t count, const std::string& noun)
 {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");

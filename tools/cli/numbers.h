@@ -12,6 +12,9 @@ namespace spawnfield::cli {
 /// Returns the shortest text that reads back to the same double.
 std::string number(double value);
 
+/// Returns a number with six digits, for numbers that are not round.
+std::string rounded(double value);
+
 /// Returns "1 layer", "2 layers".
 std::string counted(std::uint64_t count, const std::string& noun);
 

@@ -4,6 +4,7 @@
 #include "numbers.h"
 #include "spelling.h"
 
+#include <cmath>
 #include <numbers>
 
 namespace spawnfield::cli {
@@ -34,6 +35,39 @@ void add_verdict_options(CLI::App& command, QueryArgs& args)
         ->check(one_of({"geometry", "octree"}));
 }
 
+void add_stance(CLI::App& command, QueryArgs& args)
+{
+    start_group(command, help_group::rest);
+    CLI::Option* stance = command
+                              .add_option("--stance", args.stance,
+                                          "level: the robot is as given; settled: it is let down at x, y and yaw, and "
+                                          "comes to rest on the ground (default level)")
+                              ->check(one_of({"level", "settled"}));
+    command.add_flag("--settle", args.settle, "Short for --stance settled")->excludes(stance);
+    command.add_option("--lift", args.lift,
+                       "m by which the settled robot is raised: there it must touch nothing (default 0.02)");
+    command.add_option("--max-tilt", args.max_tilt,
+                       "Degrees. A robot that tilts more while it settles tips over: unstable (default 45)");
+    command.add_option("--min-stability", args.min_stability,
+                       "m. A robot is unstable if its centre of mass is nearer to the edge of its support polygon "
+                       "(default 0.01)");
+    command.add_option("--drop", args.drop,
+                       "m. A robot is obstructed if it cannot fall freely from this height, level, onto its settled "
+                       "pose (default: not examined)");
+}
+
+void notices_about_stance(const QueryArgs& args, const CLI::App& command, const Robot& robot)
+{
+    if (!args.is_settled())
+        return notice_no_effect(args, command, {"--lift", "--max-tilt", "--min-stability", "--drop"},
+                                "it is only for settled poses (--settle)");
+    if (robot.mass_center) return;
+    const Vec3 mass = mass_center_of(robot);
+    notice(args, robot.name + " has no centre of mass; that of its parts' volume is used, " + rounded(mass.x()) + ", " +
+                     rounded(mass.y()) + ", " + rounded(mass.z()) +
+                     " m from its origin (mass_center in robot.yaml, <inertial> in URDF and SDF)");
+}
+
 void add_robot_and_run(CLI::App& command, QueryArgs& args)
 {
     start_group(command, help_group::robot);
@@ -50,12 +84,25 @@ JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time)
         throw bad_value("--max-slope", *args.max_slope, "> 0 and < 90 degrees");
     if (!(args.max_height >= 0)) throw bad_value("--max-height", args.max_height, ">= 0 m");
     if (!(args.max_water_depth >= 0)) throw bad_value("--max-water-depth", args.max_water_depth, ">= 0 m");
+    if (args.is_settled() && args.collision == "octree")
+        throw ArgumentError(
+            "--collision is octree, but settled poses need geometry: the robot comes to rest on the scene's own "
+            "geometry, not on its voxels");
+    const auto is_angle = [](double degrees) { return degrees > 0 && degrees < 90; };
+    const auto is_length = [](double length) { return length >= 0 && std::isfinite(length); };
+    if (!is_length(args.lift)) throw bad_value("--lift", args.lift, ">= 0 m");
+    if (!is_angle(args.max_tilt)) throw bad_value("--max-tilt", args.max_tilt, "> 0 and < 90 degrees");
+    if (!is_length(args.min_stability)) throw bad_value("--min-stability", args.min_stability, ">= 0 m");
+    if (args.drop && !(is_length(*args.drop) && *args.drop > 0)) throw bad_value("--drop", *args.drop, "> 0 m");
+    constexpr double degree = std::numbers::pi / 180;
     JudgeOptions options{.max_height = args.max_height,
                          .max_water_depth = args.max_water_depth,
                          .obstacles = args.collision == "octree" ? Obstacles::Voxels : Obstacles::Geometry,
                          .exhaustive = args.exhaustive,
                          .exact_time = &exact_time};
-    if (args.max_slope) options.max_slope = *args.max_slope * std::numbers::pi / 180;
+    options.stand = {
+        .lift = args.lift, .max_tilt = args.max_tilt * degree, .min_stability = args.min_stability, .drop = args.drop};
+    if (args.max_slope) (args.is_settled() ? options.stand.max_slope : options.max_slope) = *args.max_slope * degree;
     return options;
 }
 

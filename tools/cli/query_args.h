@@ -17,8 +17,20 @@ struct QueryArgs : CommonArgs, RobotArgs {
     double max_height = 1.0;
     bool exhaustive = false;
     double max_water_depth = std::numeric_limits<double>::infinity();
-    std::optional<double> max_slope;  ///< degrees
+    std::optional<double> max_slope;                          ///< degrees
+    std::string stance;                                       ///< "level", "settled", or empty: the command's default
+    bool settle = false;                                      ///< --settle, short for --stance settled
+    double lift = 0.02, min_stability = 0.01, max_tilt = 45;  ///< m, m, degrees
+    std::optional<double> drop;                               ///< m
+
+    bool is_settled() const { return settle || stance == "settled"; }
 };
+
+/// Adds, below the heading "Robot at rest", the options about settled poses.
+void add_stance(CLI::App& command, QueryArgs& args);
+
+/// Prints notices about options of settled poses without effect, and about a robot whose centre of mass is not known.
+void notices_about_stance(const QueryArgs& args, const CLI::App& command, const Robot& robot);
 
 /// Adds the map and --robot.
 void add_map_and_robot(CLI::App& command, QueryArgs& args);

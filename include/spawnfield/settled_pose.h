@@ -1,0 +1,57 @@
+#pragma once
+
+#include <spawnfield/collision.h>
+#include <spawnfield/column.h>
+#include <spawnfield/export.h>
+
+#include <numbers>
+#include <optional>
+#include <vector>
+
+namespace spawnfield {
+
+/// What a robot at rest must comply with (see docs/standing.md).
+struct StandLimits {
+    double lift = 0.02;  ///< m, >= 0; the robot must be free when it is raised by this. Spawns are raised by it
+    double max_slope = std::numbers::pi / 6;  ///< rad, > 0; a robot that tilts more is `steep`
+    /// rad, > 0, < pi/2; a robot that tilts more while it settles is `unstable`: it tips over
+    double max_tilt = std::numbers::pi / 4;
+    double min_stability = 0.01;  ///< m, >= 0; a robot with a smaller SettledPose::margin is `unstable`
+    /// m, > 0; if given, the level robot must be able to fall freely from this height above its settled pose.
+    std::optional<double> drop = {};
+};
+
+/// A place where a robot at rest touches the ground.
+struct RestContact {
+    Vec3 point;            ///< m, in the scene's frame
+    Vec3 normal;           ///< from the ground to the robot, of length 1
+    std::size_t part;      ///< of the robot
+    std::uint32_t ground;  ///< part of the scene
+    Label label;           ///< of what it touches
+};
+
+/// The pose at which a robot comes to rest when it is let down at a place, with its verdict.
+struct SettledPose {
+    Verdict verdict = Verdict::Outside;
+    std::optional<Ground> ground;     ///< the layer on which it was let down, or what is there instead
+    std::optional<CollisionHit> hit;  ///< Collision, OffTerrain, Obstructed: what it meets, if it is known
+    /// Whether the robot was let down, so that all that follows is known. Otherwise, it has no room, or the place
+    /// itself cannot be used.
+    bool has_pose = false;
+    Vec3 position = Vec3::Zero();         ///< of its origin, m. If it is unstable, where it would have to balance
+    double roll = 0, pitch = 0, yaw = 0;  ///< rad, as in URDF's rpy
+    double tilt = 0;                      ///< angle between the robot's z axis and the vertical, rad
+    /// Distance of the projected centre of mass from the nearest edge of the support polygon, m; negative: outside.
+    double margin = 0;
+    /// Smallest angle by which the robot must be turned about an edge of its support polygon until it tips over, rad.
+    double tip_over = 0;
+    /// Smallest vertical distance of the ground from the parts of the robot that do not touch it, m; 0 if all do.
+    double belly = 0;
+    std::vector<RestContact> contacts;  ///< the corners of the support polygon are among them
+    bool exact_check = false;           ///< whether an exact collision check was made
+
+    /// Returns the pose raised by `lift`, in which the robot touches nothing.
+    Pose lifted(double lift) const { return {position + lift * Vec3::UnitZ(), rotation_from_rpy(roll, pitch, yaw)}; }
+};
+
+}  // namespace spawnfield

@@ -1,0 +1,323 @@
+#include "catch.h"
+#include "shared_scenes.h"
+#include "test_map.h"
+
+#include <spawnfield/robot_parts.h>
+#include <spawnfield/scene_parts.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+
+using namespace spawnfield;
+
+// Tests of the verdicts on robots that are let down.
+
+namespace {
+
+double rad(double degrees) { return degrees * std::numbers::pi / 180; }
+
+constexpr double half_base = 0.25, half_track = 0.2, clearance = 0.1;  // m
+
+/// A box on four balls, with its origin in the middle of its lowest plane, or `origin` above it. It is 0.3 m high.
+Robot on_balls(double origin = 0)
+{
+    std::vector<RobotPart> parts{shape_part(box_shape({0.7, 0.5, 0.2}, {{0, 0, clearance + 0.1 - origin}}), "body")};
+    for (const double x : {-half_base, half_base})
+        for (const double y : {-half_track, half_track})
+            parts.push_back(shape_part(sphere_shape(0.04, {x, y, 0.04 - origin}), "foot"));
+    Robot out = make_robot("on_balls", std::move(parts));
+    out.mass_center = Vec3(0, 0, 0.15 - origin);
+    return out;
+}
+
+Robot boxy(const Vec3& size) { return make_robot("boxy", {shape_part(box_shape(size, {{0, 0, size.z() / 2}}))}); }
+
+void add_block(Scene& scene, const Vec3& low, const Vec3& high, Label label = Label::Terrain,
+               const std::string& name = "block")
+{
+    add_shape(scene, name, label, box_shape(high - low, {(low + high) / 2}));
+}
+
+Scene floor_scene()
+{
+    Scene scene;
+    add_block(scene, {-5, -5, -1}, {5, 5, 0}, Label::Terrain, "floor");
+    return scene;
+}
+
+/// Returns a slope that rises towards +x, through the origin.
+Scene slope(double angle)
+{
+    Scene scene;
+    const Mat3 turned = rotation_of_rpy(0, -angle, 0);
+    add_shape(scene, "slope", Label::Terrain, box_shape({12, 12, 0.5}, {turned * Vec3(0, 0, -0.25), turned}));
+    return scene;
+}
+
+struct Settled {
+    SettledPose pose;
+    std::string reason;
+};
+
+/// Lets a robot down at a place; z is where it looks for its ground.
+Settled settle(const Scene& scene, const Robot& robot, const Vec3& place = {0, 0, 0.5}, const StandLimits& limits = {},
+               const Bounds& bounds = {})
+{
+    const Judge judge(map_of(scene, 0.1, bounds), robot, {.stand = limits});
+    const SettledPose pose = judge.settle(place, 0);
+    return {pose, judge.describe(pose)};
+}
+
+}  // namespace
+
+TEST_CASE("the robot on a floor is valid, and every quantity is that of the closed form")
+{
+    const Settled rest = settle(floor_scene(), on_balls(0.05));
+    CHECK(rest.pose.verdict == Verdict::Valid);
+    CHECK(rest.reason == "valid");
+    CHECK(std::abs(rest.pose.position.z() - 0.05) <= 1e-9);
+    CHECK(rest.pose.tilt <= 1e-9);
+    CHECK(std::abs(rest.pose.margin - half_track) <= 1e-9);
+    CHECK(std::abs(rest.pose.tip_over - std::atan2(half_track, 0.15)) <= 1e-9);
+    CHECK(std::abs(rest.pose.belly - clearance) <= 1e-9);
+    CHECK(rest.pose.contacts.size() == 4);
+    for (const RestContact& contact : rest.pose.contacts) {
+        CHECK(std::abs(std::abs(contact.point.x()) - half_base) <= 1e-9);
+        CHECK(std::abs(std::abs(contact.point.y()) - half_track) <= 1e-9);
+        CHECK(std::abs(contact.point.z()) <= 1e-9);
+        CHECK(contact.normal.isApprox(Vec3::UnitZ(), 1e-9));
+    }
+    CHECK(settle(floor_scene(), boxy({1, 1, 1})).pose.belly == 0);
+}
+
+TEST_CASE("tilted robots tip over at the angle that is left")
+{
+    // A box of 0.6 x 0.4 x 0.5 m with its mass in the middle, on a slope along x.
+    for (const double angle : {0.0, 10.0, 25.0}) {
+        const Settled rest = settle(slope(rad(angle)), boxy({0.6, 0.8, 0.5}), {0, 0, 1});
+        INFO(angle << " degrees");
+        CHECK(std::abs(rest.pose.tip_over - (std::atan2(0.3, 0.25) - rad(angle))) <= 1e-6);
+        CHECK(std::abs(rest.pose.tilt - rad(angle)) <= 1e-6);
+    }
+}
+
+TEST_CASE("the limits of slope and tilt are inclusive, and a robot beyond the largest tilt tips over")
+{
+    const Robot low = boxy({1, 1, 0.1});
+    CHECK(settle(slope(rad(29)), low).pose.verdict == Verdict::Valid);
+    CHECK(settle(slope(rad(30)), low).pose.verdict == Verdict::Valid);
+    const Settled steep = settle(slope(rad(31)), low);
+    CHECK(steep.pose.verdict == Verdict::Steep);
+    CHECK(steep.reason == "steep: it tilts by 31 degrees, the limit is 30 degrees");
+    CHECK(settle(slope(rad(31)), low, {0, 0, 0.5}, {.max_slope = rad(35)}).pose.verdict == Verdict::Valid);
+    const Settled tipped = settle(slope(rad(46)), low);
+    CHECK(tipped.pose.verdict == Verdict::Unstable);
+    CHECK(tipped.reason == "unstable: it tips over");
+    CHECK(settle(slope(rad(46)), low, {0, 0, 0.5}, {.max_tilt = rad(50)}).pose.verdict == Verdict::Steep);
+}
+
+TEST_CASE("a robot whose mass is too near to the edge of its support is unstable")
+{
+    Robot robot = on_balls();
+    robot.mass_center = Vec3(half_base - 0.005, 0, 0.15);
+    const Settled near_edge = settle(floor_scene(), robot);
+    CHECK(near_edge.pose.verdict == Verdict::Unstable);
+    CHECK(near_edge.reason == "unstable: its margin is 0.005 m, the limit is 0.01 m");
+    CHECK(std::abs(near_edge.pose.margin - 0.005) <= 1e-9);
+    CHECK(settle(floor_scene(), robot, {0, 0, 0.5}, {.min_stability = 0.004}).pose.verdict == Verdict::Valid);
+}
+
+TEST_CASE("a foot that hangs counts if the robot rocks onto it with little motion")
+{
+    // Three feet carry the robot, with the mass almost above the line between two of them. The fourth foot hangs.
+    const auto over_hole = [](double depth) {
+        Scene scene;
+        add_block(scene, {-5, -5, -2}, {5, 5, -depth});
+        add_block(scene, {-5, -5, -depth}, {0.1, 5, 0});
+        add_block(scene, {0.1, -5, -depth}, {5, 0, 0});
+        Robot robot = on_balls();
+        robot.mass_center = Vec3(-0.002, -0.002, 0.15);
+        return settle(scene, robot, {-0.01, -0.01, 0.5});
+    };
+    const Settled shallow = over_hole(0.01);
+    CHECK(shallow.pose.verdict == Verdict::Valid);
+    CHECK(shallow.pose.tilt <= 1e-9);  // the pose is the first one, with the mass above three feet
+    CHECK(shallow.pose.margin > 0.15);
+    CHECK(shallow.pose.contacts.size() == 4);
+    const Settled deep = over_hole(0.2);
+    CHECK(deep.pose.verdict == Verdict::Unstable);
+    const double to_diagonal = 0.002 * (half_base + half_track) / std::hypot(half_base, half_track);
+    CHECK(std::abs(deep.pose.margin - to_diagonal) <= 1e-9);
+    CHECK(deep.pose.contacts.size() == 3);
+}
+
+TEST_CASE("a robot without room collides, and the reason names what is in the way")
+{
+    Scene scene = floor_scene();
+    add_block(scene, {-1, -1, 0.25}, {1, 1, 3}, Label::Obstacle, "ceiling");
+    const Settled low = settle(scene, on_balls(), {0, 0, 0.1});
+    CHECK(low.pose.verdict == Verdict::Collision);
+    CHECK(!low.pose.has_pose);
+    CHECK(low.reason == "collision: it has no room to settle, because of ceiling");
+
+    Scene in_hall = floor_scene();
+    add_block(in_hall, {-3, -3, 0}, {3, 3, 3}, Label::Obstacle, "hall");
+    const Settled inside = settle(in_hall, boxy({0.2, 0.2, 0.2}), {0, 0, 0.1});
+    CHECK(inside.pose.verdict == Verdict::Collision);
+    CHECK(inside.pose.hit);
+
+    Scene wall = floor_scene();
+    add_block(wall, {0.2, -1, 0}, {0.3, 1, 2}, Label::Obstacle, "wall");
+    CHECK(settle(wall, on_balls()).reason == "collision: it has no room to settle, because of wall");
+    CHECK(settle(wall, on_balls(), {-0.2, 0, 0.5}).pose.verdict == Verdict::Valid);
+}
+
+TEST_CASE("a robot that comes to rest on an obstacle is off terrain")
+{
+    Scene scene = floor_scene();
+    add_block(scene, {0.1, -1, 0}, {2, 1, 0.05}, Label::Obstacle, "mat");
+    const Settled rest = settle(scene, on_balls());
+    CHECK(rest.pose.verdict == Verdict::OffTerrain);
+    CHECK(rest.reason == "off_terrain: it comes to rest on mat");
+    CHECK(settle(scene, on_balls(), {1, 0, 0.5}).pose.verdict == Verdict::OffTerrain);  // the ground is the obstacle
+    CHECK(settle(scene, on_balls(), {-0.6, 0, 0.5}).pose.verdict == Verdict::Valid);
+}
+
+TEST_CASE("a place that cannot be used has the verdict of a pose there")
+{
+    Scene scene = floor_scene();
+    add_shape(scene, "lake", Label::Water, box_shape({1, 1, 0.2}, {{3, 3, 0}}));
+    CHECK(settle(scene, on_balls(), {3, 3, 0.5}).pose.verdict == Verdict::Submerged);
+    CHECK(settle(scene, on_balls(), {0, 0, 1.5}).pose.verdict == Verdict::Aerial);
+    CHECK(settle(scene, on_balls(), {0, 0, -3}).pose.verdict == Verdict::Aerial);
+    CHECK(settle(scene, on_balls(), {9, 0, 0.5}).pose.verdict == Verdict::Outside);
+    CHECK(settle(scene, on_balls(), {9, 0, 0.5}).reason == "outside the map's bounds");
+}
+
+TEST_CASE("a robot under a beam cannot be raised, and below a fence it cannot fall from above")
+{
+    const auto below = [](double height, const StandLimits& limits) {  // of the beam above the robot
+        Scene scene = floor_scene();
+        add_block(scene, {-2, -0.05, 0.3 + height}, {2, 0.05, 0.4 + height}, Label::Obstacle, "beam");
+        return settle(scene, on_balls(), {0, 0, 0.1}, limits);
+    };
+    CHECK(below(0.021, {}).pose.verdict == Verdict::Valid);
+    const Settled wedged = below(0.019, {});
+    CHECK(wedged.pose.verdict == Verdict::Obstructed);
+    CHECK(wedged.reason == "obstructed by beam");
+    CHECK(below(0.019, {.lift = 0.01}).pose.verdict == Verdict::Valid);
+    CHECK(below(0.019, {.lift = 0}).pose.verdict == Verdict::Valid);
+    CHECK(below(0.2, {}).pose.verdict == Verdict::Valid);
+    CHECK(below(0.2, {.drop = 0.19}).pose.verdict == Verdict::Valid);
+    CHECK(below(0.2, {.drop = 0.21}).pose.verdict == Verdict::Obstructed);
+
+    // A thin sheet that the robot would pass through on its way up, without touching it at the end.
+    Scene scene = floor_scene();
+    add_block(scene, {0.05, -2, 0.0105}, {2, 2, 0.0106}, Label::Obstacle, "sheet");
+    CHECK(settle(scene, boxy({0.3, 0.3, 0.01}), {0, 0, 0.005}).pose.verdict == Verdict::Obstructed);
+}
+
+TEST_CASE("a settled pose belongs to one layer of its column")
+{
+    Scene scene = floor_scene();  // a thin slab above the floor
+    add_block(scene, {-2, -2, 0.04}, {2, 2, 0.05}, Label::Terrain, "slab");
+    CHECK(settle(scene, on_balls(0.05), {0, 0, 0.06}).pose.verdict == Verdict::Valid);
+    const Settled lower = settle(scene, on_balls(0.05), {0, 0, 0.03});
+    CHECK(lower.pose.verdict == Verdict::Collision);
+    CHECK(lower.reason == "collision: it comes to rest on the layer above");
+}
+
+TEST_CASE("the cases in closed form are valid if their robot is stable")
+{
+    const auto scenes = shared_scenes();
+    if (!scenes) return;
+    const std::filesystem::path folder = scenes->parent_path() / "standing";
+    const nlohmann::json cases = nlohmann::json::parse(std::ifstream(folder / "cases.json"));
+    for (const nlohmann::json& expected : cases.at("cases")) {
+        INFO(expected.at("name").get<std::string>());
+        const Robot robot = load_robot((folder / expected.at("robot").get<std::string>()).string());
+        const Scene scene = load_scene(folder / expected.at("scene").get<std::string>());
+        const Judge judge(map_of(scene), robot);
+        const auto value = [&](const char* key) { return expected.at(key).get<double>(); };
+        const SettledPose pose = judge.settle({value("x"), value("y"), value("z") + 0.5}, value("yaw"));
+        CHECK(pose.verdict == (expected.at("stable").get<bool>() ? Verdict::Valid : Verdict::Unstable));
+    }
+}
+
+TEST_CASE("each valid settled pose is valid as it is written, and none of another verdict is hidden")
+{
+    VerdictCounts counts;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const Scene scene = random_scene(seed);
+        const Robot robot = seed % 3 ? random_robot(seed) : on_balls(0.1);
+        const Judge judge(map_of(scene), robot, {.stand = {.max_slope = rad(40)}});
+        std::vector<Pose> poses = random_poses(scene, seed, 40);
+        const std::vector<SettledPose> settled = judge.settle(poses);
+        REQUIRE(settled.size() == poses.size());
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const SettledPose& pose = settled[i];
+            INFO("seed " << seed << ", pose " << i);
+            ++counts[pose.verdict];
+            const bool has_rest = pose.has_pose && pose.contacts.size() >= 3;
+            if (pose.verdict != Verdict::Valid) continue;
+            REQUIRE(has_rest);
+            CHECK(pose.tilt <= rad(40) + 1e-9);
+            CHECK(pose.margin >= 0.01 - 1e-9);
+            const Judgement written = judge.check(pose.lifted(0.02));
+            if (pose.lifted(0.02).position.z() >= pose.ground->height) CHECK(written.verdict == Verdict::Valid);
+            CHECK(judge.check(pose.lifted(-1e-5)).verdict != Verdict::Valid);
+            // A second settling on the same ground is the same, and the order of poses does not matter.
+            const SettledPose again = judge.settle(poses[i].position, pose.yaw);
+            CHECK(again.position == pose.position);
+            CHECK(again.roll == pose.roll);
+            CHECK(again.pitch == pose.pitch);
+            CHECK(again.margin == pose.margin);
+        }
+    }
+    for (const Verdict verdict : {Verdict::Valid, Verdict::Steep, Verdict::Unstable, Verdict::Collision,
+                                  Verdict::OffTerrain, Verdict::Submerged, Verdict::Aerial, Verdict::Outside})
+        CHECK(counts[verdict] > 0);
+}
+
+TEST_CASE("settled poses are the same for any number of threads")
+{
+    const Scene scene = random_scene(5);
+    const Judge judge(map_of(scene), on_balls(0.1));
+    const std::vector<Pose> poses = random_poses(scene, 5, 600);
+    const std::vector<SettledPose> one = judge.settle(poses, {.threads = 1});
+    for (const int threads : {2, 8}) {
+        const std::vector<SettledPose> many = judge.settle(poses, {.threads = threads});
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            CHECK(many[i].verdict == one[i].verdict);
+            CHECK(many[i].position == one[i].position);
+            CHECK(many[i].contacts.size() == one[i].contacts.size());
+        }
+    }
+}
+
+TEST_CASE("a wider wheel base never makes a stable robot unstable on a plane")
+{
+    for (const double angle : {0.0, 15.0, 29.0})
+        for (const double heading : {0.0, 0.5, 1.2}) {
+            bool was_valid = false;
+            for (const double wide : {0.1, 0.2, 0.35, 0.6, 1.0}) {
+                const Judge judge(map_of(slope(rad(angle))), boxy({wide, wide, 0.4}));
+                const bool is_valid = judge.settle({0, 0, 1}, heading).verdict == Verdict::Valid;
+                CHECK((is_valid || !was_valid));
+                was_valid = is_valid;
+            }
+            CHECK(was_valid);
+        }
+}
+
+TEST_CASE("limits of settled poses that are out of range are refused")
+{
+    const auto make = [](const JudgeOptions& options) { Judge(map_of(floor_scene()), on_balls(), options); };
+    CHECK_THROWS_WITH(make({.stand = {.lift = -1}}), "Judge: stand.lift is -1, needs >= 0 m");
+    CHECK_THROWS_WITH(make({.stand = {.max_slope = 2}}), "Judge: stand.max_slope is 2, needs > 0 and < pi/2 rad");
+    CHECK_THROWS_WITH(make({.stand = {.max_tilt = 0}}), "Judge: stand.max_tilt is 0, needs > 0 and < pi/2 rad");
+    CHECK_THROWS_WITH(make({.stand = {.min_stability = -1}}), "Judge: stand.min_stability is -1, needs >= 0 m");
+    CHECK_THROWS_WITH(make({.stand = {.drop = 0.0}}), "Judge: stand.drop is 0, needs > 0 m");
+}
