@@ -74,6 +74,19 @@ Judge::Impl::Impl(Map map_, Robot robot_, const JudgeOptions& options_)
 {
 }
 
+namespace {
+
+/// Returns how far above the robot its way must be known, m: for --lift from its rest, and for --drop from where it was
+/// level.
+double needed_headroom(const Robot& robot, const StandLimits& limits)
+{
+    const Bounds box = robot.bounds();
+    const double largest_rise = 2 * std::max(box.max.norm(), box.min.norm());  // from the level robot to its rest
+    return std::max(limits.lift, limits.drop.value_or(0) + largest_rise);
+}
+
+}  // namespace
+
 const Settler& Judge::Impl::settler() const
 {
     if (options.obstacles != Obstacles::Geometry)
@@ -82,7 +95,8 @@ const Settler& Judge::Impl::settler() const
         settler_.emplace(map.geometry, robot,
                          Settler::Options{.max_tilt = options.stand.max_tilt,
                                           .max_height = options.max_height,
-                                          .min_stability = options.stand.min_stability});
+                                          .min_stability = options.stand.min_stability,
+                                          .headroom = needed_headroom(robot, options.stand)});
     });
     return *settler_;
 }

@@ -59,10 +59,11 @@ Vec3 Convex::support(const Vec3& direction) const
 Bounds Convex::bounds() const
 {
     Bounds out;
-    for (int k = 0; k < 3; ++k) {
-        out.min[k] = support(-Vec3::Unit(k))[k];
-        out.max[k] = support(Vec3::Unit(k))[k];
-    }
+    for (const Vec3& point : points) out.extend(point);
+    Vec3 around = Vec3::Constant(ball);
+    if (disc > 0) around = disc * (Vec3::Ones() - axis.cwiseProduct(axis)).cwiseMax(0).cwiseSqrt();
+    out.min -= around;
+    out.max += around;
     return out;
 }
 
@@ -104,20 +105,29 @@ Convex convex_of(const RobotPart& part)
     return out;
 }
 
-Convex convex_of(const std::array<Vec3, 3>& triangle)
+void set_triangle(Convex& out, const std::array<Vec3, 3>& triangle)
 {
-    Convex out;
+    constexpr std::array<std::array<int, 2>, 3> edges{{{0, 1}, {1, 2}, {0, 2}}};
     out.points.assign(triangle.begin(), triangle.end());
-    out.edges = {{0, 1}, {1, 2}, {0, 2}};
+    out.edges.assign(edges.begin(), edges.end());
+    out.planes.clear();
+    out.is_triangle = true;
     const auto& [a, b, c] = triangle;
     const Vec3 normal = (b - a).cross(c - a).normalized();
-    if (!normal.allFinite()) return out;  // without area: only its edges count
-    out.planes = {{normal, normal.dot(a)}, {-normal, -normal.dot(a)}};
+    if (!normal.allFinite()) return;  // without area: only its edges count
+    out.planes.push_back({normal, normal.dot(a)});
+    out.planes.push_back({-normal, -normal.dot(a)});
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 &from = triangle[k], &to = triangle[(k + 1) % 3];
         const Vec3 side = (to - from).cross(normal).normalized();
         out.planes.push_back({side, side.dot(from)});
     }
+}
+
+Convex convex_of(const std::array<Vec3, 3>& triangle)
+{
+    Convex out;
+    set_triangle(out, triangle);
     return out;
 }
 
@@ -138,6 +148,13 @@ Convex moved(const Convex& body, const Pose& parent_from_body)
         plane.offset += plane.normal.dot(parent_from_body.position);
     }
     return out;
+}
+
+void set_rotated(Convex& out, const Convex& body, const Mat3& rotation)
+{
+    for (std::size_t k = 0; k < body.points.size(); ++k) out.points[k] = rotation * body.points[k];
+    out.axis = rotation * body.axis;
+    for (std::size_t k = 0; k < body.planes.size(); ++k) out.planes[k].normal = rotation * body.planes[k].normal;
 }
 
 Convex upside_down(const Convex& body)

@@ -22,11 +22,13 @@ struct Convex {
     // Only of a polyhedron:
     std::vector<std::array<int, 2>> edges;  ///< indices in points
     std::vector<Plane> planes;              ///< of its faces. Those of a triangle: both sides, and three around it
+    bool is_triangle = false;               ///< only the first two planes are faces
 
     bool is_polyhedron() const { return ball == 0 && disc == 0; }
     /// Returns a point of the body that is farthest in this direction (not 0).
     Vec3 support(const Vec3& direction) const;
     Bounds bounds() const;
+    std::size_t face_count() const { return is_triangle && !planes.empty() ? 2 : planes.size(); }
 };
 
 Convex convex_of(const RobotPart& part);  ///< in the robot's frame
@@ -34,8 +36,14 @@ Convex convex_of(const Shape& shape);     ///< in the shape's parent frame; not 
 Convex convex_of(const std::array<Vec3, 3>& triangle);
 Convex convex_of(const Vec3& point);
 
+/// Sets `out` to what convex_of(triangle) returns. Uses the memory of `out` again.
+void set_triangle(Convex& out, const std::array<Vec3, 3>& triangle);
+
 /// Returns the body at another place: parent_from_body * body.
 Convex moved(const Convex& body, const Pose& parent_from_body);
+
+/// Sets `out`, which must be a copy of the body, to the body after a rotation about its frame's origin.
+void set_rotated(Convex& out, const Convex& body, const Mat3& rotation);
 
 /// Returns the body upside down: z becomes -z.
 Convex upside_down(const Convex& body);

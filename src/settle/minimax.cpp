@@ -79,7 +79,18 @@ Minimax lowest_of_highest(std::span<const MinimaxRow> rows, double limit)
             worst = violation;
             entering = inequality;
         };
-        for (std::size_t k = 0; k < rows.size(); ++k) consider(of_plane(rows, k), rounding * scale);
+        double highest_row = point[0] + rounding * scale;
+        int violated = -1;
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const double height = rows[k].height + rows[k].gradient.x() * point[1] + rows[k].gradient.y() * point[2];
+            if (height <= highest_row) continue;
+            highest_row = height;
+            violated = int(k);
+        }
+        if (violated >= 0) {
+            entering = of_plane(rows, std::size_t(violated));
+            worst = highest_row - point[0];
+        }
         for (int axis = 0; axis < 2; ++axis)
             for (const double sign : {-1.0, 1.0}) consider(of_limit(axis, sign, limit), rounding * limit);
         if (worst == 0) return out;

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace spawnfield {
 namespace {
@@ -21,10 +22,14 @@ constexpr double contact_tolerance = 1e-9;  // m: touches that are at most this 
 /// The margin also counts wheels and feet that are at most this far above the ground, m: real ones give way by so much,
 /// and the vertices of real meshes are not more precise.
 constexpr double contact_gap = 1e-3;
-constexpr double tie = 1e-12;                           // m: touches of one height, up to rounding
-constexpr double smallest_turn = 1e-11;                 // rad
-constexpr double first_turn = 0.1, largest_turn = 0.3;  // rad: limits of one step
-constexpr double seen_below = 0.2;  // m: touches that much below the highest may soon carry the robot
+constexpr double rest_tolerance = 1e-7;  // m: the same, if the mass does not sink any more
+constexpr double tie = 1e-12;            // m: touches of one height, up to rounding
+constexpr double smallest_turn = 1e-11;  // rad
+constexpr double first_turn = 0.1, least_limit = 0.01, largest_turn = 0.3;  // rad: limits of one step
+/// Touches that are farther below the highest one than this cannot carry the robot after the next step, m: at most
+/// `most_seen`, and this many times the limit of the step and the robot's size.
+constexpr double most_seen = 0.2, seen_share = 4;
+constexpr double straight_turn = 0.1;  // rad, see descend()
 constexpr int max_turns = 300;
 // A robot whose mass is near an edge of the support polygon may rock onto another contact. It still stands there if it
 // moves by no more than this.
@@ -41,7 +46,93 @@ struct NearSolid {
     Bounds bounds;
     std::uint32_t part;
     Label label;
+    /// Of a triangle that is not too steep: its plane is where slope . (x, y, z) = height.
+    std::optional<Vec3> slope;
+    double height;
+    WantedTouches wanted;  ///< of robots that lie on the ground of all solids
 };
+
+/// A part of the robot at its current attitude.
+struct PlacedPart {
+    Convex body;
+    Bounds bounds;
+};
+
+/// Returns a height of the robot above which this part of it cannot touch the solid from above.
+double highest_possible(const PlacedPart& part, const NearSolid& solid)
+{
+    constexpr double rounding = 1e-9;  // m
+    double out = solid.bounds.max.z() - part.bounds.min.z();
+    if (solid.slope) out = std::min(out, solid.height - solid.slope->dot(part.body.support(-*solid.slope)));
+    return out + rounding;
+}
+
+/// Sets slope and height of a triangle.
+void set_plane(NearSolid& triangle)
+{
+    constexpr double steepest = 20;  // a steeper plane would be less precise than the limit of rounding above
+    if (triangle.body.planes.empty()) return;
+    const Convex::Plane& plane = triangle.body.planes[0];
+    if (std::abs(plane.normal.z()) * steepest < 1) return;
+    triangle.slope = plane.normal / plane.normal.z();
+    triangle.height = plane.offset / plane.normal.z();
+}
+
+/// Marks the edge that two triangles share. Corner k of the first one is corner same[k] of the second one, -1: none.
+void cover_edge(NearSolid& first, NearSolid& second, const std::array<int, 3>& same)
+{
+    constexpr double flat = 1e-13;  // m
+    const auto edge_without = [](const Convex& triangle, int corner) {
+        std::size_t k = 0;
+        while (triangle.edges[k][0] == corner || triangle.edges[k][1] == corner) ++k;
+        return std::uint8_t(1 << k);
+    };
+    const int alone = int(std::find(same.begin(), same.end(), -1) - same.begin()),
+              other_alone = 3 - same[std::size_t(alone + 1) % 3] - same[std::size_t(alone + 2) % 3];
+    second.wanted.covered_edges |= edge_without(second.body, other_alone);
+    const Vec3 &shared = first.body.points[std::size_t(alone + 1) % 3], &own = first.body.points[std::size_t(alone)],
+               &other = second.body.points[std::size_t(other_alone)];
+    const Vec2 edge = (first.body.points[std::size_t(alone + 2) % 3] - shared).head<2>();
+    const bool is_overhang = !(cross(edge, (own - shared).head<2>()) * cross(edge, (other - shared).head<2>()) < 0);
+    const bool is_ridge = first.slope->dot(other) - first.height < -flat;
+    if (!is_overhang && !is_ridge) first.wanted.covered_edges |= edge_without(first.body, alone);
+}
+
+/// Marks what nothing comes to lie on from above, unless it also lies on another triangle: corners and edges that
+/// several triangles share, in all but one of them; and edges in a valley or in a plane, in both triangles. Leaves out
+/// triangles that may be walls, because what touches them is examined one by one.
+void cover_shared(std::vector<NearSolid>& solids)
+{
+    constexpr std::size_t most = 48;  // of more triangles, the comparisons take longer than they save
+    constexpr double steepest = 2;
+    if (solids.size() > most) return;
+    const auto is_ground = [](const NearSolid& solid) {
+        return solid.slope && solid.slope->head<2>().squaredNorm() <= steepest * steepest;
+    };
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+        if (!is_ground(solids[i])) continue;
+        for (std::size_t j = i + 1; j < solids.size(); ++j) {
+            if (!is_ground(solids[j]) || !solids[i].bounds.meets(solids[j].bounds)) continue;
+            std::array<int, 3> same{-1, -1, -1};  // the corner of the second one that is corner k of the first
+            int count = 0;
+            for (int k = 0; k < 3; ++k)
+                for (int l = 0; l < 3; ++l)
+                    if (solids[i].body.points[std::size_t(k)] == solids[j].body.points[std::size_t(l)]) {
+                        same[std::size_t(k)] = l;
+                        solids[j].wanted.covered_points |= std::uint8_t(1 << l);
+                        ++count;
+                    }
+            if (count == 2) cover_edge(solids[i], solids[j], same);
+        }
+    }
+}
+
+double highest_of(const std::vector<Touch>& touches)
+{
+    double out = -std::numeric_limits<double>::infinity();
+    for (const Touch& touch : touches) out = std::max(out, touch.height);
+    return out;
+}
 
 /// A touch between a part of the robot and a solid.
 struct RestTouch {
@@ -116,13 +207,25 @@ public:
     Descent(const Settler& settler, std::vector<NearSolid> solids, double yaw)
         : settler_(settler), solids_(std::move(solids)), yaw_(yaw), mass_(settler.mass_center_ + preference)
     {
+        for (const Convex& part : settler_.parts_) parts_.push_back({part, {}});
     }
 
     Rest run()
     {
         at_ = level();
         const double drop_z = at_.ceiling;
-        Rest::State state = at_.has_room ? descend() : Rest::State::Blocked;
+        Rest::State state = Rest::State::Blocked;
+        if (at_.has_room) {
+            const Vec2 start = at_.angles;
+            const double height = at_.z;
+            state = descend(straight_turn);
+            if (state != Rest::State::Standing) {  // again, with a stop at each new contact
+                limit_ = first_turn;
+                drift_ = Vec2::Zero();
+                lower(start, height, contact_tolerance, at_);
+                state = descend(0);
+            }
+        }
         if (state == Rest::State::Standing) level_contacts();
         Rest out = rest(state);
         out.drop_z = drop_z;
@@ -135,38 +238,47 @@ private:
 
     Vec3 mass_center(const Vec2& angles) const { return rotation(angles) * mass_; }
 
-    /// Turns the robot until it stands or falls, or until a wall stops it.
-    Rest::State descend()
+    /// Turns the robot until it stands or falls, or until a wall stops it. Up to `straight` (rad), it turns at once to
+    /// where the touches let it rest. Otherwise, it stops at each new contact. At 0, it also stops there exactly, so
+    /// that balance_ is known if it falls.
+    Rest::State descend(double straight)
     {
-        balance_ = at_;
-        double limit = first_turn;
+        balance_ = at_.angles;
+        balance_z_ = at_.z;
+        limit_ = first_turn;
         std::optional<std::uint32_t> wall;
         for (int step = 0; step < max_turns; ++step) {
             if (at_.touches.empty() || tilt_of(at_.angles) > settler_.options_.max_tilt) {
-                at_ = balance_;
+                lower(balance_, balance_z_, contact_tolerance, at_);
                 return Rest::State::Falling;
             }
             if (stands()) return Rest::State::Standing;
-            const Vec2 aim = falling_turn(limit);
+            const Vec2 aim = falling_turn();
             if (aim.norm() < smallest_turn) break;
-            const auto [share, is_kink] = way_to_kink(aim);
+            const double share = aim.norm() <= straight ? 1 : way_to_kink(aim);
             const Vec2 turn = share * aim;
-            Lowered next = turned(turn);
+            if (straight > 0)
+                limit_ = std::clamp(4 * turn.lpNorm<Eigen::Infinity>(), least_limit, largest_turn);
+            else
+                limit_ = std::min(largest_turn, 2 * std::max(limit_, turn.lpNorm<Eigen::Infinity>()));
+            turn_by(turn);
             // The mass must sink at least by a part of what the touches let expect.
-            const double sinks = at_.z - next.z - drift_.dot(turn),
+            const double sinks = at_.z - next_.z - drift_.dot(turn),
                          expected = at_.z - expected_z(turn) - drift_.dot(turn);
-            if (!next.has_room || sinks < 0.25 * expected - tie) {
-                wall = next.wall;
-                limit = turn.lpNorm<Eigen::Infinity>() / 4;
+            if (!next_.has_room || sinks < 0.25 * expected - tie) {
+                wall = next_.wall;
+                limit_ = turn.lpNorm<Eigen::Infinity>() / 4;
                 continue;
             }
             wall.reset();
-            limit = std::min(largest_turn, 2 * std::max(limit, turn.lpNorm<Eigen::Infinity>()));
-            at_ = std::move(next);
-            if (is_kink && !at_.touches.empty()) land(turn);
+            std::swap(at_, next_);
+            if (straight == 0 && share < 1 && !at_.touches.empty()) land(turn);
         }
         at_.wall = wall;
-        return wall ? Rest::State::Blocked : Rest::State::Falling;
+        if (wall) return Rest::State::Blocked;
+        // The mass does not sink any more, so the touches around it are equally high up to rounding.
+        return contains(support_polygon(at_, rest_tolerance), mass_center(at_.angles).head<2>()) ? Rest::State::Standing
+                                                                                                 : Rest::State::Falling;
     }
 
     /// If the mass were beyond the nearest edge of the support polygon, the robot would turn about that edge. If it
@@ -186,7 +298,7 @@ private:
             mass_ = mass + rotated.transpose() * (settler_.options_.min_stability * beyond);
             at_ = rested;
             drift_ = Vec2::Zero();
-            if (descend() != Rest::State::Standing || is_far(at_, rested)) break;
+            if (descend(straight_turn) != Rest::State::Standing || is_far(at_, rested)) break;
             const std::size_t before = rest.contacts.size();
             for (const RestContact& contact : rest_contacts(at_)) {
                 const auto is_there = [&](const RestContact& other) {
@@ -207,83 +319,149 @@ private:
         return std::abs(a.z - b.z) > rocking_rise || (trace - 1) / 2 < std::cos(rocking_turn);
     }
 
-    std::vector<Convex> parts(const Attitude& attitude) const
+    /// Turns the parts of the robot.
+    const std::vector<PlacedPart>& parts(const Mat3& rotation)
     {
-        std::vector<Convex> out;
-        for (const Convex& part : settler_.parts_) out.push_back(moved(part, {Vec3::Zero(), attitude.rotation}));
+        for (std::size_t p = 0; p < parts_.size(); ++p) {
+            set_rotated(parts_[p].body, settler_.parts_[p], rotation);
+            parts_[p].bounds = parts_[p].body.bounds();
+        }
+        return parts_;
+    }
+
+    /// A part of the robot and a solid.
+    struct Pair {
+        double possible;  ///< see highest_possible()
+        std::uint32_t part, solid;
+        // Only used by level(), NaN: not known yet
+        double height = std::numeric_limits<double>::quiet_NaN();  ///< of the highest touch
+        double bottom = std::numeric_limits<double>::quiet_NaN();  ///< the pair touches from this height on
+        bool is_ceiling = false;
+    };
+
+    /// Sets pairs_ to the parts of the robot and the solids that overlap seen from above, except solids that are above
+    /// the raised robot even if its origin is at height z. The pair that may be the highest is the first.
+    void find_pairs(double z)
+    {
+        const double high = z + settler_.options_.headroom;
+        pairs_.clear();
+        std::size_t first = 0;
+        for (std::uint32_t p = 0; p < parts_.size(); ++p)
+            for (std::uint32_t s = 0; s < solids_.size(); ++s) {
+                if (!parts_[p].bounds.meets(solids_[s].bounds, 2) ||
+                    solids_[s].bounds.min.z() - parts_[p].bounds.max.z() > high)
+                    continue;
+                pairs_.push_back({highest_possible(parts_[p], solids_[s]), p, s});
+                if (pairs_.back().possible > pairs_[first].possible) first = pairs_.size() - 1;
+            }
+        if (!pairs_.empty()) std::swap(pairs_[0], pairs_[first]);
+    }
+
+    /// Sets touches_ to those of a part of the robot with a solid, and returns the highest of them.
+    double touch(const PlacedPart& part, const NearSolid& solid, const WantedTouches& wanted = {})
+    {
+        touches_.clear();
+        add_touches(part.body, solid.body, touches_, wanted);
+        return highest_of(touches_);
+    }
+
+    /// Returns the lowest point of the robot on the vertical line through its origin, relative to the origin.
+    std::optional<double> underside()
+    {
+        static const Convex origin = convex_of(Vec3(0, 0, 0));
+        touches_.clear();
+        for (const PlacedPart& part : parts_) add_touches(part.body, origin, touches_);
+        return touches_.empty() ? std::nullopt : std::optional(-highest_of(touches_));
+    }
+
+    double top() const
+    {
+        double out = -std::numeric_limits<double>::infinity();
+        for (const PlacedPart& part : parts_) out = std::max(out, part.bounds.max.z());
         return out;
     }
 
-    /// Returns the level robot at the lowest height where it has room above its layer.
-    Lowered level() const
+    /// Lets the level robot down to the lowest height where it has room above its layer.
+    Lowered level()
     {
-        struct Blocked {
-            Interval heights;
-            std::uint32_t part;
-        };
-        std::vector<Blocked> blocked;
-        const std::vector<Convex> robot = parts(Attitude(Vec2::Zero(), yaw_));
-        double z = -std::numeric_limits<double>::infinity(), top = z;
-        for (const Convex& part : robot) {
-            const Bounds bounds = part.bounds();
-            top = std::max(top, bounds.max.z());
-            if (const auto around = blocked_heights(part, convex_of(Vec3(0, 0, 0)))) z = std::max(z, around->top);
-            for (const NearSolid& solid : solids_)
-                if (bounds.meets(solid.bounds, 2))
-                    if (const auto heights = blocked_heights(part, solid.body))
-                        blocked.push_back({*heights, solid.part});
-        }
-        if (!std::isfinite(z)) z = -top;  // nothing of the robot is above its origin
-        std::sort(blocked.begin(), blocked.end(),
-                  [](const Blocked& l, const Blocked& r) { return l.heights.bottom < r.heights.bottom; });
+        parts(rotation(Vec2::Zero()));
         Lowered out;
-        for (const auto& [heights, part] : blocked) {
-            if (heights.bottom >= z + contact_tolerance || heights.top <= z) continue;
-            z = heights.top;
-            out.wall = part;
+        double z = -underside().value_or(top());
+        find_pairs(settler_.options_.max_height);
+        // The pair that touches highest decides, unless it is a ceiling: then the next one.
+        for (Pair* highest = highest_above(z); highest != nullptr; highest = highest_above(z)) {
+            highest->is_ceiling = blocked_from(*highest) >= z + contact_tolerance;
+            if (highest->is_ceiling) continue;
+            z = highest->height;
+            out.wall = solids_[highest->solid].part;
+            for (Pair& pair : pairs_) pair.is_ceiling &= pair.bottom >= z + contact_tolerance;
         }
         if (z > settler_.options_.max_height) return out;
-        return lowered(Vec2::Zero(), z, contact_tolerance);
+        lower(Vec2::Zero(), z, contact_tolerance, out);
+        return out;
+    }
+
+    /// Returns the pair whose highest touch is higher than z and higher than those of the others, without ceilings;
+    /// nullptr if there is none.
+    Pair* highest_above(double z)
+    {
+        Pair* out = nullptr;
+        for (Pair& pair : pairs_) {
+            if (pair.is_ceiling || pair.possible <= z) continue;
+            if (std::isnan(pair.height))
+                pair.possible = pair.height = touch(parts_[pair.part], solids_[pair.solid], {.least = z});
+            if (pair.height <= z) continue;
+            z = pair.height;
+            out = &pair;
+        }
+        return out;
+    }
+
+    /// Returns from which height on a pair touches.
+    double blocked_from(Pair& pair) const
+    {
+        if (std::isnan(pair.bottom))
+            pair.bottom = blocked_heights(parts_[pair.part].body, solids_[pair.solid].body)->bottom;
+        return pair.bottom;
     }
 
     /// Lowers the robot onto the solids that are not higher than about z. It has no room if a solid reaches from below
     /// z to more than `rise` above it: a wall. Solids above are ceilings.
-    Lowered lowered(const Vec2& angles, double z, double rise) const
+    void lower(const Vec2& angles, double z, double rise, Lowered& out)
     {
-        Lowered out;
         out.angles = angles;
         out.z = -std::numeric_limits<double>::infinity();
+        out.touches.clear();
+        out.has_room = false;
+        out.ceiling = std::numeric_limits<double>::infinity();
+        out.wall.reset();
+        const double seen = std::min(most_seen, seen_share * settler_.reach_ * limit_);
         const Attitude attitude(angles, yaw_);
-        const std::vector<Convex> robot = parts(attitude);
-        std::vector<Touch> found;
-        for (std::size_t p = 0; p < robot.size(); ++p) {
-            const Bounds bounds = robot[p].bounds();
-            for (std::size_t s = 0; s < solids_.size(); ++s) {
-                const Bounds& around = solids_[s].bounds;
-                if (!bounds.meets(around, 2) ||
-                    around.max.z() - bounds.min.z() < std::max(out.z, z - rise) - seen_below)
-                    continue;
-                found.clear();
-                add_touches(robot[p], solids_[s].body, found);
-                double highest = -std::numeric_limits<double>::infinity();
-                for (const Touch& touch : found) highest = std::max(highest, touch.height);
-                if (highest > z + rise) {
-                    const auto blocked = blocked_heights(robot[p], solids_[s].body);
-                    if (blocked && blocked->bottom < out.ceiling) {
-                        out.ceiling = blocked->bottom;
-                        out.wall = solids_[s].part;
-                    }
-                    if (blocked && blocked->bottom < z - rise) return out;
-                    continue;
+        parts(attitude.rotation);
+        find_pairs(z + rise);
+        for (const Pair& pair : pairs_) {
+            const double least = std::max(out.z, z - rise) - seen;
+            if (pair.possible < least) continue;
+            const PlacedPart& part = parts_[pair.part];
+            const NearSolid& solid = solids_[pair.solid];
+            WantedTouches wanted = solid.wanted;
+            wanted.least = least;
+            const double highest = touch(part, solid, wanted);
+            if (highest > z + rise) {
+                const auto blocked = blocked_heights(part.body, solid.body);
+                if (blocked && blocked->bottom < out.ceiling) {
+                    out.ceiling = blocked->bottom;
+                    out.wall = solid.part;
                 }
-                out.z = std::max(out.z, highest);
-                for (const Touch& touch : found)
-                    out.touches.push_back({touch, attitude.rise(touch.body, touch.slope), p, s});
+                if (blocked && blocked->bottom < z - rise) return;
+                continue;
             }
+            out.z = std::max(out.z, highest);
+            for (const Touch& touch : touches_)
+                out.touches.push_back({touch, attitude.rise(touch.body, touch.slope), pair.part, pair.solid});
         }
         if (out.touches.empty()) out.z = z;  // nothing is below it
         out.has_room = out.z <= out.ceiling;
-        return out;
     }
 
     double expected_z(const Vec2& turn) const
@@ -303,14 +481,14 @@ private:
         return *out;
     }
 
-    Lowered turned(const Vec2& turn) const
+    /// Sets next_ to the robot after a turn.
+    void turn_by(const Vec2& turn)
     {
-        return lowered(at_.angles + turn, expected_z(turn), 4 * settler_.reach_ * turn.norm() + contact_tolerance);
+        lower(at_.angles + turn, expected_z(turn), 4 * settler_.reach_ * turn.norm() + contact_tolerance, next_);
     }
 
-    /// Returns the share of a turn up to which the touch that carries the robot does so, and whether another one takes
-    /// over there.
-    std::pair<double, bool> way_to_kink(const Vec2& turn) const
+    /// Returns the share of a turn up to which the touch that carries the robot does so, before another one takes over.
+    double way_to_kink(const Vec2& turn) const
     {
         const RestTouch& carried = carrier(turn);
         double share = 1;
@@ -320,7 +498,7 @@ private:
             const double there = (carried.touch.height - t.touch.height) / faster;
             if (there * turn.norm() >= smallest_turn) share = std::min(share, there);
         }
-        return {share, share < 1};
+        return share;
     }
 
     /// Turns the robot a little, forth or back along its last turn, until two touches are equally high there.
@@ -329,9 +507,9 @@ private:
         for (int step = 0; step < 8; ++step) {
             const double share = nearest_kink(turn);
             if (std::abs(share) * turn.norm() < smallest_turn) return;
-            Lowered next = turned(share * turn);
-            if (!next.has_room || next.touches.empty()) return;
-            at_ = std::move(next);
+            turn_by(share * turn);
+            if (!next_.has_room || next_.touches.empty()) return;
+            std::swap(at_, next_);
         }
     }
 
@@ -378,18 +556,18 @@ private:
             }
             const Vec2 turn = slopes.inverse() * rises;
             if (!(turn.norm() > 1e-15) || !(turn.norm() < 1e-6)) return;
-            Lowered next = turned(turn);
-            if (!next.has_room || next.touches.empty()) return;
-            at_ = std::move(next);
+            turn_by(turn);
+            if (!next_.has_room || next_.touches.empty()) return;
+            std::swap(at_, next_);
         }
     }
 
-    /// Returns the turn with which the mass sinks most, at most `limit` in roll and pitch. The mass sinks as it does
+    /// Returns the turn with which the mass sinks most, at most `limit_` in roll and pitch. The mass sinks as it does
     /// while the robot turns about its contacts, which friction holds: as if all touching surfaces were level. But x
     /// and y stay the same, so on a slope the robot also rises or sinks because the contacts move along it. `drift_` is
     /// the gradient of the mass's height without that. It depends on how the weight is spread over the touches, which
     /// the linear program returns; so that is repeated a few times.
-    Vec2 falling_turn(double limit)
+    Vec2 falling_turn()
     {
         const Attitude attitude(at_.angles, yaw_);
         const Vec3 mass = attitude.rotation * mass_;
@@ -401,7 +579,7 @@ private:
         for (int round = 0; round < 4; ++round) {
             std::vector<MinimaxRow> rows;
             for (const RestTouch& t : at_.touches) rows.push_back({t.touch.height, t.rise + drift_});
-            const Minimax lowest = lowest_of_highest(rows, limit);
+            const Minimax lowest = lowest_of_highest(rows, limit_);
             turn = lowest.at;
             Vec2 drift = Vec2::Zero();
             double weights = 0;
@@ -411,8 +589,9 @@ private:
                 drift += lowest.weights[k] * (rise_of_mass(t.touch.body) - t.rise);
                 weights += lowest.weights[k];
             }
-            if ((drift / weights - drift_).norm() < 1e-12) break;
+            const bool is_same = (drift / weights - drift_).norm() < 1e-6;
             drift_ = drift / weights;
+            if (is_same) break;
         }
         return turn;
     }
@@ -438,7 +617,8 @@ private:
     {
         const Polygon2 polygon = support_polygon(at_);
         if (polygon.size() < 3) return false;
-        balance_ = at_;
+        balance_ = at_.angles;
+        balance_z_ = at_.z;
         return contains(polygon, mass_center(at_.angles).head<2>());
     }
 
@@ -472,38 +652,25 @@ private:
     }
 
     /// Returns the smallest vertical distance of the solids from the parts of the robot that do not touch them.
-    double belly(const std::vector<RestContact>& contacts) const
+    double belly(const std::vector<RestContact>& contacts)
     {
         double out = std::numeric_limits<double>::infinity();
-        const std::vector<Convex> robot = parts(Attitude(at_.angles, yaw_));
-        std::vector<Touch> touches;
-        for (std::size_t p = 0; p < robot.size(); ++p) {
+        for (std::size_t p = 0; p < parts_.size(); ++p) {
             if (std::any_of(contacts.begin(), contacts.end(), [&](const RestContact& c) { return c.part == p; }))
                 continue;
-            const Bounds bounds = robot[p].bounds();
             for (const NearSolid& solid : solids_) {
-                if (!bounds.meets(solid.bounds, 2)) continue;
-                touches.clear();
-                add_touches(robot[p], solid.body, touches);
-                double highest = -std::numeric_limits<double>::infinity();
-                for (const Touch& touch : touches) highest = std::max(highest, touch.height);
+                if (!parts_[p].bounds.meets(solid.bounds, 2) || at_.z - highest_possible(parts_[p], solid) >= out)
+                    continue;
+                const double highest = touch(parts_[p], solid);
                 if (highest <= at_.z) out = std::min(out, at_.z - highest);
             }
         }
         return std::isfinite(out) ? out : 0;
     }
 
-    double underside() const
+    Rest rest(Rest::State state)
     {
-        double highest = -std::numeric_limits<double>::infinity();
-        for (const Convex& part : parts(Attitude(at_.angles, yaw_)))
-            if (const auto around = blocked_heights(part, convex_of(Vec3(0, 0, 0))))
-                highest = std::max(highest, around->top);
-        return std::isfinite(highest) ? -highest : 0;
-    }
-
-    Rest rest(Rest::State state) const
-    {
+        parts(rotation(at_.angles));
         Rest out;
         out.state = state;
         out.wall = at_.wall;
@@ -516,7 +683,7 @@ private:
         out.headroom = at_.ceiling - at_.z;
         out.contacts = rest_contacts(at_);
         out.belly = belly(out.contacts);
-        out.underside = underside();
+        out.underside = underside().value_or(0);
         if (polygon.size() < 3) return out;
         out.margin = nearest_edge(polygon, mass.head<2>()).distance;
         out.tip_over = tip_over(polygon, out.contacts, mass + at_.z * Vec3::UnitZ());
@@ -526,8 +693,14 @@ private:
     const Settler& settler_;
     const std::vector<NearSolid> solids_;
     const double yaw_;
-    Vec3 mass_;  ///< the centre of mass in the robot's frame, moved a little
-    Lowered at_, balance_;
+    Vec3 mass_;                      ///< the centre of mass in the robot's frame, moved a little
+    std::vector<PlacedPart> parts_;  ///< of the robot, at the attitude that was examined last
+    std::vector<Pair> pairs_;        ///< at the attitude that was examined last
+    std::vector<Touch> touches_;     ///< of the pair that was examined last
+    Lowered at_, next_;
+    Vec2 balance_ = Vec2::Zero();  ///< angles at which it last touched the ground with an area
+    double balance_z_ = 0;
+    double limit_ = first_turn;  ///< of the next step in roll and pitch, rad
     Vec2 drift_ = Vec2::Zero();  ///< see falling_turn()
 };
 
@@ -548,17 +721,19 @@ Rest Settler::settle(double x, double y, double yaw, double layer) const
     const Geometry::Impl& geometry = geometry_.impl();
     geometry.visit_in(x - reach_, y - reach_, x + reach_, y + reach_, [&](const Tile& tile, std::uint32_t element) {
         if (tile.label(element) == Label::Water || tile.label(element) == Label::Ignore) return;
-        NearSolid solid{{}, {}, tile.part(element), tile.label(element)};
+        NearSolid solid{{}, {}, tile.part(element), tile.label(element), {}, 0, {}};
         if (tile.is_triangle(element)) {
             std::array<Vec3, 3> corners = tile.corners(element);
             for (Vec3& corner : corners) corner -= origin;
             solid.body = convex_of(corners);
+            set_plane(solid);
         } else {
             solid.body = moved(convex_of(tile.primitive(element).shape()), {-origin, Mat3::Identity()});
         }
         solid.bounds = solid.body.bounds();
         solids.push_back(std::move(solid));
     });
+    cover_shared(solids);
     Rest out = Descent(*this, std::move(solids), yaw).run();
     out.z += layer;
     out.drop_z += layer;

@@ -45,6 +45,8 @@ public:
         double max_tilt = 0.78539816339744831;  ///< rad; a robot that tilts more is falling
         double max_height = 1;                  ///< m; the level robot must find room within this height of its layer
         double min_stability = 0;               ///< m; see Rest::margin
+        /// m; what is higher above the robot is not examined, and Rest::headroom and drop_z may be too large there.
+        double headroom = std::numeric_limits<double>::infinity();
     };
 
     Settler(const Geometry& geometry, const Robot& robot, const Options& options);

@@ -62,27 +62,56 @@ std::optional<double> height_on(const Convex::Plane& plane, const Convex& ground
     return top && top->z >= z - 1e-9 ? std::optional(z) : std::nullopt;
 }
 
-/// Adds the touches of two polyhedra: the corners of the overlay of both, seen from above.
-void add_polyhedra(const Convex& body, const Convex& ground, std::vector<Touch>& out)
+double highest_point(const Convex& body)
 {
-    for (const Vec3& point : body.points)
+    double out = -std::numeric_limits<double>::infinity();
+    for (const Vec3& point : body.points) out = std::max(out, point.z());
+    return out;
+}
+
+double lowest_point(const Convex& body)
+{
+    double out = std::numeric_limits<double>::infinity();
+    for (const Vec3& point : body.points) out = std::min(out, point.z());
+    return out;
+}
+
+/// Adds the touches of two polyhedra: the corners of the overlay of both, seen from above. Leaves out pairs of corners
+/// and edges whose heights show that they touch below `least`.
+void add_polyhedra(const Convex& body, const Convex& ground, const WantedTouches& wanted, std::vector<Touch>& out)
+{
+    const double top = highest_point(ground), bottom = lowest_point(body);
+    for (const Vec3& point : body.points) {
+        if (top - point.z() < wanted.least) continue;
         if (const auto end = end_of(ground, point.x(), point.y(), 1))
             out.push_back(touch_at(end->z - point.z(), point, end->normal));
-    for (const Vec3& point : ground.points)
+    }
+    for (std::size_t k = 0; k < ground.points.size(); ++k) {
+        const Vec3& point = ground.points[k];
+        if (point.z() - bottom < wanted.least || !wanted.has_point(k)) continue;
         if (const auto end = end_of(body, point.x(), point.y(), -1))
             out.push_back(touch_at(point.z() - end->z, {point.x(), point.y(), end->z}, end->normal));
+    }
     for (const auto& [a, b] : body.edges) {
-        const Vec3 &from = body.points[std::size_t(a)], along = body.points[std::size_t(b)] - from;
-        for (const auto& [c, d] : ground.edges) {
-            const Vec3 &other = ground.points[std::size_t(c)], across = ground.points[std::size_t(d)] - other;
-            const Vec3 normal = along.cross(across);
-            if (std::abs(normal.z()) <= parallel * along.norm() * across.norm() ||
-                std::abs(normal.z()) * steepest < normal.norm())
-                continue;
+        const Vec3 &from = body.points[std::size_t(a)], &to = body.points[std::size_t(b)];
+        const double low = std::min(from.z(), to.z());
+        if (top - low < wanted.least) continue;
+        const Vec3 along = to - from;
+        for (std::size_t k = 0; k < ground.edges.size(); ++k) {
+            const auto& [c, d] = ground.edges[k];
+            const Vec3 &other = ground.points[std::size_t(c)], &end = ground.points[std::size_t(d)];
+            if (!wanted.has_edge(k) || std::max(other.z(), end.z()) - low < wanted.least) continue;
             const Vec2 apart = (other - from).head<2>();
-            const double s = cross(apart, across.head<2>()) / normal.z(),
-                         t = cross(apart, along.head<2>()) / normal.z();
-            if (s < 0 || s > 1 || t < 0 || t > 1) continue;
+            const double left = cross(along.head<2>(), apart), right = cross(along.head<2>(), (end - from).head<2>());
+            if ((left > 0 && right > 0) || (left < 0 && right < 0)) continue;
+            const Vec3 across = end - other;
+            const double crossing = along.x() * across.y() - along.y() * across.x();
+            const double s = cross(apart, across.head<2>()) / crossing, t = cross(apart, along.head<2>()) / crossing;
+            if (!(s >= 0 && s <= 1 && t >= 0 && t <= 1)) continue;
+            const Vec3 normal = along.cross(across);
+            if (std::abs(crossing) <= parallel * along.norm() * across.norm() ||
+                std::abs(crossing) * steepest < normal.norm())
+                continue;
             const Vec3 point = from + s * along;
             out.push_back(touch_at(other.z() + t * across.z() - point.z(), point, normal));
         }
@@ -90,21 +119,27 @@ void add_polyhedra(const Convex& body, const Convex& ground, std::vector<Touch>&
 }
 
 /// Adds the touches of a ball.
-void add_ball(const Vec3& centre, double radius, const Convex& ground, std::vector<Touch>& out)
+void add_ball(const Vec3& centre, double radius, const Convex& ground, const WantedTouches& wanted,
+              std::vector<Touch>& out)
 {
     const auto add = [&](const Vec3& on_ground, const Vec3& normal) {  // the normal has length 1
         if (normal.z() * steepest < 1) return;
         const Vec3 point = centre - radius * normal;
         out.push_back(touch_at(on_ground.z() - point.z(), point, normal));
     };
-    for (const Convex::Plane& plane : ground.planes) {
+    const double bottom = centre.z() - radius;
+    for (std::size_t f = 0; f < ground.face_count(); ++f) {
+        const Convex::Plane& plane = ground.planes[f];
         const Vec3 point = centre - radius * plane.normal;
         if (const auto z = height_on(plane, ground, point)) add({point.x(), point.y(), *z}, plane.normal);
     }
-    for (const auto& [a, b] : ground.edges) {
+    for (std::size_t k = 0; k < ground.edges.size(); ++k) {
+        if (!wanted.has_edge(k)) continue;
+        const auto& [a, b] = ground.edges[k];
         const Vec3 &from = ground.points[std::size_t(a)], along = ground.points[std::size_t(b)] - from;
         const double length = along.head<2>().norm();
-        if (length * steepest < along.norm()) continue;
+        if (std::max(from.z(), from.z() + along.z()) - bottom < wanted.least || length * steepest < along.norm())
+            continue;
         const Vec3 aside = Vec3(-along.y(), along.x(), 0) / length;  // perpendicular to the vertical plane of the edge
         const double off = aside.dot(centre - from);
         if (std::abs(off) >= radius) continue;
@@ -113,23 +148,29 @@ void add_ball(const Vec3& centre, double radius, const Convex& ground, std::vect
         const double t = (centre - radius * normal - from).head<2>().dot(along.head<2>()) / (length * length);
         if (t >= 0 && t <= 1) add(from + t * along, normal);
     }
-    for (const Vec3& corner : ground.points) {
+    for (std::size_t k = 0; k < ground.points.size(); ++k) {
+        if (!wanted.has_point(k)) continue;
+        const Vec3& corner = ground.points[k];
         const Vec2 off = (centre - corner).head<2>();
-        if (off.squaredNorm() >= radius * radius) continue;
+        if (corner.z() - bottom < wanted.least || off.squaredNorm() >= radius * radius) continue;
         const double up = std::sqrt(radius * radius - off.squaredNorm());
         add(corner, Vec3(off.x(), off.y(), up) / radius);
     }
 }
 
 /// Adds the touches of a cylinder without its rims: corners below it, and edges below its side.
-void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& ground, std::vector<Touch>& out)
+void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& ground, const WantedTouches& wanted,
+              std::vector<Touch>& out)
 {
     const Vec3 axis = (ends[1] - ends[0]).normalized();
-    const double length = (ends[1] - ends[0]).norm();
+    const double length = (ends[1] - ends[0]).norm(), bottom = std::min(ends[0].z(), ends[1].z()) - radius;
     const auto add = [&](const Vec3& on_ground, const Vec3& point, const Vec3& normal) {
         if (normal.z() * steepest >= normal.norm()) out.push_back(touch_at(on_ground.z() - point.z(), point, normal));
     };
-    for (const Vec3& corner : ground.points) {
+    for (std::size_t k = 0; k < ground.points.size(); ++k) {
+        if (!wanted.has_point(k)) continue;
+        const Vec3& corner = ground.points[k];
+        if (corner.z() - bottom < wanted.least) continue;
         // Along the vertical line (corner.x, corner.y, z), the distance from the axis is |off + z * rise|, and the
         // place along the axis is `place + z * axis.z`.
         const Vec3 from(corner.x() - ends[0].x(), corner.y() - ends[0].y(), -ends[0].z());
@@ -159,8 +200,11 @@ void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& grou
         }
         if (low <= high) add(corner, {corner.x(), corner.y(), low}, normal);
     }
-    for (const auto& [a, b] : ground.edges) {
+    for (std::size_t k = 0; k < ground.edges.size(); ++k) {
+        if (!wanted.has_edge(k)) continue;
+        const auto& [a, b] = ground.edges[k];
         const Vec3 &from = ground.points[std::size_t(a)], along = ground.points[std::size_t(b)] - from;
+        if (std::max(from.z(), from.z() + along.z()) - bottom < wanted.least) continue;
         Vec3 normal = axis.cross(along);
         if (std::abs(normal.z()) * steepest < normal.norm() || normal.norm() <= parallel * along.norm()) continue;
         normal *= (normal.z() < 0 ? -1 : 1) / normal.norm();
@@ -174,18 +218,24 @@ void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& grou
 }
 
 /// Adds the touches of the rim of a disc.
-void add_rim(const Vec3& centre, const Vec3& axis, double radius, const Convex& ground, std::vector<Touch>& out)
+void add_rim(const Vec3& centre, const Vec3& axis, double radius, const Convex& ground, const WantedTouches& wanted,
+             std::vector<Touch>& out)
 {
-    for (const Convex::Plane& plane : ground.planes) {
+    for (std::size_t f = 0; f < ground.face_count(); ++f) {
+        const Convex::Plane& plane = ground.planes[f];
         const Vec3 across = plane.normal - plane.normal.dot(axis) * axis;
         if (plane.normal.z() * steepest < 1 || across.norm() < 1e-14) continue;
         const Vec3 point = centre - radius * across.normalized();
         if (const auto z = height_on(plane, ground, point))
             out.push_back(touch_at(*z - point.z(), point, plane.normal));
     }
+    const double bottom = centre.z() - radius * std::sqrt(std::max(0.0, 1 - axis.z() * axis.z()));
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
-    for (const auto& [a, b] : ground.edges) {
+    for (std::size_t k = 0; k < ground.edges.size(); ++k) {
+        if (!wanted.has_edge(k)) continue;
+        const auto& [a, b] = ground.edges[k];
         const Vec3 &from = ground.points[std::size_t(a)], along = ground.points[std::size_t(b)] - from;
+        if (std::max(from.z(), from.z() + along.z()) - bottom < wanted.least) continue;
         const Vec2 flat = along.head<2>(), aside(-flat.y(), flat.x());
         // The rim's points at an angle: centre + radius * (u cos + v sin). They lie above the edge's line where
         // p cos + q sin = r.
@@ -206,15 +256,15 @@ void add_rim(const Vec3& centre, const Vec3& axis, double radius, const Convex& 
 }
 
 /// Adds the touches of a round body and a polyhedron.
-void add_round(const Convex& body, const Convex& ground, std::vector<Touch>& out)
+void add_round(const Convex& body, const Convex& ground, const WantedTouches& wanted, std::vector<Touch>& out)
 {
     for (const Vec3& point : body.points)
         if (body.ball > 0)
-            add_ball(point, body.ball, ground, out);
+            add_ball(point, body.ball, ground, wanted, out);
         else
-            add_rim(point, body.axis, body.disc, ground, out);
+            add_rim(point, body.axis, body.disc, ground, wanted, out);
     if (body.points.size() == 2)
-        add_tube({body.points[0], body.points[1]}, std::max(body.ball, body.disc), ground, out);
+        add_tube({body.points[0], body.points[1]}, std::max(body.ball, body.disc), ground, wanted, out);
 }
 
 }  // namespace
@@ -274,13 +324,13 @@ std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
     }
 }
 
-void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out)
+void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out, const WantedTouches& wanted)
 {
-    if (body.is_polyhedron() && ground.is_polyhedron()) return add_polyhedra(body, ground, out);
-    if (ground.is_polyhedron()) return add_round(body, ground, out);
+    if (body.is_polyhedron() && ground.is_polyhedron()) return add_polyhedra(body, ground, wanted, out);
+    if (ground.is_polyhedron()) return add_round(body, ground, wanted, out);
     if (body.is_polyhedron()) {  // the same seen from below, where the ground is lowered onto the body
         const std::size_t first = out.size();
-        add_round(upside_down(ground), upside_down(body), out);
+        add_round(upside_down(ground), upside_down(body), {.least = wanted.least}, out);
         for (std::size_t k = first; k < out.size(); ++k) {
             Touch& touch = out[k];
             touch.body.z() = -touch.body.z() - touch.height;
