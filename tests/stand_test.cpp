@@ -321,3 +321,62 @@ TEST_CASE("limits of settled poses that are out of range are refused")
     CHECK_THROWS_WITH(make({.stand = {.min_stability = -1}}), "Judge: stand.min_stability is -1, needs >= 0 m");
     CHECK_THROWS_WITH(make({.stand = {.drop = 0.0}}), "Judge: stand.drop is 0, needs > 0 m");
 }
+
+TEST_CASE(
+    "settled samples are settled poses, raised by the lift, valid as written, and the same at any number of threads")
+{
+    std::size_t tilted = 0;
+    for (const std::uint64_t seed : {1u, 2u, 4u, 5u, 7u, 8u, 9u, 10u}) {
+        INFO("seed " << seed);
+        const Judge judge(map_of(random_scene(seed)), seed < 6 ? random_robot(seed) : on_balls(0.1),
+                          {.stand = {.lift = 0.03}});
+        SampleOptions options{.count = 20,
+                              .min_distance = 0.3,
+                              .random_yaw = true,
+                              .seed = seed,
+                              .stance = Stance::Settled,
+                              .threads = 1};
+        const SpawnList list = sample(judge, options);
+        CHECK(list.counts[Verdict::Valid] == list.spawns.size());
+        for (const Spawn& spawn : list.spawns) {
+            tilted += spawn.roll != 0 || spawn.pitch != 0;
+            const Pose written{spawn.position, rotation_from_rpy(spawn.roll, spawn.pitch, spawn.yaw)};
+            if (seed < 6) {  // the origin of a random robot may be below its ground
+                if (judge.check(written).verdict != Verdict::Aerial) CHECK(judge.is_valid(written));
+                continue;
+            }
+            const SettledPose again = judge.settle(spawn.position, spawn.yaw);
+            CHECK(again.verdict == Verdict::Valid);
+            CHECK((again.lifted(0.03).position - spawn.position).norm() <= 1e-9);
+            CHECK(std::abs(again.roll - spawn.roll) <= 1e-9);
+            CHECK(judge.is_valid(written));
+        }
+        for (std::size_t i = 0; i < list.spawns.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k)
+                CHECK((list.spawns[i].position - list.spawns[k].position).norm() >= 0.3);
+        for (const int threads : {2, 8}) {
+            options.threads = threads;
+            const SpawnList other = sample(judge, options);
+            REQUIRE(other.spawns.size() == list.spawns.size());
+            for (std::size_t i = 0; i < list.spawns.size(); ++i) {
+                CHECK(other.spawns[i].position == list.spawns[i].position);
+                CHECK(other.spawns[i].roll == list.spawns[i].roll);
+                CHECK(other.spawns[i].pitch == list.spawns[i].pitch);
+            }
+            CHECK(other.counts == list.counts);
+        }
+    }
+    CHECK(tilted > 30);
+}
+
+TEST_CASE("sampling of settled poses ends when nothing fits, without a proof")
+{
+    Scene scene;
+    add_block(scene, {-1, -1, -1}, {1, 1, 0}, Label::Obstacle, "table");
+    add_block(scene, {-1, -1, -3}, {1, 1, -2}, Label::Terrain, "floor");
+    const Judge judge(map_of(scene), on_balls());
+    const SpawnList list = sample(judge, {.count = 5, .min_distance = 5, .stance = Stance::Settled});
+    CHECK(list.spawns.size() == 1);
+    CHECK(!list.is_full);
+    CHECK(std::abs(list.undecided_area - 4) <= 1e-6);
+}

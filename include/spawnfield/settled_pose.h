@@ -21,6 +21,12 @@ struct StandLimits {
     std::optional<double> drop = {};
 };
 
+/// How robots stand in a query.
+enum class Stance : std::uint8_t {
+    Level,   ///< upright, at an offset above the ground
+    Settled  ///< let down onto the ground, where they come to rest
+};
+
 /// A place where a robot at rest touches the ground.
 struct RestContact {
     Vec3 point;            ///< m, in the scene's frame

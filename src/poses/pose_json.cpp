@@ -33,6 +33,16 @@ Json pose_json(const RobotStart& robot)
     return out;
 }
 
+void add_stand_limits(Json& settings, const StandLimits& limits)
+{
+    settings["stance"] = "settled";
+    settings["lift"] = limits.lift;
+    settings["max_slope"] = limits.max_slope;
+    settings["max_tilt"] = limits.max_tilt;
+    settings["min_stability"] = limits.min_stability;
+    if (limits.drop) settings["drop"] = *limits.drop;
+}
+
 std::string part_name(const Robot& robot, std::size_t part)
 {
     const std::string& name = robot.parts[part].name;

@@ -2,6 +2,7 @@
 
 #include <spawnfield/map.h>
 #include <spawnfield/robot.h>
+#include <spawnfield/settled_pose.h>
 #include <spawnfield/simulators.h>
 
 #include <nlohmann/json.hpp>
@@ -17,6 +18,9 @@ Json json_head(const std::string& command, const Map& map, const Robot& robot, J
 
 /// Returns name and namespace if they are not empty, position, quaternion and rpy.
 Json pose_json(const RobotStart& robot);
+
+/// Adds the limits of settled poses to the settings of a query.
+void add_stand_limits(Json& settings, const StandLimits& limits);
 
 /// Returns the name of a robot's part, or its number from 1 on.
 std::string part_name(const Robot& robot, std::size_t part);

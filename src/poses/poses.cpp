@@ -270,7 +270,8 @@ std::vector<RobotStart> robot_starts(const SpawnList& list, const std::vector<st
                                      const std::vector<std::string>& name_spaces)
 {
     std::vector<RobotStart> out;
-    for (const Spawn& spawn : list.spawns) out.push_back({{}, {}, spawn.position, {0, 0, spawn.yaw}});
+    for (const Spawn& spawn : list.spawns)
+        out.push_back({{}, {}, spawn.position, {spawn.roll, spawn.pitch, spawn.yaw}});
     name_all(out, names, name_spaces);
     return out;
 }
@@ -301,7 +302,8 @@ std::string spawns_csv(const SpawnList& list)
 {
     std::string text = "x,y,z,roll,pitch,yaw\n";
     for (const Spawn& spawn : list.spawns) {
-        append_numbers(text, {spawn.position.x(), spawn.position.y(), spawn.position.z(), 0, 0, spawn.yaw});
+        const Vec3& position = spawn.position;
+        append_numbers(text, {position.x(), position.y(), position.z(), spawn.roll, spawn.pitch, spawn.yaw});
         text += '\n';
     }
     return text;
@@ -311,7 +313,10 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
                         const SampleOptions& options)
 {
     Json settings = settings_json(options, judge, 2);
-    settings["offset"] = options.offset.value_or(auto_offset(judge.robot()));
+    if (options.stance == Stance::Settled)
+        add_stand_limits(settings, judge.options().stand);
+    else
+        settings["offset"] = options.offset.value_or(auto_offset(judge.robot()));
     if (!options.z.is_unlimited()) settings["z"] = z_json(options.z);
     settings["layers"] = layers_json(options.layers);
     Json out = json_head("sample", judge.map(), judge.robot(), std::move(settings));

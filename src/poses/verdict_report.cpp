@@ -47,17 +47,10 @@ Json settings_json(const VerdictReport& report)
     const JudgeOptions& options = report.judge.options();
     Json out = {{"max_height", options.max_height}};
     if (std::isfinite(options.max_water_depth)) out["max_water_depth"] = options.max_water_depth;
-    if (report.settled != nullptr) {
-        const StandLimits& stand = options.stand;
-        out["stance"] = "settled";
-        out["lift"] = stand.lift;
-        out["max_slope"] = stand.max_slope;
-        out["max_tilt"] = stand.max_tilt;
-        out["min_stability"] = stand.min_stability;
-        if (stand.drop) out["drop"] = *stand.drop;
-    } else if (std::isfinite(options.max_slope)) {
+    if (report.settled != nullptr)
+        add_stand_limits(out, options.stand);
+    else if (std::isfinite(options.max_slope))
         out["max_slope"] = options.max_slope;
-    }
     out["collision"] = options.obstacles == Obstacles::Voxels ? "octree" : "geometry";
     return out;
 }

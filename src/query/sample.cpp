@@ -4,6 +4,7 @@
 #include "query/avoid_index.h"
 #include "query/cell_proofs.h"
 #include "query/spawning.h"
+#include "query/stand_judge.h"
 
 #include <spawnfield/error.h>
 
@@ -18,6 +19,7 @@ namespace {
 // `least_share` of the last `blind_window` draws gave a spawn. After that, draws are made only in cells that are not
 // proven full.
 constexpr std::uint64_t blind_patience = 2000, blind_window = 1 << 17;
+constexpr std::uint64_t settled_patience = 5000;  // the same for settled poses, for which there are no proofs
 constexpr double least_share = 0.02;
 // Cells are not split as long as more than this share of a round of draws gives a spawn.
 constexpr double fair_share = 0.05;
@@ -127,12 +129,16 @@ public:
         };
         std::size_t before = 0;
         draw(out, std::numeric_limits<std::uint64_t>::max(), point, [&](std::uint64_t draws, std::uint64_t failures) {
-            if (failures >= blind_patience) return false;
-            if (draws % blind_window != 0) return true;
+            if (failures >= (is_settled_ ? settled_patience : blind_patience)) return false;
+            if (is_settled_ || draws % blind_window != 0) return true;
             return double(out.spawns.size() - std::exchange(before, out.spawns.size())) >
                    least_share * double(blind_window);
         });
-        if (!overfull_ && out.spawns.size() < options_.count) fill(out);
+        if (overfull_ || out.spawns.size() == options_.count) return !overfull_;
+        if (is_settled_)
+            out.undecided_area = Cells(within(box_, shared_.map.bounds), options_.min_distance).region_area();
+        else
+            fill(out);
         return !overfull_;
     }
 
@@ -257,7 +263,8 @@ private:
         const std::optional<ChosenLayer> layer = layer_in(std::size_t(slot), column, at);
         if (!layer) return out;
         out.on_ground = true;
-        out.on_double_ground = layer->is_double_ground;
+        out.on_double_ground = layer->is_double_ground && !is_settled_;
+        if (is_settled_) return settle(column, {at.x(), at.y(), layer->height}, out);
         out.spawn.position = Vec3(at.x(), at.y(), layer->height + offset_);
         out.near_avoided = !avoided_.is_clear(out.spawn.position);
         if (out.near_avoided) return out;
@@ -265,6 +272,20 @@ private:
         if (!out.clear) return out;
         judge.set_rotation(out.spawn.yaw);
         out.set(judge.judge(column, out.spawn.position));
+        return out;
+    }
+
+    /// Lets a candidate down at a place.
+    Candidate settle(const Column& column, const Vec3& place, Candidate out)
+    {
+        const SettledPose pose = stand_judges_.local().judge(ColumnView(column), place, out.spawn.yaw);
+        out.spawn.position = pose.has_pose ? pose.lifted(shared_.options.stand.lift).position : place;
+        out.spawn.roll = pose.roll;
+        out.spawn.pitch = pose.pitch;
+        out.near_avoided = !avoided_.is_clear(out.spawn.position);
+        if (out.near_avoided) return out;
+        out.clear = taken_.before().is_clear(out.spawn.position);
+        out.set(judgement_of(pose));
         return out;
     }
 
@@ -290,6 +311,8 @@ private:
     const Judge::Impl& shared_;
     const SampleOptions& options_;
     const double offset_;
+    const bool is_settled_ = options_.stance == Stance::Settled;
+    mutable PerThread<StandJudge> stand_judges_{[this] { return StandJudge(shared_); }};  ///< only for settled poses
     const ZRange ground_z_;  ///< layers beyond it are not ground
     const AreaIndex area_;
     const Bounds box_;
@@ -308,7 +331,10 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
     check_ground("sample", wanted.z, wanted.offset);
     SampleOptions options = wanted;
     options.offset = wanted.offset.value_or(auto_offset(judge.robot()));
-    check_offset("sample", *options.offset, judge.options().max_height);
+    if (options.stance == Stance::Settled)
+        judge.impl().settler();  // throws if the obstacles are voxels
+    else
+        check_offset("sample", *options.offset, judge.options().max_height);
     const bool one = options.layers.kind != LayerChoice::Kind::All;
     // The map counts layers at cell centres only. If a point between centres has more layers, sampling starts again
     // with one more slot.

@@ -22,23 +22,19 @@ std::optional<CollisionHit> obstacle_below(const Rest& rest)
 
 SettledPose StandJudge::judge(const Vec3& place, double yaw)
 {
-    const Column& column = upright_.column_at(place.head<2>());
-    Judgement there;
-    if (upright_.judge_ground(column, place, there))
-        return judge(ColumnView(column), place.head<2>(), yaw, *there.ground);
-    SettledPose out;
-    out.verdict = there.verdict;
-    out.ground = there.ground;
-    out.yaw = yaw;
-    return out;
+    return judge(ColumnView(upright_.column_at(place.head<2>())), place, yaw);
 }
 
-SettledPose StandJudge::judge(const ColumnView& column, const Vec2& place, double yaw, const Ground& ground)
+SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, double yaw)
 {
     SettledPose out;
-    out.ground = ground;
     out.yaw = yaw;
-    const Rest rest = settler_.settle(place.x(), place.y(), yaw, ground.height);
+    Judgement there;
+    const bool is_usable = upright_.judge_ground(column, place, there);
+    out.verdict = there.verdict;
+    out.ground = there.ground;
+    if (!is_usable) return out;
+    const Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height);
     out.verdict = Verdict::Collision;
     if (rest.state == Rest::State::Blocked) {
         if (rest.wall) out.hit = CollisionHit{*rest.wall};

@@ -12,9 +12,10 @@ public:
     {
     }
 
-    /// Judges the robot that is let down at (x, y) with a yaw onto a ground. `column` must be the column at (x, y).
-    SettledPose judge(const ColumnView& column, const Vec2& place, double yaw, const Ground& ground);
-    /// The same for the ground of a pose, if the pose itself is not outside, aerial, off terrain or submerged.
+    /// Judges the robot that is let down at (x, y) with a yaw onto the ground at or below z. `column` must be the
+    /// column at (x, y).
+    SettledPose judge(const ColumnView& column, const Vec3& place, double yaw);
+    /// The same, but looks up the column itself.
     SettledPose judge(const Vec3& place, double yaw);
 
 private:

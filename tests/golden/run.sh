@@ -34,6 +34,8 @@ spawnfield sample results/training --robot $robot -n 50 --min-distance 1 --yaw r
 spawnfield sample results/yard --robot maps/robots/cart.urdf -n 1000 --min-distance 3 -o results/yard_full.json ||
   [ $? = 3 ]  # 3: fewer than 1000 spawns fit; this line tests that case
 spawnfield sample results/storeys --robot $robot -n 40 --min-distance 1 --floor 1 -o results/storeys_sample.csv
+spawnfield sample results/training --robot maps/robots/cart.urdf -n 60 --min-distance 0.5 --yaw random --settle \
+  -o results/training_settled.csv
 spawnfield search results/low --robot box:0.99,0.67,0.39 -n 40 --min-distance 2 --yaw random --seed 3 \
   -o results/low_search.csv
 spawnfield check results/low --robot $robot --poses results/low_search.csv --max-slope 20 -o results/low_check.csv

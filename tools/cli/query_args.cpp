@@ -61,6 +61,8 @@ void notices_about_stance(const QueryArgs& args, const CLI::App& command, const 
     if (!args.is_settled())
         return notice_no_effect(args, command, {"--lift", "--max-tilt", "--min-stability", "--drop"},
                                 "it is only for settled poses (--settle)");
+    if (command.get_option_no_throw("--offset") != nullptr)
+        notice_no_effect(args, command, {"--offset"}, "settled robots stand on the ground");
     if (robot.mass_center) return;
     const Vec3 mass = mass_center_of(robot);
     notice(args, robot.name + " has no centre of mass; that of its parts' volume is used, " + rounded(mass.x()) + ", " +

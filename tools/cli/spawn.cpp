@@ -39,14 +39,15 @@ std::string upper_first(std::string text)
 /// Returns why fewer spawns than wanted were found, and what may give more. Here and below, `Options` is SearchOptions
 /// or SampleOptions.
 template <class Options>
-std::string shortfall(const Options& options, double max_slope, const SpawnList& list, const std::string& command)
+std::string shortfall(const Options& options, const QueryArgs& args, const SpawnList& list, const std::string& command)
 {
     const std::string found = std::to_string(list.spawns.size()),
                       of_count = found + " of " + std::to_string(options.count) + " spawns ";
     const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
                                (list.near_avoided > 0 ? "a smaller --avoid-distance, " : "") +
-                               (std::isfinite(max_slope) ? "a larger --max-slope, " : "") +
-                               (command == "sample"            ? "another --offset or a wider --region"
+                               (args.max_slope ? "a larger --max-slope, " : "") +
+                               (args.is_settled()              ? "a smaller --min-stability or a wider --region"
+                                : command == "sample"          ? "another --offset or a wider --region"
                                 : options.area.is_everywhere() ? "more --max-failures or wider --bounds"
                                                                : "more --max-failures or a wider --region");
     if (list.is_full && list.spawns.empty())
@@ -55,7 +56,8 @@ std::string shortfall(const Options& options, double max_slope, const SpawnList&
     if (list.is_full)
         return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice +
                " may give more";
-    if (command == "search") return "only " + of_count + "were found; " + advice + " may give more";
+    if (command == "search" || args.is_settled())
+        return "only " + of_count + "were found; " + advice + " may give more";
     char area[32];
     std::snprintf(area, sizeof area, "%.3g", list.undecided_area);
     return "only " + of_count + "were found. Another one may fit in " + area +
@@ -184,9 +186,7 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
         write(args, *output, session, options, list);
     fill(summary, options, list);
     if (list.spawns.size() == options.count) return {};
-    return {
-        .status = fewer_found,
-        .notice = hopeless.empty() ? shortfall(options, session.judge->options().max_slope, list, command) : hopeless};
+    return {.status = fewer_found, .notice = hopeless.empty() ? shortfall(options, args, list, command) : hopeless};
 }
 
 Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summary)
@@ -210,11 +210,12 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
     SampleOptions options{.count = std::size_t(args.draws.count),
                           .min_distance = args.draws.min_distance,
                           .seed = args.draws.seed,
-                          .offset = parse_offset(args.ground.offset),
+                          .stance = args.is_settled() ? Stance::Settled : Stance::Level,
                           .layers = parse_layers(args.ground.layers),
                           .area = read_area(args, args.area),
                           .threads = args.threads,
                           .progress = progress_bar(args, "sample")};
+    if (!args.is_settled()) options.offset = parse_offset(args.ground.offset);
     if (const auto box = lone_box(args.area)) {  // as bounds, so that every draw is within the region
         options.bounds = *box;
         options.area.within.clear();
@@ -222,16 +223,21 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
     const ZRange heights = heights_of(args.ground, options.bounds, "--region");
     const auto prepare = [&](const Session& session, SampleOptions& asked) {
         asked.z = with_floor(heights, args.ground, session.map);
-        asked.offset = choose_offset(args, asked.offset, session.robot, summary);
+        if (args.is_settled())
+            summary.extra.push_back("settled");
+        else
+            asked.offset = choose_offset(args, asked.offset, session.robot, summary);
+        notices_about_stance(args, command, session.robot);
         notice_if_off_map(args, session.map, "--region", asked.bounds);
         notice_about_area(args, session.map, asked.area);
         notice_if_no_layer(args, session.map, asked.layers);
-        Settings own{{"Offset (m)", number(*asked.offset)}, {"Layers", args.ground.layers}};
+        Settings own{{"Layers", args.ground.layers}};
+        if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
         return own;
     };
     const auto find_hopeless = [](const Session& session, const SampleOptions& asked) {
-        return flat_ground_complaint(session.robot, *asked.offset);
+        return asked.offset ? flat_ground_complaint(session.robot, *asked.offset) : "";
     };
     return run_spawn<SampleOptions>({prepare, sample, find_hopeless}, summary, args, command, options);
 }
@@ -293,6 +299,7 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     add_common_spawn_options(command, *args);
     add_ground(command, args->ground, "all, top, bottom, or N from the top (0 first; default all)");
     add_verdict_options(command, *args);
+    add_stance(command, *args);
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");
