@@ -121,12 +121,20 @@ TEST_CASE("the limits of slope and tilt are inclusive, and a robot beyond the la
 TEST_CASE("a robot whose mass is too near to the edge of its support is unstable")
 {
     Robot robot = on_balls();
-    robot.mass_center = Vec3(half_base - 0.005, 0, 0.15);
+    robot.mass_center = Vec3(half_base - 0.001, 0, 0.15);
+    CHECK(std::abs(auto_min_stability(robot) - 0.0014) <= 1e-12);  // the robot is 0.7 m long
     const Settled near_edge = settle(floor_scene(), robot);
     CHECK(near_edge.pose.verdict == Verdict::Unstable);
-    CHECK(near_edge.reason == "unstable: its margin is 0.005 m, the limit is 0.01 m");
-    CHECK(std::abs(near_edge.pose.margin - 0.005) <= 1e-9);
-    CHECK(settle(floor_scene(), robot, {0, 0, 0.5}, {.min_stability = 0.004}).pose.verdict == Verdict::Valid);
+    CHECK(near_edge.reason == "unstable: its margin is 0.001 m, the limit is 0.0014 m");
+    CHECK(std::abs(near_edge.pose.margin - 0.001) <= 1e-9);
+    const auto with_limit = [&](double limit) {
+        return settle(floor_scene(), robot, {0, 0, 0.5}, {.min_stability = limit}).pose.verdict;
+    };
+    CHECK(with_limit(0.0009) == Verdict::Valid);
+    CHECK(with_limit(0) == Verdict::Valid);
+    robot.mass_center = Vec3(half_base - 0.005, 0, 0.15);
+    CHECK(settle(floor_scene(), robot).pose.verdict == Verdict::Valid);
+    CHECK(with_limit(0.0051) == Verdict::Unstable);
 }
 
 TEST_CASE("a foot that hangs counts if the robot rocks onto it with little motion")
@@ -139,7 +147,7 @@ TEST_CASE("a foot that hangs counts if the robot rocks onto it with little motio
         add_block(scene, {0.1, -5, -depth}, {5, 0, 0});
         Robot robot = on_balls();
         robot.mass_center = Vec3(-0.002, -0.002, 0.15);
-        return settle(scene, robot, {-0.01, -0.01, 0.5});
+        return settle(scene, robot, {-0.01, -0.01, 0.5}, {.min_stability = 0.01});
     };
     const Settled shallow = over_hole(0.01);
     CHECK(shallow.pose.verdict == Verdict::Valid);
@@ -264,7 +272,7 @@ TEST_CASE("each valid settled pose is valid as it is written, and none of anothe
             if (pose.verdict != Verdict::Valid) continue;
             REQUIRE(has_rest);
             CHECK(pose.tilt <= rad(40) + 1e-9);
-            CHECK(pose.margin >= 0.01 - 1e-9);
+            CHECK(pose.margin >= *judge.options().stand.min_stability - 1e-9);
             const Judgement written = judge.check(pose.lifted(0.02));
             if (pose.lifted(0.02).position.z() >= pose.ground->height) CHECK(written.verdict == Verdict::Valid);
             CHECK(judge.check(pose.lifted(-1e-5)).verdict != Verdict::Valid);

@@ -117,6 +117,10 @@ SPAWNFIELD_API std::string name_of(const CollisionHit& hit, const Map& map);
 /// Returns the offset that puts the robot's lowest point 0.1 m above its layer, m.
 SPAWNFIELD_API double auto_offset(const Robot& robot);
 
+/// Returns 0.2 % of the robot's longer side, seen from above, m: for example 2 mm for a robot of 1 m. In a comparison
+/// with a physics engine, robots with a larger margin stayed where they were (docs/standing.md).
+SPAWNFIELD_API double auto_min_stability(const Robot& robot);
+
 /// Returns whether a robot with this offset collides with all flat ground, because its lowest point is not above its
 /// layer.
 SPAWNFIELD_API bool is_in_flat_ground(const Robot& robot, double offset);

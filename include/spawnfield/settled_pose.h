@@ -16,7 +16,9 @@ struct StandLimits {
     double max_slope = std::numbers::pi / 6;  ///< rad, > 0; a robot that tilts more is `steep`
     /// rad, > 0, < pi/2; a robot that tilts more while it settles is `unstable`: it tips over
     double max_tilt = std::numbers::pi / 4;
-    double min_stability = 0.01;  ///< m, >= 0; a robot with a smaller SettledPose::margin is `unstable`
+    /// m, >= 0; a robot with a smaller SettledPose::margin is `unstable`. No value: auto_min_stability(); the options
+    /// of a Judge always have a value.
+    std::optional<double> min_stability = {};
     /// m, > 0; if given, the level robot must be able to fall freely from this height above its settled pose.
     std::optional<double> drop = {};
 };

@@ -39,7 +39,7 @@ void add_stand_limits(Json& settings, const StandLimits& limits)
     settings["lift"] = limits.lift;
     settings["max_slope"] = limits.max_slope;
     settings["max_tilt"] = limits.max_tilt;
-    settings["min_stability"] = limits.min_stability;
+    settings["min_stability"] = *limits.min_stability;
     if (limits.drop) settings["drop"] = *limits.drop;
 }
 

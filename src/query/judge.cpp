@@ -15,7 +15,8 @@ namespace {
 
 bool has_max_slope(const JudgeOptions& options) { return options.max_slope != std::numeric_limits<double>::infinity(); }
 
-const JudgeOptions& checked(const JudgeOptions& options)
+/// Returns the options, with values for those that depend on the robot.
+JudgeOptions checked(JudgeOptions options, const Robot& robot)
 {
     const auto require = [](bool is_good, const char* name, double value, const char* limit) {
         if (!is_good) throw ArgumentError("Judge", name, value, limit);
@@ -24,13 +25,14 @@ const JudgeOptions& checked(const JudgeOptions& options)
     require(options.max_water_depth >= 0, "max_water_depth", options.max_water_depth, ">= 0 m");
     require(!has_max_slope(options) || (options.max_slope > 0 && options.max_slope < std::numbers::pi / 2), "max_slope",
             options.max_slope, "> 0 and < pi/2 rad, or infinite");
-    const StandLimits& stand = options.stand;
+    StandLimits& stand = options.stand;
+    if (!stand.min_stability) stand.min_stability = auto_min_stability(robot);
     const auto is_angle = [](double angle) { return angle > 0 && angle < std::numbers::pi / 2; };
     const auto is_length = [](double length) { return length >= 0 && std::isfinite(length); };
     require(is_length(stand.lift), "stand.lift", stand.lift, ">= 0 m");
     require(is_angle(stand.max_slope), "stand.max_slope", stand.max_slope, "> 0 and < pi/2 rad");
     require(is_angle(stand.max_tilt), "stand.max_tilt", stand.max_tilt, "> 0 and < pi/2 rad");
-    require(is_length(stand.min_stability), "stand.min_stability", stand.min_stability, ">= 0 m");
+    require(is_length(*stand.min_stability), "stand.min_stability", *stand.min_stability, ">= 0 m");
     require(!stand.drop || (is_length(*stand.drop) && *stand.drop > 0), "stand.drop", stand.drop.value_or(0), "> 0 m");
     return options;
 }
@@ -68,7 +70,7 @@ bool is_submerged(double ground, double water, double max_water_depth)
 }  // namespace
 
 Judge::Impl::Impl(Map map_, Robot robot_, const JudgeOptions& options_)
-    : map(std::move(map_)), robot(checked(std::move(robot_))), options(checked(options_)),
+    : map(std::move(map_)), robot(checked(std::move(robot_))), options(checked(options_, robot)),
       checker(checker_of(map, robot, options)), space(mask_of(map, robot, options)),
       footing(footing_of(map, robot, options))
 {
@@ -95,7 +97,7 @@ const Settler& Judge::Impl::settler() const
         settler_.emplace(map.geometry, robot,
                          Settler::Options{.max_tilt = options.stand.max_tilt,
                                           .max_height = options.max_height,
-                                          .min_stability = options.stand.min_stability,
+                                          .min_stability = *options.stand.min_stability,
                                           .headroom = needed_headroom(robot, options.stand)});
     });
     return *settler_;
@@ -346,6 +348,13 @@ std::string Judge::describe(const Pose& pose, const Judgement& judgement) const
     }
 }
 
+double auto_min_stability(const Robot& robot)
+{
+    constexpr double share = 0.002;
+    const Bounds box = robot.bounds();
+    return share * (box.max - box.min).head<2>().maxCoeff();
+}
+
 std::string Judge::describe(const SettledPose& pose) const
 {
     const auto degrees = [](double angle) { return rounded(angle * 180 / std::numbers::pi) + " degrees"; };
@@ -363,9 +372,9 @@ std::string Judge::describe(const SettledPose& pose) const
     case Verdict::Steep:
         return verdict + ": it tilts by " + degrees(pose.tilt) + ", the limit is " + degrees(limits.max_slope);
     case Verdict::Unstable:
-        if (pose.margin >= limits.min_stability || pose.contacts.size() < 3) return verdict + ": it tips over";
+        if (pose.margin >= *limits.min_stability || pose.contacts.size() < 3) return verdict + ": it tips over";
         return verdict + ": its margin is " + rounded(pose.margin) + " m, the limit is " +
-               rounded(limits.min_stability) + " m";
+               rounded(*limits.min_stability) + " m";
     case Verdict::Obstructed: return verdict + (pose.hit ? " by " + what : "");
     default: break;
     }

@@ -80,7 +80,7 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
         out.verdict = Verdict::Unstable;
     else if (out.tilt > limits.max_slope + limit_slack)
         out.verdict = Verdict::Steep;
-    else if (out.margin < limits.min_stability - limit_slack)
+    else if (out.margin < *limits.min_stability - limit_slack)
         out.verdict = Verdict::Unstable;
     else if (is_obstructed || (limits.drop && rest.drop_z < out.position.z() + *limits.drop))
         out.verdict = Verdict::Obstructed;

@@ -6,10 +6,12 @@
 #include "scene_args.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/frames.h>
 #include <spawnfield/input_file.h>
 #include <spawnfield/map.h>
 #include <spawnfield/robot_picture.h>
 
+#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -168,10 +170,15 @@ Json robot_json(const Robot& robot)
     out["parts"] = Json::array();
     for (const RobotPart& part : robot.parts) {
         Json entry = {{"name", part.name}, {"shape", kind_of(part)}, {"bounds", json_of(part.bounds())}};
-        if (part.shape.kind == ShapeKind::Hull)
+        if (part.shape.kind == ShapeKind::Hull) {
             entry["vertices"] = part.hull_vertices.size();
-        else
+            for (const Vec3& vertex : part.hull_vertices) entry["points"].push_back(json_of(vertex));
+        } else {
+            const Eigen::Quaterniond turn = quaternion_from(rpy_from(part.shape.pose.rotation));
             entry["size"] = json_of(part.shape.size);
+            entry["position"] = json_of(part.shape.pose.position);
+            entry["quaternion"] = {turn.x(), turn.y(), turn.z(), turn.w()};
+        }
         out["parts"].push_back(entry);
     }
     out["meshes"] = Json::array();

@@ -50,7 +50,7 @@ void add_stance(CLI::App& command, QueryArgs& args)
                        "Degrees. A robot that tilts more while it settles tips over: unstable (default 45)");
     command.add_option("--min-stability", args.min_stability,
                        "m. A robot is unstable if its centre of mass is nearer to the edge of its support polygon "
-                       "(default 0.01)");
+                       "(default: 0.2 % of the robot's longer side, 2 mm for a robot of 1 m)");
     command.add_option("--drop", args.drop,
                        "m. A robot is obstructed if it cannot fall freely from this height, level, onto its settled "
                        "pose (default: not examined)");
@@ -94,7 +94,8 @@ JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time)
     const auto is_length = [](double length) { return length >= 0 && std::isfinite(length); };
     if (!is_length(args.lift)) throw bad_value("--lift", args.lift, ">= 0 m");
     if (!is_angle(args.max_tilt)) throw bad_value("--max-tilt", args.max_tilt, "> 0 and < 90 degrees");
-    if (!is_length(args.min_stability)) throw bad_value("--min-stability", args.min_stability, ">= 0 m");
+    if (args.min_stability && !is_length(*args.min_stability))
+        throw bad_value("--min-stability", *args.min_stability, ">= 0 m");
     if (args.drop && !(is_length(*args.drop) && *args.drop > 0)) throw bad_value("--drop", *args.drop, "> 0 m");
     constexpr double degree = std::numbers::pi / 180;
     JudgeOptions options{.max_height = args.max_height,

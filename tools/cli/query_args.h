@@ -17,11 +17,11 @@ struct QueryArgs : CommonArgs, RobotArgs {
     double max_height = 1.0;
     bool exhaustive = false;
     double max_water_depth = std::numeric_limits<double>::infinity();
-    std::optional<double> max_slope;                          ///< degrees
-    std::string stance;                                       ///< "level", "settled", or empty: the command's default
-    bool settle = false;                                      ///< --settle, short for --stance settled
-    double lift = 0.02, min_stability = 0.01, max_tilt = 45;  ///< m, m, degrees
-    std::optional<double> drop;                               ///< m
+    std::optional<double> max_slope;            ///< degrees
+    std::string stance;                         ///< "level", "settled", or empty: the command's default
+    bool settle = false;                        ///< --settle, short for --stance settled
+    double lift = 0.02, max_tilt = 45;          ///< m, degrees
+    std::optional<double> min_stability, drop;  ///< m
 
     bool is_settled() const { return settle || stance == "settled"; }
 };

@@ -32,7 +32,8 @@ std::vector<std::string> words_that(const std::vector<std::string>& words,
     return out;
 }
 
-/// Returns the words that begin with the text, or else those nearest to it, or else those that contain it.
+/// Returns the words that begin with the text, or else those nearest to it, or else those that contain it. A word that
+/// ends with it (`--min-distance` for `--distance`) is nearer than one with two other letters.
 std::vector<std::string> likely(const std::string& text, const std::vector<std::string>& words)
 {
     const std::string core = text.substr(std::min(text.find_first_not_of('-'), text.size()));
@@ -42,6 +43,10 @@ std::vector<std::string> likely(const std::string& text, const std::vector<std::
             return longer;
     std::size_t nearest = 1 + core.size() / 4;
     for (const std::string& word : words) nearest = std::min(nearest, edit_distance(text, word));
+    if (nearest > 1 && core.size() > 3)
+        if (auto longer = words_that(words, [&](const std::string& word) { return word.ends_with('-' + core); });
+            !longer.empty())
+            return longer;
     const auto near = words_that(words, [&](const std::string& word) {
         return word.size() > nearest + 1 && edit_distance(text, word) == nearest;
     });
