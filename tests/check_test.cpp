@@ -335,3 +335,50 @@ TEST_CASE("options of settled poses are refused or reported if they cannot have 
     refused("--settle --drop 0", "--drop is 0, needs > 0 m");
     refused("--settle --stance level", "--settle");
 }
+
+TEST_CASE("the valid rows of raster --settle are valid poses as they are written")
+{
+    const Arena arena;
+    const ProgramRun run = arena("raster map --dims 2 --step 0.5 --settle --yaw 20deg -o raster.csv" + husky_option);
+    INFO(run.err);
+    CHECK(run.status == 0);
+    CHECK_THAT(run.err, Contains("raster: settled; 1700 poses: "));
+    std::istringstream lines(bytes_of(arena / "raster.csv"));
+    std::string line, valid;
+    std::getline(lines, line);
+    CHECK(line == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly");
+    int rows = 0, tilted = 0;
+    for (; std::getline(lines, line); ++rows) {
+        if (line.find(",valid,") == std::string::npos) continue;
+        valid += line + "\n";
+        double x, y, z, roll, pitch;
+        REQUIRE(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &x, &y, &z, &roll, &pitch) == 5);
+        tilted += std::abs(pitch) > 0.1;
+    }
+    CHECK(rows == 1700);
+    arena.write("valid.csv", "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly\n" + valid);
+    const ProgramRun check = arena("check map --poses valid.csv --require-valid" + husky_option);
+    INFO(check.err);
+    CHECK(check.status == 0);
+    CHECK(std::count(valid.begin(), valid.end(), '\n') > 900);
+    CHECK(tilted > 20);  // on the ramp
+}
+
+TEST_CASE("raster and heatmap refuse what they cannot do with settled poses")
+{
+    const Arena arena;
+    const auto refused = [&](const std::string& command, const std::string& message) {
+        const ProgramRun run = arena(command + husky_option);
+        INFO(run.err);
+        CHECK(run.status == 2);
+        CHECK_THAT(run.err, Contains(message));
+    };
+    refused("raster map --dims 3 --step 1 --settle", "--settle is only for --dims 2");
+    refused("heatmap map -o x.png --quantity margin",
+            "--quantity margin needs --settle: it is about the robot at rest");
+    refused("heatmap map -o x.png --quantity tilt --settle --yaw random", "--quantity tilt needs one heading");
+    refused("raster map --dims 2 --step 1 --settle --collision octree", "settled poses need geometry");
+    const ProgramRun idle = arena("heatmap map --step 1 -o x.png --settle --offset 0.5" + husky_option);
+    CHECK(idle.status == 0);
+    CHECK_THAT(idle.err, Contains("--offset has no effect: settled robots stand on the ground"));
+}

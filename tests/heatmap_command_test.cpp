@@ -129,3 +129,15 @@ TEST_CASE("heat maps are the same bytes with any number of threads")
         CHECK(bytes_of(arena / ("a" + file)) == bytes_of(arena / ("b" + file)));
     }
 }
+
+TEST_CASE("heat maps of settled robots name the stance, the limit of the tilt and the quantity")
+{
+    const Arena arena;
+    CHECK(heatmap(arena, "-o v.svg --settle --max-slope 20").status == 0);
+    CHECK(has(texts_in(arena, "v.svg"), "settled, yaw 0 deg, all layers (valid if one is), tilt up to 20 deg"));
+    for (const auto& [quantity, title] :
+         {std::pair("tilt", "tilt, degrees"), std::pair("belly", "belly clearance, m")}) {
+        CHECK(heatmap(arena, "-o q.svg --settle --quantity " + std::string(quantity)).status == 0);
+        CHECK(has(texts_in(arena, "q.svg"), title));
+    }
+}

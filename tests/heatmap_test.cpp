@@ -364,6 +364,33 @@ TEST_CASE("height shows the pose that represents the column")
     CHECK(in_bar > 80);
 }
 
+TEST_CASE("how the robot stands is shown on valid columns; rolls and pitches may be negative")
+{
+    RasterResult raster = raster_of({"VVC"});
+    raster.rests.resize(3);
+    const auto rest = [](double roll, double tilt, double margin) {
+        RasterRest out;
+        out.roll = roll * pi / 180;
+        out.tilt = tilt * pi / 180;
+        out.margin = margin;
+        return out;
+    };
+    raster.rests = {rest(-10, 10, 0.1), rest(20, 20, 0.4), rest(40, 40, 0.9)};
+    const Picture roll = draw(raster, {.quantity = HeatmapQuantity::Roll});
+    CHECK(roll.at(1, 1) == viridis().front());
+    CHECK(roll.at(3, 1) == viridis().back());
+    CHECK(roll.at(5, 1) == rgb(0x9a9a9a));
+    const Picture tilt = draw(raster, {.quantity = HeatmapQuantity::Tilt});
+    CHECK(tilt.at(1, 1) == viridis()[128]);  // the scale is 0 .. 20 degrees
+    CHECK(tilt.at(3, 1) == viridis().back());
+    const Picture margin = draw(raster, {.quantity = HeatmapQuantity::Margin});
+    CHECK(margin.at(1, 1) == viridis()[64]);  // the scale is 0 .. 0.4 m
+    CHECK(contains(texts_of(raster, {.quantity = HeatmapQuantity::Margin}), "stability margin, m"));
+    raster.rests.clear();
+    CHECK_THROWS_WITH(draw(raster, {.quantity = HeatmapQuantity::Belly}),
+                      Contains("size of raster.rests is 0") && Contains("a raster of settled poses at one yaw"));
+}
+
 TEST_CASE("slope is that of the layer below the pose, and the scale ends at the largest")
 {
     const auto ground = [](double, double y) { return y < 6 ? 0.0f : float(y - 6); };

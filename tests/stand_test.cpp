@@ -5,6 +5,9 @@
 #include <spawnfield/robot_parts.h>
 #include <spawnfield/scene_parts.h>
 
+#include <spawnfield/headings.h>
+#include <spawnfield/poses.h>
+
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -387,4 +390,102 @@ TEST_CASE("sampling of settled poses ends when nothing fits, without a proof")
     CHECK(list.spawns.size() == 1);
     CHECK(!list.is_full);
     CHECK(std::abs(list.undecided_area - 4) <= 1e-6);
+}
+
+namespace {
+
+std::string csv_of(const RasterResult& raster)
+{
+    std::string text;
+    write_raster_csv(raster, false, [&](std::string_view piece) { text += piece; });
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("a settled raster has the settled pose of every layer, raised by the lift, with any number of threads")
+{
+    std::size_t tilted = 0, without_pose = 0;
+    for (const std::uint64_t seed : {1u, 9u}) {
+        INFO("seed " << seed);
+        const Judge judge(map_of(random_scene(seed)), seed < 6 ? random_robot(seed) : on_balls(0.1),
+                          {.stand = {.lift = 0.03}});
+        RasterOptions options{.step = 0.9, .stance = Stance::Settled, .yaw = 0.4, .threads = 1};
+        const RasterResult settled = raster(judge, options);
+        const RasterResult level = raster(judge, {.step = 0.9, .offset = settled.offset});
+        REQUIRE(settled.poses.size() == level.poses.size());
+        REQUIRE(settled.rests.size() == settled.poses.size());
+        CHECK(settled.counts.total() == settled.poses.size());
+        for (std::size_t i = 0; i < settled.poses.size(); ++i) {
+            const RasterPose &pose = settled.poses[i], &layer = level.poses[i];
+            const RasterRest& rest = settled.rests[i];
+            const SettledPose one = judge.settle({layer.x, layer.y, layer.z - level.offset}, 0.4);
+            REQUIRE(std::pair(pose.x, pose.y) == std::pair(layer.x, layer.y));
+            CHECK(pose.layer == layer.layer);
+            CHECK(pose.verdict == one.verdict);
+            CHECK(rest.has_pose() == one.has_pose);
+            without_pose += !one.has_pose;
+            if (!one.has_pose) {
+                CHECK(pose.z == layer.z);
+                continue;
+            }
+            tilted += one.tilt > 0.01;
+            CHECK(std::abs(pose.z - one.lifted(0.03).position.z()) <= 1e-9);
+            CHECK(std::abs(rest.roll - one.roll) + std::abs(rest.pitch - one.pitch) <= 1e-9);
+            CHECK(std::abs(rest.tilt - one.tilt) + std::abs(rest.margin - one.margin) <= 1e-9);
+            CHECK(std::abs(rest.tip_over - one.tip_over) + std::abs(rest.belly - one.belly) <= 1e-9);
+        }
+        for (const int threads : {2, 8}) {
+            options.threads = threads;
+            CHECK(csv_of(raster(judge, options)) == csv_of(settled));
+        }
+    }
+    CHECK(tilted > 100);
+    CHECK(without_pose > 100);
+}
+
+TEST_CASE("a settled raster at several headings merges the rasters at each of them")
+{
+    const Judge judge(map_of(random_scene(9)), on_balls(0.1));
+    RasterOptions options{.step = 1.2, .stance = Stance::Settled};
+    const HeadingRaster all = raster_at_headings(judge, options, 4);
+    CHECK(all.raster.rests.empty());
+    std::vector<int> valid(all.raster.poses.size());
+    for (int k = 0; k < 4; ++k) {
+        options.yaw = 2 * std::numbers::pi * k / 4;
+        const RasterResult one = raster(judge, options);
+        REQUIRE(one.poses.size() == valid.size());
+        for (std::size_t i = 0; i < valid.size(); ++i) valid[i] += one.poses[i].verdict == Verdict::Valid;
+    }
+    std::size_t at_some = 0;
+    for (std::size_t i = 0; i < valid.size(); ++i) {
+        CHECK(int(all.valid_headings[i]) == valid[i]);
+        CHECK((all.raster.poses[i].verdict == Verdict::Valid) == (valid[i] > 0));
+        at_some += valid[i] > 0 && valid[i] < 4;
+    }
+    CHECK(at_some > 0);
+}
+
+TEST_CASE("a settled raster on a slope has the tilt of the slope, and its rows are valid poses")
+{
+    const Judge judge(map_of(slope(rad(12)), 0.1, {{-2, -2, -3}, {2, 2, 3}}), on_balls());
+    const RasterResult result = raster(judge, {.step = 1, .stance = Stance::Settled, .yaw = 0});
+    REQUIRE(result.poses.size() == 25);
+    CHECK(result.counts[Verdict::Valid] == 25);
+    for (std::size_t i = 0; i < result.poses.size(); ++i) {
+        const RasterPose& pose = result.poses[i];
+        CHECK(std::abs(result.rests[i].pitch + rad(12)) <= 1e-9);
+        CHECK(std::abs(result.rests[i].roll) <= 1e-9);
+        CHECK(judge.is_valid({{pose.x, pose.y, pose.z}, rotation_from_rpy(0, result.rests[i].pitch, 0)}));
+    }
+    const std::string text = csv_of(result);
+    CHECK(text.substr(0, text.find('\n')) == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly");
+    CHECK(std::count(text.begin(), text.end(), '\n') == 26);
+}
+
+TEST_CASE("a settled raster needs two dimensions and the scene's own geometry")
+{
+    const Judge judge(map_of(floor_scene()), on_balls());
+    CHECK_THROWS_WITH(raster(judge, {.dims = 3, .stance = Stance::Settled}),
+                      "raster: settled poses need dims 2: the robot is let down onto the layers of a column");
 }

@@ -6,7 +6,18 @@
 
 namespace spawnfield {
 
-enum class HeatmapQuantity { Verdict, Height, Clearance, Slope };
+enum class HeatmapQuantity {
+    Verdict,
+    Height,
+    Clearance,
+    Slope,
+    // How the robot stands, for rasters of settled poses at one yaw (RasterResult::rests):
+    Tilt,
+    Roll,
+    Pitch,
+    Margin,
+    Belly
+};
 
 struct HeatmapOptions {
     HeatmapQuantity quantity = HeatmapQuantity::Verdict;
@@ -39,7 +50,8 @@ struct HeatmapOptions {
 ///
 /// Height: z of the pose that is shown. Clearance: horizontal distance, m, from a valid column to the nearest place
 /// that is not valid or lies beyond the raster. Slope: slope of the layer that is shown, degrees, from the heights of
-/// neighbouring terrain cells. Quantities are shown where the pose is valid at all headings. Pictures narrower
+/// neighbouring terrain cells. Tilt, roll and pitch: degrees; margin and belly clearance: m; as in SettledPose.
+/// Quantities are shown where the pose is valid at all headings. Pictures narrower
 /// than 12:1 get a white margin.
 ///
 /// Spawns are drawn as footprints if these are at least 6 pixels long. Otherwise they are arrows, or dots if arrows

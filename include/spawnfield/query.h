@@ -32,6 +32,9 @@ struct RasterOptions {
     /// Columns and layers outside this area are left out: they have no pose and are not counted. For 3D rasters, the
     /// regions must not have z limits.
     Area area = {};
+    /// Settled, only for 2D: the robot is let down onto each layer. Poses are settled poses, raised by
+    /// StandLimits::lift; `offset` is then not used. Needs JudgeOptions::obstacles Geometry.
+    Stance stance = Stance::Level;
     /// Height of the origin above its layer, m, for 2D rasters and snap; with snap 0 .. max_height. No value:
     /// auto_offset().
     std::optional<double> offset = {};
@@ -71,16 +74,30 @@ struct RasterPose {
     bool snapped = false;  ///< 3D: the pose is on a layer and replaces a step
 };
 
+/// How the robot of a pose stands. The lengths and angles are those of SettledPose.
+struct RasterRest {
+    double roll = 0, pitch = 0;  ///< rad, as in URDF's rpy
+    /// rad, m, rad, m. NaN: the robot has no room, or the place cannot be used.
+    double tilt = std::numeric_limits<double>::quiet_NaN(), margin = tilt, tip_over = tilt, belly = tilt;
+
+    bool has_pose() const { return tilt == tilt; }
+};
+
 struct RasterResult {
     int dims = 2;
     RasterGrid grid;
     Area area = {};  ///< columns outside it were left out
-    double yaw = 0, offset = 0;
+    Stance stance = Stance::Level;
+    double yaw = 0;
+    /// Height of the poses above their layers, m. For settled poses: of a level robot on level ground, raised by the
+    /// lift. Settled poses without RasterRest::has_pose are at this height, too.
+    double offset = 0;
     ZRange z = {};  ///< 2D: only layers in this range are ground
     /// Row by row, y ascending; in a row, x ascending; in a column, from the top down. Without the aerial poses of 3D
     /// rasters.
     std::vector<RasterPose> poses;
-    VerdictCounts counts;  ///< of all poses, including the aerial ones
+    std::vector<RasterRest> rests;  ///< one for each settled pose at one yaw; otherwise empty
+    VerdictCounts counts;           ///< of all poses, including the aerial ones
     std::uint64_t exact_checks = 0;
 };
 

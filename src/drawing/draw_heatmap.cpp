@@ -65,6 +65,9 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
     check_size("spawn_names", options.spawn_names.size(), options.spawns.size(), "as many as spawns, or none");
     check_size("valid_headings", options.valid_headings.size(), raster.poses.size(),
                "as many as the raster's poses, or none");
+    if (options.quantity >= HeatmapQuantity::Tilt && raster.rests.size() != raster.poses.size())
+        throw ArgumentError("write_heatmap", "size of raster.rests", double(raster.rests.size()),
+                            "as many as its poses for this quantity: a raster of settled poses at one yaw");
 }
 
 // ---------------------------------------------------------------- obstacles
@@ -100,11 +103,27 @@ ObstacleSearch obstacle_search(const ShownPoses& shown, const RasterResult& rast
     return search;
 }
 
-/// Returns the scale of a quantity. Clearances and slopes begin at 0, heights at the lowest value; all end at the
-/// largest value.
+/// Returns the title of a quantity's scale, with its unit.
+const char* heading_of(HeatmapQuantity quantity)
+{
+    switch (quantity) {
+    case HeatmapQuantity::Height: return "height of the pose, m";
+    case HeatmapQuantity::Clearance: return "clearance, m";
+    case HeatmapQuantity::Tilt: return "tilt, degrees";
+    case HeatmapQuantity::Roll: return "roll (right side down), degrees";
+    case HeatmapQuantity::Pitch: return "pitch (nose down), degrees";
+    case HeatmapQuantity::Margin: return "stability margin, m";
+    case HeatmapQuantity::Belly: return "belly clearance, m";
+    default: return "slope, degrees";
+    }
+}
+
+/// Returns the scale of a quantity. Heights, rolls and pitches begin at the lowest value, the others at 0; all end at
+/// the largest value.
 ColourScale scale_for(const cv::Mat_<float>& values, HeatmapQuantity quantity)
 {
-    const bool from_zero = quantity != HeatmapQuantity::Height;
+    const bool from_zero = quantity != HeatmapQuantity::Height && quantity != HeatmapQuantity::Roll &&
+                           quantity != HeatmapQuantity::Pitch;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const float value : values)
         if (std::isfinite(value)) {
@@ -114,10 +133,7 @@ ColourScale scale_for(const cv::Mat_<float>& values, HeatmapQuantity quantity)
     if (from_zero || low > high) low = 0;
     if (high < low) high = 1;
     if (from_zero && high == 0) high = 1;
-    const char* heading = quantity == HeatmapQuantity::Height      ? "height of the pose, m"
-                          : quantity == HeatmapQuantity::Clearance ? "clearance, m"
-                                                                   : "slope, degrees";
-    return scale_between(heading, low, high, viridis());
+    return scale_between(heading_of(quantity), low, high, viridis());
 }
 
 // ---------------------------------------------------------------- legend

@@ -96,6 +96,27 @@ cv::Mat_<float> slopes(const ShownPoses& shown, const RasterResult& raster, cons
     return values;
 }
 
+/// Returns how the robot stands in each valid column: degrees for angles, m for lengths.
+cv::Mat_<float> rests(const ShownPoses& shown, const RasterResult& raster, HeatmapQuantity quantity)
+{
+    constexpr double degree = std::numbers::pi / 180;
+    const auto value = [&](const RasterRest& rest) {
+        switch (quantity) {
+        case HeatmapQuantity::Roll: return rest.roll / degree;
+        case HeatmapQuantity::Pitch: return rest.pitch / degree;
+        case HeatmapQuantity::Margin: return rest.margin;
+        case HeatmapQuantity::Belly: return rest.belly;
+        default: return rest.tilt / degree;
+        }
+    };
+    cv::Mat_<float> values(shown.rows, shown.cols, no_value);
+    for (int row = 0; row < shown.rows; ++row)
+        for (int col = 0; col < shown.cols; ++col)
+            if (shown.is_valid(row, col, 1))
+                values(row, col) = float(value(raster.rests[std::size_t(shown.at(row, col) - raster.poses.data())]));
+    return values;
+}
+
 }  // namespace
 
 cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterResult& raster, const TerrainMap& terrain,
@@ -105,9 +126,9 @@ cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterResult& ras
     case HeatmapQuantity::Height: return pose_heights(shown, options.headings);
     case HeatmapQuantity::Slope: return slopes(shown, raster, terrain, options.headings);
     case HeatmapQuantity::Clearance:
-    case HeatmapQuantity::Verdict: break;
+    case HeatmapQuantity::Verdict: return clearances(shown, raster.grid.step, options.headings);
+    default: return rests(shown, raster, options.quantity);
     }
-    return clearances(shown, raster.grid.step, options.headings);
 }
 
 }  // namespace spawnfield

@@ -47,20 +47,37 @@ void append_numbers(std::string& text, std::initializer_list<double> values)
     }
 }
 
-/// Appends a line x,y,z,yaw,layer,verdict for each pose.
-void append_rows(std::string& text, std::span<const RasterPose> poses, const std::string& yaw)
+/// Appends the tilt and what follows it in the lines of a settled raster.
+void append_rest(std::string& text, const RasterRest& rest)
+{
+    for (const double value : {rest.tilt, rest.margin, rest.tip_over, rest.belly}) {
+        text += ',';
+        if (rest.has_pose()) append_number(text, value);
+    }
+}
+
+/// Appends a line x,y,z,yaw,layer,verdict for each pose. `rests` is empty, or has one for each pose: then the lines
+/// also have roll, pitch and how the robot stands.
+void append_rows(std::string& text, std::span<const RasterPose> poses, std::span<const RasterRest> rests,
+                 const std::string& yaw)
 {
     double last_y = std::numeric_limits<double>::quiet_NaN();
     std::string y;  // the text of last_y; a row of poses has the same y, and making the text takes time
-    for (const RasterPose& pose : poses) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const RasterPose& pose = poses[i];
         if (pose.y != last_y) y = number(last_y = pose.y);
         append_number(text, pose.x);
         ((text += ',') += y) += ',';
         append_number(text, pose.z);
+        if (!rests.empty()) {
+            text += ',';
+            append_numbers(text, {rests[i].roll, rests[i].pitch});
+        }
         ((text += ',') += yaw) += ',';
         if (pose.layer >= 0) text += std::to_string(pose.layer);
         text += ',';
         text += to_string(pose.verdict);
+        if (!rests.empty()) append_rest(text, rests[i]);
         text += '\n';
     }
 }
@@ -245,20 +262,26 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
 {
     constexpr std::size_t piece = 1 << 12, batch = 1 << 16;  // poses of a text, and of a loop of several threads
     const std::string yaw = number(raster.yaw);
+    const bool is_settled = raster.stance == Stance::Settled && raster.rests.size() == raster.poses.size();
     std::vector<RasterPose> poses;
     poses.reserve(std::min<std::size_t>(batch, raster.counts.total()));
     std::vector<std::string> texts;
+    std::size_t written = 0;  // poses
     const auto write = [&] {
         texts.resize((poses.size() + piece - 1) / piece);
         parallel_for(texts.size(), threads, {}, [&](std::size_t i) {
-            const std::size_t first = i * piece;
+            const std::size_t first = i * piece, count = std::min(piece, poses.size() - first);
             texts[i].clear();
-            append_rows(texts[i], std::span(poses).subspan(first, std::min(piece, poses.size() - first)), yaw);
+            append_rows(
+                texts[i], std::span(poses).subspan(first, count),
+                is_settled ? std::span(raster.rests).subspan(written + first, count) : std::span<const RasterRest>(),
+                yaw);
         });
         for (const std::string& text : texts) sink(text);
+        written += poses.size();
         poses.clear();
     };
-    sink("x,y,z,yaw,layer,verdict\n");
+    sink(is_settled ? "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly\n" : "x,y,z,yaw,layer,verdict\n");
     for_each_pose(raster, aerial, [&](const RasterPose& pose) {
         poses.push_back(pose);
         if (poses.size() == batch) write();

@@ -16,7 +16,10 @@ using VerdictTally = std::array<std::uint8_t, verdict_count>;
 /// several, the first of them in the enumeration.
 Verdict merged(const VerdictTally& tally);
 
-/// Judges poses at several headings: yaws 2 pi k / headings. The column and the ground of a pose are the same for all
+/// Returns yaw k of several headings, rad.
+double heading(int k, int headings);
+
+/// Judges poses at several headings. The column and the ground of a pose are the same for all
 /// of them, and most poses are free at every yaw.
 class HeadingsJudge {
 public:

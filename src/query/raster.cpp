@@ -2,6 +2,7 @@
 #include "query/area_index.h"
 #include "query/headings_judge.h"
 #include "query/raster_grid.h"
+#include "query/stand_judge.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/query.h>
@@ -46,6 +47,8 @@ void check(const RasterOptions& options)
     if (options.dims == 3 && !has_no_z_limits(options.area))
         throw ArgumentError(
             "raster", "area has z limits, but with dims 3 its regions must have none; limit the heights with bounds");
+    if (options.stance == Stance::Settled && options.dims != 2)
+        throw ArgumentError("raster", "settled poses need dims 2: the robot is let down onto the layers of a column");
     if (!options.snap) return;
     if (options.dims != 3)
         throw ArgumentError("raster", "snap needs dims 3: a pose of a 2D raster stands on its layer by definition");
@@ -55,6 +58,7 @@ void check(const RasterOptions& options)
 
 double chosen_offset(const Judge& judge, const RasterOptions& options)
 {
+    if (options.stance == Stance::Settled) return judge.options().stand.lift - judge.robot().bounds().min.z();
     const double offset = options.offset.value_or(auto_offset(judge.robot()));
     if (options.snap && !(offset >= 0 && offset <= judge.options().max_height))
         throw ArgumentError("raster", "offset", offset,
@@ -87,12 +91,14 @@ Steps replaced_steps(const RasterGrid& grid, double offset, std::span<const Rast
 struct Row {
     std::vector<RasterPose> poses;
     std::vector<VerdictTally> tallies;  ///< of the poses, if they are judged at several headings
+    std::vector<RasterRest> rests;      ///< of the poses, if they are settled at one yaw
     std::uint64_t aerial = 0, exact_checks = 0;
 
     void clear()  // keeps the memory
     {
         poses.clear();
         tallies.clear();
+        rests.clear();
         aerial = exact_checks = 0;
     }
 };
@@ -148,6 +154,7 @@ private:
     struct Worker {
         PoseJudge judge;                                    ///< at options.yaw
         std::optional<HeadingsJudge> at_headings;           ///< empty: only one yaw is judged
+        std::optional<StandJudge> stand;                    ///< empty: the poses are level
         Columns columns;                                    ///< of the current block
         std::array<double, block> x;                        ///< of the block's columns
         std::array<Columns::OpenGround, block> ground;      ///< in one row of the block
@@ -155,7 +162,10 @@ private:
 
         explicit Worker(const RasterJudge& raster) : judge(raster.shared_, raster.options_.yaw, raster.max_height())
         {
-            if (raster.headings_ > 0) at_headings.emplace(raster.shared_, raster.headings_, raster.max_height());
+            if (raster.is_settled_)
+                stand.emplace(raster.shared_);
+            else if (raster.headings_ > 0)
+                at_headings.emplace(raster.shared_, raster.headings_, raster.max_height());
         }
     };
 
@@ -224,6 +234,10 @@ private:
             if (!options_.layers.includes(layer, count)) continue;
             if (options_.dims == 2 && !is_everywhere_ && !area_.contains({x, y}, height)) continue;
             if (options_.snap && !(height >= grid_.z0 - touch_tolerance && height <= top_ + touch_tolerance)) continue;
+            if (worker.stand) {
+                settle(*worker.stand, column, {x, y, height}, layer, out);
+                continue;
+            }
             const double z = height + offset_;
             Verdict verdict;
             if (worker.at_headings) {
@@ -236,6 +250,29 @@ private:
             }
             out.poses.push_back({x, y, z, layer, verdict, options_.snap});
         }
+    }
+
+    /// Lets the robot down at a place on a layer.
+    void settle(StandJudge& stand, const ColumnView& column, const Vec3& place, int layer, Row& out) const
+    {
+        const auto settled = [&](double yaw) {
+            SettledPose pose = stand.judge(column, place, yaw);
+            out.exact_checks += pose.exact_check;
+            return pose;
+        };
+        if (headings_ > 0) {
+            VerdictTally tally{};
+            for (int k = 0; k < headings_; ++k) ++tally[std::size_t(settled(heading(k, headings_)).verdict)];
+            out.tallies.push_back(tally);
+            out.poses.push_back({place.x(), place.y(), place.z() + offset_, layer, merged(tally)});
+            return;
+        }
+        const SettledPose pose = settled(options_.yaw);
+        RasterRest rest;
+        if (pose.has_pose) rest = {pose.roll, pose.pitch, pose.tilt, pose.margin, pose.tip_over, pose.belly};
+        out.rests.push_back(rest);
+        const double z = pose.has_pose ? pose.lifted(shared_.options.stand.lift).position.z() : place.z() + offset_;
+        out.poses.push_back({place.x(), place.y(), z, layer, pose.verdict});
     }
 
     /// Returns the steps that may be near enough to the ground, the steps beyond the map's z limits, and the replaced
@@ -321,9 +358,10 @@ private:
     const AreaIndex area_;
     const bool is_everywhere_;
     const int headings_;  ///< 0: only options.yaw
+    const bool is_settled_ = options_.stance == Stance::Settled;
     /// Whether all poses on open ground are judged alike: at one yaw, above their layer, anywhere.
-    const bool is_simple_ = options_.dims == 2 && options_.height_check && headings_ == 0 && is_everywhere_ &&
-                            offset_ >= 0 && options_.layers.includes(0, 1);
+    const bool is_simple_ = options_.dims == 2 && !is_settled_ && options_.height_check && headings_ == 0 &&
+                            is_everywhere_ && offset_ >= 0 && options_.layers.includes(0, 1);
     const Steps outside_ = steps_outside();
     mutable PerThread<Worker> workers_{[this] { return Worker(*this); }};
 };
@@ -368,6 +406,7 @@ RasterResult raster_with(const Judge& judge, const RasterOptions& options, int h
     const Map& map = judge.map();
     RasterResult out;
     out.dims = options.dims;
+    out.stance = options.stance;
     out.yaw = options.yaw;
     out.offset = chosen_offset(judge, options);
     out.area = options.area;
@@ -396,6 +435,7 @@ RasterResult raster_with(const Judge& judge, const RasterOptions& options, int h
                 out.counts[Verdict::Aerial] += row.aerial;
                 out.exact_checks += row.exact_checks;
                 out.poses.insert(out.poses.end(), row.poses.begin(), row.poses.end());
+                out.rests.insert(out.rests.end(), row.rests.begin(), row.rests.end());
                 if (tallies != nullptr) tallies->insert(tallies->end(), row.tallies.begin(), row.tallies.end());
                 row.clear();
             }

@@ -36,12 +36,16 @@ double default_step(const Map& map, const RasterOptions& options)
     return std::max(map.resolution, longest / 300);
 }
 
+/// The values of --quantity, in the order of HeatmapQuantity.
+const std::vector<std::string> quantities{"verdict", "height", "clearance", "slope", "tilt",
+                                          "roll",    "pitch",  "margin",    "belly"};
+
 HeatmapQuantity quantity_of(const std::string& name)
 {
-    if (name == "height") return HeatmapQuantity::Height;
-    if (name == "clearance") return HeatmapQuantity::Clearance;
-    return name == "slope" ? HeatmapQuantity::Slope : HeatmapQuantity::Verdict;
+    return HeatmapQuantity(std::find(quantities.begin(), quantities.end(), name) - quantities.begin());
 }
+
+bool is_of_rest(HeatmapQuantity quantity) { return quantity >= HeatmapQuantity::Tilt; }
 
 /// Yaws that the picture is made for: one, or 16 headings all around.
 struct Facing {
@@ -88,7 +92,8 @@ void read_spawns(const HeatmapArgs& args, HeatmapOptions& picture)
 
 RasterOptions raster_options(const HeatmapArgs& args)
 {
-    RasterOptions options{.offset = parse_offset(args.ground.offset),
+    RasterOptions options{.stance = args.is_settled() ? Stance::Settled : Stance::Level,
+                          .offset = args.is_settled() ? std::nullopt : parse_offset(args.ground.offset),
                           .layers = parse_layers(args.ground.layers),
                           .threads = args.threads,
                           .progress = progress_bar(args, "heatmap")};
@@ -154,15 +159,25 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     const PictureFile file = picture_file(args.out, args.format);
     RasterOptions options = raster_options(args);
     HeatmapOptions picture = picture_options(args);
+    if (is_of_rest(picture.quantity) && !args.is_settled())
+        throw ArgumentError("--quantity " + args.quantity + " needs --settle: it is about the robot at rest");
     const Facing facing = facing_of(args, picture.spawns);
+    if (is_of_rest(picture.quantity) && facing.is_any)
+        throw ArgumentError("--quantity " + args.quantity +
+                            " needs one heading; give --yaw in radians or degrees, for example --yaw 90deg");
     options.yaw = facing.yaw;
     const Session session = open_session(args, summary);
     notice_if_off_map(args, session.map, "--bounds", options.bounds);
     notice_about_area(args, session.map, options.area);
     notice_if_no_layer(args, session.map, options.layers);
     options.z = with_floor(options.z, args.ground, session.map);
-    options.offset = choose_offset(args, options.offset, session.robot, summary);
-    require_above_ground(session.robot, *options.offset);
+    notices_about_stance(args, command, session.robot);
+    if (args.is_settled()) {
+        summary.extra.push_back("settled");
+    } else {
+        options.offset = choose_offset(args, options.offset, session.robot, summary);
+        require_above_ground(session.robot, *options.offset);
+    }
     const TerrainMap terrain = read_terrain(session.map);
     crop_to_ground(args, session.map, terrain, options);
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
@@ -192,8 +207,11 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
     command.add_option("--out,-o", args->out, "Picture to write: .png, .svg or .pdf (- for standard output)")
         ->required()
         ->check(not_empty());
-    command.add_option("--quantity", args->quantity, "verdict, height, clearance or slope (default verdict)")
-        ->check(one_of({"verdict", "height", "clearance", "slope"}));
+    command
+        .add_option("--quantity", args->quantity,
+                    "verdict, height, clearance or slope; with --settle also tilt, roll, pitch, margin or belly "
+                    "(default verdict)")
+        ->check(one_of(quantities));
     command.add_option("--spawns", args->spawns,
                        "CSV file of spawns to draw, as footprints of the robot or as arrows. A column verdict (from "
                        "`check`) gives their colours (- for standard input)");
@@ -216,6 +234,7 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
         command, args->ground,
         "all (a column is valid if one of its layers is), top, bottom, or N from the top (0 first; default all)");
     add_verdict_options(command, *args);
+    add_stance(command, *args);
     add_area(command, args->area);
     command.add_option(
         "--bounds", args->bounds,

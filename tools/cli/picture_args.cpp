@@ -49,13 +49,20 @@ std::string heatmap_caption(const RasterOptions& options, const GroundArgs& grou
                             const std::string& yaw)
 {
     std::string text;
-    if (options.offset) text = "offset " + short_number(*options.offset) + " m, ";
-    text += yaw.empty() ? "yaw " + short_number(options.yaw * 180 / std::numbers::pi) + " deg" : yaw;
+    const auto degrees = [](double angle) { return short_number(angle * 180 / std::numbers::pi) + " deg"; };
+    const bool is_settled = options.stance == Stance::Settled;
+    if (is_settled)
+        text = "settled, ";
+    else if (options.offset)
+        text = "offset " + short_number(*options.offset) + " m, ";
+    text += yaw.empty() ? "yaw " + degrees(options.yaw) : yaw;
     if (const std::string words = height_words(ground, options.z, judge.map()); options.dims == 2 && !words.empty())
         text += ", " + words;
     if (options.height_check) text += ", " + layer_words(ground.layers);
-    if (const double limit = judge.options().max_slope; std::isfinite(limit))
-        text += ", slope up to " + short_number(limit * 180 / std::numbers::pi) + " deg";
+    if (is_settled)
+        text += ", tilt up to " + degrees(judge.options().stand.max_slope);
+    else if (const double limit = judge.options().max_slope; std::isfinite(limit))
+        text += ", slope up to " + degrees(limit);
     return text;
 }
 

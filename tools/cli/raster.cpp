@@ -36,6 +36,8 @@ void check_write_aerial(const RasterCommandArgs& args, const CLI::App& command, 
 RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
 {
     RasterOptions options = raster_options(args, command);
+    if (args.is_settled() && args.dims == 3)
+        throw ArgumentError("--settle is only for --dims 2: the robot is let down onto the layers of each column");
     if (args.dims == 2)
         notice_no_effect(args, command, {"--step-z"}, "it is only for --dims 3; in 2D each pose stands on a layer");
     options.step = parse_positive("--step", args.step);
@@ -54,7 +56,7 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     add("Step (m)", number(grid.step));
     if (is_3d) add("Step z (m)", number(grid.step_z));
     if (is_3d) add("Snap", options.snap ? "yes" : "no");
-    if (!is_3d || options.snap) add("Offset (m)", number(*options.offset));
+    if (options.offset) add("Offset (m)", number(*options.offset));
     add("Yaw (rad)", number(options.yaw));
     add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, options.dims));
     for (const Region& region : options.area.within) add("Region", region.name);
@@ -77,6 +79,7 @@ Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summar
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     const Session session = open_session(args, summary);
     complete(options, args, session, summary);
+    notices_about_stance(args, command, session.robot);
     summary.lap("load");
     const RasterResult result = raster(*session.judge, options);
     summary.lap("query");
@@ -123,6 +126,7 @@ void add_raster(CLI::App& app, ChosenCommand& chosen)
         ->check(one_of({"csv", "thesis"}));
     command.add_option("--heatmap", args->heatmap, "Picture to write: .png, .svg or .pdf (- for standard output)");
     add_raster_query(command, *args);
+    add_stance(command, *args);
     command.add_flag("--write-aerial", args->write_aerial,
                      "3D: write aerial poses, too. With --format thesis, in 2D and 3D: also those off the terrain");
     command.footer(

@@ -64,7 +64,8 @@ RasterOptions raster_options(const RasterArgs& args, const CLI::App& command)
         refuse(command, {"--floor"}, "is only for --dims 2; in 3D use --z for the heights of the poses");
     notice_idle_options(args, command);
     RasterOptions options{.dims = args.dims,
-                          .offset = parse_offset(args.ground.offset),
+                          .stance = args.is_settled() ? Stance::Settled : Stance::Level,
+                          .offset = args.is_settled() ? std::nullopt : parse_offset(args.ground.offset),
                           .yaw = parse_yaw(args, args.yaw),
                           .layers = parse_layers(args.ground.layers),
                           .height_check = !args.no_height_check,
@@ -86,7 +87,8 @@ void complete(RasterOptions& options, const RasterArgs& args, const Session& ses
     notice_if_off_map(args, session.map, "--bounds", options.bounds);
     notice_about_area(args, session.map, options.area);
     notice_if_no_layer(args, session.map, options.layers);
-    if (options.dims == 3 && !options.snap) return;
+    if (args.is_settled()) summary.extra.push_back("settled");
+    if (args.is_settled() || (options.dims == 3 && !options.snap)) return;
     options.offset = choose_offset(args, options.offset, session.robot, summary);
     if (options.dims == 2)
         require_above_ground(session.robot, *options.offset);
