@@ -382,3 +382,30 @@ TEST_CASE("raster and heatmap refuse what they cannot do with settled poses")
     CHECK(idle.status == 0);
     CHECK_THAT(idle.err, Contains("--offset has no effect: settled robots stand on the ground"));
 }
+
+TEST_CASE("a robot stops at its first rest, whatever the largest tilt, and the other side of a ramp mirrors it")
+{
+    const Arena arena;
+    arena.write("poses.csv", "x,y,z,yaw\n4,9.4,0.6,1.5707963267948966\n4,4.6,0.6,-1.5707963267948966\n");
+    const auto checked = [&](const std::string& max_tilt) {
+        return arena("check map --poses poses.csv --settle -q --max-tilt " + max_tilt + husky_option).out;
+    };
+    const std::string text = checked("45");
+    CHECK(checked("20") == text);
+    CHECK(checked("70") == text);
+    std::istringstream lines(text);
+    std::string line;
+    std::getline(lines, line);
+    std::vector<std::vector<double>> rows;
+    while (std::getline(lines, line)) {
+        double z, roll, pitch, tilt, margin;
+        const std::size_t at = line.find(",valid,");
+        REQUIRE(at != std::string::npos);
+        REQUIRE(std::sscanf(line.c_str() + at, ",valid,%*f,%*f,,%lf,%lf,%lf,%lf,%lf", &z, &roll, &pitch, &tilt,
+                            &margin) == 5);
+        rows.push_back({z, -roll, pitch, tilt, margin});
+    }
+    REQUIRE(rows.size() == 2);
+    rows[0][1] = -rows[0][1];
+    for (std::size_t k = 0; k < 5; ++k) CHECK(std::abs(rows[0][k] - rows[1][k]) <= 1e-9);
+}

@@ -141,3 +141,19 @@ TEST_CASE("heat maps of settled robots name the stance, the limit of the tilt an
         CHECK(has(texts_in(arena, "q.svg"), title));
     }
 }
+
+TEST_CASE("a heat map of settled robots shows the obstacles beside a platform")
+{
+    const Arena arena;
+    arena.write("scene.yaml",
+                "format: spawnfield-scene/1\nname: post\nparts:\n"
+                "  - {name: floor, label: terrain, box: [8, 8, 0.1], xyz: [0, 0, -0.05]}\n"
+                "  - {name: platform, label: terrain, box: [3, 3, 0.8], xyz: [0, 0, 0.4]}\n"
+                "  - {name: post, label: obstacle, box: [0.6, 0.6, 0.3], xyz: [2, 0, 0.15]}\n");
+    CHECK(arena("bake scene.yaml -o post").status == 0);
+    for (const std::string stance : {"level", "settled"}) {
+        CAPTURE(stance);
+        CHECK(arena("heatmap post --step 0.2 -o x.svg --stance " + stance + husky_option).status == 0);
+        CHECK(has(texts_in(arena, "x.svg"), "obstacle"));
+    }
+}

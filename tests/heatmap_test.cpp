@@ -367,7 +367,6 @@ TEST_CASE("height shows the pose that represents the column")
 TEST_CASE("how the robot stands is shown on valid columns; rolls and pitches may be negative")
 {
     RasterResult raster = raster_of({"VVC"});
-    raster.rests.resize(3);
     const auto rest = [](double roll, double tilt, double margin) {
         RasterRest out;
         out.roll = roll * pi / 180;

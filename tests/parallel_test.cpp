@@ -35,7 +35,7 @@ TEST_CASE("results are taken in order, one at a time, for any number of threads"
     }
 }
 
-TEST_CASE("an exception in one result ends the loop, and results after it are not taken")
+TEST_CASE("an exception in one result ends the loop with any number of threads, and results after it are not taken")
 {
     for (const int threads : {1, 2, 8}) {
         CAPTURE(threads);

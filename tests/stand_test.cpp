@@ -2,11 +2,12 @@
 #include "shared_scenes.h"
 #include "test_map.h"
 
-#include <spawnfield/robot_parts.h>
-#include <spawnfield/scene_parts.h>
-
+#include <spawnfield/bake.h>
+#include <spawnfield/error.h>
 #include <spawnfield/headings.h>
 #include <spawnfield/poses.h>
+#include <spawnfield/robot_parts.h>
+#include <spawnfield/scene_parts.h>
 
 #include <nlohmann/json.hpp>
 
@@ -424,6 +425,7 @@ TEST_CASE("a settled raster has the settled pose of every layer, raised by the l
             CHECK(pose.layer == layer.layer);
             CHECK(pose.verdict == one.verdict);
             CHECK(rest.has_pose() == one.has_pose);
+            CHECK(std::abs(rest.layer_height - (layer.z - level.offset)) <= 1e-12);
             without_pose += !one.has_pose;
             if (!one.has_pose) {
                 CHECK(pose.z == layer.z);
@@ -488,4 +490,28 @@ TEST_CASE("a settled raster needs two dimensions and the scene's own geometry")
     const Judge judge(map_of(floor_scene()), on_balls());
     CHECK_THROWS_WITH(raster(judge, {.dims = 3, .stance = Stance::Settled}),
                       "raster: settled poses need dims 2: the robot is let down onto the layers of a column");
+    const Judge voxels(make_map(floor_scene(), {}), on_balls(), {.obstacles = Obstacles::Voxels});
+    CHECK_THROWS_AS(raster(voxels, {.stance = Stance::Settled}), ArgumentError);
+}
+
+TEST_CASE("a larger limit of the tilt changes no pose that is reached with a smaller one")
+{
+    std::size_t compared = 0, tilted = 0;
+    for (const std::uint64_t seed : {2u, 5u, 8u, 9u}) {
+        INFO("seed " << seed);
+        const auto rests = [&](double max_tilt) {
+            const Judge judge(map_of(random_scene(seed)), on_balls(0.1), {.stand = {.max_tilt = rad(max_tilt)}});
+            return raster(judge, {.step = 0.8, .stance = Stance::Settled, .yaw = 0.3}).rests;
+        };
+        const std::vector<RasterRest> low = rests(20), high = rests(60);
+        REQUIRE(low.size() == high.size());
+        for (std::size_t i = 0; i < low.size(); ++i) {
+            if (!low[i].has_pose() || low[i].margin < 0.01) continue;  // otherwise, it may only balance there
+            ++compared;
+            tilted += low[i].tilt > 0.1;
+            CHECK(std::abs(low[i].roll - high[i].roll) + std::abs(low[i].pitch - high[i].pitch) <= 1e-9);
+        }
+    }
+    CHECK(compared > 100);
+    CHECK(tilted > 5);
 }

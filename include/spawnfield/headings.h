@@ -15,8 +15,9 @@ struct HeadingRaster {
 };
 
 /// Returns the raster at yaws 2 pi k / headings. options.yaw is not used. Columns are computed once for all yaws, so
-/// this takes much less time than `headings` rasters. Throws ArgumentError unless headings is in 1 .. 255 and
-/// options.dims is 2, and everything that raster() throws.
+/// this takes much less time than `headings` rasters, except for settled poses. These have no RasterResult::rests, and
+/// z is RasterResult::offset above the layer. Throws ArgumentError unless headings is in 1 .. 255 and options.dims is
+/// 2, and everything that raster() throws.
 SPAWNFIELD_API HeadingRaster raster_at_headings(const Judge& judge, const RasterOptions& options, int headings = 16);
 
 }  // namespace spawnfield

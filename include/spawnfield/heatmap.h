@@ -51,8 +51,7 @@ struct HeatmapOptions {
 /// Height: z of the pose that is shown. Clearance: horizontal distance, m, from a valid column to the nearest place
 /// that is not valid or lies beyond the raster. Slope: slope of the layer that is shown, degrees, from the heights of
 /// neighbouring terrain cells. Tilt, roll and pitch: degrees; margin and belly clearance: m; as in SettledPose.
-/// Quantities are shown where the pose is valid at all headings. Pictures narrower
-/// than 12:1 get a white margin.
+/// Quantities are shown where the pose is valid at all headings. Pictures narrower than 12:1 get a white margin.
 ///
 /// Spawns are drawn as footprints if these are at least 6 pixels long. Otherwise they are arrows, or dots if arrows
 /// would be too close together. Names that would cover each other are left out; the legend contains the number of names

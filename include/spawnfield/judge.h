@@ -25,8 +25,8 @@ enum class Obstacles : std::uint8_t {
 
 /// The limits and methods by which a Judge decides.
 struct JudgeOptions {
-    /// Greatest height of the robot's origin above its ground, m, inclusive, >= 0. Rasters of two dimensions do not use
-    /// it, because their poses stand on the ground by definition.
+    /// Greatest height of the robot's origin above its ground, m, inclusive, >= 0. Rasters of level poses with two
+    /// dimensions do not use it, because their poses stand on the ground by definition.
     double max_height = 1.0;
     /// m, >= 0. Water that stands higher than this above the ground does not count.
     double max_water_depth = std::numeric_limits<double>::infinity();

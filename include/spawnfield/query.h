@@ -4,6 +4,8 @@
 #include <spawnfield/judge.h>
 #include <spawnfield/region.h>
 
+#include <cmath>
+
 namespace spawnfield {
 
 /// Selects layers of a column. The index counts from the top, beginning with 0.
@@ -76,11 +78,12 @@ struct RasterPose {
 
 /// How the robot of a pose stands. The lengths and angles are those of SettledPose.
 struct RasterRest {
+    double layer_height = 0;     ///< of the layer onto which the robot was let down, m
     double roll = 0, pitch = 0;  ///< rad, as in URDF's rpy
     /// rad, m, rad, m. NaN: the robot has no room, or the place cannot be used.
     double tilt = std::numeric_limits<double>::quiet_NaN(), margin = tilt, tip_over = tilt, belly = tilt;
 
-    bool has_pose() const { return tilt == tilt; }
+    bool has_pose() const { return !std::isnan(tilt); }
 };
 
 struct RasterResult {
@@ -93,8 +96,8 @@ struct RasterResult {
     /// lift. Settled poses without RasterRest::has_pose are at this height, too.
     double offset = 0;
     ZRange z = {};  ///< 2D: only layers in this range are ground
-    /// Row by row, y ascending; in a row, x ascending; in a column, from the top down. Without the aerial poses of 3D
-    /// rasters.
+    /// Row by row, y ascending; in a row, x ascending; in a column, from the top down (settled: from the highest layer
+    /// down). Without the aerial poses of 3D rasters.
     std::vector<RasterPose> poses;
     std::vector<RasterRest> rests;  ///< one for each settled pose at one yaw; otherwise empty
     VerdictCounts counts;           ///< of all poses, including the aerial ones

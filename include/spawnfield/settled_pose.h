@@ -44,7 +44,7 @@ struct SettledPose {
     std::optional<Ground> ground;     ///< the layer on which it was let down, or what is there instead
     std::optional<CollisionHit> hit;  ///< Collision, OffTerrain, Obstructed: what it meets, if it is known
     /// Whether the robot was let down, so that all that follows is known. Otherwise, it has no room, or the place
-    /// itself cannot be used.
+    /// itself cannot be used, and `position` is the place that was given.
     bool has_pose = false;
     Vec3 position = Vec3::Zero();         ///< of its origin, m. If it is unstable, where it would have to balance
     double roll = 0, pitch = 0, yaw = 0;  ///< rad, as in URDF's rpy

@@ -94,17 +94,17 @@ ObstacleSearch obstacle_search(const ShownPoses& shown, const RasterResult& rast
     search.reach = raster.dims == 2 ? 2 * grid.step : 0;
     search.without_layer = raster.dims == 2 && raster.area.is_everywhere();
     search.threads = options.threads;
-    search.layer_near = [=, &shown](double x, double y) -> std::optional<double> {
+    search.layer_near = [=, &shown, &raster](double x, double y) -> std::optional<double> {
         const int col = cell_index((x - view.x0) / grid.step, grid.cols),
                   from_below = cell_index((y - view.y0) / grid.step, grid.rows);
         const RasterPose* const pose = col < 0 || from_below < 0 ? nullptr : shown.at(grid.rows - 1 - from_below, col);
-        return pose ? std::optional(pose->z - above_layer) : std::nullopt;
+        return pose ? std::optional(layer_height(raster, *pose)) : std::nullopt;
     };
     return search;
 }
 
 /// Returns the title of a quantity's scale, with its unit.
-const char* heading_of(HeatmapQuantity quantity)
+const char* scale_title(HeatmapQuantity quantity)
 {
     switch (quantity) {
     case HeatmapQuantity::Height: return "height of the pose, m";
@@ -133,7 +133,7 @@ ColourScale scale_for(const cv::Mat_<float>& values, HeatmapQuantity quantity)
     if (from_zero || low > high) low = 0;
     if (high < low) high = 1;
     if (from_zero && high == 0) high = 1;
-    return scale_between(heading_of(quantity), low, high, viridis());
+    return scale_between(scale_title(quantity), low, high, viridis());
 }
 
 // ---------------------------------------------------------------- legend

@@ -59,8 +59,8 @@ std::vector<Place> valid_places(const ShownPoses& shown, const RasterResult& ras
             const int cell_col = cell_index((grid.x_of(col) - frame.x0) / frame.cell, frame.cols);
             const int from_below = cell_index((grid.y_of(grid.rows - 1 - row) - frame.y0) / frame.cell, frame.rows);
             if (cell_col < 0 || from_below < 0) continue;
-            const double layer = shown.at(row, col)->z - (raster.dims == 2 ? raster.offset : 0);
-            out.push_back({row, col, frame.rows - 1 - from_below, cell_col, layer, HeightImage(3, 3, no_value)});
+            out.push_back({row, col, frame.rows - 1 - from_below, cell_col, layer_height(raster, *shown.at(row, col)),
+                           HeightImage(3, 3, no_value)});
         }
     return out;
 }
@@ -97,7 +97,7 @@ cv::Mat_<float> slopes(const ShownPoses& shown, const RasterResult& raster, cons
 }
 
 /// Returns how the robot stands in each valid column: degrees for angles, m for lengths.
-cv::Mat_<float> rests(const ShownPoses& shown, const RasterResult& raster, HeatmapQuantity quantity)
+cv::Mat_<float> rests(const ShownPoses& shown, const RasterResult& raster, HeatmapQuantity quantity, int headings)
 {
     constexpr double degree = std::numbers::pi / 180;
     const auto value = [&](const RasterRest& rest) {
@@ -112,7 +112,7 @@ cv::Mat_<float> rests(const ShownPoses& shown, const RasterResult& raster, Heatm
     cv::Mat_<float> values(shown.rows, shown.cols, no_value);
     for (int row = 0; row < shown.rows; ++row)
         for (int col = 0; col < shown.cols; ++col)
-            if (shown.is_valid(row, col, 1))
+            if (shown.is_valid(row, col, headings))
                 values(row, col) = float(value(raster.rests[std::size_t(shown.at(row, col) - raster.poses.data())]));
     return values;
 }
@@ -127,7 +127,7 @@ cv::Mat_<float> quantity_values(const ShownPoses& shown, const RasterResult& ras
     case HeatmapQuantity::Slope: return slopes(shown, raster, terrain, options.headings);
     case HeatmapQuantity::Clearance:
     case HeatmapQuantity::Verdict: return clearances(shown, raster.grid.step, options.headings);
-    default: return rests(shown, raster, options.quantity);
+    default: return rests(shown, raster, options.quantity, options.headings);
     }
 }
 

@@ -26,6 +26,12 @@ Colour colour_of(Kind kind)
     }
 }
 
+double layer_height(const RasterResult& raster, const RasterPose& pose)
+{
+    if (!raster.rests.empty()) return raster.rests[std::size_t(&pose - raster.poses.data())].layer_height;
+    return pose.z - (raster.dims == 2 ? raster.offset : 0);
+}
+
 ShownPoses shown_poses(const RasterResult& raster, const HeatmapOptions& options)
 {
     const RasterGrid& grid = raster.grid;
@@ -40,10 +46,8 @@ ShownPoses shown_poses(const RasterResult& raster, const HeatmapOptions& options
         if (!(j >= 0 && j < grid.rows))
             throw ArgumentError("write_heatmap", "y of a pose", pose.y, "a column of the raster");
         const std::size_t column = shown.index(grid.rows - 1 - static_cast<int>(j), static_cast<int>(i));
-        const RasterPose* const current = shown.poses[column];
         const int headings = headings_of(raster, options, p);
-        if (current && (headings != shown.headings[column] ? headings < shown.headings[column] : pose.z <= current->z))
-            continue;
+        if (shown.poses[column] && headings <= shown.headings[column]) continue;
         shown.poses[column] = &pose;
         shown.headings[column] = headings;
     }

@@ -30,8 +30,13 @@ struct ShownPoses {
     }
 };
 
+/// Returns the height of the layer on which a pose of a 2D raster stands, m; of a pose of a 3D raster, its own height.
+/// `pose` must be one of raster.poses.
+double layer_height(const RasterResult& raster, const RasterPose& pose);
+
 /// Returns the poses to show. Of several poses in a column it takes the one that is valid at most headings, and among
-/// equal ones the highest. Throws ArgumentError for a pose that is not in a column of the raster.
+/// equal ones the first in the raster's list: that of the highest layer. Throws ArgumentError for a pose that is not in
+/// a column of the raster.
 ShownPoses shown_poses(const RasterResult& raster, const HeatmapOptions& options);
 
 /// Returns whether a column without a pose is aerial: in a 3D raster, aerial poses are counted but not listed, so that

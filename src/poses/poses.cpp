@@ -262,7 +262,10 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
 {
     constexpr std::size_t piece = 1 << 12, batch = 1 << 16;  // poses of a text, and of a loop of several threads
     const std::string yaw = number(raster.yaw);
-    const bool is_settled = raster.stance == Stance::Settled && raster.rests.size() == raster.poses.size();
+    const bool is_settled = !raster.rests.empty() || (raster.stance == Stance::Settled && raster.poses.empty());
+    if (is_settled && raster.rests.size() != raster.poses.size())
+        throw ArgumentError("write_raster_csv", "size of raster.rests", double(raster.rests.size()),
+                            "as many as its poses, or none");
     std::vector<RasterPose> poses;
     poses.reserve(std::min<std::size_t>(batch, raster.counts.total()));
     std::vector<std::string> texts;

@@ -16,11 +16,11 @@ using VerdictTally = std::array<std::uint8_t, verdict_count>;
 /// several, the first of them in the enumeration.
 Verdict merged(const VerdictTally& tally);
 
-/// Returns yaw k of several headings, rad.
+/// Returns 2 pi k / headings, rad.
 double heading(int k, int headings);
 
-/// Judges poses at several headings. The column and the ground of a pose are the same for all
-/// of them, and most poses are free at every yaw.
+/// Judges poses at several headings, the yaws heading(k, headings). The column and the ground of a pose are the same
+/// for all of them, and most poses are free at every yaw.
 class HeadingsJudge {
 public:
     HeadingsJudge(const Judge::Impl& shared, int headings, double max_height);

@@ -376,6 +376,9 @@ std::string Judge::describe(const SettledPose& pose) const
         return verdict + ": its margin is " + rounded(pose.margin) + " m, the limit is " +
                rounded(*limits.min_stability) + " m";
     case Verdict::Obstructed: return verdict + (pose.hit ? " by " + what : "");
+    case Verdict::Aerial:
+        if (pose.has_pose) return describe(pose.lifted(limits.lift), judgement_of(pose)) + ", raised by the lift";
+        break;
     default: break;
     }
     return describe(Pose{.position = pose.position}, judgement_of(pose));

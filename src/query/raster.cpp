@@ -268,8 +268,8 @@ private:
             return;
         }
         const SettledPose pose = settled(options_.yaw);
-        RasterRest rest;
-        if (pose.has_pose) rest = {pose.roll, pose.pitch, pose.tilt, pose.margin, pose.tip_over, pose.belly};
+        RasterRest rest{.layer_height = place.z()};
+        if (pose.has_pose) rest = {place.z(), pose.roll, pose.pitch, pose.tilt, pose.margin, pose.tip_over, pose.belly};
         out.rests.push_back(rest);
         const double z = pose.has_pose ? pose.lifted(shared_.options.stand.lift).position.z() : place.z() + offset_;
         out.poses.push_back({place.x(), place.y(), z, layer, pose.verdict});
@@ -403,6 +403,7 @@ RasterResult raster_with(const Judge& judge, const RasterOptions& options, int h
                          std::vector<VerdictTally>* tallies)
 {
     check(options);
+    if (options.stance == Stance::Settled) judge.impl().settler();  // throws if the obstacles are voxels
     const Map& map = judge.map();
     RasterResult out;
     out.dims = options.dims;
@@ -416,8 +417,9 @@ RasterResult raster_with(const Judge& judge, const RasterOptions& options, int h
     const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z(), headings);
     map.geometry.impl().tiles().expect_all();
     const auto rows = std::size_t(out.grid.rows);
-    // Without the height check, rows share no work, and each row takes long.
-    const std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
+    // Rows share no work without the height check and with settled poses, and each row takes long.
+    const bool share_work = options.height_check && options.stance == Stance::Level;
+    const std::size_t most_rows = share_work ? RasterJudge::most_rows : 1;
     const std::size_t strip = std::clamp<std::size_t>(rows / std::size_t(4 * thread_count(options.threads)), 1,
                                                       most_rows);
     std::size_t rows_taken = 0;

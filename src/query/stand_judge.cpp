@@ -28,6 +28,7 @@ SettledPose StandJudge::judge(const Vec3& place, double yaw)
 SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, double yaw)
 {
     SettledPose out;
+    out.position = place;
     out.yaw = yaw;
     Judgement there;
     const bool is_usable = upright_.judge_ground(column, place, there);
@@ -41,7 +42,7 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
         return out;
     }
     out.has_pose = true;
-    out.position = {place.x(), place.y(), rest.z};
+    out.position.z() = rest.z;
     out.roll = rest.roll;
     out.pitch = rest.pitch;
     out.tilt = rest.tilt();

@@ -216,14 +216,15 @@ public:
         const double drop_z = at_.ceiling;
         Rest::State state = Rest::State::Blocked;
         if (at_.has_room) {
-            const Vec2 start = at_.angles;
-            const double height = at_.z;
-            state = descend(straight_turn);
-            if (state != Rest::State::Standing) {  // again, with a stop at each new contact
-                limit_ = first_turn;
+            const Lowered start = at_;
+            state = descend(0);
+            if (state == Rest::State::Falling && is_stuck_) {  // again, without the stops in which it is stuck
+                const Lowered stuck = std::exchange(at_, start);
                 drift_ = Vec2::Zero();
-                lower(start, height, contact_tolerance, at_);
-                state = descend(0);
+                if (descend(straight_turn) == Rest::State::Standing)
+                    state = Rest::State::Standing;
+                else
+                    at_ = stuck;
             }
         }
         if (state == Rest::State::Standing) level_contacts();
@@ -239,13 +240,15 @@ private:
     Vec3 mass_center(const Vec2& angles) const { return rotation(angles) * mass_; }
 
     /// Turns the robot until it stands or falls, or until a wall stops it. Up to `straight` (rad), it turns at once to
-    /// where the touches let it rest. Otherwise, it stops at each new contact. At 0, it also stops there exactly, so
-    /// that balance_ is known if it falls.
+    /// where the touches let it rest, and may miss a rest before that. Otherwise, it stops at each new contact. At 0,
+    /// it also stops there exactly, so that balance_ is known if it falls. Sets is_stuck_ if it is falling only because
+    /// it found no turn with which the mass sinks.
     Rest::State descend(double straight)
     {
         balance_ = at_.angles;
         balance_z_ = at_.z;
         limit_ = first_turn;
+        is_stuck_ = false;
         std::optional<std::uint32_t> wall;
         for (int step = 0; step < max_turns; ++step) {
             if (at_.touches.empty() || tilt_of(at_.angles) > settler_.options_.max_tilt) {
@@ -277,8 +280,8 @@ private:
         at_.wall = wall;
         if (wall) return Rest::State::Blocked;
         // The mass does not sink any more, so the touches around it are equally high up to rounding.
-        return contains(support_polygon(at_, rest_tolerance), mass_center(at_.angles).head<2>()) ? Rest::State::Standing
-                                                                                                 : Rest::State::Falling;
+        is_stuck_ = !contains(support_polygon(at_, rest_tolerance), mass_center(at_.angles).head<2>());
+        return is_stuck_ ? Rest::State::Falling : Rest::State::Standing;
     }
 
     /// If the mass were beyond the nearest edge of the support polygon, the robot would turn about that edge. If it
@@ -701,6 +704,7 @@ private:
     Vec2 balance_ = Vec2::Zero();  ///< angles at which it last touched the ground with an area
     double balance_z_ = 0;
     double limit_ = first_turn;  ///< of the next step in roll and pitch, rad
+    bool is_stuck_ = false;      ///< see descend()
     Vec2 drift_ = Vec2::Zero();  ///< see falling_turn()
 };
 

@@ -235,7 +235,7 @@ void add_experiment(CLI::App& app, const std::string& command_line, ChosenComman
     start_group(command, "Searches");
     add_draws(command, args->draws);
     add_max_failures(command, args->draws);
-    add_raster_query(command, *args);
+    add_raster_query(command, *args, false);
     command.footer(
         "Example:\n"
         "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --steps 0.5:2:0.5 --offset 0.5 "

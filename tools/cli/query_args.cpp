@@ -27,7 +27,8 @@ void add_verdict_options(CLI::App& command, QueryArgs& args)
         "A water surface higher than this above the ground does not count, m (default: every one counts)");
     command.add_option("--max-slope", args.max_slope,
                        "Degrees. Valid poses on steeper ground become steep, and those over an edge unstable (default: "
-                       "slopes do not count)");
+                       "slopes do not count). With --settle: a robot that rests with a larger tilt is steep (default "
+                       "30)");
     command
         .add_option("--collision", args.collision,
                     "What the robot must not touch: geometry (exact), or octree (the voxels of the map) (default "
@@ -46,8 +47,10 @@ void add_stance(CLI::App& command, QueryArgs& args)
     command.add_flag("--settle", args.settle, "Short for --stance settled")->excludes(stance);
     command.add_option("--lift", args.lift,
                        "m by which the settled robot is raised: there it must touch nothing (default 0.02)");
-    command.add_option("--max-tilt", args.max_tilt,
-                       "Degrees. A robot that tilts more while it settles tips over: unstable (default 45)");
+    command.add_option(
+        "--max-tilt", args.max_tilt,
+        "Degrees. A robot that tilts more on its way down tips over: unstable (default 45). --max-slope limits "
+        "its tilt at rest");
     command.add_option("--min-stability", args.min_stability,
                        "m. A robot is unstable if its centre of mass is nearer to the edge of its support polygon "
                        "(default: 0.2 % of the robot's longer side, 2 mm for a robot of 1 m)");

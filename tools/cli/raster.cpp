@@ -37,7 +37,8 @@ RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
 {
     RasterOptions options = raster_options(args, command);
     if (args.is_settled() && args.dims == 3)
-        throw ArgumentError("--settle is only for --dims 2: the robot is let down onto the layers of each column");
+        throw ArgumentError(
+            "--settle is only for --dims 2: the robot is let down onto the layers of each column; give --dims 2");
     if (args.dims == 2)
         notice_no_effect(args, command, {"--step-z"}, "it is only for --dims 3; in 2D each pose stands on a layer");
     options.step = parse_positive("--step", args.step);
@@ -125,8 +126,7 @@ void add_raster(CLI::App& app, ChosenCommand& chosen)
                     "csv, or thesis: a folder of Valid_Locations.txt and similar files in Unity's frame (default csv)")
         ->check(one_of({"csv", "thesis"}));
     command.add_option("--heatmap", args->heatmap, "Picture to write: .png, .svg or .pdf (- for standard output)");
-    add_raster_query(command, *args);
-    add_stance(command, *args);
+    add_raster_query(command, *args, true);
     command.add_flag("--write-aerial", args->write_aerial,
                      "3D: write aerial poses, too. With --format thesis, in 2D and 3D: also those off the terrain");
     command.footer(

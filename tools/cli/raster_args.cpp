@@ -41,7 +41,7 @@ CLI::Option* add_dims(CLI::App& command, RasterArgs& args)
         ->check(one_of({"2", "3"}));
 }
 
-void add_raster_query(CLI::App& command, RasterArgs& args)
+void add_raster_query(CLI::App& command, RasterArgs& args, bool stance)
 {
     add_ground(command, args.ground, "all, top, bottom, or N from the top (0 first; default all)");
     command.add_option("--yaw", args.yaw, "Yaw of all poses: " + yaw_help + " (default 0)");
@@ -49,6 +49,7 @@ void add_raster_query(CLI::App& command, RasterArgs& args)
                      "3D: each layer gets a pose --offset above it, in place of the lowest step at or above it");
     command.add_flag("--no-height-check", args.no_height_check, "3D: judge only collisions, at every pose");
     add_verdict_options(command, args);
+    if (stance) add_stance(command, args);
     add_area(command, args.area);
     command.add_option("--bounds", args.bounds,
                        "x0,y0,z0,x1,y1,z1 in m; in 2D or with --z also x0,y0,x1,y1. In 2D layers beyond z0 .. z1 are "
