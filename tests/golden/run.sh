@@ -43,6 +43,8 @@ spawnfield check results/training --robot $robot --poses results/training_3d.csv
   -o results/training_check.json
 spawnfield check results/district --robot box:2,2,1 --poses results/district_2d.csv -o results/district_check.csv
 spawnfield check results/low --robot $robot --poses results/low_2d.csv --settle -o results/low_settled.csv
+spawnfield raster results/training --robot maps/robots/cart.urdf --dims 2 --step 0.5 --settle --yaw 30deg \
+  -o results/training_raster_settled.csv
 spawnfield check results/training --robot maps/robots/cart.urdf --poses results/training_2d.csv --settle --drop 1 \
   --format json -o results/training_settled.json
 poses="--robot maps/robots/cart.urdf --poses results/training_sample.csv"
