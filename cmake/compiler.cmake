@@ -54,7 +54,7 @@ if(SPAWNFIELD_SANITIZE)
   add_compile_options(-fsanitize=${SPAWNFIELD_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${SPAWNFIELD_SANITIZE})
   # In instrumented code gcc 12 warns about its own <regex>.
-  target_compile_options(spawnfield_options INTERFACE -Wno-maybe-uninitialized)
+  target_compile_options(spawnfield_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   if(SPAWNFIELD_SANITIZE MATCHES "undefined")
     add_compile_options(-fno-sanitize-recover=undefined)
   endif()

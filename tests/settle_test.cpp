@@ -30,6 +30,21 @@ double rad(double degrees) { return degrees * pi / 180; }
 
 constexpr double base = 0.512, track = 0.57, wheel = 0.165, wheel_width = 0.114;  // m, of a Husky
 
+double highest_of(const std::vector<Touch>& touches)
+{
+    double out = -std::numeric_limits<double>::infinity();
+    for (const Touch& touch : touches) out = std::max(out, touch.height);
+    return out;
+}
+
+template <class Ground>
+std::vector<Touch> touches_of(const Convex& body, const Ground& ground)
+{
+    std::vector<Touch> out;
+    add_touches(body, ground, out);
+    return out;
+}
+
 /// A box on four wheels, whose axles are parallel to y. The origin is in the middle between the wheels' lowest points.
 Robot wheeled(double mass_x = 0)
 {
@@ -316,7 +331,7 @@ TEST_CASE("the touches of round bodies and polyhedra agree with a general method
     const auto turned = [&] {
         return rotation_of_rpy(random.between(-3, 3), random.between(-1.5, 1.5), random.between(-3, 3));
     };
-    int met = 0;
+    int met = 0, facets = 0;
     for (int k = 0; k < 4000; ++k) {
         const auto some_body = [&](int kind) {
             const Pose pose{anywhere(1), turned()};
@@ -330,11 +345,8 @@ TEST_CASE("the touches of round bodies and polyhedra agree with a general method
         };
         const int first = k % 4, second = k / 4 % 5;
         const Convex body = some_body(first), ground = some_body(second);
-        std::vector<Touch> touches;
-        add_touches(body, ground, touches);
         const auto general = highest_touch(body, ground);
-        double highest = -std::numeric_limits<double>::infinity();
-        for (const Touch& touch : touches) highest = std::max(highest, touch.height);
+        const double highest = highest_of(touches_of(body, ground));
         INFO("pair " << k << " of kinds " << first << " and " << second);
         if (!general) {
             // Only a touch of a wall is left out by one of them.
@@ -342,22 +354,124 @@ TEST_CASE("the touches of round bodies and polyhedra agree with a general method
         }
         ++met;
         // On a steep surface, a small distance to the side is a large one in height.
-        CHECK(std::abs(highest - general->height) <= 1e-9 * general->slope.norm());
+        CHECK(std::abs(highest - general->height) <= 1e-9 * general->normal.norm());
+        if (second != 4) continue;
+        const auto facet = facet_of({ground.points[0], ground.points[1], ground.points[2]});
+        if (!facet) continue;
+        ++facets;
+        CHECK(std::abs(highest_of(touches_of(body, *facet)) - general->height) <= 1e-9 * general->normal.norm());
     }
     CHECK(met >= 1000);
+    CHECK(facets >= 200);
+}
+
+TEST_CASE("the predicted height of a touch after a small turn is that of the turned body")
+{
+    Random random(11);
+    std::array<int, 4> seen{};
+    for (int k = 0; k < 3000; ++k) {
+        const auto between = [&](double reach) { return random.between(-reach, reach); };
+        const Pose pose{{between(0.3), between(0.3), 0}, rotation_of_rpy(between(0.5), between(0.5), between(3))};
+        const Convex own = k % 2 ? convex_of(box_shape({0.8, 0.5, 0.3}, pose))
+                                 : convex_of(cylinder_shape(0.4, 0.2, pose));
+        const auto facet = facet_of({Vec3(between(1), between(1), 0), Vec3(between(1), between(1), between(0.4)),
+                                     Vec3(between(1), between(1), 0)});
+        if (!facet) continue;
+        const Mat3 rotation = rotation_of_rpy(between(1e-4), between(1e-4), 0);
+        const std::vector<Touch> before = touches_of(own, *facet),
+                                 after = touches_of(moved(own, {Vec3::Zero(), rotation}), *facet);
+        for (const Touch& touch : before) {
+            const auto height = height_after(touch, own, rotation, *facet);
+            CHECK(height.has_value() == (touch.kind != Touch::Kind::Other));
+            const auto is_same = [&](const Touch& other) {
+                return other.kind == touch.kind && other.body == touch.body && other.ground == touch.ground;
+            };
+            const auto same = std::find_if(after.begin(), after.end(), is_same);
+            if (!height || same == after.end()) continue;  // the features may not meet any more
+            ++seen[std::size_t(touch.kind)];
+            CHECK(std::abs(*height - same->height) <= 1e-9 * touch.normal.norm());
+        }
+    }
+    for (const int count : seen) CHECK(count >= 100);
+}
+
+TEST_CASE("the upper end of a body on a vertical line is as high as its lower end upside down")
+{
+    Random random(5);
+    int met = 0;
+    for (int k = 0; k < 1000; ++k) {
+        const Pose pose{{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)},
+                        rotation_of_rpy(random.between(-3, 3), random.between(-1.5, 1.5), 0)};
+        const Convex body = k % 3 == 0   ? convex_of(box_shape({0.8, 0.5, 0.6}, pose))
+                            : k % 3 == 1 ? convex_of(cylinder_shape(0.4, 0.7, pose))
+                                         : convex_of(capsule_shape(0.3, 0.7, pose));
+        const double x = random.between(-1, 1), y = random.between(-1, 1);
+        const auto lower = touches_of(upside_down(body), convex_of(Vec3(x, y, 0)));
+        const auto upper = upper_end(body, x, y);
+        CHECK(upper.has_value() == !lower.empty());
+        if (!upper || lower.empty()) continue;
+        ++met;
+        CHECK(std::abs(*upper - highest_of(lower)) <= 1e-9);
+    }
+    CHECK(met >= 100);
+}
+
+TEST_CASE("a robot comes to rest on flat ground beside walls, edges and other ground as on ground that is nearly flat")
+{
+    const auto scene_of = [](double tilt) {
+        Scene out;
+        const auto add = [&](double x0, double y0, double x1, double y1, double z) {
+            add_mesh(out, "plate", Label::Terrain, {{x0, y0, z}, {x1, y0, z}, {x1, y1, z + tilt}, {x0, y1, z}},
+                     {{0, 1, 2}, {0, 2, 3}}, Solid::No);
+        };
+        add(-3, -3, 3, 3, 0);         // the floor
+        add(-3, -3, -1.5, -1, 0.05);  // a platform, whose edge carries some robots
+        add(-3, 1, -1, 3, -0.3);      // ground below it
+        add(1, -3, 3, -1, 1.2);       // a ceiling that is high enough, and one that is not
+        add(1, 1, 3, 3, 0.52);
+        return out;
+    };
+    const Robot robot = wheeled();
+    const Geometry flat(scene_of(0)), nearly(scene_of(1e-11));
+    const Settler::Options options{.headroom = 0.3};
+    const Settler on_flat(flat, robot, options), on_nearly(nearly, robot, options);
+    Random random(2);
+    int level = 0, alike = 0;
+    for (int k = 0; k < 2000; ++k) {
+        const double x = random.between(-3.2, 3.2), y = random.between(-3.2, 3.2), yaw = random.between(-pi, pi);
+        for (const double layer : column_at(flat, x, y).layers) {
+            const Rest rest = on_flat.settle(x, y, yaw, layer), other = on_nearly.settle(x, y, yaw, layer);
+            INFO("at " << x << ", " << y << ", yaw " << yaw << ", layer " << layer);
+            if (rest.state != State::Standing || rest.roll != 0 || rest.pitch != 0) continue;
+            ++level;
+            CHECK(other.state == State::Standing);
+            CHECK(std::abs(rest.z - other.z) <= 1e-6);
+            CHECK(std::abs(rest.roll - other.roll) <= 1e-6);
+            CHECK(std::abs(rest.pitch - other.pitch) <= 1e-6);
+            CHECK(std::abs(rest.belly - other.belly) <= 1e-6);
+            CHECK((rest.headroom >= 0.3) == (other.headroom >= 0.3));
+            // A wheel may also be less than 1 mm above an edge of the nearly flat ground.
+            if (rest.contacts.size() != other.contacts.size()) continue;
+            ++alike;
+            CHECK(std::abs(rest.margin - other.margin) <= 1e-6);
+            CHECK(std::abs(rest.tip_over - other.tip_over) <= 1e-5);
+        }
+    }
+    CHECK(level >= 500);
+    CHECK(alike >= 300);
 }
 
 TEST_CASE("the lowest point of the highest plane is at least as low as any other point")
 {
     Random random(3);
     for (int k = 0; k < 500; ++k) {
-        std::vector<MinimaxRow> rows;
+        std::vector<MinimaxPlane> rows;
         const int count = 1 + k % 40;
         for (int i = 0; i < count; ++i)
             rows.push_back({random.between(-1, 1), {random.between(-1, 1), random.between(-1, 1)}});
         const auto height = [&](const Vec2& at) {
             double out = -std::numeric_limits<double>::infinity();
-            for (const MinimaxRow& row : rows) out = std::max(out, row.height + row.gradient.dot(at));
+            for (const MinimaxPlane& row : rows) out = std::max(out, row.height + row.gradient.dot(at));
             return out;
         };
         const Minimax lowest = lowest_of_highest(rows, 2);

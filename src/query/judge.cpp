@@ -82,9 +82,10 @@ namespace {
 /// level.
 double needed_headroom(const Robot& robot, const StandLimits& limits)
 {
+    if (!limits.drop) return limits.lift;
     const Bounds box = robot.bounds();
     const double largest_rise = 2 * std::max(box.max.norm(), box.min.norm());  // from the level robot to its rest
-    return std::max(limits.lift, limits.drop.value_or(0) + largest_rise);
+    return std::max(limits.lift, *limits.drop + largest_rise);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.verdict = there.verdict;
     out.ground = there.ground;
     if (!is_usable) return out;
-    const Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height);
+    const Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height, flat_);
     out.verdict = Verdict::Collision;
     if (rest.state == Rest::State::Blocked) {
         if (rest.wall) out.hit = CollisionHit{*rest.wall};

@@ -24,6 +24,7 @@ private:
 
     const Judge::Impl& shared_;
     const Settler& settler_;
+    Settler::FlatRest flat_;  ///< for the yaw of the last pose
     PoseJudge upright_;
     PoseChecker checker_;
 };

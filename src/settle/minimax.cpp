@@ -9,19 +9,19 @@
 namespace spawnfield {
 namespace {
 
-constexpr int max_pivots = 1000;  // degenerate rows could make the method go in circles
+constexpr int max_pivots = 1000;  // degenerate planes could make the method go in circles
 
-/// The inequality normal . (u, d) >= offset. The index of a plane is >= 0; limits of the variables have -1.
+/// An inequality of the linear program: normal . (u, d.x, d.y) >= offset, where u is the height that is minimised.
 struct Inequality {
     Vec3 normal;
     double offset;
-    int index;
+    int index;  ///< in the planes; -1: a limit of d
 };
 
-Inequality of_plane(std::span<const MinimaxRow> rows, std::size_t index)
+Inequality of_plane(std::span<const MinimaxPlane> planes, std::size_t index)
 {
-    const MinimaxRow& row = rows[index];
-    return {{1, -row.gradient.x(), -row.gradient.y()}, row.height, int(index)};
+    const MinimaxPlane& plane = planes[index];
+    return {{1, -plane.gradient.x(), -plane.gradient.y()}, plane.height, int(index)};
 }
 
 /// Returns sign * d[axis] >= -limit.
@@ -37,20 +37,19 @@ Inequality of_limit(int axis, double sign, double limit)
 bool Minimax::is_at_limit() const
 {
     for (std::size_t k = 0; k < 3; ++k)
-        if (rows[k] < 0 && weights[k] > 0) return true;
+        if (planes[k] < 0 && weights[k] > 0) return true;
     return false;
 }
 
-Minimax lowest_of_highest(std::span<const MinimaxRow> rows, double limit)
+Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit)
 {
-    const auto highest = std::max_element(rows.begin(), rows.end(),
-                                          [](const MinimaxRow& a, const MinimaxRow& b) { return a.height < b.height; });
-    const auto first = std::size_t(highest - rows.begin());
-    const Vec2& slope = rows[first].gradient;
-    std::array<Inequality, 3> basis{of_plane(rows, first), of_limit(0, slope.x() < 0 ? -1 : 1, limit),
+    const auto is_lower = [](const MinimaxPlane& a, const MinimaxPlane& b) { return a.height < b.height; };
+    const auto first = std::size_t(std::max_element(planes.begin(), planes.end(), is_lower) - planes.begin());
+    const Vec2& slope = planes[first].gradient;
+    std::array<Inequality, 3> basis{of_plane(planes, first), of_limit(0, slope.x() < 0 ? -1 : 1, limit),
                                     of_limit(1, slope.y() < 0 ? -1 : 1, limit)};
     double scale = 0;
-    for (const MinimaxRow& row : rows) scale = std::max(scale, std::abs(row.height));
+    for (const MinimaxPlane& plane : planes) scale = std::max(scale, std::abs(plane.height));
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
 
     Minimax out;
@@ -66,7 +65,7 @@ Minimax lowest_of_highest(std::span<const MinimaxRow> rows, double limit)
         out.value = point[0];
         out.at = point.tail<2>();
         for (int k = 0; k < 3; ++k) {
-            out.rows[std::size_t(k)] = basis[std::size_t(k)].index;
+            out.planes[std::size_t(k)] = basis[std::size_t(k)].index;
             out.weights[std::size_t(k)] = std::max(0.0, weights[k]);
         }
         if (pivot == max_pivots) return out;
@@ -79,17 +78,18 @@ Minimax lowest_of_highest(std::span<const MinimaxRow> rows, double limit)
             worst = violation;
             entering = inequality;
         };
-        double highest_row = point[0] + rounding * scale;
+        double highest = point[0] + rounding * scale;
         int violated = -1;
-        for (std::size_t k = 0; k < rows.size(); ++k) {
-            const double height = rows[k].height + rows[k].gradient.x() * point[1] + rows[k].gradient.y() * point[2];
-            if (height <= highest_row) continue;
-            highest_row = height;
+        for (std::size_t k = 0; k < planes.size(); ++k) {
+            const MinimaxPlane& plane = planes[k];
+            const double height = plane.height + plane.gradient.x() * point[1] + plane.gradient.y() * point[2];
+            if (height <= highest) continue;
+            highest = height;
             violated = int(k);
         }
         if (violated >= 0) {
-            entering = of_plane(rows, std::size_t(violated));
-            worst = highest_row - point[0];
+            entering = of_plane(planes, std::size_t(violated));
+            worst = highest - point[0];
         }
         for (int axis = 0; axis < 2; ++axis)
             for (const double sign : {-1.0, 1.0}) consider(of_limit(axis, sign, limit), rounding * limit);
@@ -106,7 +106,7 @@ Minimax lowest_of_highest(std::span<const MinimaxRow> rows, double limit)
                 leaving = k;
             }
         }
-        if (leaving < 0) return out;  // by rounding only: u has no upper limit
+        if (leaving < 0) return out;  // only rounding leads here: u has no upper limit, so there is a solution
         basis[std::size_t(leaving)] = entering;
     }
 }

@@ -9,27 +9,27 @@
 
 namespace spawnfield {
 
-/// A plane over two variables: height + gradient . d.
-struct MinimaxRow {
+/// A plane over the variables d = (x, y). Its height at d is height + gradient . d.
+struct MinimaxPlane {
     double height;
     Vec2 gradient;
 };
 
-/// The lowest point of the highest of several planes.
+/// The d at which the highest of several planes is lowest.
 struct Minimax {
     Vec2 at = Vec2::Zero();
-    double value = 0;
-    /// Three rows that hold the point up, with weights >= 0. The weights of all planes among them add up to 1, and
-    /// their gradients, so weighted, to 0. A row of -1 is a limit of the variables and no plane.
-    std::array<int, 3> rows{-1, -1, -1};
+    double value = 0;  ///< height of the highest plane there
+    /// The three constraints that hold this point, as indices of planes; -1: a limit of d. Their weights are >= 0, and
+    /// those of the planes add up to 1. If no limit holds the point, the weighted sum of the gradients is 0.
+    std::array<int, 3> planes{-1, -1, -1};
     std::array<double, 3> weights{};
 
-    bool is_at_limit() const;  ///< a limit of the variables holds the point
+    bool is_at_limit() const;  ///< a limit of d holds the point
 };
 
-/// Finds the d with |d.x|, |d.y| <= limit at which the highest of the planes (at least one) is lowest: a linear program
-/// with three variables. Source: the dual simplex method (Lemke, The dual method of solving the linear programming
-/// problem, 1954).
-Minimax lowest_of_highest(std::span<const MinimaxRow> rows, double limit);
+/// Returns the d with |d.x|, |d.y| <= limit at which the highest of the planes (at least one) is lowest: a linear
+/// program with three variables. After 1000 steps, it returns the point that it has reached. Source: the dual simplex
+/// method (Lemke, The dual method of solving the linear programming problem, 1954).
+Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit);
 
 }  // namespace spawnfield

@@ -16,6 +16,17 @@
 #include <utility>
 
 namespace spawnfield {
+
+/// A part of the scene near a robot, relative to the place where the robot is let down.
+struct NearSolid {
+    std::optional<Facet> facet;  ///< if it is a triangle that is not steep
+    Convex body;                 ///< otherwise
+    Bounds bounds;
+    std::uint32_t part = 0;
+    Label label = Label::Terrain;
+    WantedTouches wanted;  ///< of robots that lie on the ground of all solids
+};
+
 namespace {
 
 constexpr double contact_tolerance = 1e-9;  // m: touches that are at most this much lower than the highest are contacts
@@ -40,18 +51,6 @@ constexpr int max_rockings = 4;
 /// much farther back and to the right, m.
 const Vec3 preference(-1e-7, -0.5e-7, 0);
 
-/// A part of the scene near a robot, relative to the place where the robot is let down.
-struct NearSolid {
-    Convex body;
-    Bounds bounds;
-    std::uint32_t part;
-    Label label;
-    /// Of a triangle that is not too steep: its plane is where slope . (x, y, z) = height.
-    std::optional<Vec3> slope;
-    double height;
-    WantedTouches wanted;  ///< of robots that lie on the ground of all solids
-};
-
 /// A part of the robot at its current attitude.
 struct PlacedPart {
     Convex body;
@@ -63,39 +62,26 @@ double highest_possible(const PlacedPart& part, const NearSolid& solid)
 {
     constexpr double rounding = 1e-9;  // m
     double out = solid.bounds.max.z() - part.bounds.min.z();
-    if (solid.slope) out = std::min(out, solid.height - solid.slope->dot(part.body.support(-*solid.slope)));
+    if (solid.facet)
+        out = std::min(out, solid.facet->height - solid.facet->normal.dot(part.body.support(-solid.facet->normal)));
     return out + rounding;
-}
-
-/// Sets slope and height of a triangle.
-void set_plane(NearSolid& triangle)
-{
-    constexpr double steepest = 20;  // a steeper plane would be less precise than the limit of rounding above
-    if (triangle.body.planes.empty()) return;
-    const Convex::Plane& plane = triangle.body.planes[0];
-    if (std::abs(plane.normal.z()) * steepest < 1) return;
-    triangle.slope = plane.normal / plane.normal.z();
-    triangle.height = plane.offset / plane.normal.z();
 }
 
 /// Marks the edge that two triangles share. Corner k of the first one is corner same[k] of the second one, -1: none.
 void cover_edge(NearSolid& first, NearSolid& second, const std::array<int, 3>& same)
 {
     constexpr double flat = 1e-13;  // m
-    const auto edge_without = [](const Convex& triangle, int corner) {
-        std::size_t k = 0;
-        while (triangle.edges[k][0] == corner || triangle.edges[k][1] == corner) ++k;
-        return std::uint8_t(1 << k);
-    };
+    const auto edge_without = [](int corner) { return std::uint8_t(1 << (corner + 1) % 3); };
     const int alone = int(std::find(same.begin(), same.end(), -1) - same.begin()),
               other_alone = 3 - same[std::size_t(alone + 1) % 3] - same[std::size_t(alone + 2) % 3];
-    second.wanted.covered_edges |= edge_without(second.body, other_alone);
-    const Vec3 &shared = first.body.points[std::size_t(alone + 1) % 3], &own = first.body.points[std::size_t(alone)],
-               &other = second.body.points[std::size_t(other_alone)];
-    const Vec2 edge = (first.body.points[std::size_t(alone + 2) % 3] - shared).head<2>();
+    second.wanted.covered_edges |= edge_without(other_alone);
+    const auto &points = first.facet->points, &others = second.facet->points;
+    const Vec3 &shared = points[std::size_t(alone + 1) % 3], &own = points[std::size_t(alone)],
+               &other = others[std::size_t(other_alone)];
+    const Vec2 edge = (points[std::size_t(alone + 2) % 3] - shared).head<2>();
     const bool is_overhang = !(cross(edge, (own - shared).head<2>()) * cross(edge, (other - shared).head<2>()) < 0);
-    const bool is_ridge = first.slope->dot(other) - first.height < -flat;
-    if (!is_overhang && !is_ridge) first.wanted.covered_edges |= edge_without(first.body, alone);
+    const bool is_ridge = first.facet->normal.dot(other) - first.facet->height < -flat;
+    if (!is_overhang && !is_ridge) first.wanted.covered_edges |= edge_without(alone);
 }
 
 /// Marks what nothing comes to lie on from above, unless it also lies on another triangle: corners and edges that
@@ -107,17 +93,18 @@ void cover_shared(std::vector<NearSolid>& solids)
     constexpr double steepest = 2;
     if (solids.size() > most) return;
     const auto is_ground = [](const NearSolid& solid) {
-        return solid.slope && solid.slope->head<2>().squaredNorm() <= steepest * steepest;
+        return solid.facet && solid.facet->normal.head<2>().squaredNorm() <= steepest * steepest;
     };
     for (std::size_t i = 0; i < solids.size(); ++i) {
         if (!is_ground(solids[i])) continue;
         for (std::size_t j = i + 1; j < solids.size(); ++j) {
             if (!is_ground(solids[j]) || !solids[i].bounds.meets(solids[j].bounds)) continue;
+            const auto &first = solids[i].facet->points, &second = solids[j].facet->points;
             std::array<int, 3> same{-1, -1, -1};  // the corner of the second one that is corner k of the first
             int count = 0;
             for (int k = 0; k < 3; ++k)
                 for (int l = 0; l < 3; ++l)
-                    if (solids[i].body.points[std::size_t(k)] == solids[j].body.points[std::size_t(l)]) {
+                    if (first[std::size_t(k)] == second[std::size_t(l)]) {
                         same[std::size_t(k)] = l;
                         solids[j].wanted.covered_points |= std::uint8_t(1 << l);
                         ++count;
@@ -125,6 +112,12 @@ void cover_shared(std::vector<NearSolid>& solids)
             if (count == 2) cover_edge(solids[i], solids[j], same);
         }
     }
+}
+
+/// Returns a height of the robot below which this part of it cannot touch the solid from below.
+double lowest_possible(const PlacedPart& part, const NearSolid& solid)
+{
+    return solid.bounds.min.z() - part.bounds.max.z();
 }
 
 double highest_of(const std::vector<Touch>& touches)
@@ -153,10 +146,10 @@ struct Attitude {
     }
 
     /// Returns the derivative by roll and pitch of how much the robot must be raised so that its point `r` stays above
-    /// a plane with this slope (see Touch).
-    Vec2 rise(const Vec3& r, const Vec3& slope) const
+    /// a plane with this normal (see Touch).
+    Vec2 rise(const Vec3& r, const Vec3& normal) const
     {
-        const Vec3 arm = r.cross(slope);
+        const Vec3 arm = r.cross(normal);
         return {-roll_axis.dot(arm), -pitch_axis.dot(arm)};
     }
 };
@@ -167,8 +160,7 @@ struct Lowered {
     double z = 0;                ///< of its origin, m
     std::vector<RestTouch> touches;
     bool has_room = false;
-    double ceiling = std::numeric_limits<double>::infinity();  ///< height of its origin at which it meets something
-    std::optional<std::uint32_t> wall = {};                    ///< if it has no room: the part of the scene
+    std::optional<std::uint32_t> wall = {};  ///< if it has no room: the part of the scene
 };
 
 /// Returns the angle between the robot's z axis and the vertical for this roll and pitch, rad.
@@ -213,7 +205,7 @@ public:
     Rest run()
     {
         at_ = level();
-        const double drop_z = at_.ceiling;
+        const double drop_z = at_.has_room ? ceiling_above(at_.z) : at_.z;
         Rest::State state = Rest::State::Blocked;
         if (at_.has_room) {
             const Lowered start = at_;
@@ -343,16 +335,14 @@ private:
     };
 
     /// Sets pairs_ to the parts of the robot and the solids that overlap seen from above, except solids that are above
-    /// the raised robot even if its origin is at height z. The pair that may be the highest is the first.
+    /// the robot even if its origin is at height z. The pair that may be the highest is the first.
     void find_pairs(double z)
     {
-        const double high = z + settler_.options_.headroom;
         pairs_.clear();
         std::size_t first = 0;
         for (std::uint32_t p = 0; p < parts_.size(); ++p)
             for (std::uint32_t s = 0; s < solids_.size(); ++s) {
-                if (!parts_[p].bounds.meets(solids_[s].bounds, 2) ||
-                    solids_[s].bounds.min.z() - parts_[p].bounds.max.z() > high)
+                if (!parts_[p].bounds.meets(solids_[s].bounds, 2) || lowest_possible(parts_[p], solids_[s]) > z)
                     continue;
                 pairs_.push_back({highest_possible(parts_[p], solids_[s]), p, s});
                 if (pairs_.back().possible > pairs_[first].possible) first = pairs_.size() - 1;
@@ -364,7 +354,10 @@ private:
     double touch(const PlacedPart& part, const NearSolid& solid, const WantedTouches& wanted = {})
     {
         touches_.clear();
-        add_touches(part.body, solid.body, touches_, wanted);
+        if (solid.facet)
+            add_touches(part.body, *solid.facet, touches_, wanted);
+        else
+            add_touches(part.body, solid.body, touches_, wanted);
         return highest_of(touches_);
     }
 
@@ -393,7 +386,8 @@ private:
         find_pairs(settler_.options_.max_height);
         // The pair that touches highest decides, unless it is a ceiling: then the next one.
         for (Pair* highest = highest_above(z); highest != nullptr; highest = highest_above(z)) {
-            highest->is_ceiling = blocked_from(*highest) >= z + contact_tolerance;
+            highest->bottom = bottom_of(*highest, highest->height, z + contact_tolerance);
+            highest->is_ceiling = highest->bottom >= z + contact_tolerance;
             if (highest->is_ceiling) continue;
             z = highest->height;
             out.wall = solids_[highest->solid].part;
@@ -412,7 +406,7 @@ private:
         for (Pair& pair : pairs_) {
             if (pair.is_ceiling || pair.possible <= z) continue;
             if (std::isnan(pair.height))
-                pair.possible = pair.height = touch(parts_[pair.part], solids_[pair.solid], {.least = z});
+                pair.possible = pair.height = touch(parts_[pair.part], solids_[pair.solid], {.min_height = z});
             if (pair.height <= z) continue;
             z = pair.height;
             out = &pair;
@@ -420,24 +414,37 @@ private:
         return out;
     }
 
-    /// Returns from which height on a pair touches.
-    double blocked_from(Pair& pair) const
+    /// Returns the height from which on a pair touches, up to its highest touch. If that is below `enough`, returns any
+    /// height between both.
+    double bottom_of(const Pair& pair, double highest, double enough)
     {
-        if (std::isnan(pair.bottom))
-            pair.bottom = blocked_heights(parts_[pair.part].body, solids_[pair.solid].body)->bottom;
-        return pair.bottom;
+        const Convex& body = parts_[pair.part].body;
+        const NearSolid& solid = solids_[pair.solid];
+        // Below its highest touch, the part overlaps the solid at least by its thickness there: mostly enough.
+        touch(parts_[pair.part], solid, {.min_height = highest - contact_tolerance});
+        for (const Touch& touch : touches_) {
+            const auto top = upper_end(body, touch.point.x(), touch.point.y());
+            const double bottom = top ? touch.point.z() + touch.height - *top : highest;
+            if (bottom < enough) return bottom;
+        }
+        return blocked_heights(body, solid)->bottom;
+    }
+
+    static std::optional<Interval> blocked_heights(const Convex& body, const NearSolid& solid)
+    {
+        return spawnfield::blocked_heights(body, solid.facet ? convex_of(solid.facet->points) : solid.body);
     }
 
     /// Lowers the robot onto the solids that are not higher than about z. It has no room if a solid reaches from below
-    /// z to more than `rise` above it: a wall. Solids above are ceilings.
+    /// z to more than `rise` above it: a wall.
     void lower(const Vec2& angles, double z, double rise, Lowered& out)
     {
         out.angles = angles;
         out.z = -std::numeric_limits<double>::infinity();
         out.touches.clear();
         out.has_room = false;
-        out.ceiling = std::numeric_limits<double>::infinity();
         out.wall.reset();
+        double ceiling = std::numeric_limits<double>::infinity();
         const double seen = std::min(most_seen, seen_share * settler_.reach_ * limit_);
         const Attitude attitude(angles, yaw_);
         parts(attitude.rotation);
@@ -448,23 +455,38 @@ private:
             const PlacedPart& part = parts_[pair.part];
             const NearSolid& solid = solids_[pair.solid];
             WantedTouches wanted = solid.wanted;
-            wanted.least = least;
+            wanted.min_height = least;
             const double highest = touch(part, solid, wanted);
             if (highest > z + rise) {
-                const auto blocked = blocked_heights(part.body, solid.body);
-                if (blocked && blocked->bottom < out.ceiling) {
-                    out.ceiling = blocked->bottom;
+                const double bottom = bottom_of(pair, highest, z - rise);
+                if (bottom < ceiling) {
+                    ceiling = bottom;
                     out.wall = solid.part;
                 }
-                if (blocked && blocked->bottom < z - rise) return;
+                if (bottom < z - rise) return;
                 continue;
             }
             out.z = std::max(out.z, highest);
             for (const Touch& touch : touches_)
-                out.touches.push_back({touch, attitude.rise(touch.body, touch.slope), pair.part, pair.solid});
+                out.touches.push_back({touch, attitude.rise(touch.point, touch.normal), pair.part, pair.solid});
         }
         if (out.touches.empty()) out.z = z;  // nothing is below it
-        out.has_room = out.z <= out.ceiling;
+        out.has_room = out.z <= ceiling;
+    }
+
+    /// Returns the height of the robot's origin at which the robot, raised from z without turning, meets something.
+    double ceiling_above(double z)
+    {
+        double out = std::numeric_limits<double>::infinity();
+        find_pairs(z + settler_.options_.headroom);
+        for (const Pair& pair : pairs_) {
+            const PlacedPart& part = parts_[pair.part];
+            const NearSolid& solid = solids_[pair.solid];
+            if (pair.possible <= z || lowest_possible(part, solid) >= out) continue;
+            if (touch(part, solid, {.min_height = z}) <= z + contact_tolerance) continue;
+            out = std::min(out, blocked_heights(part.body, solid)->bottom);
+        }
+        return out;
     }
 
     double expected_z(const Vec2& turn) const
@@ -491,17 +513,62 @@ private:
     }
 
     /// Returns the share of a turn up to which the touch that carries the robot does so, before another one takes over.
-    double way_to_kink(const Vec2& turn) const
+    double way_to_kink(const Vec2& turn)
     {
         const RestTouch& carried = carrier(turn);
+        const RestTouch* next = nullptr;
         double share = 1;
         for (const RestTouch& t : at_.touches) {
             const double faster = (t.rise - carried.rise).dot(turn);
             if (faster <= 0) continue;
             const double there = (carried.touch.height - t.touch.height) / faster;
-            if (there * turn.norm() >= smallest_turn) share = std::min(share, there);
+            if (there * turn.norm() < smallest_turn || there >= share) continue;
+            share = there;
+            next = &t;
+        }
+        return next ? exact_kink(turn, share, carried, *next) : share;
+    }
+
+    /// Returns the share of a turn at which two touches are equally high, near the share that their derivatives
+    /// predict. Returns the predicted one if it finds no other.
+    double exact_kink(const Vec2& turn, double predicted, const RestTouch& carried, const RestTouch& next)
+    {
+        double share = predicted, change = (next.rise - carried.rise).dot(turn), last = 0, last_difference = 0;
+        for (int step = 0; step < 6; ++step) {
+            const Mat3 rotated = rotation(at_.angles + share * turn);
+            const auto height = touch_height(next, rotated), carried_height = touch_height(carried, rotated);
+            if (!height || !carried_height) return predicted;
+            const double difference = *height - *carried_height;
+            if (step > 0 && share != last) change = (difference - last_difference) / (share - last);
+            const double better = share - difference / change;
+            if (!(better > 0 && better <= 1)) return predicted;
+            last = std::exchange(share, better);
+            last_difference = difference;
+            if (std::abs(share - last) * turn.norm() < smallest_turn) break;
         }
         return share;
+    }
+
+    /// Returns the height of a touch after the robot has turned. If the features that touch are not known: of the
+    /// touches between the same part and solid, that whose point of the part is nearest to the old one.
+    std::optional<double> touch_height(const RestTouch& old, const Mat3& rotated)
+    {
+        const Convex& body = settler_.parts_[old.part];
+        const NearSolid& solid = solids_[old.solid];
+        if (solid.facet && old.touch.kind != Touch::Kind::Other)
+            return height_after(old.touch, body, rotated, *solid.facet);
+        set_rotated(parts_[old.part].body, body, rotated);
+        touch(parts_[old.part], solid, {.min_height = old.touch.height - most_seen});
+        const Vec3 point = rotated * (rotation(at_.angles).transpose() * old.touch.point);
+        std::optional<double> out;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Touch& t : touches_) {
+            const double distance = (t.point - point).squaredNorm();
+            if (distance >= nearest) continue;
+            nearest = distance;
+            out = t.height;
+        }
+        return out;
     }
 
     /// Turns the robot a little, forth or back along its last turn, until two touches are equally high there.
@@ -535,7 +602,7 @@ private:
     RestTouch contact_at(const Vec2& place) const
     {
         const std::vector<RestTouch> found = contacts(at_);
-        const auto distance = [&](const RestTouch& t) { return (t.touch.body.head<2>() - place).squaredNorm(); };
+        const auto distance = [&](const RestTouch& t) { return (t.touch.point.head<2>() - place).squaredNorm(); };
         return *std::min_element(found.begin(), found.end(),
                                  [&](const RestTouch& l, const RestTouch& r) { return distance(l) < distance(r); });
     }
@@ -557,6 +624,7 @@ private:
                 slopes.row(row) = (other.rise - corners[0].rise).transpose();
                 rises[row] = corners[0].touch.height - other.touch.height;
             }
+            if (rises.lpNorm<Eigen::Infinity>() < tie) return;
             const Vec2 turn = slopes.inverse() * rises;
             if (!(turn.norm() > 1e-15) || !(turn.norm() < 1e-6)) return;
             turn_by(turn);
@@ -580,16 +648,16 @@ private:
         };
         Vec2 turn = Vec2::Zero();
         for (int round = 0; round < 4; ++round) {
-            std::vector<MinimaxRow> rows;
-            for (const RestTouch& t : at_.touches) rows.push_back({t.touch.height, t.rise + drift_});
-            const Minimax lowest = lowest_of_highest(rows, limit_);
+            planes_.clear();
+            for (const RestTouch& t : at_.touches) planes_.push_back({t.touch.height, t.rise + drift_});
+            const Minimax lowest = lowest_of_highest(planes_, limit_);
             turn = lowest.at;
             Vec2 drift = Vec2::Zero();
             double weights = 0;
             for (std::size_t k = 0; k < 3; ++k) {
-                if (lowest.rows[k] < 0) continue;
-                const RestTouch& t = at_.touches[std::size_t(lowest.rows[k])];
-                drift += lowest.weights[k] * (rise_of_mass(t.touch.body) - t.rise);
+                if (lowest.planes[k] < 0) continue;
+                const RestTouch& t = at_.touches[std::size_t(lowest.planes[k])];
+                drift += lowest.weights[k] * (rise_of_mass(t.touch.point) - t.rise);
                 weights += lowest.weights[k];
             }
             const bool is_same = (drift / weights - drift_).norm() < 1e-6;
@@ -611,7 +679,7 @@ private:
     static Polygon2 support_polygon(const Lowered& at, double tolerance = contact_tolerance)
     {
         Polygon2 points;
-        for (const RestTouch& t : contacts(at, tolerance)) points.push_back(t.touch.body.head<2>());
+        for (const RestTouch& t : contacts(at, tolerance)) points.push_back(t.touch.point.head<2>());
         return convex_hull(std::move(points));
     }
 
@@ -629,7 +697,7 @@ private:
     {
         std::vector<RestContact> out;
         for (const RestTouch& t : contacts(at, contact_gap))
-            out.push_back({t.touch.body + at.z * Vec3::UnitZ(), t.touch.slope.normalized(), t.part,
+            out.push_back({t.touch.point + at.z * Vec3::UnitZ(), t.touch.normal.normalized(), t.part,
                            solids_[t.solid].part, solids_[t.solid].label});
         return out;
     }
@@ -638,6 +706,7 @@ private:
     /// the edge: the smallest of all edges.
     double tip_over(const Polygon2& polygon, const std::vector<RestContact>& contacts, const Vec3& mass) const
     {
+        constexpr double shortest_edge = 1e-6;  // m
         std::vector<Vec3> corners;
         for (const Vec2& corner : polygon)
             for (const RestContact& contact : contacts)
@@ -647,7 +716,9 @@ private:
                 }
         double out = std::numbers::pi / 2;
         for (std::size_t k = 0; k < corners.size(); ++k) {
-            const Vec3 &p = corners[k], along = (corners[k + 1 < corners.size() ? k + 1 : 0] - p).normalized();
+            const Vec3 &p = corners[k], side = corners[k + 1 < corners.size() ? k + 1 : 0] - p;
+            if (side.norm() < shortest_edge) continue;  // rounding decides its direction
+            const Vec3 along = side.normalized();
             const Vec3 up = Vec3::UnitZ() - along.z() * along, inward = up.cross(along), arm = mass - p;
             out = std::min(out, std::atan2(arm.dot(inward), arm.dot(up)));
         }
@@ -664,7 +735,7 @@ private:
             for (const NearSolid& solid : solids_) {
                 if (!parts_[p].bounds.meets(solid.bounds, 2) || at_.z - highest_possible(parts_[p], solid) >= out)
                     continue;
-                const double highest = touch(parts_[p], solid);
+                const double highest = touch(parts_[p], solid, {.min_height = at_.z - out});
                 if (highest <= at_.z) out = std::min(out, at_.z - highest);
             }
         }
@@ -683,7 +754,7 @@ private:
         if (state == Rest::State::Blocked) return out;
         const Polygon2 polygon = support_polygon(at_, contact_gap);
         const Vec3 mass = rotation(at_.angles) * settler_.mass_center_;
-        out.headroom = at_.ceiling - at_.z;
+        out.headroom = ceiling_above(at_.z) - at_.z;
         out.contacts = rest_contacts(at_);
         out.belly = belly(out.contacts);
         out.underside = underside().value_or(0);
@@ -696,10 +767,11 @@ private:
     const Settler& settler_;
     const std::vector<NearSolid> solids_;
     const double yaw_;
-    Vec3 mass_;                      ///< the centre of mass in the robot's frame, moved a little
-    std::vector<PlacedPart> parts_;  ///< of the robot, at the attitude that was examined last
-    std::vector<Pair> pairs_;        ///< at the attitude that was examined last
-    std::vector<Touch> touches_;     ///< of the pair that was examined last
+    Vec3 mass_;                         ///< the centre of mass in the robot's frame, moved a little
+    std::vector<PlacedPart> parts_;     ///< of the robot, at the attitude that was examined last
+    std::vector<Pair> pairs_;           ///< at the attitude that was examined last
+    std::vector<Touch> touches_;        ///< of the pair that was examined last
+    std::vector<MinimaxPlane> planes_;  ///< see falling_turn()
     Lowered at_, next_;
     Vec2 balance_ = Vec2::Zero();  ///< angles at which it last touched the ground with an area
     double balance_z_ = 0;
@@ -718,31 +790,103 @@ Settler::Settler(const Geometry& geometry, const Robot& robot, const Options& op
     }
 }
 
-Rest Settler::settle(double x, double y, double yaw, double layer) const
+/// Returns the solids that the robot may meet, relative to the origin.
+std::vector<NearSolid> Settler::solids_near(const Vec3& origin) const
 {
-    const Vec3 origin(x, y, layer);
-    std::vector<NearSolid> solids;
-    const Geometry::Impl& geometry = geometry_.impl();
-    geometry.visit_in(x - reach_, y - reach_, x + reach_, y + reach_, [&](const Tile& tile, std::uint32_t element) {
+    std::vector<NearSolid> out;
+    out.reserve(32);
+    const double x = origin.x(), y = origin.y();
+    geometry_.impl().visit_in(x - reach_, y - reach_, x + reach_, y + reach_, [&](const Tile& tile, auto element) {
         if (tile.label(element) == Label::Water || tile.label(element) == Label::Ignore) return;
-        NearSolid solid{{}, {}, tile.part(element), tile.label(element), {}, 0, {}};
+        NearSolid& solid = out.emplace_back();
+        solid.part = tile.part(element);
+        solid.label = tile.label(element);
         if (tile.is_triangle(element)) {
             std::array<Vec3, 3> corners = tile.corners(element);
             for (Vec3& corner : corners) corner -= origin;
-            solid.body = convex_of(corners);
-            set_plane(solid);
+            for (const Vec3& corner : corners) solid.bounds.extend(corner);
+            solid.facet = facet_of(corners);
+            if (!solid.facet) solid.body = convex_of(corners);
         } else {
             solid.body = moved(convex_of(tile.primitive(element).shape()), {-origin, Mat3::Identity()});
+            solid.bounds = solid.body.bounds();
         }
-        solid.bounds = solid.body.bounds();
-        solids.push_back(std::move(solid));
     });
-    cover_shared(solids);
-    Rest out = Descent(*this, std::move(solids), yaw).run();
-    out.z += layer;
-    out.drop_z += layer;
-    for (RestContact& contact : out.contacts) contact.point += origin;
     return out;
+}
+
+Settler::FlatRest Settler::flat_rest(double yaw) const
+{
+    const double far = 10 * reach_;
+    NearSolid plane;
+    plane.facet = facet_of({Vec3(-far, -far, 0), Vec3(2 * far, -far, 0), Vec3(-far, 2 * far, 0)});
+    for (const Vec3& corner : plane.facet->points) plane.bounds.extend(corner);
+    FlatRest out{yaw, Descent(*this, {plane}, yaw).run()};
+    const Mat3 rotation = rotation_from_rpy(out.rest.roll, out.rest.pitch, yaw);
+    for (const Convex& part : parts_) {
+        Bounds& bounds = out.parts.emplace_back(moved(part, {Vec3::Zero(), rotation}).bounds());
+        bounds.min.z() += out.rest.z;
+        bounds.max.z() += out.rest.z;
+    }
+    return out;
+}
+
+/// Returns the rest on ground that is horizontal below all contacts, and equally high to the bit, if no other solid is
+/// near enough to touch the robot or to be a ceiling. So the way down over a plane and over this ground is the same.
+std::optional<Rest> Settler::rest_on_flat_ground(const std::vector<NearSolid>& solids, double yaw, FlatRest& flat) const
+{
+    constexpr double same_layer = 1e-9;  // m
+    const NearSolid* ground = nullptr;
+    const auto is_level = [](const NearSolid& solid) { return solid.facet && solid.facet->normal.head<2>().isZero(0); };
+    for (const NearSolid& solid : solids)
+        if (is_level(solid) && std::abs(solid.facet->height) <= same_layer) ground = &solid;
+    if (ground == nullptr) return std::nullopt;
+    if (flat.yaw != yaw) flat = flat_rest(yaw);
+    if (flat.rest.state != Rest::State::Standing) return std::nullopt;
+    const double z = ground->facet->height;
+    const auto is_ground = [&](const NearSolid& solid) { return is_level(solid) && solid.facet->height == z; };
+    for (const NearSolid& solid : solids) {
+        if (is_ground(solid) && solid.label == ground->label) continue;
+        if (!is_ground(solid) && solid.bounds.max.z() <= z) continue;
+        for (const Bounds& part : flat.parts)
+            if (part.meets(solid.bounds, 2) && solid.bounds.min.z() - part.max.z() - z <= options_.headroom)
+                return std::nullopt;
+    }
+    Rest out = flat.rest;
+    out.z += z;
+    out.drop_z += z;
+    for (RestContact& contact : out.contacts) {
+        const auto carries = [&](const NearSolid& solid) {
+            return is_ground(solid) && solid.facet->is_over(contact.point);
+        };
+        const auto below = std::find_if(solids.begin(), solids.end(), carries);
+        if (below == solids.end()) return std::nullopt;
+        contact.point.z() += z;
+        contact.ground = below->part;
+        contact.label = below->label;
+    }
+    return out;
+}
+
+Rest Settler::settle(double x, double y, double yaw, double layer, FlatRest& flat) const
+{
+    const Vec3 origin(x, y, layer);
+    std::vector<NearSolid> solids = solids_near(origin);
+    std::optional<Rest> rest = rest_on_flat_ground(solids, yaw, flat);
+    if (!rest) {
+        cover_shared(solids);
+        rest = Descent(*this, std::move(solids), yaw).run();
+    }
+    rest->z += layer;
+    rest->drop_z += layer;
+    for (RestContact& contact : rest->contacts) contact.point += origin;
+    return *std::move(rest);
+}
+
+Rest Settler::settle(double x, double y, double yaw, double layer) const
+{
+    FlatRest flat;
+    return settle(x, y, yaw, layer, flat);
 }
 
 }  // namespace spawnfield

@@ -38,6 +38,8 @@ struct Rest {
     double tilt() const;  ///< angle between the robot's z axis and the vertical, rad
 };
 
+struct NearSolid;
+
 /// Lets robots down on the ground of a scene.
 class Settler {
 public:
@@ -49,14 +51,26 @@ public:
         double headroom = std::numeric_limits<double>::infinity();
     };
 
+    /// How the robot rests on a horizontal plane at z = 0. It depends only on the yaw.
+    struct FlatRest {
+        double yaw = std::numeric_limits<double>::quiet_NaN();
+        Rest rest = {};
+        std::vector<Bounds> parts = {};  ///< of the robot at rest, m
+    };
+
     Settler(const Geometry& geometry, const Robot& robot, const Options& options);
 
     /// Lets the robot down at (x, y) with this yaw onto the terrain layer at a height. It moves only in z, roll and
-    /// pitch: level down to the first contact, then it turns about its contacts so that its centre of mass sinks.
+    /// pitch: level down to the first contact, then it turns about its contacts so that its centre of mass sinks. Keeps
+    /// the rest on a plane in `flat`, so that calls with the same yaw need not compute it again.
+    Rest settle(double x, double y, double yaw, double layer, FlatRest& flat) const;
     Rest settle(double x, double y, double yaw, double layer) const;
 
 private:
     class Descent;
+    std::vector<NearSolid> solids_near(const Vec3& origin) const;
+    FlatRest flat_rest(double yaw) const;
+    std::optional<Rest> rest_on_flat_ground(const std::vector<NearSolid>& solids, double yaw, FlatRest& flat) const;
 
     const Geometry geometry_;
     const Options options_;

@@ -12,16 +12,19 @@
 namespace spawnfield {
 namespace {
 
-constexpr double steepest = 1e5;         ///< largest slope of a touching surface; a steeper one is a wall
-constexpr double rounding = 1e-12;       // m
-constexpr double parallel = 1e-12;       // of the product of lengths: sine of the angle between parallel edges
-constexpr int max_steps = 500;           // of the general method
-constexpr std::size_t most_planes = 12;  // kept from step to step
+constexpr double steepest = 1e5;    ///< largest slope of a touching surface; a steeper one is a wall
+constexpr double rounding = 1e-12;  // m
+/// Edges count as parallel if the z of their cross product is at most this share of the product of their lengths.
+constexpr double parallel = 1e-12;
+constexpr int max_steps = 500;  // of highest_touch()
+/// The newest planes that highest_touch() keeps after a step, besides those that hold the lowest point.
+constexpr std::size_t most_planes = 12;
 
-/// The lower or the upper end of a vertical line in a polyhedron.
+/// An end of the part of a vertical line that is inside a polyhedron.
 struct End {
     double z;
-    Vec3 normal;  ///< of the face there, outwards
+    Vec3 normal;              ///< of the face there, outwards
+    std::uint32_t plane = 0;  ///< of a Convex: its index
 };
 
 /// Returns the lower end (sign -1) or the upper end (sign 1) of the vertical line through (x, y) in a polyhedron, if
@@ -31,12 +34,12 @@ std::optional<End> end_of(const Convex& body, double x, double y, double sign)
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     const Convex::Plane *lowest = nullptr, *highest = nullptr;
     for (const Convex::Plane& plane : body.planes) {
-        const double rest = plane.offset - plane.normal.x() * x - plane.normal.y() * y;  // >= normal.z * z
+        const double remainder = plane.offset - plane.normal.x() * x - plane.normal.y() * y;  // >= normal.z * z
         if (std::abs(plane.normal.z()) * steepest < 1) {
-            if (rest < -rounding) return std::nullopt;
+            if (remainder < -rounding) return std::nullopt;
             continue;
         }
-        const double z = rest / plane.normal.z();
+        const double z = remainder / plane.normal.z();
         if (plane.normal.z() > 0 && z < high) {
             high = z;
             highest = &plane;
@@ -48,26 +51,104 @@ std::optional<End> end_of(const Convex& body, double x, double y, double sign)
     }
     const Convex::Plane* const face = sign > 0 ? highest : lowest;
     if (face == nullptr || low > high + rounding * steepest) return std::nullopt;
-    return End{sign > 0 ? high : low, face->normal};
+    return End{sign > 0 ? high : low, face->normal, std::uint32_t(face - body.planes.data())};
 }
 
-Touch touch_at(double height, const Vec3& body, const Vec3& normal) { return {height, body, normal / normal.z()}; }
-
-/// Returns the height of a polyhedron's top at the x and y of a point, if it is on the face with this plane.
-std::optional<double> height_on(const Convex::Plane& plane, const Convex& ground, const Vec3& point)
+Touch touch_at(double height, const Vec3& point, const Vec3& normal, Touch::Kind kind = Touch::Kind::Other,
+               std::size_t body = 0, std::size_t ground = 0)
 {
-    if (plane.normal.z() * steepest < 1) return std::nullopt;
-    const double z = (plane.offset - plane.normal.head<2>().dot(point.head<2>())) / plane.normal.z();
-    const auto top = end_of(ground, point.x(), point.y(), 1);
-    return top && top->z >= z - 1e-9 ? std::optional(z) : std::nullopt;
+    return {height, point, normal / normal.z(), kind, std::uint32_t(body), std::uint32_t(ground)};
 }
 
-double highest_point(const Convex& body)
+/// Returns the height at which two edges touch, of the body and of the ground, both infinitely long.
+double height_of_crossing(const Vec3& from, const Vec3& along, const Vec3& other, const Vec3& across)
 {
-    double out = -std::numeric_limits<double>::infinity();
-    for (const Vec3& point : body.points) out = std::max(out, point.z());
-    return out;
+    const Vec2 apart = (other - from).head<2>();
+    const double crossing = cross(along.head<2>(), across.head<2>());
+    const double s = cross(apart, across.head<2>()) / crossing, t = cross(apart, along.head<2>()) / crossing;
+    return other.z() + t * across.z() - from.z() - s * along.z();
 }
+
+/// The upper side of a convex solid, onto which bodies are lowered. Facet has the same functions, see below.
+class Top {
+public:
+    explicit Top(const Convex& solid) : points(solid.points), edges(solid.edges), solid_(solid)
+    {
+        for (const Vec3& point : points) highest_ = std::max(highest_, point.z());
+    }
+
+    const std::vector<Vec3>& points;
+    const std::vector<std::array<int, 2>>& edges;
+
+    std::optional<End> end(double x, double y) const { return end_of(solid_, x, y, 1); }
+
+    /// Returns how far a body with this corner must be raised at most until its corner is not below the solid's top.
+    double height_bound(const Vec3& corner) const { return highest_ - corner.z(); }
+
+    /// Returns whether an edge of a body certainly passes all edges of the solid, seen from above.
+    bool is_passed_by(const Vec3&, const Vec3&) const { return false; }
+
+    /// Calls visit(normal, z) for each upper face: its unit normal, and a function that returns the z of its plane at
+    /// the x and y of a point, or nothing if the top is not on the face there (to 1e-9 m).
+    template <class Visit>
+    void visit_faces(const Visit& visit) const
+    {
+        for (std::size_t f = 0; f < solid_.face_count(); ++f) {
+            const Convex::Plane& plane = solid_.planes[f];
+            if (plane.normal.z() * steepest < 1) continue;
+            visit(plane.normal, [&](const Vec3& point) -> std::optional<double> {
+                const double z = (plane.offset - plane.normal.head<2>().dot(point.head<2>())) / plane.normal.z();
+                const auto top = end(point.x(), point.y());
+                return top && top->z >= z - 1e-9 ? std::optional(z) : std::nullopt;
+            });
+        }
+    }
+
+private:
+    const Convex& solid_;
+    double highest_ = -std::numeric_limits<double>::infinity();
+};
+
+/// The same for a facet.
+class FacetTop {
+public:
+    explicit FacetTop(const Facet& facet) : points(facet.points), edges(Facet::edges), facet_(facet) {}
+
+    const std::array<Vec3, 3>& points;
+    const std::array<std::array<int, 2>, 3>& edges;
+
+    std::optional<End> end(double x, double y) const
+    {
+        if (!facet_.is_over({x, y, 0})) return std::nullopt;
+        return End{facet_.z_at({x, y, 0}), facet_.normal};
+    }
+
+    double height_bound(const Vec3& corner) const { return facet_.z_at(corner) - corner.z(); }
+
+    bool is_passed_by(const Vec3& from, const Vec3& to) const
+    {
+        int inside = 0;
+        for (const Facet::Side& side : facet_.sides) {
+            const double first = side.inward.x() * from.x() + side.inward.y() * from.y() - side.offset,
+                         second = side.inward.x() * to.x() + side.inward.y() * to.y() - side.offset;
+            if (first < -rounding && second < -rounding) return true;
+            inside += first > rounding && second > rounding;
+        }
+        return inside == 3;
+    }
+
+    template <class Visit>
+    void visit_faces(const Visit& visit) const
+    {
+        visit(facet_.normal.normalized(), [&](const Vec3& point) -> std::optional<double> {
+            const auto top = end(point.x(), point.y());
+            return top ? std::optional(top->z) : std::nullopt;
+        });
+    }
+
+private:
+    const Facet& facet_;
+};
 
 double lowest_point(const Convex& body)
 {
@@ -76,34 +157,40 @@ double lowest_point(const Convex& body)
     return out;
 }
 
-/// Adds the touches of two polyhedra: the corners of the overlay of both, seen from above. Leaves out pairs of corners
-/// and edges whose heights show that they touch below `least`.
-void add_polyhedra(const Convex& body, const Convex& ground, const WantedTouches& wanted, std::vector<Touch>& out)
+/// Adds the touches of two polyhedra: corners of one on the other, and pairs of edges that cross seen from above.
+/// Leaves out corners and pairs of edges that touch below wanted.min_height.
+template <class Ground>
+void add_polyhedra(const Convex& body, const Ground& ground, const WantedTouches& wanted, std::vector<Touch>& out)
 {
-    const double top = highest_point(ground), bottom = lowest_point(body);
-    for (const Vec3& point : body.points) {
-        if (top - point.z() < wanted.least) continue;
-        if (const auto end = end_of(ground, point.x(), point.y(), 1))
-            out.push_back(touch_at(end->z - point.z(), point, end->normal));
+    for (std::size_t j = 0; j < body.points.size(); ++j) {
+        const Vec3& point = body.points[j];
+        if (ground.height_bound(point) < wanted.min_height) continue;
+        if (const auto end = ground.end(point.x(), point.y()))
+            out.push_back(touch_at(end->z - point.z(), point, end->normal, Touch::Kind::CornerOnFace, j));
     }
+    const double bottom = lowest_point(body);
     for (std::size_t k = 0; k < ground.points.size(); ++k) {
         const Vec3& point = ground.points[k];
-        if (point.z() - bottom < wanted.least || !wanted.has_point(k)) continue;
+        if (point.z() - bottom < wanted.min_height || !wanted.wants_point(k)) continue;
         if (const auto end = end_of(body, point.x(), point.y(), -1))
-            out.push_back(touch_at(point.z() - end->z, {point.x(), point.y(), end->z}, end->normal));
+            out.push_back(touch_at(point.z() - end->z, {point.x(), point.y(), end->z}, end->normal,
+                                   Touch::Kind::CornerUnderFace, end->plane, k));
     }
-    for (const auto& [a, b] : body.edges) {
+    for (std::size_t j = 0; j < body.edges.size(); ++j) {
+        const auto& [a, b] = body.edges[j];
         const Vec3 &from = body.points[std::size_t(a)], &to = body.points[std::size_t(b)];
-        const double low = std::min(from.z(), to.z());
-        if (top - low < wanted.least) continue;
+        if (!body.is_lower_edge(j) || std::max(ground.height_bound(from), ground.height_bound(to)) < wanted.min_height)
+            continue;
         const Vec3 along = to - from;
+        const double low = std::min(from.z(), to.z());
         for (std::size_t k = 0; k < ground.edges.size(); ++k) {
             const auto& [c, d] = ground.edges[k];
             const Vec3 &other = ground.points[std::size_t(c)], &end = ground.points[std::size_t(d)];
-            if (!wanted.has_edge(k) || std::max(other.z(), end.z()) - low < wanted.least) continue;
+            if (!wanted.wants_edge(k) || std::max(other.z(), end.z()) - low < wanted.min_height) continue;
+            // On which sides of the body's edge the ends of the ground's edge are: on one side, they do not cross.
             const Vec2 apart = (other - from).head<2>();
-            const double left = cross(along.head<2>(), apart), right = cross(along.head<2>(), (end - from).head<2>());
-            if ((left > 0 && right > 0) || (left < 0 && right < 0)) continue;
+            const double first = cross(along.head<2>(), apart), second = cross(along.head<2>(), (end - from).head<2>());
+            if ((first > 0 && second > 0) || (first < 0 && second < 0)) continue;
             const Vec3 across = end - other;
             const double crossing = along.x() * across.y() - along.y() * across.x();
             const double s = cross(apart, across.head<2>()) / crossing, t = cross(apart, along.head<2>()) / crossing;
@@ -113,13 +200,15 @@ void add_polyhedra(const Convex& body, const Convex& ground, const WantedTouches
                 std::abs(crossing) * steepest < normal.norm())
                 continue;
             const Vec3 point = from + s * along;
-            out.push_back(touch_at(other.z() + t * across.z() - point.z(), point, normal));
+            out.push_back(
+                touch_at(other.z() + t * across.z() - point.z(), point, normal, Touch::Kind::EdgeOnEdge, j, k));
         }
     }
 }
 
 /// Adds the touches of a ball.
-void add_ball(const Vec3& centre, double radius, const Convex& ground, const WantedTouches& wanted,
+template <class Ground>
+void add_ball(const Vec3& centre, double radius, const Ground& ground, const WantedTouches& wanted,
               std::vector<Touch>& out)
 {
     const auto add = [&](const Vec3& on_ground, const Vec3& normal) {  // the normal has length 1
@@ -128,17 +217,16 @@ void add_ball(const Vec3& centre, double radius, const Convex& ground, const Wan
         out.push_back(touch_at(on_ground.z() - point.z(), point, normal));
     };
     const double bottom = centre.z() - radius;
-    for (std::size_t f = 0; f < ground.face_count(); ++f) {
-        const Convex::Plane& plane = ground.planes[f];
-        const Vec3 point = centre - radius * plane.normal;
-        if (const auto z = height_on(plane, ground, point)) add({point.x(), point.y(), *z}, plane.normal);
-    }
+    ground.visit_faces([&](const Vec3& normal, const auto& z_at) {
+        const Vec3 point = centre - radius * normal;
+        if (const auto z = z_at(point)) add({point.x(), point.y(), *z}, normal);
+    });
     for (std::size_t k = 0; k < ground.edges.size(); ++k) {
-        if (!wanted.has_edge(k)) continue;
+        if (!wanted.wants_edge(k)) continue;
         const auto& [a, b] = ground.edges[k];
         const Vec3 &from = ground.points[std::size_t(a)], along = ground.points[std::size_t(b)] - from;
         const double length = along.head<2>().norm();
-        if (std::max(from.z(), from.z() + along.z()) - bottom < wanted.least || length * steepest < along.norm())
+        if (std::max(from.z(), from.z() + along.z()) - bottom < wanted.min_height || length * steepest < along.norm())
             continue;
         const Vec3 aside = Vec3(-along.y(), along.x(), 0) / length;  // perpendicular to the vertical plane of the edge
         const double off = aside.dot(centre - from);
@@ -149,17 +237,19 @@ void add_ball(const Vec3& centre, double radius, const Convex& ground, const Wan
         if (t >= 0 && t <= 1) add(from + t * along, normal);
     }
     for (std::size_t k = 0; k < ground.points.size(); ++k) {
-        if (!wanted.has_point(k)) continue;
+        if (!wanted.wants_point(k)) continue;
         const Vec3& corner = ground.points[k];
         const Vec2 off = (centre - corner).head<2>();
-        if (corner.z() - bottom < wanted.least || off.squaredNorm() >= radius * radius) continue;
+        if (corner.z() - bottom < wanted.min_height || off.squaredNorm() >= radius * radius) continue;
         const double up = std::sqrt(radius * radius - off.squaredNorm());
         add(corner, Vec3(off.x(), off.y(), up) / radius);
     }
 }
 
-/// Adds the touches of a cylinder without its rims: corners below it, and edges below its side.
-void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& ground, const WantedTouches& wanted,
+/// Adds the touches of a cylinder, except those of its rims: corners of the ground below it, and edges of the ground
+/// below its side. Also used for the side of a capsule.
+template <class Ground>
+void add_tube(const std::array<Vec3, 2>& ends, double radius, const Ground& ground, const WantedTouches& wanted,
               std::vector<Touch>& out)
 {
     const Vec3 axis = (ends[1] - ends[0]).normalized();
@@ -168,9 +258,9 @@ void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& grou
         if (normal.z() * steepest >= normal.norm()) out.push_back(touch_at(on_ground.z() - point.z(), point, normal));
     };
     for (std::size_t k = 0; k < ground.points.size(); ++k) {
-        if (!wanted.has_point(k)) continue;
+        if (!wanted.wants_point(k)) continue;
         const Vec3& corner = ground.points[k];
-        if (corner.z() - bottom < wanted.least) continue;
+        if (corner.z() - bottom < wanted.min_height) continue;
         // Along the vertical line (corner.x, corner.y, z), the distance from the axis is |off + z * rise|, and the
         // place along the axis is `place + z * axis.z`.
         const Vec3 from(corner.x() - ends[0].x(), corner.y() - ends[0].y(), -ends[0].z());
@@ -201,14 +291,15 @@ void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& grou
         if (low <= high) add(corner, {corner.x(), corner.y(), low}, normal);
     }
     for (std::size_t k = 0; k < ground.edges.size(); ++k) {
-        if (!wanted.has_edge(k)) continue;
+        if (!wanted.wants_edge(k)) continue;
         const auto& [a, b] = ground.edges[k];
         const Vec3 &from = ground.points[std::size_t(a)], along = ground.points[std::size_t(b)] - from;
-        if (std::max(from.z(), from.z() + along.z()) - bottom < wanted.least) continue;
+        if (std::max(from.z(), from.z() + along.z()) - bottom < wanted.min_height) continue;
         Vec3 normal = axis.cross(along);
         if (std::abs(normal.z()) * steepest < normal.norm() || normal.norm() <= parallel * along.norm()) continue;
         normal *= (normal.z() < 0 ? -1 : 1) / normal.norm();
-        // Seen from above, the line below the axis at -radius * normal crosses the edge.
+        // The side can touch the edge only on the line parallel to the axis at -radius * normal. Seen from above, that
+        // line crosses the edge at s (m along the line) and t (share of the edge).
         const Vec3 line = ends[0] - radius * normal;
         const Vec2 apart = (from - line).head<2>();
         const double crossing = cross(axis.head<2>(), along.head<2>());
@@ -217,28 +308,31 @@ void add_tube(const std::array<Vec3, 2>& ends, double radius, const Convex& grou
     }
 }
 
-/// Adds the touches of the rim of a disc.
-void add_rim(const Vec3& centre, const Vec3& axis, double radius, const Convex& ground, const WantedTouches& wanted,
+/// Adds the touches of the rim of the disc around a point of the body.
+template <class Ground>
+void add_rim(const Convex& body, std::size_t index, const Ground& ground, const WantedTouches& wanted,
              std::vector<Touch>& out)
 {
-    for (std::size_t f = 0; f < ground.face_count(); ++f) {
-        const Convex::Plane& plane = ground.planes[f];
-        const Vec3 across = plane.normal - plane.normal.dot(axis) * axis;
-        if (plane.normal.z() * steepest < 1 || across.norm() < 1e-14) continue;
-        const Vec3 point = centre - radius * across.normalized();
-        if (const auto z = height_on(plane, ground, point))
-            out.push_back(touch_at(*z - point.z(), point, plane.normal));
-    }
+    const double radius = body.disc;
+    const Vec3 &centre = body.points[index], &axis = body.axis, &u = body.across;
+    ground.visit_faces([&](const Vec3& normal, const auto& z_at) {
+        const Vec3 across = normal - normal.dot(axis) * axis;
+        const double length = across.norm();
+        if (length < 1e-14) return;
+        const Vec3 point = centre - (radius / length) * across;
+        if (const auto z = z_at(point))
+            out.push_back(touch_at(*z - point.z(), point, normal, Touch::Kind::RimOnFace, index));
+    });
     const double bottom = centre.z() - radius * std::sqrt(std::max(0.0, 1 - axis.z() * axis.z()));
-    const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
+    const Vec3 v = axis.cross(u);
     for (std::size_t k = 0; k < ground.edges.size(); ++k) {
-        if (!wanted.has_edge(k)) continue;
+        if (!wanted.wants_edge(k)) continue;
         const auto& [a, b] = ground.edges[k];
         const Vec3 &from = ground.points[std::size_t(a)], along = ground.points[std::size_t(b)] - from;
-        if (std::max(from.z(), from.z() + along.z()) - bottom < wanted.least) continue;
+        if (std::max(from.z(), from.z() + along.z()) - bottom < wanted.min_height) continue;
         const Vec2 flat = along.head<2>(), aside(-flat.y(), flat.x());
-        // The rim's points at an angle: centre + radius * (u cos + v sin). They lie above the edge's line where
-        // p cos + q sin = r.
+        // A point of the rim is centre + radius * (u cos a + v sin a). It has the same x and y as a point of the edge's
+        // line where p cos a + q sin a = r.
         const double p = radius * aside.dot(u.head<2>()), q = radius * aside.dot(v.head<2>()),
                      r = aside.dot((from - centre).head<2>()), square = p * p + q * q;
         if (square <= r * r) continue;
@@ -256,26 +350,29 @@ void add_rim(const Vec3& centre, const Vec3& axis, double radius, const Convex& 
 }
 
 /// Adds the touches of a round body and a polyhedron.
-void add_round(const Convex& body, const Convex& ground, const WantedTouches& wanted, std::vector<Touch>& out)
+template <class Ground>
+void add_round(const Convex& body, const Ground& ground, const WantedTouches& wanted, std::vector<Touch>& out)
 {
-    for (const Vec3& point : body.points)
+    for (std::size_t k = 0; k < body.points.size(); ++k)
         if (body.ball > 0)
-            add_ball(point, body.ball, ground, wanted, out);
+            add_ball(body.points[k], body.ball, ground, wanted, out);
         else
-            add_rim(point, body.axis, body.disc, ground, wanted, out);
+            add_rim(body, k, ground, wanted, out);
     if (body.points.size() == 2)
         add_tube({body.points[0], body.points[1]}, std::max(body.ball, body.disc), ground, wanted, out);
 }
 
 }  // namespace
 
-/// The bodies do not overlap if the body is raised above the smallest value, over all slopes n with n.z = 1, of the
-/// farthest point of (ground - body) along n. That is a convex function of n, whose smallest value is found with
-/// cutting planes (Kelley, The cutting-plane method for solving convex programs, 1960): each farthest point is a plane.
+/// For a direction n with n.z = 1, let f(n) be the largest value of n . (g - b) for points g of the ground and b of the
+/// body. A body that is raised by more than f(n) does not overlap the ground. So the height of the highest touch is the
+/// smallest value of f, which is convex. Cutting planes find it (Kelley, The cutting-plane method for solving convex
+/// programs, 1960): each of them comes from one n, with the points g and b that give f(n).
 std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
 {
     struct Farthest {
-        Vec3 on_body, apart;  ///< of (ground - body)
+        Vec3 on_body;  ///< the body's farthest point along -n
+        Vec3 apart;    ///< the farthest point of (ground - body) along n
     };
     const auto farthest = [&](const Vec2& slope) {
         const Vec3 direction(slope.x(), slope.y(), 1), on_body = body.support(-direction);
@@ -288,16 +385,15 @@ std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
     std::vector<Farthest> planes{farthest(best)};
     double least = reach(planes[0], best), limit = 1;  // of a step from the best slope
     for (int step = 0;; ++step) {
-        std::vector<MinimaxRow> rows;
-        for (const Farthest& plane : planes) rows.push_back({reach(plane, best) - least, plane.apart.head<2>()});
-        const Minimax lowest = lowest_of_highest(rows, limit);
-        const bool is_found = lowest.value >= -rounding || step == max_steps;
-        if (is_found) {
+        std::vector<MinimaxPlane> around_best;
+        for (const Farthest& plane : planes) around_best.push_back({reach(plane, best) - least, plane.apart.head<2>()});
+        const Minimax lowest = lowest_of_highest(around_best, limit);
+        if (lowest.value >= -rounding || step == max_steps) {  // after max_steps: an upper bound
             Vec3 point = Vec3::Zero();
             double weights = 0;
             for (std::size_t k = 0; k < 3; ++k) {
-                if (lowest.rows[k] < 0) continue;
-                point += lowest.weights[k] * planes[std::size_t(lowest.rows[k])].on_body;
+                if (lowest.planes[k] < 0) continue;
+                point += lowest.weights[k] * planes[std::size_t(lowest.planes[k])].on_body;
                 weights += lowest.weights[k];
             }
             return Touch{least, point / weights, {best.x(), best.y(), 1}};
@@ -305,20 +401,20 @@ std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
         const Vec2 slope = best + lowest.at;
         if (slope.norm() > steepest) return std::nullopt;
         const Farthest there = farthest(slope);
-        const double sinks = least - reach(there, slope);
-        if (sinks < lowest.value)
+        const double decrease = least - reach(there, slope);
+        if (decrease < lowest.value)  // the value grows by more than it was predicted to decrease
             limit = lowest.at.lpNorm<Eigen::Infinity>() / 2;
         else if (lowest.is_at_limit())
             limit *= 4;
-        if (sinks > 0) {
+        if (decrease > 0) {
             best = slope;
-            least -= sinks;
+            least -= decrease;
         }
         std::vector<Farthest> kept;
         for (std::size_t k = planes.size() > most_planes ? planes.size() - most_planes : 0; k < planes.size(); ++k)
             kept.push_back(planes[k]);
-        for (const int row : lowest.rows)
-            if (row >= 0 && std::size_t(row) + most_planes < planes.size()) kept.push_back(planes[std::size_t(row)]);
+        for (const int k : lowest.planes)
+            if (k >= 0 && std::size_t(k) + most_planes < planes.size()) kept.push_back(planes[std::size_t(k)]);
         kept.push_back(there);
         planes = std::move(kept);
     }
@@ -326,15 +422,17 @@ std::optional<Touch> highest_touch(const Convex& body, const Convex& ground)
 
 void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out, const WantedTouches& wanted)
 {
-    if (body.is_polyhedron() && ground.is_polyhedron()) return add_polyhedra(body, ground, wanted, out);
-    if (ground.is_polyhedron()) return add_round(body, ground, wanted, out);
-    if (body.is_polyhedron()) {  // the same seen from below, where the ground is lowered onto the body
+    if (body.is_polyhedron() && ground.is_polyhedron()) return add_polyhedra(body, Top(ground), wanted, out);
+    if (ground.is_polyhedron()) return add_round(body, Top(ground), wanted, out);
+    if (body.is_polyhedron()) {  // turned upside down, the ground is lowered onto the body: the heights are the same
         const std::size_t first = out.size();
-        add_round(upside_down(ground), upside_down(body), {.least = wanted.least}, out);
-        for (std::size_t k = first; k < out.size(); ++k) {
+        const Convex upper = upside_down(body);
+        add_round(upside_down(ground), Top(upper), {.min_height = wanted.min_height}, out);
+        for (std::size_t k = first; k < out.size(); ++k) {  // from the ground's point to that of the body
             Touch& touch = out[k];
-            touch.body.z() = -touch.body.z() - touch.height;
-            touch.slope.head<2>() *= -1;
+            touch.point.z() = -touch.point.z() - touch.height;
+            touch.normal.head<2>() *= -1;
+            touch.kind = Touch::Kind::Other;
         }
         return;
     }
@@ -344,6 +442,79 @@ void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& o
     add(body, ground);
     for (const Convex& end : ends_of(body)) add(end, ground);
     for (const Convex& end : ends_of(ground)) add(body, end);
+}
+
+void add_touches(const Convex& body, const Facet& ground, std::vector<Touch>& out, const WantedTouches& wanted)
+{
+    if (body.is_polyhedron()) return add_polyhedra(body, FacetTop(ground), wanted, out);
+    add_round(body, FacetTop(ground), wanted, out);
+}
+
+std::optional<double> height_after(const Touch& touch, const Convex& body, const Mat3& rotation, const Facet& ground)
+{
+    const auto raised = [&](const Vec3& point) { return ground.z_at(point) - point.z(); };
+    double out = std::numeric_limits<double>::quiet_NaN();
+    switch (touch.kind) {
+    case Touch::Kind::CornerOnFace: out = raised(rotation * body.points[touch.body]); break;
+    case Touch::Kind::RimOnFace: {
+        const Vec3 axis = rotation * body.axis, across = ground.normal - ground.normal.dot(axis) * axis;
+        out = raised(rotation * body.points[touch.body] - body.disc * across.normalized());
+        break;
+    }
+    case Touch::Kind::CornerUnderFace: {
+        const Convex::Plane& plane = body.planes[touch.body];
+        const Vec3 normal = rotation * plane.normal;
+        out = (normal.dot(ground.points[touch.ground]) - plane.offset) / normal.z();
+        break;
+    }
+    case Touch::Kind::EdgeOnEdge: {
+        const auto& [a, b] = body.edges[touch.body];
+        const auto& [c, d] = Facet::edges[touch.ground];
+        const Vec3 &from = body.points[std::size_t(a)], &other = ground.points[std::size_t(c)];
+        out = height_of_crossing(rotation * from, rotation * (body.points[std::size_t(b)] - from), other,
+                                 ground.points[std::size_t(d)] - other);
+        break;
+    }
+    case Touch::Kind::Other: break;
+    }
+    return std::isfinite(out) ? std::optional(out) : std::nullopt;
+}
+
+std::optional<Facet> facet_of(const std::array<Vec3, 3>& triangle)
+{
+    const auto& [a, b, c] = triangle;
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    if (!(std::abs(normal.z()) * Facet::steepest >= 1)) return std::nullopt;
+    Facet out{triangle, normal / normal.z(), normal.dot(a) / normal.z(), {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2 from = triangle[k].head<2>(), along = (triangle[(k + 1) % 3] - triangle[k]).head<2>();
+        const Vec2 inward = Vec2(-along.y(), along.x()) / (normal.z() < 0 ? -along.norm() : along.norm());
+        out.sides[k] = {inward, inward.dot(from)};
+    }
+    return out;
+}
+
+bool Facet::is_over(const Vec3& p) const
+{
+    return std::all_of(sides.begin(), sides.end(), [&](const Side& side) {
+        return side.inward.x() * p.x() + side.inward.y() * p.y() >= side.offset - rounding;
+    });
+}
+
+std::optional<double> upper_end(const Convex& body, double x, double y)
+{
+    if (body.is_polyhedron()) {
+        const auto end = end_of(body, x, y, 1);
+        return end ? std::optional(end->z) : std::nullopt;
+    }
+    // Round bodies are the same seen from below, so the lower end on the opposite line is used.
+    const Vec3 middle = (body.points.front() + body.points.back()) / 2;
+    const Convex opposite = convex_of(Vec3(2 * middle.x() - x, 2 * middle.y() - y, 0));
+    std::vector<Touch> touches;
+    add_touches(body, opposite, touches);
+    double low = std::numeric_limits<double>::infinity();
+    for (const Touch& touch : touches) low = std::min(low, -touch.height);
+    return std::isfinite(low) ? std::optional(2 * middle.z() - low) : std::nullopt;
 }
 
 std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid)

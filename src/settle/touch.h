@@ -2,6 +2,7 @@
 
 #include "settle/convex.h"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -9,34 +10,75 @@
 
 namespace spawnfield {
 
-/// A way in which a body touches the ground when it is lowered: the body at `height` touches it at this place.
+/// A possible contact of a body that is lowered onto the ground: if no higher touch stops it, it comes to lie there.
 struct Touch {
-    double height;  ///< how much the body must be raised, m; negative: lowered
-    Vec3 body;      ///< the point of the body, before it is raised
-    Vec3 slope;     ///< direction from the ground to the body, perpendicular to the touching surfaces; z is 1
+    enum class Kind : std::uint8_t {
+        CornerOnFace,     ///< `body` is a point of a polyhedron
+        RimOnFace,        ///< `body` is a point of a cylinder
+        CornerUnderFace,  ///< `ground` is a point, `body` a plane
+        EdgeOnEdge,
+        Other
+    };
+
+    double height;  ///< m by which the body must be raised until it only just touches here; negative: lowered
+    Vec3 point;     ///< of the body, before it is raised
+    Vec3 normal;    ///< of the touching surfaces, from the ground towards the body, scaled so that z is 1
+    Kind kind = Kind::Other;
+    std::uint32_t body = 0, ground = 0;  ///< indices, see Kind
 };
 
-/// Touches that may be left out.
+/// The touches that a caller needs. Others may be left out.
 struct WantedTouches {
-    double least = -std::numeric_limits<double>::infinity();  ///< height, m; lower touches may be left out
-    /// Bit k: touches of this edge or corner of the ground may be left out.
+    double min_height = -std::numeric_limits<double>::infinity();  ///< m
+    /// Bit k: touches of this edge or corner of the ground are not needed. From number 8 on, all are needed.
     std::uint8_t covered_edges = 0, covered_points = 0;
 
-    bool has_edge(std::size_t k) const { return k >= 8 || (covered_edges >> k & 1) == 0; }
-    bool has_point(std::size_t k) const { return k >= 8 || (covered_points >> k & 1) == 0; }
+    bool wants_edge(std::size_t k) const { return k >= 8 || (covered_edges >> k & 1) == 0; }
+    bool wants_point(std::size_t k) const { return k >= 8 || (covered_points >> k & 1) == 0; }
 };
 
-/// Adds the ways in which a body, moved along z only, touches the ground from above. The highest of them is where it
-/// comes to lie on the ground; there, the ground's highest point is below the body's lowest point in every vertical
-/// line. The others are below it, and may become the highest one when the body is turned a little. Adds nothing if body
-/// and ground do not overlap seen from above. It takes less time if only some touches are wanted.
+/// A triangle of the scene that is not steep, prepared for many touches from above.
+struct Facet {
+    static constexpr double steepest = 20;  ///< largest slope
+    static constexpr std::array<std::array<int, 2>, 3> edges{{{0, 1}, {1, 2}, {2, 0}}};
+
+    std::array<Vec3, 3> points;
+    Vec3 normal;    ///< scaled so that z is 1; the plane is where normal . p = height
+    double height;  ///< of the plane at x = y = 0, m
+    struct Side {
+        Vec2 inward;    ///< of length 1
+        double offset;  ///< m; inside, inward . p >= offset
+    };
+    std::array<Side, 3> sides;  ///< of the edges, seen from above
+
+    double z_at(const Vec3& p) const { return height - normal.x() * p.x() - normal.y() * p.y(); }
+    bool is_over(const Vec3& p) const;  ///< whether p is above or below the triangle or its edges (to 1e-12 m)
+};
+
+/// Returns nothing if the triangle is steeper than Facet::steepest or has no area.
+std::optional<Facet> facet_of(const std::array<Vec3, 3>& triangle);
+
+/// Adds the touches of a body that moves only along z and meets the ground, a convex solid, from above. At the height
+/// of the highest touch the body rests on the ground: on no vertical line is the ground's upper end above the body's
+/// lower end. The other touches are lower; one of them may become the highest if the body is turned a little. Of two
+/// round bodies, adds only the highest touch of the bodies and of their ends. Surfaces steeper than 1e5 have no
+/// touches. Adds nothing if body and ground do not overlap seen from above.
 void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out, const WantedTouches& wanted = {});
+void add_touches(const Convex& body, const Facet& ground, std::vector<Touch>& out, const WantedTouches& wanted = {});
+
+/// Returns the height of a touch of the body on a facet after the body has been rotated from its own frame, if the same
+/// two features still touch: it is not tested whether they still meet. Returns nothing for Kind::Other, or if they are
+/// parallel.
+std::optional<double> height_after(const Touch& touch, const Convex& body, const Mat3& rotation, const Facet& ground);
 
 /// Returns the highest of these touches for any two bodies, by a general method that takes longer.
 std::optional<Touch> highest_touch(const Convex& body, const Convex& ground);
 
-/// Returns the heights between which the body must not be, because it would touch the solid. Returns nothing if they do
-/// not overlap seen from above.
+/// Returns the interval of heights (see Touch::height) in which the raised body overlaps the solid, or nothing if they
+/// do not overlap seen from above.
 std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid);
+
+/// Returns the z of a body's upper end on the vertical line through (x, y), or nothing if the line misses the body.
+std::optional<double> upper_end(const Convex& body, double x, double y);
 
 }  // namespace spawnfield
