@@ -21,12 +21,12 @@ void add_unit_notice(const std::string& file, const std::string& what, double un
                           " m and were converted to metres");
 }
 
-void add_height_unit_notice(const std::string& file, double unit, const std::string& place,
+void add_height_unit_notice(const std::string& file, double unit, const std::string& source,
                             std::vector<std::string>& notices)
 {
     add_unit_notice(file, "heights", unit, notices);
     if (unit < 0)
-        notices.push_back(file + ": its values are depths (" + place +
+        notices.push_back(file + ": its values are depths (" + source +
                           " counts downwards); heights are their negatives");
 }
 

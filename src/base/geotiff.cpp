@@ -159,16 +159,16 @@ void refuse_degrees(const GeoKeys& keys, const std::string& file)
 /// Returns metres per unit for a file without ProjLinearUnitsGeoKey.
 double unit_by_system(const GeoKeys& keys, const std::string& file, std::vector<std::string>& notices)
 {
-    using Place = CoordinateSystem::Place;
+    using Kind = CoordinateSystem::Kind;
     const std::string code = epsg_code(keys, projected_crs);
     if (code.empty()) {
         notices.push_back(file + ": does not state the unit of x and y; they are taken as metres");
         return 1;
     }
     const std::optional<CoordinateSystem> found = coordinate_system(code);
-    if (found && (found->place == Place::Degrees || found->place == Place::Globe))
-        refuse_unprojected(file, found->place == Place::Globe, code);
-    if (!found || found->place != Place::Plane)
+    if (found && (found->kind == Kind::Geographic || found->kind == Kind::Geocentric))
+        refuse_unprojected(file, found->kind == Kind::Geocentric, code);
+    if (!found || found->kind != Kind::Projected)
         throw FileError(file, "is in " + code +
                                   ", which PROJ does not know as a projection, so its unit is unknown; give it another "
                                   "with gdal_edit.py -a_srs, or give the spacing in metres with the key cell");

@@ -20,7 +20,7 @@ const void* module_symbol(const char* name, const char* failure)
 {
     const std::string module = std::string("spawnfield_") + name;
     const std::filesystem::path file = library_folder() / ("lib" + module + ".so");
-    void* const loaded = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);  // RTLD_NOW would take half as long again
+    void* const loaded = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);  // RTLD_NOW would take 1.5 times as long
     const auto find = [&](const char* symbol) {
         const void* const found = loaded == nullptr ? nullptr : dlsym(loaded, (module + symbol).c_str());
         if (found != nullptr) return found;

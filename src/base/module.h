@@ -19,9 +19,10 @@ const void* module_symbol(const char* name, const char* failure);
 /// has pointers to functions, and the constants `module` and `failure`, the arguments of module_symbol(). The module
 /// exports them with SPAWNFIELD_MODULE.
 ///
-/// A module contains all code that uses a foreign library which takes long to load. Objects that its functions take and
-/// return are plain values, or have code that this library exports, or inline code without state of its own: each side
-/// has its own copy of that. Throws std::runtime_error as module_symbol().
+/// A module contains all code that uses a foreign library which takes long to load. The types of its functions'
+/// arguments and results must be plain values, or have functions that this library exports, or inline functions without
+/// static variables: the library and the module each have a copy of these. Throws std::runtime_error as
+/// module_symbol().
 template <class Functions>
 const Functions& module_functions()
 {
@@ -32,8 +33,8 @@ const Functions& module_functions()
 
 }  // namespace spawnfield
 
-/// Defines all that the module `name` exports: its version, and its functions in the order of their table. The library
-/// looks both up by name after it has loaded the module.
+/// Defines all that the module `name` exports: its version, and its functions in the order of the fields of Functions.
+/// The library looks both up by name after it has loaded the module.
 #define SPAWNFIELD_MODULE(name, ...)                                                                    \
     extern "C" SPAWNFIELD_API const char* const spawnfield_##name##_version;                            \
     const char* const spawnfield_##name##_version = SPAWNFIELD_VERSION;                                 \

@@ -38,7 +38,7 @@ struct CheckedPart {
     Vec3 box_centre, box_half;  ///< of the bounding box along the shape's axes, in its frame
 
     CheckedPart(const NarrowPhase& narrow_phase, const RobotPart& part)
-        : body(narrow_phase.part(part)),
+        : body(narrow_phase.make_part(part)),
           robot_from_shape(part.shape.kind == ShapeKind::Hull ? Pose{} : part.shape.pose), centre(part.centre()),
           bounds_shape(part.shape), hull_vertices(part.hull_vertices)
     {
@@ -135,7 +135,7 @@ struct CollisionChecker::Impl {
             const AxisTest result = fcl_only ? AxisTest::Unclear : axis_test_of(part, corners);
             if (result == AxisTest::Overlap) return true;
             if (result == AxisTest::Unclear && overlap(tile.box(triangle), part.bounds) &&
-                narrow_phase.triangle(*part.part->body, part.robot_from_shape, corners))
+                narrow_phase.meets_triangle(*part.part->body, part.robot_from_shape, corners))
                 return true;
         }
         return false;
@@ -149,7 +149,7 @@ struct CollisionChecker::Impl {
         const Transform robot_from_other = transform_of({shape.pose.position - origin, shape.pose.rotation});
         return std::any_of(placed.begin(), placed.end(), [&](const PlacedPart& part) {
             return overlap(box, part.bounds) &&
-                   narrow_phase.shape(*part.part->body, part.robot_from_shape, shape, robot_from_other);
+                   narrow_phase.meets_shape(*part.part->body, part.robot_from_shape, shape, robot_from_other);
         });
     }
 
@@ -181,7 +181,7 @@ struct CollisionChecker::Impl {
         Transform robot_from_tree = Transform::Identity();
         robot_from_tree.translation() = -origin;
         for (const PlacedPart& part : placed)
-            if (narrow_phase.in_octree(*part.part->body, part.robot_from_shape, *octree, robot_from_tree))
+            if (narrow_phase.meets_octree(*part.part->body, part.robot_from_shape, *octree, robot_from_tree))
                 return CollisionHit{};
         return std::nullopt;
     }
@@ -199,7 +199,7 @@ CollisionChecker::CollisionChecker(std::shared_ptr<const OccupancyTree> tree, co
 {
     auto impl = std::make_unique<Impl>(robot);
     impl->tree = std::move(tree);
-    impl->octree = impl->narrow_phase.octree(impl->tree->impl().tree);
+    impl->octree = impl->narrow_phase.make_octree(impl->tree->impl().tree);
     impl_ = std::move(impl);
 }
 

@@ -11,20 +11,20 @@ class OcTree;
 }
 
 /// The interface of the module src/narrow_phase: a shared library that contains all code that uses FCL, and that is
-/// loaded for the first CollisionChecker. FCL has 29,000 symbols, whose relocation takes a third of the time in which a
-/// program starts.
+/// loaded when the first CollisionChecker is made. FCL has 29,000 symbols, whose relocation takes a third of the time
+/// in which a program starts.
 namespace spawnfield::narrow_phase_module {
 
 /// The position and the rotation of a body in some frame, m.
 using Transform = Eigen::Isometry3d;
 
-/// Something as FCL sees it: a convex part of a robot or an octree.
+/// An object of FCL: a convex part of a robot, or an octree.
 class Body {
 public:
     virtual ~Body() = default;
 };
 
-/// Makes a body of a part's shape, in the shape's own frame; of a hull, in the robot's frame.
+/// Returns the body of a robot's part, in the shape's own frame; for a hull, in the robot's frame.
 std::unique_ptr<const Body> make_part(const RobotPart& part);
 std::unique_ptr<const Body> make_octree(std::shared_ptr<const octomap::OcTree> tree);
 
@@ -39,11 +39,11 @@ bool meets_octree(const Body& part, const Transform& frame_from_part, const Body
 /// The functions that the module exports.
 struct Functions {
     static constexpr const char *module = "narrow_phase", *failure = "collisions cannot be checked";
-    decltype(&make_part) part;
-    decltype(&make_octree) octree;
-    decltype(&meets_triangle) triangle;
-    decltype(&meets_shape) shape;
-    decltype(&meets_octree) in_octree;
+    decltype(&narrow_phase_module::make_part) make_part;
+    decltype(&narrow_phase_module::make_octree) make_octree;
+    decltype(&narrow_phase_module::meets_triangle) meets_triangle;
+    decltype(&narrow_phase_module::meets_shape) meets_shape;
+    decltype(&narrow_phase_module::meets_octree) meets_octree;
 };
 
 }  // namespace spawnfield::narrow_phase_module

@@ -19,7 +19,7 @@ using Object = std::unique_ptr<PJ, Closer>;
 Context open_context()
 {
     Context context(proj_context_create());
-    if (!context) throw std::runtime_error("coordinate systems cannot be looked up: PROJ cannot start");
+    if (!context) throw std::runtime_error("coordinate systems cannot be looked up: PROJ cannot create a context");
     proj_log_level(context.get(), PJ_LOG_NONE);
     proj_context_set_enable_network(context.get(), 0);
     if (proj_context_get_database_path(context.get()) == nullptr)  // also null for a database of another PROJ version
@@ -29,8 +29,8 @@ Context open_context()
     return context;
 }
 
-/// Returns the metres per unit of axis number `index`, < 0 if the axis points down; empty if there is no such axis.
-/// Only for axes along which lengths are measured.
+/// Returns the metres per unit of axis number `index`, < 0 if the axis points down; empty if there is no such axis or
+/// if PROJ does not know its unit. The axis must measure a length, not an angle.
 std::optional<double> axis_unit(PJ_CONTEXT* context, const PJ* axes, int index)
 {
     const char* direction = nullptr;
@@ -45,26 +45,28 @@ std::optional<double> axis_unit(PJ_CONTEXT* context, const PJ* axes, int index)
 
 std::optional<CoordinateSystem> describe(PJ_CONTEXT* context, const PJ* system);
 
+/// Returns the horizontal system of the two, with the unit of the vertical one if that is known.
 std::optional<CoordinateSystem> describe_compound(PJ_CONTEXT* context, const PJ* system)
 {
-    const Object across(proj_crs_get_sub_crs(context, system, 0)), up(proj_crs_get_sub_crs(context, system, 1));
-    if (!across || !up) return std::nullopt;
-    std::optional<CoordinateSystem> found = describe(context, across.get());
-    const std::optional<CoordinateSystem> heights = describe(context, up.get());
+    const Object horizontal(proj_crs_get_sub_crs(context, system, 0)),
+        vertical(proj_crs_get_sub_crs(context, system, 1));
+    if (!horizontal || !vertical) return std::nullopt;
+    std::optional<CoordinateSystem> found = describe(context, horizontal.get());
+    const std::optional<CoordinateSystem> heights = describe(context, vertical.get());
     if (found && heights) found->height_unit = heights->height_unit;
     return found;
 }
 
-std::optional<CoordinateSystem> describe_single(PJ_CONTEXT* context, const PJ* system, CoordinateSystem::Place place)
+std::optional<CoordinateSystem> describe_single(PJ_CONTEXT* context, const PJ* system, CoordinateSystem::Kind kind)
 {
-    using Place = CoordinateSystem::Place;
+    using Kind = CoordinateSystem::Kind;
     CoordinateSystem found;
-    found.place = place;
+    found.kind = kind;
     const Object axes(proj_crs_get_coordinate_system(context, system));
     if (!axes) return std::nullopt;
-    if (place == Place::None) found.height_unit = axis_unit(context, axes.get(), 0);
-    if (place == Place::Plane || place == Place::Degrees) found.height_unit = axis_unit(context, axes.get(), 2);
-    if (place == Place::Plane) {
+    if (kind == Kind::Vertical) found.height_unit = axis_unit(context, axes.get(), 0);
+    if (kind == Kind::Projected || kind == Kind::Geographic) found.height_unit = axis_unit(context, axes.get(), 2);
+    if (kind == Kind::Projected) {
         const std::optional<double> x = axis_unit(context, axes.get(), 0), y = axis_unit(context, axes.get(), 1);
         if (!x || x != y) return std::nullopt;
         found.unit = *x;
@@ -74,20 +76,20 @@ std::optional<CoordinateSystem> describe_single(PJ_CONTEXT* context, const PJ* s
 
 std::optional<CoordinateSystem> describe(PJ_CONTEXT* context, const PJ* system)
 {
-    using Place = CoordinateSystem::Place;
+    using Kind = CoordinateSystem::Kind;
     switch (proj_get_type(system)) {
     case PJ_TYPE_BOUND_CRS: {
         const Object inner(proj_get_source_crs(context, system));
         return inner ? describe(context, inner.get()) : std::nullopt;
     }
     case PJ_TYPE_COMPOUND_CRS: return describe_compound(context, system);
-    case PJ_TYPE_VERTICAL_CRS: return describe_single(context, system, Place::None);
+    case PJ_TYPE_VERTICAL_CRS: return describe_single(context, system, Kind::Vertical);
     case PJ_TYPE_GEOGRAPHIC_2D_CRS:
-    case PJ_TYPE_GEOGRAPHIC_3D_CRS: return describe_single(context, system, Place::Degrees);
-    case PJ_TYPE_GEOCENTRIC_CRS: return describe_single(context, system, Place::Globe);
+    case PJ_TYPE_GEOGRAPHIC_3D_CRS: return describe_single(context, system, Kind::Geographic);
+    case PJ_TYPE_GEOCENTRIC_CRS: return describe_single(context, system, Kind::Geocentric);
     case PJ_TYPE_PROJECTED_CRS:
     case PJ_TYPE_ENGINEERING_CRS:
-    case PJ_TYPE_OTHER_CRS: return describe_single(context, system, Place::Plane);
+    case PJ_TYPE_OTHER_CRS: return describe_single(context, system, Kind::Projected);
     default: return std::nullopt;
     }
 }

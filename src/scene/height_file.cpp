@@ -81,15 +81,15 @@ std::optional<CoordinateSystem> system_beside(const std::filesystem::path& file,
 void use_system(HeightFile& found, const CoordinateSystem& system, bool wants_frame, const std::string& file,
                 std::vector<std::string>& notices)
 {
-    using Place = CoordinateSystem::Place;
+    using Kind = CoordinateSystem::Kind;
     if (system.height_unit) {
         found.height_unit = *system.height_unit;
         add_height_unit_notice(file, found.height_unit, system.name, notices);
     }
     if (!wants_frame) return;
-    if (system.place == Place::Degrees || system.place == Place::Globe)
-        refuse_unprojected(file, system.place == Place::Globe, system.name);
-    found.frame->is_projected = system.place == Place::Plane;
+    if (system.kind == Kind::Geographic || system.kind == Kind::Geocentric)
+        refuse_unprojected(file, system.kind == Kind::Geocentric, system.name);
+    found.frame->is_projected = system.kind == Kind::Projected;
     found.frame->unit = system.unit;
     found.frame->crs = system.name;
     add_unit_notice(file, "x and y", system.unit, notices);
