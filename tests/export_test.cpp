@@ -540,6 +540,21 @@ TEST_CASE("export --format geotiff writes the same bytes with any number of thre
     CHECK(read.at("water", 7, -7) == float(1.45));
 }
 
+TEST_CASE("export --format geotiff has the tilt and the margin of settled robots")
+{
+    const Arena arena;
+    REQUIRE(arena("export map --format geotiff -o a.tif --layers top" + husky_option).status == 0);
+    const GeoTiff read = read_geotiff(arena / "a.tif");
+    CHECK(read.at("verdict", 0, 3) == float(Verdict::Valid));
+    CHECK(std::abs(read.at("tilt", 0, 3)) <= 1e-6);
+    CHECK(std::abs(read.at("margin", 0, 3) - 0.335) <= 1e-6);
+    CHECK(std::abs(read.at("tilt", 1, 7) - 10) <= 1e-4);  // the ramp
+    CHECK(std::isnan(read.at("tilt", -6.5, -5)));         // a wall: no room
+    CHECK_THAT(read.metadata, Contains("role=\"unittype\">degrees<"));
+    REQUIRE(arena("export map --format geotiff -o b.tif --stance level" + husky_option).status == 0);
+    CHECK_FALSE(read_geotiff(arena / "b.tif").has("tilt"));
+}
+
 TEST_CASE("GDAL reads the bands, transform, units and no-data of a GeoTIFF", "[python]")
 {
     const auto python = python_with("rasterio");
