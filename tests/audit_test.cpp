@@ -99,8 +99,12 @@ TEST_CASE("Spawns in each shared world, as its makers publish it, are valid by t
         const Scene scene = load_scene(*folder / item.file, {.labels = item.labels});
         const TestMap map = map_of(scene, item.resolution, scene.map_bounds);
         const Judge judge(map, robot);
-        SampleOptions options{
-            .count = spawn_count, .min_distance = 0.1, .random_yaw = true, .seed = 6, .offset = item.offset};
+        SampleOptions options{.count = spawn_count,
+                              .min_distance = 0.1,
+                              .random_yaw = true,
+                              .seed = 6,
+                              .stance = Stance::Level,
+                              .offset = item.offset};
         const SpawnList list = sample(judge, options);
         CHECK(list.spawns.size() == spawn_count);
         std::size_t decided = 0, wrong = 0;

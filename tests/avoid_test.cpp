@@ -16,7 +16,7 @@ namespace {
 
 SampleOptions sample_options(std::size_t count, double min_distance)
 {
-    return {.count = count, .min_distance = min_distance, .random_yaw = true, .seed = 5};
+    return {.count = count, .min_distance = min_distance, .random_yaw = true, .seed = 5, .stance = Stance::Level};
 }
 
 Verdict judged(const Judge& judge, const Spawn& spawn)

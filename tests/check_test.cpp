@@ -319,7 +319,7 @@ TEST_CASE("options of settled poses are refused or reported if they cannot have 
     arena.write("tilted.csv", "x,y,z,roll\n0,3,0.1,0.2\n");
     const std::string command = "check map --poses poses.csv" + husky_option;
     CHECK_THAT(arena(command + "--lift 0.1").err,
-               Contains("--lift has no effect: it is only for settled poses (--settle)"));
+               Contains("--lift has no effect: it is only for settled poses (--stance settled)"));
     CHECK_THAT(arena("check map --poses tilted.csv --settle" + husky_option).err,
                Contains("tilted.csv: roll and pitch of 1 pose are not used, because the robot is let down level"));
     const auto refused = [&](const std::string& options, const std::string& message) {
@@ -373,14 +373,14 @@ TEST_CASE("raster and heatmap refuse what they cannot do with settled poses")
         CHECK(run.status == 2);
         CHECK_THAT(run.err, Contains(message));
     };
-    refused("raster map --dims 3 --step 1 --settle", "--settle is only for --dims 2");
-    refused("heatmap map -o x.png --quantity margin",
-            "--quantity margin needs --settle: it is about the robot at rest");
+    refused("raster map --dims 3 --step 1 --settle", "--stance settled (--settle) is only for --dims 2");
+    refused("heatmap map -o x.png --quantity margin --stance level",
+            "--quantity margin is about the robot at rest; leave --stance level out, or choose another quantity");
     refused("heatmap map -o x.png --quantity tilt --settle --yaw random", "--quantity tilt needs one heading");
     refused("raster map --dims 2 --step 1 --settle --collision octree", "settled poses need geometry");
-    const ProgramRun idle = arena("heatmap map --step 1 -o x.png --settle --offset 0.5" + husky_option);
-    CHECK(idle.status == 0);
-    CHECK_THAT(idle.err, Contains("--offset has no effect: settled robots stand on the ground"));
+    refused("raster map --dims 2 --step 1 --settle --offset 0.5",
+            "--offset is 0.5, but it is the height of a level robot, and settled robots stand on the ground; give "
+            "--stance level in place of --settle, or leave --offset out");
 }
 
 TEST_CASE("a robot stops at its first rest, whatever the largest tilt, and the other side of a ramp mirrors it")

@@ -78,7 +78,7 @@ TEST_CASE("wrong usage ends with status 2, and the message names option, value a
         {"check map --poses poses.csv -o out --robot ''",
          "--robot: is empty; is a variable of the shell not set?" + hint},
         {"bake scene.yaml -o ''", "--out: is empty; is a variable of the shell not set?" + hint},
-        {sample + " -n 3 --offset 1e300", "spawnfield: --offset is 1e+300, needs at most 1e7 m"},
+        {sample + " -n 3 --stance level --offset 1e300", "spawnfield: --offset is 1e+300, needs at most 1e7 m"},
         {"bake scene.yaml -o new --bounds -1e300,0,0,1,1,1",
          "spawnfield: --bounds is -1e+300, needs numbers between -1e7 and 1e7, m"},
         {"raster map -o out --dims 2" + husky, "--step is required" + hint},

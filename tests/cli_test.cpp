@@ -398,7 +398,7 @@ TEST_CASE("raster --snap gives each layer a pose at --offset above it")
 TEST_CASE("sample and search find as many spawns as requested, the same with any number of threads")
 {
     const Arena arena;
-    for (const std::string command : {"sample map -n 40 --min-distance 0.5 --yaw random --seed 9",
+    for (const std::string command : {"sample map -n 40 --min-distance 0.5 --yaw random --seed 9 --stance level",
                                       "search map -n 40 --min-distance 0.1 --max-failures 100000 --seed 9"}) {
         const ProgramRun run = arena(command + " --threads 1 -o spawns.csv --summary s.json" + husky);
         CHECK(run.status == 0);
@@ -424,7 +424,8 @@ TEST_CASE("sample and search find as many spawns as requested, the same with any
 TEST_CASE("fewer spawns than requested end with status 3, and those found are written")
 {
     const Arena arena;
-    const ProgramRun run = arena("sample map -n 50 --min-distance 15 -o spawns.csv --summary s.json" + husky);
+    const ProgramRun run = arena("sample map -n 50 --min-distance 15 --stance level -o spawns.csv --summary s.json" +
+                                 husky);
     CHECK(run.status == 3);
     const std::size_t found = read_poses(arena / "spawns.csv").poses.size();
     CHECK(found > 0);
@@ -437,7 +438,8 @@ TEST_CASE("fewer spawns than requested end with status 3, and those found are wr
                  query = report["seconds"]["query"];
     CHECK((mask > 0 && exact > 0 && mask + exact <= query));
     CHECK(report["undecided_area"] == 0.0);
-    CHECK(nlohmann::json::parse(arena("sample map -n 50 --min-distance 15 --format json" + husky).out)["full"] == true);
+    CHECK(nlohmann::json::parse(
+              arena("sample map -n 50 --min-distance 15 --stance level --format json" + husky).out)["full"] == true);
     CHECK(arena("search map -n 5 --min-distance 100 --max-failures 50 --summary s.json" + husky).status == 3);
     CHECK_FALSE(summary(arena / "s.json", "search").contains("full"));
 }
@@ -451,7 +453,8 @@ TEST_CASE("sample gives a notice if many poses are where the scene has ground tw
                      "  - {name: high, label: terrain, plane: " +
                          upper + "}\n");
         REQUIRE(run_program(folder, "bake scene.yaml -o map --resolution 0.5").status == 0);
-        const ProgramRun run = run_program(folder, "sample map -n 200 --robot box:0.4,0.4,0.3" + options);
+        const ProgramRun run = run_program(folder,
+                                           "sample map -n 200 --stance level --robot box:0.4,0.4,0.3" + options);
         CHECK(run.status == 0);
         return run.err;
     };
@@ -507,15 +510,15 @@ TEST_CASE("with --max-slope every command examines how valid poses stand, withou
 
     for (const std::string command :
          {"raster map --dims 2 --step 0.2 --offset 0.6", "raster map --dims 3 --step 0.4 --step-z 0.1",
-          "heatmap map --step 0.2 --offset 0.6 -o map.png", "sample map -n 200 --offset 0.6",
-          "search map -n 50 --max-failures 3000"}) {
+          "heatmap map --step 0.2 --stance level --offset 0.6 -o map.png",
+          "sample map -n 200 --stance level --offset 0.6", "search map -n 50 --max-failures 3000"}) {
         INFO(command);
         CHECK_THAT(run_program(folder, command + " --max-slope 15" + husky).err,
                    Contains(" steep") && Contains(" unstable"));
         CHECK_THAT(run_program(folder, command + husky).err, !Contains(" steep") && !Contains(" unstable"));
     }
     const auto json = nlohmann::json::parse(
-        run_program(folder, "sample map -n 1 --format json --max-slope 15" + husky).out);
+        run_program(folder, "sample map -n 1 --stance level --format json --max-slope 15" + husky).out);
     CHECK(json["settings"]["max_slope"].get<double>() == Approx(15 * M_PI / 180));
     CHECK(json["counts"].contains("unstable"));
 }

@@ -298,6 +298,37 @@ TEST_CASE("an image of verdicts is the same in strips far from the origin, and w
           0);  // rounding loses no row or column
 }
 
+TEST_CASE("an image of settled verdicts has the tilt and the margin of each settled pose")
+{
+    const TestMap map = training_map();
+    const Judge judge(map, husky());
+    RasterOptions options{
+        .step = 0.5, .stance = Stance::Settled, .yaw = 0.4, .layers = {LayerChoice::Kind::Top, 0}, .threads = 1};
+    GridFrame frame = frame_around(map.bounds, options.step);
+    const VerdictImage image = verdict_image(judge, frame, options);
+    REQUIRE(image.tilt.size() == image.verdicts.size());
+    REQUIRE(image.margin.size() == image.verdicts.size());
+    std::size_t tilted = 0, without_pose = 0;
+    for (int row = 0; row < frame.rows; row += 3)
+        for (int col = 0; col < frame.cols; ++col) {
+            if (image.at(row, col) == VerdictImage::no_pose) continue;
+            const double x = frame.x_of(col), y = frame.y_of(row);
+            const Column column = column_at(map.geometry, x, y);
+            const SettledPose pose = judge.settle({x, y, column.layers.front()}, options.yaw);
+            const std::size_t cell = std::size_t(row) * std::size_t(frame.cols) + std::size_t(col);
+            CHECK(image.verdicts[cell] == std::uint8_t(pose.verdict));
+            CHECK(std::isnan(image.tilt[cell]) == !pose.has_pose);
+            if (pose.has_pose) CHECK(std::abs(image.tilt[cell] - pose.tilt) <= 1e-6);
+            if (pose.has_pose) CHECK(std::abs(image.margin[cell] - pose.margin) <= 1e-6);
+            tilted += pose.has_pose && pose.tilt > 0.1;
+            without_pose += !pose.has_pose;
+        }
+    CHECK(tilted > 10);
+    CHECK(without_pose > 10);
+    options.stance = Stance::Level;
+    CHECK(verdict_image(judge, frame, options).tilt.empty());
+}
+
 TEST_CASE("a nav2 map has at each point the value of the verdict at the centre of the cell")
 {
     const TestMap map = deck_map();
@@ -364,12 +395,13 @@ TEST_CASE("of files that are committed together, all appear or none")
 TEST_CASE("export --format nav2 writes both files, the same bytes with any number of threads")
 {
     const Arena arena;
-    REQUIRE(arena("export map --format nav2 --offset 0.2 --layers bottom -o one.yaml --threads 1 --summary s.json" +
+    REQUIRE(arena("export map --format nav2 --stance level --offset 0.2 --layers bottom -o one.yaml --threads 1 "
+                  "--summary s.json" +
                   husky_option)
                 .status == 0);
-    REQUIRE(
-        arena("export map --format nav2 --offset 0.2 --layers bottom -o two.yaml --threads 3" + husky_option).status ==
-        0);
+    REQUIRE(arena("export map --format nav2 --stance level --offset 0.2 --layers bottom -o two.yaml --threads 3" +
+                  husky_option)
+                .status == 0);
     CHECK(bytes_of(arena / "one.pgm") == bytes_of(arena / "two.pgm"));
     const Nav2Map map = read_nav2(arena / "one.yaml");
     CHECK(map.image == "one.pgm");
@@ -496,7 +528,8 @@ TEST_CASE("a GeoTIFF is at its survey coordinates, if the survey has an EPSG cod
 TEST_CASE("export --format geotiff writes the same bytes with any number of threads")
 {
     const Arena arena;
-    const std::string command = "export map --format geotiff --resolution 0.05" + husky_option;  // 2 x 2 tiles
+    const std::string command = "export map --format geotiff --stance level --resolution 0.05" +
+                                husky_option;  // 2 x 2 tiles
     REQUIRE(arena(command + "--threads 1 -o one.tif").status == 0);
     REQUIRE(arena(command + "--threads 3 -o two.tif").status == 0);
     CHECK(bytes_of(arena / "one.tif") == bytes_of(arena / "two.tif"));
@@ -507,12 +540,27 @@ TEST_CASE("export --format geotiff writes the same bytes with any number of thre
     CHECK(read.at("water", 7, -7) == float(1.45));
 }
 
+TEST_CASE("export --format geotiff has the tilt and the margin of settled robots")
+{
+    const Arena arena;
+    REQUIRE(arena("export map --format geotiff -o a.tif --layers top" + husky_option).status == 0);
+    const GeoTiff read = read_geotiff(arena / "a.tif");
+    CHECK(read.at("verdict", 0, 3) == float(Verdict::Valid));
+    CHECK(std::abs(read.at("tilt", 0, 3)) <= 1e-6);
+    CHECK(std::abs(read.at("margin", 0, 3) - 0.335) <= 1e-6);
+    CHECK(std::abs(read.at("tilt", 1, 7) - 10) <= 1e-4);  // the ramp
+    CHECK(std::isnan(read.at("tilt", -6.5, -5)));         // a wall: no room
+    CHECK_THAT(read.metadata, Contains("role=\"unittype\">degrees<"));
+    REQUIRE(arena("export map --format geotiff -o b.tif --stance level" + husky_option).status == 0);
+    CHECK_FALSE(read_geotiff(arena / "b.tif").has("tilt"));
+}
+
 TEST_CASE("GDAL reads the bands, transform, units and no-data of a GeoTIFF", "[python]")
 {
     const auto python = python_with("rasterio");
     if (!python) return;
     const Arena arena;
-    REQUIRE(arena("export map --format geotiff --offset 0.2 -o a.tif" + husky_option).status == 0);
+    REQUIRE(arena("export map --format geotiff --stance level --offset 0.2 -o a.tif" + husky_option).status == 0);
     CHECK(python_accepts(*python, arena, R"(
 import math, sys
 import rasterio
@@ -574,11 +622,34 @@ TEST_CASE("a PLY has the poses of the raster as points, bit by bit, with the col
     CHECK(wrong == 0);
 }
 
+TEST_CASE("points of settled robots in a PLY have roll, pitch, tilt and margin")
+{
+    const TestMap map = training_map();
+    const Judge judge(map, husky());
+    const RasterResult result = raster(judge, {.step = 1.3, .stance = Stance::Settled});
+    std::string bytes;
+    write_ply(result, {}, [&](std::string_view piece) { bytes += piece; });
+    const std::size_t body = bytes.find("end_header\n") + 11;
+    CHECK_THAT(bytes.substr(0, body), Contains("property uchar verdict\nproperty double roll\nproperty double "
+                                               "pitch\nproperty double tilt\nproperty double margin\nend_header"));
+    constexpr std::size_t point = 7 * sizeof(double) + 4;
+    REQUIRE(bytes.size() == body + point * result.poses.size());
+    for (std::size_t p = 0; p < result.poses.size(); ++p) {
+        std::array<double, 4> rest;
+        std::memcpy(rest.data(), bytes.data() + body + p * point + 28, sizeof rest);
+        CHECK((rest[0] == result.rests[p].roll && rest[1] == result.rests[p].pitch));
+        if (result.rests[p].has_pose())
+            CHECK((rest[2] == result.rests[p].tilt && rest[3] == result.rests[p].margin));
+        else
+            CHECK((std::isnan(rest[2]) && std::isnan(rest[3])));
+    }
+}
+
 TEST_CASE("export --format ply writes to a file or to standard output, the same bytes with any number of threads",
           "[python]")
 {
     const Arena arena;
-    const std::string command = "export map --format ply --step 0.5 --offset 0.5" + husky_option;
+    const std::string command = "export map --format ply --stance level --step 0.5 --offset 0.5" + husky_option;
     const ProgramRun printed = arena(command + "--threads 1 -q");
     CHECK(printed.status == 0);
     REQUIRE(arena(command + "--threads 3 -o a.ply").status == 0);
@@ -804,6 +875,9 @@ TEST_CASE("export names the option that a format needs or refuses, and then writ
     refused("--format ply --step 0" + husky_option, "--step is 0, needs > 0");
     refused("--format nav2 --step 1 -o a.yaml" + husky_option, "--step is not for --format nav2; it is for ply");
     refused("--format geotiff --offset 0.2 -o a.tif", "--offset needs --robot");
+    refused("--format geotiff --settle -o a.tif", "--settle needs --robot");
+    refused("--format glb --stance level -o a.glb" + husky_option,
+            "--stance is not for --format glb; it is for nav2, geotiff, ply");
     refused("--format geotiff --layers all -o a.tif",
             "--layers is all, needs top, bottom or a number (0 is the highest layer), because a pixel of geotiff has "
             "one value");

@@ -438,7 +438,7 @@ TEST_CASE("samples have a footing, and footings are the same bytes with any numb
         const Judge judge(map, hard.robot, {.max_height = std::max(1.0, hard.offset), .max_slope = hard.max_slope});
         const Judge exhaustive = at_any_height(judge);
         RasterOptions options = raster_options(map, hard, 60);
-        SampleOptions samples{.count = 60, .random_yaw = true, .offset = hard.offset};
+        SampleOptions samples{.count = 60, .random_yaw = true, .stance = Stance::Level, .offset = hard.offset};
         std::vector<std::string> texts;
         for (const int threads : {1, 2, 8}) {
             options.threads = samples.threads = threads;
@@ -459,7 +459,8 @@ TEST_CASE("where everything is too steep, sample finds nothing, but does not cal
 {
     const TestMap map = map_of(slope_scene(20));
     const Robot robot = load_robot("box:0.4,0.4,0.3");
-    const SampleOptions options{.count = 5, .offset = 0.3, .bounds = {Vec3(-1, -1, 0), Vec3(1, 1, 0)}};
+    const SampleOptions options{
+        .count = 5, .stance = Stance::Level, .offset = 0.3, .bounds = {Vec3(-1, -1, 0), Vec3(1, 1, 0)}};
     const SpawnList list = sample(Judge(map, robot, {.max_slope = rad(15)}), options);
     CHECK(list.spawns.empty());
     CHECK(list.counts[Steep] > 0);

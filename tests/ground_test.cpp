@@ -157,7 +157,7 @@ TEST_CASE("spawns stand on layers within the z limits of the map, the query and 
     const TempFolder folder;
     TestMap map = map_of(tower_scene(folder));
     const Judge judge(map, small_box());
-    SampleOptions options{.count = 400, .random_yaw = true};
+    SampleOptions options{.count = 400, .random_yaw = true, .stance = Stance::Level};
     const auto heights = [&] {
         std::map<double, int> out;
         for (const Spawn& spawn : sample(judge, options).spawns)
@@ -195,7 +195,7 @@ TEST_CASE("a sample with a z range is proven full, and dense probing finds no ro
     const TempFolder folder;
     TestMap map = map_of(tower_scene(folder));
     const Judge judge(map, small_box()), exhaustive = without_mask(judge);
-    SampleOptions options{.count = 10000, .min_distance = 1.5, .z = {2.5, 3.5}};
+    SampleOptions options{.count = 10000, .min_distance = 1.5, .stance = Stance::Level, .z = {2.5, 3.5}};
     const SpawnList list = sample(judge, options);
     CHECK(list.is_full);
     CHECK(list.undecided_area == 0);
@@ -296,7 +296,7 @@ TEST_CASE("the automatic offset puts the lowest point 0.1 m above the layer")
 
     const TestMap map = training_map();
     const Judge sunk(map, load_robot("box:0.99,0.67,0.39@0,0,0.095"));
-    SampleOptions options{.count = 50};
+    SampleOptions options{.count = 50, .stance = Stance::Level};
     for (const Spawn& spawn : sample(sunk, options).spawns) CHECK(spawn.position.z() > 0.1);
     CHECK(raster(sunk, {}).offset == auto_offset(sunk.robot()));
     options.offset = 1.1;
@@ -315,7 +315,8 @@ TEST_CASE("with the same options, check finds every pose of sample valid")
           "--collision octree --max-water-depth 0.1 --max-height 0.3"}) {
         const std::string common = std::string("map --robot rover.yaml ") + options;
         CAPTURE(options);
-        const ProgramRun drawn = arena("sample " + common + " -n 60 --yaw random --min-distance 0.3 -o spawns.csv");
+        const ProgramRun drawn = arena("sample " + common +
+                                       " --stance level -n 60 --yaw random --min-distance 0.3 -o spawns.csv");
         INFO(drawn.err);
         REQUIRE(drawn.status == 0);
         std::string of_check = common;  // without --offset, which check does not have
@@ -346,11 +347,11 @@ TEST_CASE("all commands respect --z and --floor, so a picture or a map of one fl
         for (const Pose& pose : read_poses(folder / file).poses) out.push_back(pose.position.z());
         return out;
     };
-    REQUIRE(run("sample" + robot + "-n 60 --floor 1 -o floor.csv").status == 0);
+    REQUIRE(run("sample" + robot + "-n 60 --stance level --floor 1 -o floor.csv").status == 0);
     for (const double z : heights("floor.csv")) CHECK((z > 1.5 && z < 4.6));
-    REQUIRE(run("sample" + robot + "-n 60 --z 2.9:3.1 -o z.csv").status == 0);
+    REQUIRE(run("sample" + robot + "-n 60 --stance level --z 2.9:3.1 -o z.csv").status == 0);
     for (const double z : heights("z.csv")) CHECK((z > 2.99 && z < 3.21));
-    REQUIRE(run("sample" + robot + "-n 60 --region=-15,-8,2.9,15,8,3.1 -o box.csv").status == 0);
+    REQUIRE(run("sample" + robot + "-n 60 --stance level --region=-15,-8,2.9,15,8,3.1 -o box.csv").status == 0);
     CHECK(bytes_of(folder / "box.csv") == bytes_of(folder / "z.csv"));
     REQUIRE(run("raster" + robot + "--dims 2 --step 0.5 --floor 2 -o raster.csv").status == 0);
     for (const double z : heights("raster.csv")) CHECK(z > 4.5);
@@ -358,7 +359,7 @@ TEST_CASE("all commands respect --z and --floor, so a picture or a map of one fl
     REQUIRE(run("raster" + robot + "--dims 2 --step 0.5 --bounds=-15,-8,15,8 --z 2.9:3.1 -o four.csv").status == 0);
     CHECK(bytes_of(folder / "six.csv") == bytes_of(folder / "four.csv"));
     for (const double z : heights("six.csv")) CHECK((z > 2.99 && z < 3.21));
-    CHECK(run("heatmap" + robot + "--floor 1 -o floor.png").status == 0);
+    CHECK(run("heatmap" + robot + "--step 0.2 --floor 1 -o floor.png").status == 0);
     CHECK(run("export" + robot + "--format nav2 --floor 1 --resolution 0.5 -o floor.yaml").status == 0);
     CHECK_THAT(bytes_of(folder / "floor.yaml"), Contains("(top, floor 1 at 3 m)"));
     CHECK(run("export" + robot + "--format nav2 --z 2.9:3.1 --resolution 0.5 -o deck.yaml").status == 0);
@@ -372,7 +373,7 @@ TEST_CASE("all commands respect --z and --floor, so a picture or a map of one fl
         {"--z 2", "--z is \"2\", needs LOW:HIGH in m, for example 5:8 or 5:"},
         {"--z 3:2", "--z is \"3:2\"; give the lower height first"},
         {"--z 0:2 --region=0,0,0,1,1,1", "--z and the six numbers of --region both limit heights; give one of them"},
-        {"--offset up", "--offset: \"up\""}};
+        {"--stance level --offset up", "--offset: \"up\""}};
     for (const auto& [options, message] : refusals) {
         const ProgramRun refused = run("sample" + robot + "-n 1 " + options);
         CHECK(refused.status == 2);
@@ -392,17 +393,18 @@ TEST_CASE("z limits of a bake apply in every command")
     CHECK(info["z_limits"] == Json({2.5, 5.0}));
     CHECK(info["floors"].size() == 1);
     const std::string robot = " map" + husky_option;
-    REQUIRE(run("sample" + robot + "-n 100 -o spawns.csv").status == 0);
+    REQUIRE(run("sample" + robot + "-n 100 --stance level -o spawns.csv").status == 0);
     for (const Pose& pose : read_poses(folder / "spawns.csv").poses)
         CHECK((pose.position.z() > 2.5 && pose.position.z() < 5));
-    REQUIRE(run("sample same" + husky_option + "-n 100 -o other.csv").status == 0);
+    REQUIRE(run("sample same" + husky_option + "-n 100 --stance level -o other.csv").status == 0);
     CHECK(bytes_of(folder / "spawns.csv") == bytes_of(folder / "other.csv"));
     folder.write("poses.csv", "x,y,z\n-3,-5,3.1\n-3,-5,0.1\n-3,3,6.1\n");
     CHECK_THAT(run("check" + robot + "--poses poses.csv").out,
                Contains("3.1,valid") && Contains("0.1,outside") && Contains("6.1,outside"));
-    REQUIRE(run("export" + robot + "--format nav2 --resolution 0.5 -o limited.yaml").status == 0);
+    REQUIRE(run("export" + robot + "--format nav2 --stance level --resolution 0.5 -o limited.yaml").status == 0);
     REQUIRE(run(scene + "-o whole").status == 0);
-    REQUIRE(run("export whole" + husky_option + "--format nav2 --z 2.5:5 --resolution 0.5 -o whole.yaml").status == 0);
+    REQUIRE(run("export whole" + husky_option + "--format nav2 --stance level --z 2.5:5 --resolution 0.5 -o whole.yaml")
+                .status == 0);
     // The same picture, except that an origin above 5 m (on the upper end of the ramp) is outside the map, and so
     // unknown.
     const std::string limited = bytes_of(folder / "limited.pgm"), whole = bytes_of(folder / "whole.pgm");
@@ -446,7 +448,7 @@ TEST_CASE("the offset is chosen automatically, and an impossible one ends at onc
 {
     const Arena arena;
     arena.write("tall.yaml", "format: spawnfield-robot/1\nname: tall\nparts:\n  - {box: [0.6, 0.4, 0.8]}\n");
-    const ProgramRun found = arena("sample map --robot tall.yaml -n 5 --summary s.json -o spawns.csv");
+    const ProgramRun found = arena("sample map --robot tall.yaml -n 5 --stance level --summary s.json -o spawns.csv");
     CHECK(found.status == 0);
     CHECK_THAT(found.err, Contains("offset 0.5 m (auto)"));
     CHECK(Json::parse(bytes_of(arena / "s.json"))["offset"] == 0.5);
@@ -454,8 +456,9 @@ TEST_CASE("the offset is chosen automatically, and an impossible one ends at onc
         "at --offset 0.1 m the robot collides with all flat ground: its lowest point is 0.4 m below its origin; give "
         "--offset auto, which is 0.5 m";
     for (const char* const command :
-         {"sample map -n 5 -o none.csv", "raster map --dims 2 --step 1 -o none_raster.csv", "heatmap map -o none.png",
-          "export map --format nav2 -o none.yaml", "export map --format ply --step 1 -o none.ply"}) {
+         {"sample map -n 5 --stance level -o none.csv", "raster map --dims 2 --step 1 -o none_raster.csv",
+          "heatmap map --stance level -o none.png", "export map --format nav2 --stance level -o none.yaml",
+          "export map --format ply --stance level --step 1 -o none.ply"}) {
         const ProgramRun run = arena(std::string(command) + " --robot tall.yaml --offset 0.1");
         CAPTURE(command);
         CHECK(run.status == 3);
@@ -465,16 +468,19 @@ TEST_CASE("the offset is chosen automatically, and an impossible one ends at onc
     for (const char* const file : {"none_raster.csv", "none.png", "none.yaml", "none.ply"})
         CHECK_FALSE(std::filesystem::exists(arena / file));
 
-    for (const char* const command : {"sample map -n 5", "raster map --dims 2 --step 1", "heatmap map -o none.png",
-                                      "export map --format nav2 -o none.yaml"}) {
+    for (const char* const command :
+         {"sample map -n 5 --stance level", "raster map --dims 2 --step 1", "heatmap map --stance level -o none.png",
+          "export map --format nav2 --stance level -o none.yaml"}) {
         const ProgramRun run = arena(std::string(command) + " --robot tall.yaml --offset 1.2");
         CAPTURE(command);
         CHECK(run.status == 2);
         CHECK_THAT(run.err, Contains("--offset is 1.2 m, needs at most --max-height, 1 m: `check` calls higher poses "
                                      "aerial; give --max-height 1.2 or more"));
     }
-    CHECK(arena("sample map -n 5 --robot box:0.3,0.3,0.3@0,0,-1.5").status == 2);  // auto is 1.75 m
-    CHECK(arena("sample map -n 5 --robot box:0.3,0.3,0.3@0,0,-1.5 --max-height 1.75 -o high.csv").status == 0);
+    CHECK(arena("sample map -n 5 --stance level --robot box:0.3,0.3,0.3@0,0,-1.5").status == 2);  // auto is 1.75 m
+    CHECK(
+        arena("sample map -n 5 --robot box:0.3,0.3,0.3@0,0,-1.5 --max-height 1.75 --stance level -o high.csv").status ==
+        0);
 }
 
 TEST_CASE("the preview of a world with roofs has a picture of each floor")

@@ -131,6 +131,7 @@ std::vector<AvoidedPoints> some_points(const TestMap& map, Random& random)
 Tally samples(const TestMap& map, const HardCase& hard, Random& random)
 {
     SampleOptions options = spawn_options<SampleOptions>(hard, random);
+    options.stance = Stance::Level;
     options.offset = hard.offset;
     if (Random more{hard.seed + 991}; more.chance(0.3)) options.avoid = some_points(map, more);
     const JudgeOptions limits{.max_height = std::max(1.0, hard.offset), .max_slope = hard.max_slope};

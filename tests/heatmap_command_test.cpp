@@ -63,7 +63,8 @@ TEST_CASE("pictures of each command are PNG, SVG or PDF according to their exten
 TEST_CASE("the picture names robot, offset, yaw and layers")
 {
     const Arena arena;
-    REQUIRE(heatmap(arena, "-o a.svg --offset 0.25 --yaw 0.5235987755982988 --layers top --max-slope 20").status == 0);
+    REQUIRE(heatmap(arena, "-o a.svg --stance level --offset 0.25 --yaw 0.5235987755982988 --layers top --max-slope 20")
+                .status == 0);
     const std::vector<std::string> texts = texts_in(arena, "a.svg");
     CHECK(texts[0] == "training, husky");
     CHECK(texts[1] == "offset 0.25 m, yaw 30 deg, top layer, slope up to 20 deg");
@@ -82,17 +83,17 @@ TEST_CASE("the ground is shown for the heading of the spawns")
         Contains("notice: the ground is shown for yaw 1.5 rad, which all spawns have (--yaw RAD shows another)\n"));
     CHECK(has(texts_in(arena, "same.svg"), "yaw 85.94 deg"));
 
-    const ProgramRun mixed = heatmap(arena, "-o mixed.svg --spawns mixed.csv");
+    const ProgramRun mixed = heatmap(arena, "-o mixed.svg --stance level --spawns mixed.csv");
     CHECK_THAT(mixed.err, Contains("notice: the spawns have different yaws: the ground shows at how many of 16 "
                                    "headings the robot fits (--yaw RAD shows one)\n"));
     CHECK(has(texts_in(arena, "mixed.svg"), "16 headings"));
     CHECK(has(texts_in(arena, "mixed.svg"), "valid at some headings"));
     CHECK(has(texts_in(arena, "mixed.svg"), "2 of 3 spawns in view"));
 
-    const ProgramRun chosen = heatmap(arena, "-o chosen.svg --spawns mixed.csv --yaw 0");
+    const ProgramRun chosen = heatmap(arena, "-o chosen.svg --stance level --spawns mixed.csv --yaw 0");
     CHECK(chosen.err.find("notice") == std::string::npos);
     CHECK(has(texts_in(arena, "chosen.svg"), "yaw 0 deg"));
-    const ProgramRun any = heatmap(arena, "-o any.svg --yaw random");
+    const ProgramRun any = heatmap(arena, "-o any.svg --stance level --yaw random");
     CHECK(any.status == 0);
     CHECK_THAT(any.err, Contains("; 16 headings at each pose, each with its own exact checks; "));
     CHECK_THAT(chosen.err, !Contains("headings"));
@@ -124,8 +125,8 @@ TEST_CASE("heat maps are the same bytes with any number of threads")
     const Arena arena;
     for (const char* const ending : {"png", "svg", "pdf"}) {
         const std::string file = std::string(".") + ending;
-        REQUIRE(heatmap(arena, "--yaw random --threads 1 -o a" + file).status == 0);
-        REQUIRE(heatmap(arena, "--yaw random --threads 3 -o b" + file).status == 0);
+        REQUIRE(heatmap(arena, "--stance level --yaw random --threads 1 -o a" + file).status == 0);
+        REQUIRE(heatmap(arena, "--stance level --yaw random --threads 3 -o b" + file).status == 0);
         CHECK(bytes_of(arena / ("a" + file)) == bytes_of(arena / ("b" + file)));
     }
 }
@@ -133,11 +134,11 @@ TEST_CASE("heat maps are the same bytes with any number of threads")
 TEST_CASE("heat maps of settled robots name the stance, the limit of the tilt and the quantity")
 {
     const Arena arena;
-    CHECK(heatmap(arena, "-o v.svg --settle --max-slope 20").status == 0);
+    CHECK(heatmap(arena, "-o v.svg --max-slope 20").status == 0);
     CHECK(has(texts_in(arena, "v.svg"), "settled, yaw 0 deg, all layers (valid if one is), tilt up to 20 deg"));
     for (const auto& [quantity, title] :
          {std::pair("tilt", "tilt, degrees"), std::pair("belly", "belly clearance, m")}) {
-        CHECK(heatmap(arena, "-o q.svg --settle --quantity " + std::string(quantity)).status == 0);
+        CHECK(heatmap(arena, "-o q.svg --quantity " + std::string(quantity)).status == 0);
         CHECK(has(texts_in(arena, "q.svg"), title));
     }
 }

@@ -105,7 +105,8 @@ TEST_CASE("a map that avoided poses cover ends with 3 and a proof")
     for (double x = -10; x <= 10; x += 1)
         for (double y = -10; y <= 10; y += 1) grid += std::to_string(x) + "," + std::to_string(y) + ",0.05\n";
     arena.write("grid.csv", grid);
-    const ProgramRun run = arena("sample map -n 5 --avoid grid.csv --avoid-distance 4 --summary s.json -o s.csv" + box);
+    const ProgramRun run = arena(
+        "sample map -n 5 --stance level --avoid grid.csv --avoid-distance 4 --summary s.json -o s.csv" + box);
     CHECK(run.status == 3);
     CHECK_THAT(run.err, Contains("no spawn fits: it is proven that no pose is valid and far enough from the avoided "
                                  "poses; a smaller --avoid-distance, "));
@@ -213,7 +214,7 @@ TEST_CASE("--yaw takes degrees in every command that has it")
     for (const std::string& command :
          {std::string("sample map -n 1"), "raster map -o r.csv" + raster, std::string("heatmap map --step 2 -o h.png")})
         CHECK_THAT(arena(command + " --yaw 90" + husky_option).err, Contains(hint));
-    CHECK_THAT(arena("sample map -n 1 --yaw 6.28" + husky_option).err, !Contains("notice"));
+    CHECK_THAT(arena("sample map -n 1 --stance level --yaw 6.28" + husky_option).err, !Contains("notice"));
 }
 
 // ---- CSV ----

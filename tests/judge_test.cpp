@@ -40,7 +40,8 @@ TEST_CASE("queries with different numbers of threads run at the same time and le
     std::atomic<std::size_t> changed{0};
     const auto run = [&](int threads) {
         const auto look = [&](double) { changed += allowed() != before; };
-        return spawns_csv(sample(judge, {.count = 300, .min_distance = 0.1, .threads = threads, .progress = look}));
+        return spawns_csv(sample(
+            judge, {.count = 300, .min_distance = 0.1, .stance = Stance::Level, .threads = threads, .progress = look}));
     };
     const std::string expected = run(1);
     std::string one, three;

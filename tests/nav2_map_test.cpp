@@ -275,7 +275,7 @@ TEST_CASE("a nav2 map can be baked directly, and robots stand where it is free")
     const Map map = read_map(folder / "map");
     CHECK(map.bounds.max == Vec3(2, 2, 1));
     const Judge judge(map, load_robot("box:0.2,0.2,0.2"));
-    SampleOptions options{.count = 300};
+    SampleOptions options{.count = 300, .stance = Stance::Level};
     const SpawnList list = sample(judge, options);
     CHECK(list.spawns.size() == 300);
     for (const Spawn& spawn : list.spawns) {

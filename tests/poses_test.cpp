@@ -305,6 +305,7 @@ TEST_CASE("spawns as JSON have unit quaternions, names, their settings and their
                                 .min_distance = 0.25,
                                 .random_yaw = true,
                                 .seed = 42,
+                                .stance = Stance::Level,
                                 .offset = 0.2,
                                 .layers = {LayerChoice::Kind::Index, 1}};
     const std::vector<RobotStart> robots = robot_starts(list, {"rover_1"}, {"fleet/rover_1"});

@@ -87,7 +87,8 @@ TEST_CASE("real scenes bake, and real robots' samples in them are valid by check
         for (const RealRobot& robot : real_robots()) {
             CAPTURE(robot.file);
             const Judge judge(map, load_robot((*folder / robot.file).string()));
-            SampleOptions sampling{.count = 60, .min_distance = 0.3, .random_yaw = true, .offset = robot.offset};
+            SampleOptions sampling{
+                .count = 60, .min_distance = 0.3, .random_yaw = true, .stance = Stance::Level, .offset = robot.offset};
             const SpawnList list = sample(judge, sampling);
             CHECK(list.spawns.size() == 60);
             std::vector<Pose> poses;
@@ -111,7 +112,7 @@ TEST_CASE("check in real scenes agrees with the independent decision")
         const Judge judge(map, robot);
         // Random poses and poses of a sample, because half of the random ones miss the ground.
         std::vector<Pose> poses = random_poses(map.scene, 17, 20);
-        SampleOptions sampling{.count = 15, .offset = 0.15};
+        SampleOptions sampling{.count = 15, .stance = Stance::Level, .offset = 0.15};
         for (const Spawn& spawn : sample(judge, sampling).spawns)
             poses.push_back({spawn.position, rotation_from_rpy(0, 0, spawn.yaw)});
         const std::vector<Judgement> fast = judge.check(poses);
@@ -138,7 +139,8 @@ TEST_CASE("a map of a mesh with doubled faces has layers, but no inside")
     CHECK(scene.parts[0].solid_pieces == 0);
     const TestMap map = map_of(scene);
     const Judge judge(map, load_robot("box:0.3,0.3,0.3"));
-    SampleOptions sampling{.count = 100, .offset = 0.2, .layers = {LayerChoice::Kind::Bottom, 0}};
+    SampleOptions sampling{
+        .count = 100, .stance = Stance::Level, .offset = 0.2, .layers = {LayerChoice::Kind::Bottom, 0}};
     const SpawnList list = sample(judge, sampling);
     CHECK(list.spawns.size() == 100);
     const auto on_floor = std::count_if(list.spawns.begin(), list.spawns.end(),
@@ -153,7 +155,7 @@ TEST_CASE("the garage has spawns on every deck and none in the slabs")
     if (!folder) return;
     const TestMap map = map_of(load_scene(*folder / "parking_garage/scene.yaml"));
     const Judge judge(map, husky());
-    SampleOptions sampling{.count = 3000, .bounds = {Vec3(-20, -10, 0), Vec3(20, 10, 0)}};
+    SampleOptions sampling{.count = 3000, .stance = Stance::Level, .bounds = {Vec3(-20, -10, 0), Vec3(20, 10, 0)}};
     const std::vector<double> decks = {0.23, 5.79, 11.35, 16.92, 22.48, 28.03, 33.59, 39.14};
     std::vector<int> on_deck(decks.size(), 0);
     for (const Spawn& spawn : sample(judge, sampling).spawns) {

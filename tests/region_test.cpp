@@ -91,7 +91,8 @@ TestMap floor_map(double side)
 
 SampleOptions options_in(const Area& area, std::size_t count, double min_distance = 0)
 {
-    return {.count = count, .min_distance = min_distance, .seed = 4, .offset = 0.1, .area = area};
+    return {
+        .count = count, .min_distance = min_distance, .seed = 4, .stance = Stance::Level, .offset = 0.1, .area = area};
 }
 
 Region region_of(const std::vector<Region::Polygon>& polygons)

@@ -387,7 +387,8 @@ TEST_CASE("export of poses that are not valid according to their file gives a no
 TEST_CASE("patches are on the ground below the spawns")
 {
     const Arena arena;
-    CHECK(arena("sample map -n 20 --offset 0.3 --robot box:0.3,0.3,0.3 --layers top --region 3,-9,9,9 --format "
+    CHECK(arena("sample map -n 20 --stance level --offset 0.3 --robot box:0.3,0.3,0.3 --layers top --region 3,-9,9,9 "
+                "--format "
                 "isaaclab -o isaac")
               .status == 0);
     const std::string bytes = bytes_of(arena / "isaac/flat_patches.npy");
@@ -441,7 +442,7 @@ TEST_CASE("things that a simulator would add to a pose, or does not know, are re
     arena.write("plain/model.sdf", "<sdf version='1.9'><model name='m'>" + link + "</model></sdf>");
     arena.write("plain/model.config", "<model><sdf>model.sdf</sdf></model>");
     const auto run = [&](const std::string& arguments) {
-        return arena("sample map -n 2 --offset 1 --max-height 2 " + arguments);
+        return arena("sample map -n 2 --stance level --offset 1 --max-height 2 " + arguments);
     };
     const ProgramRun frame = run("--robot frame.sdf --format sdf"),
                      posed = run("--robot posed.sdf --format ros1-launch");

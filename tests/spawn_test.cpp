@@ -31,7 +31,12 @@ double smallest_distance(const std::vector<Spawn>& spawns)
 
 SampleOptions sample_options(std::size_t count, double min_distance)
 {
-    return {.count = count, .min_distance = min_distance, .random_yaw = true, .seed = 11, .offset = 0.1};
+    return {.count = count,
+            .min_distance = min_distance,
+            .random_yaw = true,
+            .seed = 11,
+            .stance = Stance::Level,
+            .offset = 0.1};
 }
 
 /// Returns the result of search by its definition: one draw after the other, with all distances.
@@ -440,7 +445,7 @@ TEST_CASE("few spawns in a map of many tiles are the exhaustive ones, with coars
     CHECK_FALSE(judge.impl().is_sparse(1000000));
     CHECK_FALSE(Judge(coarse, husky()).impl().is_sparse(256));
     CHECK_FALSE(Judge(fine, load_robot("box:90,90,1")).impl().is_sparse(256));  // meets too many elements
-    const SampleOptions options{.count = 100, .random_yaw = true, .seed = 5};
+    const SampleOptions options{.count = 100, .random_yaw = true, .seed = 5, .stance = Stance::Level};
     const SpawnList fast = sample(judge, options), slow = sample(without_mask(judge), options),
                     all_cells = sample(Judge(coarse, husky()), options);
     REQUIRE(fast.spawns.size() == 100);

@@ -381,6 +381,28 @@ TEST_CASE(
     CHECK(tilted > 30);
 }
 
+TEST_CASE("samples are settled unless they are asked to be level, and only level ones may have an offset")
+{
+    Scene scene;
+    add_block(scene, {-2, -2, -1}, {2, 2, 0}, Label::Terrain, "floor");
+    const Judge judge(map_of(scene), on_balls());
+    CHECK(SampleOptions{}.stance == Stance::Settled);
+    CHECK(RasterOptions{}.stance == Stance::Level);
+    const SpawnList list = sample(judge, {.count = 3});
+    REQUIRE(list.spawns.size() == 3);
+    for (const Spawn& spawn : list.spawns) {
+        const SettledPose pose = judge.settle(spawn.position, spawn.yaw);
+        CHECK(std::abs(pose.lifted(0.02).position.z() - spawn.position.z()) <= 1e-9);
+    }
+    CHECK_THROWS_AS(sample(judge, {.offset = 0.3}), ArgumentError);
+    CHECK_THROWS_WITH(
+        sample(judge, {.offset = 0.3}),
+        "sample: offset is 0.3, but stance is Settled: settled robots stand on the ground, and only level "
+        "ones have an offset; give stance Level, or no offset");
+    for (const Spawn& spawn : sample(judge, {.count = 3, .stance = Stance::Level, .offset = 0.3}).spawns)
+        CHECK(spawn.position.z() == 0.3);
+}
+
 TEST_CASE("sampling of settled poses ends when nothing fits, without a proof")
 {
     Scene scene;
@@ -490,6 +512,10 @@ TEST_CASE("a settled raster needs two dimensions and the scene's own geometry")
     const Judge judge(map_of(floor_scene()), on_balls());
     CHECK_THROWS_WITH(raster(judge, {.dims = 3, .stance = Stance::Settled}),
                       "raster: settled poses need dims 2: the robot is let down onto the layers of a column");
+    CHECK_THROWS_WITH(
+        raster(judge, {.stance = Stance::Settled, .offset = 0.2}),
+        "raster: offset is 0.2, but stance is Settled: settled robots stand on the ground, and only level "
+        "ones have an offset; give stance Level, or no offset");
     const Judge voxels(make_map(floor_scene(), {}), on_balls(), {.obstacles = Obstacles::Voxels});
     CHECK_THROWS_AS(raster(voxels, {.stance = Stance::Settled}), ArgumentError);
 }

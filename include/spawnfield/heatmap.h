@@ -11,13 +11,16 @@ enum class HeatmapQuantity {
     Height,
     Clearance,
     Slope,
-    // How the robot stands, for rasters of settled poses at one yaw (RasterResult::rests):
+    // These are about how the robot stands, for rasters of settled poses at one yaw (RasterResult::rests):
     Tilt,
     Roll,
     Pitch,
     Margin,
     Belly
 };
+
+/// Returns whether a quantity is about how the robot stands.
+inline bool is_of_rest(HeatmapQuantity quantity) { return quantity >= HeatmapQuantity::Tilt; }
 
 struct HeatmapOptions {
     HeatmapQuantity quantity = HeatmapQuantity::Verdict;

@@ -18,6 +18,9 @@ struct VerdictImage {
     std::vector<std::uint8_t> verdicts;  ///< a Verdict or no_pose; row after row, row 0 is the largest y
     VerdictCounts counts;
     std::uint64_t exact_checks = 0;
+    /// For settled robots, those of RasterRest in rad and m, in the order of the verdicts: NaN where the robot has no
+    /// settled pose. Empty for level robots.
+    std::vector<float> tilt = {}, margin = {};
 
     std::uint8_t at(int row, int col) const
     {
@@ -27,7 +30,8 @@ struct VerdictImage {
 
 /// Returns the verdict at the centre of each cell, as a 2D raster gives it; no_pose where the column lacks the chosen
 /// layer. The options' step and bounds are not used. Judges a few rows at a time, so that memory is little more than a
-/// byte for each cell. Throws as raster() does, and ArgumentError for LayerChoice All, because a cell has one verdict.
+/// byte for each cell; nine bytes for settled robots. Throws as raster() does, and ArgumentError for LayerChoice All,
+/// because a cell has one verdict.
 SPAWNFIELD_API VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const RasterOptions& options);
 
 /// Returns the name of the image that belongs to the yaml file of a nav2 map: the same name with the ending .pgm.
@@ -65,6 +69,7 @@ struct GeoTiffOptions {
 /// - water: highest water surface, m
 /// - obstacle: highest obstacle that stands above elevation, or where there is no terrain, m
 /// - verdict: number of the Verdict; only if `verdicts` (of the same frame) is given
+/// - tilt, margin: of the settled robot, degrees and m; only if `verdicts` has them
 ///
 /// The coordinates are the map's own metres or the survey's. A pixel is an area; the first pixel is the upper left one.
 /// Tiles are deflated with predictor 3. A file that might exceed 4 GB becomes a BigTIFF. Works on one row of tiles
@@ -75,8 +80,9 @@ SPAWNFIELD_API void write_geotiff(const Map& map, const GridFrame& frame, const 
 
 /// Writes the poses of a raster, in their order, as points of a binary little-endian PLY. Passes the file to `sink` in
 /// pieces. A point has x, y, z as double (m), the verdict's colour in heat maps as red, green, blue, and the verdict's
-/// number as uchar `verdict`. Each line of `comment` becomes a comment line of the header; one more line explains the
-/// numbers. Source: Turk, The PLY Polygon File Format, 1994.
+/// number as uchar `verdict`. Points of settled robots (RasterResult::rests) also have roll, pitch, tilt (rad) and
+/// margin (m) as double; tilt and margin are NaN if the robot has no settled pose. Each line of `comment` becomes a
+/// comment line of the header; one more line explains the numbers. Source: Turk, The PLY Polygon File Format, 1994.
 SPAWNFIELD_API void write_ply(const RasterResult& raster, const std::vector<std::string>& comment,
                               const std::function<void(std::string_view)>& sink);
 

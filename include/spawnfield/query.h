@@ -35,10 +35,10 @@ struct RasterOptions {
     /// regions must not have z limits.
     Area area = {};
     /// Settled, only for 2D: the robot is let down onto each layer. Poses are settled poses, raised by
-    /// StandLimits::lift; `offset` is then not used. Needs JudgeOptions::obstacles Geometry.
+    /// StandLimits::lift. Needs JudgeOptions::obstacles Geometry.
     Stance stance = Stance::Level;
-    /// Height of the origin above its layer, m, for 2D rasters and snap; with snap 0 .. max_height. No value:
-    /// auto_offset().
+    /// Height of the origin of a level robot above its layer, m, for 2D rasters and snap; with snap 0 .. max_height. No
+    /// value: auto_offset(). Must not be given for settled robots.
     std::optional<double> offset = {};
     double yaw = 0;  ///< rad
     /// The layers that count. For 3D rasters, the layer is the pose's ground: unless all layers are chosen, aerial
@@ -179,9 +179,10 @@ struct SampleOptions {
     bool random_yaw = false;  ///< uniform in [-pi, pi); false: `yaw`
     double yaw = 0;           ///< rad
     std::uint64_t seed = 0;
-    /// Settled: spawns are settled poses, raised by StandLimits::lift. `offset` is then not used.
-    Stance stance = Stance::Level;
-    /// Height of the origin above its layer, m, at most max_height; no value: auto_offset().
+    /// Settled: spawns are settled poses, raised by StandLimits::lift. Needs JudgeOptions::obstacles Geometry.
+    Stance stance = Stance::Settled;
+    /// Height of the origin of a level robot above its layer, m, at most max_height; no value: auto_offset(). Must not
+    /// be given for settled robots.
     std::optional<double> offset = {};
     LayerChoice layers = {};
     ZRange z = {};       ///< layers beyond these heights, m, or beyond the map's z limits are not ground

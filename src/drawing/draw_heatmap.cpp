@@ -65,7 +65,7 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
     check_size("spawn_names", options.spawn_names.size(), options.spawns.size(), "as many as spawns, or none");
     check_size("valid_headings", options.valid_headings.size(), raster.poses.size(),
                "as many as the raster's poses, or none");
-    if (options.quantity >= HeatmapQuantity::Tilt && raster.rests.size() != raster.poses.size())
+    if (is_of_rest(options.quantity) && raster.rests.size() != raster.poses.size())
         throw ArgumentError("write_heatmap", "size of raster.rests", double(raster.rests.size()),
                             "as many as its poses for this quantity: a raster of settled poses at one yaw");
 }

@@ -29,13 +29,17 @@ struct Band {
     std::string name, unit;
 };
 
-std::vector<Band> bands_of(int layers, bool has_verdicts)
+bool is_settled(const VerdictImage& verdicts) { return !verdicts.tilt.empty(); }
+
+std::vector<Band> bands_of(int layers, const VerdictImage* verdicts)
 {
     std::vector<Band> bands{{"elevation", "m"}};
     for (int layer = 1; layer < layers; ++layer) bands.push_back({"elevation_" + std::to_string(layer), "m"});
     bands.insert(bands.end(),
                  {{"layers", ""}, {"clearance", "m"}, {"slope", "degrees"}, {"water", "m"}, {"obstacle", "m"}});
-    if (has_verdicts) bands.push_back({"verdict", ""});
+    if (verdicts == nullptr) return bands;
+    bands.push_back({"verdict", ""});
+    if (is_settled(*verdicts)) bands.insert(bands.end(), {{"tilt", "degrees"}, {"margin", "m"}});
     return bands;
 }
 
@@ -107,8 +111,8 @@ public:
     {
         constexpr int border = 1;
         HeightImage chosen(side + 2 * border, side + 2 * border, no_data);
-        std::vector<std::vector<float>> bands(layer_bands_ + 5 + (verdicts_ != nullptr),
-                                              std::vector<float>(tile_cells, no_data));
+        const std::size_t of_robot = verdicts_ == nullptr ? 0 : is_settled(*verdicts_) ? 3 : 1;
+        std::vector<std::vector<float>> bands(layer_bands_ + 5 + of_robot, std::vector<float>(tile_cells, no_data));
         tiles_.visit_cells(map_.geometry, tile, border, [&](int row, int col, const ColumnView& column) {
             const bool inside = row >= 0 && row < side && col >= 0 && col < side;
             const std::span<const double> heights = heights_within(column.layers, z_);
@@ -117,7 +121,7 @@ public:
             if (inside) add_cell(bands, std::size_t(row) * side + std::size_t(col), column, heights, layer);
         });
         add_slopes(bands[layer_bands_ + 2], chosen, border);
-        if (verdicts_ != nullptr) add_verdicts(bands.back(), tile);
+        if (verdicts_ != nullptr) add_verdicts(std::span(bands).last(of_robot), tile);
         std::vector<std::string> out;
         for (const std::vector<float>& band : bands) out.push_back(deflate_floats(band, side));
         return out;
@@ -151,13 +155,22 @@ private:
             }
     }
 
-    void add_verdicts(std::vector<float>& band, std::size_t tile) const
+    /// Fills the band of verdicts and, for settled robots, those of tilt and margin.
+    void add_verdicts(std::span<std::vector<float>> bands, std::size_t tile) const
     {
+        constexpr double degree = std::numbers::pi / 180;
         const int top = int(tile) / tiles_.cols * side, left = int(tile) % tiles_.cols * side;
         for (int row = 0; row < std::min(side, tiles_.frame.rows - top); ++row)
             for (int col = 0; col < std::min(side, tiles_.frame.cols - left); ++col) {
                 const std::uint8_t verdict = verdicts_->at(top + row, left + col);
-                if (verdict != VerdictImage::no_pose) band[std::size_t(row) * side + std::size_t(col)] = float(verdict);
+                if (verdict == VerdictImage::no_pose) continue;
+                const std::size_t cell = std::size_t(row) * side + std::size_t(col),
+                                  source = std::size_t(top + row) * std::size_t(tiles_.frame.cols) +
+                                           std::size_t(left + col);
+                bands[0][cell] = float(verdict);
+                if (bands.size() == 1) continue;
+                bands[1][cell] = float(verdicts_->tilt[source] / degree);
+                bands[2][cell] = verdicts_->margin[source];
             }
     }
 
@@ -309,7 +322,7 @@ void write_geotiff(const Map& map, const GridFrame& frame, const VerdictImage* v
         throw ArgumentError("write_geotiff",
                             "verdicts have another frame than the file, need the same rows and columns");
     const int layers = std::max(1, most_layers(map, frame, options));
-    const std::vector<Band> bands = bands_of(layers, verdicts != nullptr);
+    const std::vector<Band> bands = bands_of(layers, verdicts);
     const Tiles tiles(frame);
     const double most_bytes = double(tiles.rows) * tiles.cols * double(bands.size()) *
                               (sizeof(float) * tile_cells + 1000);

@@ -8,7 +8,7 @@
 namespace spawnfield {
 namespace {
 
-std::string header(std::size_t points, const std::vector<std::string>& comment)
+std::string header(std::size_t points, bool is_settled, const std::vector<std::string>& comment)
 {
     std::string text = "ply\nformat binary_little_endian 1.0\n";
     for (const std::string& line : comment) text += "comment " + one_line(line) + "\n";
@@ -16,6 +16,9 @@ std::string header(std::size_t points, const std::vector<std::string>& comment)
     for (const char* const axis : {"x", "y", "z"}) text += std::string("property double ") + axis + "\n";
     for (const char* const name : {"red", "green", "blue", "verdict"})
         text += std::string("property uchar ") + name + "\n";
+    if (is_settled)
+        for (const char* const name : {"roll", "pitch", "tilt", "margin"})
+            text += std::string("property double ") + name + "\n";
     return text + "end_header\n";
 }
 
@@ -27,17 +30,25 @@ void put(BinaryWriter& out, const RasterPose& pose)
     out.put(std::uint8_t(pose.verdict));
 }
 
+void put(BinaryWriter& out, const RasterRest& rest)
+{
+    for (const double value : {rest.roll, rest.pitch, rest.tilt, rest.margin}) out.put(value);
+}
+
 }  // namespace
 
 void write_ply(const RasterResult& raster, const std::vector<std::string>& comment,
                const std::function<void(std::string_view)>& sink)
 {
     constexpr std::size_t points_per_piece = 10000;
-    sink(header(raster.poses.size(), comment));
+    const bool is_settled = raster.stance == Stance::Settled && raster.rests.size() == raster.poses.size();
+    sink(header(raster.poses.size(), is_settled, comment));
     for (std::size_t first = 0; first < raster.poses.size(); first += points_per_piece) {
         BinaryWriter piece;
-        for (std::size_t p = first; p < std::min(first + points_per_piece, raster.poses.size()); ++p)
+        for (std::size_t p = first; p < std::min(first + points_per_piece, raster.poses.size()); ++p) {
             put(piece, raster.poses[p]);
+            if (is_settled) put(piece, raster.rests[p]);
+        }
         sink(piece.take());
     }
 }

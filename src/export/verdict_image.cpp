@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace spawnfield {
 namespace {
@@ -28,11 +29,15 @@ RasterOptions strip_options(const GridFrame& frame, int first, int last, const R
 
 void add_strip(VerdictImage& image, int last, const RasterResult& strip)
 {
-    for (const RasterPose& pose : strip.poses) {
+    for (std::size_t p = 0; p < strip.poses.size(); ++p) {
+        const RasterPose& pose = strip.poses[p];
         const int col = int(std::round((pose.x - strip.grid.x0) / strip.grid.step));
         const int row = last - int(std::round((pose.y - strip.grid.y0) / strip.grid.step));
-        image.verdicts[std::size_t(row) * std::size_t(image.frame.cols) + std::size_t(col)] = std::uint8_t(
-            pose.verdict);
+        const std::size_t cell = std::size_t(row) * std::size_t(image.frame.cols) + std::size_t(col);
+        image.verdicts[cell] = std::uint8_t(pose.verdict);
+        if (image.tilt.empty()) continue;
+        image.tilt[cell] = float(strip.rests[p].tilt);
+        image.margin[cell] = float(strip.rests[p].margin);
     }
     image.counts += strip.counts;
     image.exact_checks += strip.exact_checks;
@@ -45,8 +50,12 @@ VerdictImage verdict_image(const Judge& judge, const GridFrame& frame, const Ras
     if (options.layers.kind == LayerChoice::Kind::All)
         throw ArgumentError("verdict_image",
                             "layers is all, needs top, bottom or a number, because a cell has one verdict");
-    VerdictImage image{frame, {}, {}, 0};
+    VerdictImage image{frame, {}, {}};
     image.verdicts.assign(std::size_t(frame.rows) * std::size_t(frame.cols), VerdictImage::no_pose);
+    if (options.stance == Stance::Settled) {
+        image.tilt.assign(image.verdicts.size(), std::numeric_limits<float>::quiet_NaN());
+        image.margin = image.tilt;
+    }
     for (int first = 0; first < frame.rows; first += strip_rows) {
         const int last = std::min(first + strip_rows, frame.rows) - 1;
         add_strip(image, last, raster(judge, strip_options(frame, first, last, options)));

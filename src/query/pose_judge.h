@@ -21,8 +21,9 @@ inline bool is_within(const Map& map, const Vec3& position)
            map.z_limits.contains(position.z(), touch_tolerance);
 }
 
-/// Throws ArgumentError if z.low is above z.high, if one of them is NaN, or if the offset is given and not finite.
-void check_ground(const char* function, const ZRange& z, const std::optional<double>& offset);
+/// Throws ArgumentError if z.low is above z.high, if one of them is NaN, if the offset is given and not finite, or if
+/// it is given for settled robots.
+void check_ground(const char* function, const ZRange& z, Stance stance, const std::optional<double>& offset);
 
 /// Throws ArgumentError if the offset is above max_height, because `check` would call such poses aerial.
 void check_offset(const char* function, double offset, double max_height);

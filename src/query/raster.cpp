@@ -39,7 +39,7 @@ void check(const RasterOptions& options)
         throw ArgumentError("raster", "step", options.step, "> 0 m");
     if (!(options.step_z >= 0) || !std::isfinite(options.step_z))
         throw ArgumentError("raster", "step_z", options.step_z, "> 0 m");
-    check_ground("raster", options.z, options.offset);
+    check_ground("raster", options.z, options.stance, options.offset);
     if (!std::isfinite(options.yaw)) throw ArgumentError("raster", "yaw", options.yaw, "a finite number, rad");
     if (!options.height_check && options.dims != 3)
         throw ArgumentError(
@@ -152,20 +152,23 @@ public:
 private:
     /// What a thread keeps from strip to strip: mostly memory.
     struct Worker {
-        PoseJudge judge;                                    ///< at options.yaw
-        std::optional<HeadingsJudge> at_headings;           ///< empty: only one yaw is judged
-        std::optional<StandJudge> stand;                    ///< empty: the poses are level
+        // Only one of these three has a value:
+        std::optional<PoseJudge> judge;                     ///< of level poses at options.yaw
+        std::optional<HeadingsJudge> at_headings;           ///< of level poses at several yaws
+        std::optional<StandJudge> stand;                    ///< of settled poses
         Columns columns;                                    ///< of the current block
         std::array<double, block> x;                        ///< of the block's columns
         std::array<Columns::OpenGround, block> ground;      ///< in one row of the block
         std::array<PoseJudge::RowVerdict, block> verdicts;  ///< in the same row
 
-        explicit Worker(const RasterJudge& raster) : judge(raster.shared_, raster.options_.yaw, raster.max_height())
+        explicit Worker(const RasterJudge& raster)
         {
             if (raster.is_settled_)
                 stand.emplace(raster.shared_);
             else if (raster.headings_ > 0)
                 at_headings.emplace(raster.shared_, raster.headings_, raster.max_height());
+            else
+                judge.emplace(raster.shared_, raster.options_.yaw, raster.max_height());
         }
     };
 
@@ -180,14 +183,14 @@ private:
     {
         const std::span<Columns::OpenGround> ground = std::span(worker.ground).first(x.size());
         const std::span<PoseJudge::RowVerdict> verdicts = std::span(worker.verdicts).first(x.size());
-        const bool is_simple = is_simple_ && worker.judge.can_judge_rows();
+        const bool is_simple = is_simple_ && worker.judge->can_judge_rows();
         if (is_simple) {
             for (std::size_t i = 0; i < x.size(); ++i) {
                 ground[i] = worker.columns.open_ground(int(i), j);
                 if (!ground_z_.contains(ground[i].terrain, touch_tolerance))
                     ground[i].terrain = std::numeric_limits<double>::quiet_NaN();
             }
-            worker.judge.judge_row(x, y, ground, offset_, verdicts);
+            worker.judge->judge_row(x, y, ground, offset_, verdicts);
         }
         for (std::size_t i = 0; i < x.size(); ++i) {
             if (is_simple && !std::isnan(ground[i].terrain)) {
@@ -211,9 +214,9 @@ private:
         const std::size_t steps = out.poses.size();
         const Steps replaced = replaced_steps(grid_, offset_, std::span(out.poses).subspan(first));
         if (options_.height_check && shared_.map.bounds.contains_xy(x, y, touch_tolerance))
-            heights(worker.judge, column, replaced, x, y, out);
+            heights(*worker.judge, column, replaced, x, y, out);
         else
-            all_heights(worker.judge, replaced, x, y, out);
+            all_heights(*worker.judge, replaced, x, y, out);
         if (steps > first)
             std::inplace_merge(out.poses.begin() + std::ptrdiff_t(first), out.poses.begin() + std::ptrdiff_t(steps),
                                out.poses.end(), [](const RasterPose& a, const RasterPose& b) { return a.z > b.z; });
@@ -244,7 +247,7 @@ private:
                 out.tallies.push_back(worker.at_headings->judge(column, {x, y, z}, out.exact_checks));
                 verdict = merged(out.tallies.back());
             } else {
-                const Judgement judged = worker.judge.judge(column, {x, y, z});
+                const Judgement judged = worker.judge->judge(column, {x, y, z});
                 out.exact_checks += judged.exact_check;
                 verdict = judged.verdict;
             }

@@ -328,7 +328,7 @@ private:
 SpawnList sample(const Judge& judge, const SampleOptions& wanted)
 {
     check_spawn_options("sample", wanted);
-    check_ground("sample", wanted.z, wanted.offset);
+    check_ground("sample", wanted.z, wanted.stance, wanted.offset);
     SampleOptions options = wanted;
     options.offset = wanted.offset.value_or(auto_offset(judge.robot()));
     if (options.stance == Stance::Settled)

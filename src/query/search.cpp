@@ -20,10 +20,14 @@ void check_avoided(const char* function, const AvoidedPoints& group)
             if (!std::isfinite(value)) throw ArgumentError(function, "avoid.points", value, "finite numbers, m");
 }
 
-void check_ground(const char* function, const ZRange& z, const std::optional<double>& offset)
+void check_ground(const char* function, const ZRange& z, Stance stance, const std::optional<double>& offset)
 {
     if (!(z.low <= z.high)) throw ArgumentError(function, "z.high", z.high, "at least z.low");
     if (offset && !std::isfinite(*offset)) throw ArgumentError(function, "offset", *offset, "a finite number, m");
+    if (offset && stance == Stance::Settled)
+        throw ArgumentError(function, "offset is " + number(*offset) +
+                                          ", but stance is Settled: settled robots stand on the ground, and only level "
+                                          "ones have an offset; give stance Level, or no offset");
 }
 
 void check_offset(const char* function, double offset, double max_height)

@@ -121,7 +121,7 @@ TargetRow at_most(double limit, TargetRow row)
 
 std::vector<std::string> sample_args(const std::filesystem::path& map, bool quick)
 {
-    return {"sample", map.string(), "-n", quick ? "20" : "2000", "--min-distance", "2.5"};
+    return {"sample", map.string(), "-n", quick ? "20" : "2000", "--min-distance", "2.5", "--stance", "level"};
 }
 
 /// Upper limits of a bake; infinite: none.
@@ -154,8 +154,8 @@ void measure_samples(const std::filesystem::path& map, const TargetOptions& opti
     report(10, "2,000 samples 2.5 m apart, query alone", few.query * 1e3, "ms", few.peak_memory);
     report(64, "2,000 samples 2.5 m apart, peak memory", few.peak_memory / mega, "MB", few.peak_memory);
     const Query many = query_by_process(
-        {"sample", map.string(), "-n", options.quick ? "1000" : "1000000", "--min-distance", "0"}, folder,
-        options.rounds);
+        {"sample", map.string(), "-n", options.quick ? "1000" : "1000000", "--min-distance", "0", "--stance", "level"},
+        folder, options.rounds);
     report(1, "1,000,000 samples, CPU time of the process", many.cpu_seconds, "s", many.peak_memory);
     on_row(row("hills", "1,000,000 samples, whole process", many.seconds, "s", many.peak_memory));
 }

@@ -371,7 +371,10 @@ RasterOptions Workbench::thinned_options_3d() const
 
 SampleOptions Workbench::sample_options() const
 {
-    return {.count = setting_.samples, .min_distance = setting_.sample_distance, .random_yaw = true};
+    return {.count = setting_.samples,
+            .min_distance = setting_.sample_distance,
+            .random_yaw = true,
+            .stance = Stance::Level};
 }
 
 SearchOptions Workbench::search_options() const

@@ -29,11 +29,14 @@ spawnfield raster results/training --robot $robot --dims 2 --step 0.5 --max-slop
 spawnfield raster results/training --robot $robot --dims 3 --step 1 --snap -o results/training_3d.csv
 spawnfield raster results/low --robot box:0.99,0.67,0.39 --dims 2 --step 1 --offset 1 --yaw 30deg -o results/low_2d.csv
 spawnfield raster results/district --robot maps/robots/cart.urdf --dims 2 --step 1 -o results/district_2d.csv
-spawnfield sample results/training --robot $robot -n 50 --min-distance 1 --yaw random --seed 7 \
+spawnfield sample results/training --robot $robot -n 50 --min-distance 1 --yaw random --seed 7 --stance level \
   -o results/training_sample.csv
-spawnfield sample results/yard --robot maps/robots/cart.urdf -n 1000 --min-distance 3 -o results/yard_full.json ||
+spawnfield sample results/yard --robot maps/robots/cart.urdf -n 1000 --min-distance 3 --stance level \
+  -o results/yard_full.json ||
   [ $? = 3 ]  # 3: fewer than 1000 spawns fit; this line tests that case
-spawnfield sample results/storeys --robot $robot -n 40 --min-distance 1 --floor 1 -o results/storeys_sample.csv
+spawnfield sample results/storeys --robot $robot -n 40 --min-distance 1 --floor 1 --stance level \
+  -o results/storeys_sample.csv
+spawnfield sample results/storeys --robot $robot -n 40 --min-distance 1 -o results/storeys_sample_settled.csv
 spawnfield sample results/training --robot maps/robots/cart.urdf -n 60 --min-distance 0.5 --yaw random --settle \
   -o results/training_settled.csv
 spawnfield search results/low --robot box:0.99,0.67,0.39 -n 40 --min-distance 2 --yaw random --seed 3 \
@@ -52,9 +55,13 @@ spawnfield export results/yard --format ros2-launch-py $poses --topic robot_desc
 spawnfield export results/yard --format sdf $poses --robot-uri model://cart -o results/yard.sdf
 spawnfield export results/yard --format mujoco $poses -o results/yard_mujoco.xml
 spawnfield export results/yard --format unity $poses -o results/yard_unity.csv
-spawnfield export results/training --format nav2 --robot $robot -o results/training_nav2.yaml
-spawnfield export results/training --format geotiff --robot $robot --resolution 0.5 -o results/training.tiff
-spawnfield export results/yard --format ply --robot $robot --step 1 -o results/yard.ply
+spawnfield export results/training --format nav2 --robot $robot --stance level -o results/training_nav2.yaml
+spawnfield export results/training --format geotiff --robot $robot --stance level --resolution 0.5 \
+  -o results/training.tiff
+spawnfield export results/yard --format ply --robot $robot --stance level --step 1 -o results/yard.ply
+spawnfield export results/training --format nav2 --robot $robot --resolution 0.5 -o results/training_nav2_settled.yaml
+spawnfield export results/training --format geotiff --robot $robot --resolution 0.5 -o results/training_settled.tiff
+spawnfield export results/yard --format ply --robot $robot --step 1 -o results/yard_settled.ply
 spawnfield export results/yard --format glb --robot $robot --poses results/training_sample.csv -o results/yard.glb
 
 cd results

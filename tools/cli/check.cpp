@@ -109,7 +109,7 @@ void add_check(CLI::App& app, ChosenCommand& chosen)
     command.add_flag("--require-valid", args->require_valid,
                      "End with status 3 if a pose is not valid; all rows are written in any case");
     add_verdict_options(command, *args);
-    add_stance(command, *args);
+    add_stance(command, *args, Stance::Level);
     add_robot_and_run(command, *args);
     add_allow_empty(command, *args);
     command.footer(

@@ -101,9 +101,12 @@ std::string help()
 
 const std::vector<std::string>& pose_options()
 {
-    static const std::vector<std::string> options{"--model-path",      "--joints",    "--mesh-parts", "--max-height",
-                                                  "--max-water-depth", "--max-slope", "--collision",  "--exhaustive",
-                                                  "--offset",          "--yaw"};
+    static const std::vector<std::string> options = [] {
+        std::vector<std::string> all{"--model-path", "--joints",    "--mesh-parts", "--max-height", "--max-water-depth",
+                                     "--max-slope",  "--collision", "--exhaustive", "--offset",     "--yaw"};
+        all.insert(all.end(), stance_options().begin(), stance_options().end());
+        return all;
+    }();
     return options;
 }
 
@@ -129,6 +132,7 @@ void add_export(CLI::App& app, ChosenCommand& chosen)
         "Layers that count: top (the default), bottom, N from the top (0 first), or all (only ply, its default)");
     command.add_option("--yaw", args->yaw, "Yaw of all poses: " + yaw_help + " (default 0)");
     add_verdict_options(command, *args);
+    add_stance(command, *args, Stance::Settled);
     start_group(command, help_group::region);
     command.add_option(
         "--bounds", args->bounds,

@@ -26,9 +26,10 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
                           .progress = progress_bar(args, "export")};
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     options.z = with_floor(heights_of(args.ground, options.bounds, "--bounds"), args.ground, job.session.map);
-    options.offset = choose_offset(args, parse_offset(args.ground.offset), job.session.robot, job.summary);
+    set_stance(options, args, args.ground, job.command);
+    options.offset = choose_offset(args, options.offset, job.session.robot, job.summary);
     notice_if_no_layer(args, job.session.map, options.layers);
-    require_above_ground(job.session.robot, *options.offset);
+    require_above_ground(job.session.robot, options.offset);
     return options;
 }
 
@@ -38,10 +39,14 @@ std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& o
     const Session& session = job.session;
     std::string heights = height_words(job.args.ground, options.z, session.map);
     if (!heights.empty()) heights = ", " + heights;
-    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash +
-            "): where the origin of " + session.robot.name + " can be, " + number(*options.offset) +
-            " m above its layer (" + (job.args.ground.layers.empty() ? layers : job.args.ground.layers) + heights +
-            "), yaw " + number(options.yaw) + " rad"};
+    const std::string robot = session.robot.name,
+                      layer = "layer (" + (job.args.ground.layers.empty() ? layers : job.args.ground.layers) + heights +
+                              "), yaw " + number(options.yaw) + " rad",
+                      lift = number(session.judge->options().stand.lift);
+    return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): " +
+            (options.offset
+                 ? "where the origin of " + robot + " can be, " + number(*options.offset) + " m above its " + layer
+                 : "where " + robot + " can stand, let down onto its " + layer + ", raised by " + lift + " m")};
 }
 
 void check_one_layer(const ExportJob& job, const LayerChoice& layers)
@@ -69,6 +74,7 @@ GridFrame image_frame(const ExportJob& job)
 
 VerdictImage ask(const ExportJob& job, const RasterOptions& options, const GridFrame& frame)
 {
+    notices_about_stance(job.args, job.command, job.session.robot);
     VerdictImage image = verdict_image(*job.session.judge, frame, options);
     job.summary.lap("query");
     job.summary.set_verdicts(image.counts, image.exact_checks);
@@ -119,6 +125,7 @@ void write_ply(const ExportJob& job)
     RasterOptions options = raster_options(job, "all");
     options.step = parse_positive("--step", job.args.step);
     notice_if_off_map(job.args, job.session.map, "--bounds", options.bounds);
+    notices_about_stance(job.args, job.command, job.session.robot);
     const RasterResult result = raster(*job.session.judge, options);
     job.summary.lap("query");
     job.summary.set_verdicts(result.counts, result.exact_checks);

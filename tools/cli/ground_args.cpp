@@ -20,14 +20,26 @@ Floor floor_of(const GroundArgs& args, const Map& map)
                         counted(floors.size(), "floor") + list);
 }
 
+/// Throws ArgumentError if a robot that rests on level ground and is raised by --lift is above --max-height.
+void check_lift(const QueryArgs& args, const Robot& robot)
+{
+    const double height = args.lift - robot.bounds().min.z();
+    if (height <= args.max_height + touch_tolerance) return;
+    throw ArgumentError("--lift is " + number(args.lift) +
+                        " m, which raises the origin of a robot on level ground to " + rounded(height) +
+                        " m, needs at most --max-height, " + number(args.max_height) +
+                        " m: `check` calls higher poses aerial; give a smaller --lift, or --max-height " +
+                        rounded(height) + " or more");
+}
+
 }  // namespace
 
 void add_ground(CLI::App& command, GroundArgs& args, const std::string& layers_help)
 {
     start_group(command, help_group::ground);
     command.add_option("--offset", args.offset,
-                       "Height of the robot's origin above its layer, m. auto: the robot's lowest point is 0.1 m above "
-                       "the layer (default auto)");
+                       "Height of a level robot's origin above its layer, m. auto: the robot's lowest point is 0.1 m "
+                       "above the layer (default auto)");
     command.add_option("--layers,--layer", args.layers, layers_help);
     command
         .add_option("--floor", args.floor,
@@ -60,6 +72,16 @@ std::optional<double> parse_offset(const std::string& text)
     const std::vector<double> values = parse_numbers("--offset", text);
     if (values.size() != 1) throw ArgumentError("--offset is \"" + text + "\", needs metres or auto");
     return parse_finite("--offset", values[0], "m");
+}
+
+std::optional<double> given_offset(const QueryArgs& args, const GroundArgs& ground, const CLI::App& command)
+{
+    if (!args.is_settled()) return parse_offset(ground.offset);
+    if (command.count("--offset") > 0)
+        throw ArgumentError("--offset is " + ground.offset +
+                            ", but it is the height of a level robot, and settled robots stand on the ground; " +
+                            args.how_to_level() + ", or leave --offset out");
+    return std::nullopt;
 }
 
 ZRange heights_of(const GroundArgs& args, const Bounds& bounds, const std::string& bounds_option)
@@ -101,8 +123,14 @@ std::string height_words(const GroundArgs& args, const ZRange& heights, const Ma
     return "floor " + std::to_string(args.floor) + " at " + number(floor_of(args, map).height) + " m";
 }
 
-double choose_offset(const QueryArgs& args, const std::optional<double>& wanted, const Robot& robot, Summary& summary)
+std::optional<double> choose_offset(const QueryArgs& args, const std::optional<double>& wanted, const Robot& robot,
+                                    Summary& summary)
 {
+    if (args.is_settled()) {
+        check_lift(args, robot);
+        summary.extra.push_back("settled");
+        return std::nullopt;
+    }
     const double chosen = wanted.value_or(auto_offset(robot));
     const std::string value = rounded(chosen), how = wanted ? "" : " (auto)";
     if (chosen > args.max_height + touch_tolerance)
@@ -126,9 +154,10 @@ std::string flat_ground_complaint(const Robot& robot, double offset)
     return text;
 }
 
-void require_above_ground(const Robot& robot, double offset)
+void require_above_ground(const Robot& robot, const std::optional<double>& offset)
 {
-    if (const std::string why = flat_ground_complaint(robot, offset); !why.empty()) throw NothingFits{why};
+    if (!offset) return;
+    if (const std::string why = flat_ground_complaint(robot, *offset); !why.empty()) throw NothingFits{why};
 }
 
 }  // namespace spawnfield::cli

@@ -24,6 +24,19 @@ std::string z_text(const ZRange& z);
 /// Reads metres. Returns nothing for "auto". Throws ArgumentError.
 std::optional<double> parse_offset(const std::string& text);
 
+/// Returns the value of --offset, m; nothing for "auto" and for settled robots. Throws ArgumentError if it was given
+/// for settled robots.
+std::optional<double> given_offset(const QueryArgs& args, const GroundArgs& ground, const CLI::App& command);
+
+/// Sets the stance of RasterOptions or SampleOptions, and their offset to given_offset(). When the robot is known,
+/// choose_offset() completes it.
+template <class Options>
+void set_stance(Options& options, const QueryArgs& args, const GroundArgs& ground, const CLI::App& command)
+{
+    options.stance = args.stance();
+    options.offset = given_offset(args, ground, command);
+}
+
 /// Returns the heights that --z gives, or those in `bounds`, the value of `bounds_option`. Throws ArgumentError if both
 /// limit the heights.
 ZRange heights_of(const GroundArgs& args, const Bounds& bounds, const std::string& bounds_option);
@@ -39,15 +52,18 @@ Bounds with_heights(const Bounds& bounds, const ZRange& heights, const Map& map)
 /// Returns "floor 1 at 5.2 m" or "heights 2:4 m", for captions; empty if the heights are unlimited.
 std::string height_words(const GroundArgs& args, const ZRange& heights, const Map& map);
 
-/// Returns the offset, m: `wanted`, or the robot's auto offset if that is empty. Puts it into the summary. Throws
-/// ArgumentError if it is above --max-height, because `check` would call such poses aerial.
-double choose_offset(const QueryArgs& args, const std::optional<double>& wanted, const Robot& robot, Summary& summary);
+/// Returns the offset of level robots, m: `wanted`, or the robot's auto offset if that is empty. Returns nothing for
+/// settled robots. Puts the offset, or that the robots are settled, into the summary. Throws ArgumentError if robots on
+/// level ground are above --max-height, because `check` would call such poses aerial.
+std::optional<double> choose_offset(const QueryArgs& args, const std::optional<double>& wanted, const Robot& robot,
+                                    Summary& summary);
 
 /// If the robot reaches down to its layer or below, returns the reason why no pose on flat ground can be valid. Else
 /// returns an empty text.
 std::string flat_ground_complaint(const Robot& robot, double offset);
 
-/// Throws NothingFits with the text of flat_ground_complaint(), unless that is empty.
-void require_above_ground(const Robot& robot, double offset);
+/// Throws NothingFits with the text of flat_ground_complaint(), unless that is empty. Settled robots have no offset,
+/// and are always above their ground.
+void require_above_ground(const Robot& robot, const std::optional<double>& offset);
 
 }  // namespace spawnfield::cli

@@ -45,8 +45,6 @@ HeatmapQuantity quantity_of(const std::string& name)
     return HeatmapQuantity(std::find(quantities.begin(), quantities.end(), name) - quantities.begin());
 }
 
-bool is_of_rest(HeatmapQuantity quantity) { return quantity >= HeatmapQuantity::Tilt; }
-
 /// Yaws that the picture is made for: one, or 16 headings all around.
 struct Facing {
     bool is_any = false;
@@ -90,13 +88,11 @@ void read_spawns(const HeatmapArgs& args, HeatmapOptions& picture)
     for (std::size_t row = 1; row <= picture.spawns.size(); ++row) picture.spawn_names.push_back(std::to_string(row));
 }
 
-RasterOptions raster_options(const HeatmapArgs& args)
+RasterOptions raster_options(const HeatmapArgs& args, const CLI::App& command)
 {
-    RasterOptions options{.stance = args.is_settled() ? Stance::Settled : Stance::Level,
-                          .offset = args.is_settled() ? std::nullopt : parse_offset(args.ground.offset),
-                          .layers = parse_layers(args.ground.layers),
-                          .threads = args.threads,
-                          .progress = progress_bar(args, "heatmap")};
+    RasterOptions options{
+        .layers = parse_layers(args.ground.layers), .threads = args.threads, .progress = progress_bar(args, "heatmap")};
+    set_stance(options, args, args.ground, command);
     if (!args.bounds.empty()) options.bounds = parse_bounds("--bounds", args.bounds, true);
     options.z = heights_of(args.ground, options.bounds, "--bounds");
     options.area = read_area(args, args.area);
@@ -157,10 +153,11 @@ void crop_to_ground(const HeatmapArgs& args, const Map& map, const TerrainMap& t
 Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& summary)
 {
     const PictureFile file = picture_file(args.out, args.format);
-    RasterOptions options = raster_options(args);
+    RasterOptions options = raster_options(args, command);
     HeatmapOptions picture = picture_options(args);
     if (is_of_rest(picture.quantity) && !args.is_settled())
-        throw ArgumentError("--quantity " + args.quantity + " needs --settle: it is about the robot at rest");
+        throw ArgumentError("--quantity " + args.quantity +
+                            " is about the robot at rest; leave --stance level out, or choose another quantity");
     const Facing facing = facing_of(args, picture.spawns);
     if (is_of_rest(picture.quantity) && facing.is_any)
         throw ArgumentError("--quantity " + args.quantity +
@@ -172,12 +169,8 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     notice_if_no_layer(args, session.map, options.layers);
     options.z = with_floor(options.z, args.ground, session.map);
     notices_about_stance(args, command, session.robot);
-    if (args.is_settled()) {
-        summary.extra.push_back("settled");
-    } else {
-        options.offset = choose_offset(args, options.offset, session.robot, summary);
-        require_above_ground(session.robot, *options.offset);
-    }
+    options.offset = choose_offset(args, options.offset, session.robot, summary);
+    require_above_ground(session.robot, options.offset);
     const TerrainMap terrain = read_terrain(session.map);
     crop_to_ground(args, session.map, terrain, options);
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
@@ -209,7 +202,7 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
         ->check(not_empty());
     command
         .add_option("--quantity", args->quantity,
-                    "verdict, height, clearance or slope; with --settle also tilt, roll, pitch, margin or belly "
+                    "verdict, height, clearance or slope; for settled robots also tilt, roll, pitch, margin or belly "
                     "(default verdict)")
         ->check(one_of(quantities));
     command.add_option("--spawns", args->spawns,
@@ -234,7 +227,7 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
         command, args->ground,
         "all (a column is valid if one of its layers is), top, bottom, or N from the top (0 first; default all)");
     add_verdict_options(command, *args);
-    add_stance(command, *args);
+    add_stance(command, *args, Stance::Settled);
     add_area(command, args->area);
     command.add_option(
         "--bounds", args->bounds,

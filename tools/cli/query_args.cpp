@@ -8,6 +8,39 @@
 #include <numbers>
 
 namespace spawnfield::cli {
+namespace {
+
+const std::string level_max_slope = "valid poses on steeper ground become steep, and those over an edge unstable";
+
+std::string name_of(Stance stance) { return stance == Stance::Settled ? "settled" : "level"; }
+
+/// Accepts degrees: "20" or "20deg".
+CLI::Validator in_degrees()
+{
+    return {[](std::string& text) {
+                const std::string number = text.ends_with("deg") ? text.substr(0, text.size() - 3) : text;
+                double value = 0;
+                if (!CLI::detail::lexical_cast(number, value))
+                    return "is \"" + text + "\", needs degrees, for example 20 or 20deg";
+                text = number;
+                return std::string();
+            },
+            ""};
+}
+
+}  // namespace
+
+Stance QueryArgs::stance() const
+{
+    if (settle || given_stance == "settled") return Stance::Settled;
+    return given_stance == "level" ? Stance::Level : default_stance;
+}
+
+std::string QueryArgs::how_to_level() const
+{
+    if (settle) return "give --stance level in place of --settle";
+    return given_stance.empty() ? "add --stance level" : "give --stance level";
+}
 
 void add_map_and_robot(CLI::App& command, QueryArgs& args)
 {
@@ -25,10 +58,9 @@ void add_verdict_options(CLI::App& command, QueryArgs& args)
     command.add_option(
         "--max-water-depth", args.max_water_depth,
         "A water surface higher than this above the ground does not count, m (default: every one counts)");
-    command.add_option("--max-slope", args.max_slope,
-                       "Degrees. Valid poses on steeper ground become steep, and those over an edge unstable (default: "
-                       "slopes do not count). With --settle: a robot that rests with a larger tilt is steep (default "
-                       "30)");
+    command
+        .add_option("--max-slope", args.max_slope, "Degrees: " + level_max_slope + " (default: slopes do not count)")
+        ->transform(in_degrees());
     command
         .add_option("--collision", args.collision,
                     "What the robot must not touch: geometry (exact), or octree (the voxels of the map) (default "
@@ -36,21 +68,31 @@ void add_verdict_options(CLI::App& command, QueryArgs& args)
         ->check(one_of({"geometry", "octree"}));
 }
 
-void add_stance(CLI::App& command, QueryArgs& args)
+void add_stance(CLI::App& command, QueryArgs& args, Stance standard)
 {
+    args.default_stance = standard;
+    command.get_option("--max-slope")
+        ->description(
+            "Degrees. Settled robots: one that rests with a larger tilt is steep (default 30). Level robots: " +
+            level_max_slope + " (default: slopes do not count)");
     start_group(command, help_group::rest);
+    const std::string level = command.get_option_no_throw("--offset") == nullptr
+                                  ? "the robot is as given"
+                                  : "the robot stands upright, --offset above its layer";
     CLI::Option* stance = command
-                              .add_option("--stance", args.stance,
-                                          "level: the robot is as given; settled: it is let down at x, y and yaw, and "
-                                          "comes to rest on the ground (default level)")
+                              .add_option("--stance", args.given_stance,
+                                          "settled: the robot is let down at x, y and yaw, and comes to rest on the "
+                                          "ground; level: " +
+                                              level + " (default " + name_of(standard) + ")")
                               ->check(one_of({"level", "settled"}));
     command.add_flag("--settle", args.settle, "Short for --stance settled")->excludes(stance);
     command.add_option("--lift", args.lift,
                        "m by which the settled robot is raised: there it must touch nothing (default 0.02)");
-    command.add_option(
-        "--max-tilt", args.max_tilt,
-        "Degrees. A robot that tilts more on its way down tips over: unstable (default 45). --max-slope limits "
-        "its tilt at rest");
+    command
+        .add_option("--max-tilt", args.max_tilt,
+                    "Degrees. A robot that tilts more on its way down tips over: unstable (default 45). --max-slope "
+                    "limits its tilt at rest")
+        ->transform(in_degrees());
     command.add_option("--min-stability", args.min_stability,
                        "m. A robot is unstable if its centre of mass is nearer to the edge of its support polygon "
                        "(default: 0.2 % of the robot's longer side, 2 mm for a robot of 1 m)");
@@ -59,13 +101,26 @@ void add_stance(CLI::App& command, QueryArgs& args)
                        "pose (default: not examined)");
 }
 
+const std::vector<std::string>& stance_options()
+{
+    static const std::vector<std::string> options{"--stance",   "--settle",        "--lift",
+                                                  "--max-tilt", "--min-stability", "--drop"};
+    return options;
+}
+
 void notices_about_stance(const QueryArgs& args, const CLI::App& command, const Robot& robot)
 {
     if (!args.is_settled())
         return notice_no_effect(args, command, {"--lift", "--max-tilt", "--min-stability", "--drop"},
-                                "it is only for settled poses (--settle)");
-    if (command.get_option_no_throw("--offset") != nullptr)
-        notice_no_effect(args, command, {"--offset"}, "settled robots stand on the ground");
+                                "it is only for settled poses (--stance settled)");
+    if (args.max_slope && *args.max_slope > args.max_tilt)
+        notice(args, "--max-slope " + number(*args.max_slope) + " is above --max-tilt, " + number(args.max_tilt) +
+                         " degrees: a robot that tilts by more than --max-tilt is unstable; give a larger --max-tilt, "
+                         "too");
+    if (args.drop && *args.drop < args.lift)
+        notice(args, "--drop " + number(*args.drop) + " is below --lift, " + number(args.lift) +
+                         " m: spawns fall from --lift, but only the last " + number(*args.drop) +
+                         " m of it are examined; give a --drop of at least " + number(args.lift));
     if (robot.mass_center) return;
     const Vec3 mass = mass_center_of(robot);
     notice(args, robot.name + " has no centre of mass; that of its parts' volume is used, " + rounded(mass.x()) + ", " +
@@ -92,7 +147,8 @@ JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time)
     if (args.is_settled() && args.collision == "octree")
         throw ArgumentError(
             "--collision is octree, but settled poses need geometry: the robot comes to rest on the scene's own "
-            "geometry, not on its voxels");
+            "geometry, not on its voxels; " +
+            args.how_to_level());
     const auto is_angle = [](double degrees) { return degrees > 0 && degrees < 90; };
     const auto is_length = [](double length) { return length >= 0 && std::isfinite(length); };
     if (!is_length(args.lift)) throw bad_value("--lift", args.lift, ">= 0 m");

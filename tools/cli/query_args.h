@@ -18,16 +18,24 @@ struct QueryArgs : CommonArgs, RobotArgs {
     bool exhaustive = false;
     double max_water_depth = std::numeric_limits<double>::infinity();
     std::optional<double> max_slope;            ///< degrees
-    std::string stance;                         ///< "level", "settled", or empty: the command's default
+    Stance default_stance = Stance::Level;      ///< without --stance and --settle; add_stance() sets it
+    std::string given_stance;                   ///< --stance: "level", "settled", or empty
     bool settle = false;                        ///< --settle, short for --stance settled
     double lift = 0.02, max_tilt = 45;          ///< m, degrees
     std::optional<double> min_stability, drop;  ///< m
 
-    bool is_settled() const { return settle || stance == "settled"; }
+    Stance stance() const;
+    bool is_settled() const { return stance() == Stance::Settled; }
+    /// Returns what to do for level poses, for messages: "add --stance level", or what replaces --settle.
+    std::string how_to_level() const;
 };
 
-/// Adds, below the heading "Robot at rest", the options about settled poses.
-void add_stance(CLI::App& command, QueryArgs& args);
+/// Adds, below the heading "Robot at rest", the options about settled poses. Without them, poses have the stance
+/// `standard`. Call it after add_verdict_options().
+void add_stance(CLI::App& command, QueryArgs& args, Stance standard);
+
+/// Options that add_stance() adds.
+const std::vector<std::string>& stance_options();
 
 /// Prints notices about options of settled poses without effect, and about a robot whose centre of mass is not known.
 void notices_about_stance(const QueryArgs& args, const CLI::App& command, const Robot& robot);

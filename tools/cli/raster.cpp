@@ -35,10 +35,11 @@ void check_write_aerial(const RasterCommandArgs& args, const CLI::App& command, 
 
 RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
 {
-    RasterOptions options = raster_options(args, command);
     if (args.is_settled() && args.dims == 3)
         throw ArgumentError(
-            "--settle is only for --dims 2: the robot is let down onto the layers of each column; give --dims 2");
+            "--stance settled (--settle) is only for --dims 2: the robot is let down onto the layers of each column; "
+            "give --dims 2");
+    RasterOptions options = raster_options(args, command);
     if (args.dims == 2)
         notice_no_effect(args, command, {"--step-z"}, "it is only for --dims 3; in 2D each pose stands on a layer");
     options.step = parse_positive("--step", args.step);

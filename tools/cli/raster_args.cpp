@@ -49,7 +49,7 @@ void add_raster_query(CLI::App& command, RasterArgs& args, bool stance)
                      "3D: each layer gets a pose --offset above it, in place of the lowest step at or above it");
     command.add_flag("--no-height-check", args.no_height_check, "3D: judge only collisions, at every pose");
     add_verdict_options(command, args);
-    if (stance) add_stance(command, args);
+    if (stance) add_stance(command, args, Stance::Level);
     add_area(command, args.area);
     command.add_option("--bounds", args.bounds,
                        "x0,y0,z0,x1,y1,z1 in m; in 2D or with --z also x0,y0,x1,y1. In 2D layers beyond z0 .. z1 are "
@@ -65,14 +65,13 @@ RasterOptions raster_options(const RasterArgs& args, const CLI::App& command)
         refuse(command, {"--floor"}, "is only for --dims 2; in 3D use --z for the heights of the poses");
     notice_idle_options(args, command);
     RasterOptions options{.dims = args.dims,
-                          .stance = args.is_settled() ? Stance::Settled : Stance::Level,
-                          .offset = args.is_settled() ? std::nullopt : parse_offset(args.ground.offset),
                           .yaw = parse_yaw(args, args.yaw),
                           .layers = parse_layers(args.ground.layers),
                           .height_check = !args.no_height_check,
                           .snap = args.snap,
                           .threads = args.threads,
                           .progress = progress_bar(args, command.get_name())};
+    set_stance(options, args, args.ground, command);
     if (args.snap) check_snap(args);
     if (!args.bounds.empty())
         options.bounds = parse_bounds("--bounds", args.bounds, args.dims == 2 || !args.ground.z.empty());
@@ -88,11 +87,10 @@ void complete(RasterOptions& options, const RasterArgs& args, const Session& ses
     notice_if_off_map(args, session.map, "--bounds", options.bounds);
     notice_about_area(args, session.map, options.area);
     notice_if_no_layer(args, session.map, options.layers);
-    if (args.is_settled()) summary.extra.push_back("settled");
-    if (args.is_settled() || (options.dims == 3 && !options.snap)) return;
+    if (options.dims == 3 && !options.snap) return;
     options.offset = choose_offset(args, options.offset, session.robot, summary);
     if (options.dims == 2)
-        require_above_ground(session.robot, *options.offset);
+        require_above_ground(session.robot, options.offset);
     else if (const std::string why = flat_ground_complaint(session.robot, *options.offset); !why.empty())
         notice(args, why);
 }

@@ -210,12 +210,11 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
     SampleOptions options{.count = std::size_t(args.draws.count),
                           .min_distance = args.draws.min_distance,
                           .seed = args.draws.seed,
-                          .stance = args.is_settled() ? Stance::Settled : Stance::Level,
                           .layers = parse_layers(args.ground.layers),
                           .area = read_area(args, args.area),
                           .threads = args.threads,
                           .progress = progress_bar(args, "sample")};
-    if (!args.is_settled()) options.offset = parse_offset(args.ground.offset);
+    set_stance(options, args, args.ground, command);
     if (const auto box = lone_box(args.area)) {  // as bounds, so that every draw is within the region
         options.bounds = *box;
         options.area.within.clear();
@@ -223,14 +222,11 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
     const ZRange heights = heights_of(args.ground, options.bounds, "--region");
     const auto prepare = [&](const Session& session, SampleOptions& asked) {
         asked.z = with_floor(heights, args.ground, session.map);
-        if (args.is_settled())
-            summary.extra.push_back("settled");
-        else
-            asked.offset = choose_offset(args, asked.offset, session.robot, summary);
-        notices_about_stance(args, command, session.robot);
+        asked.offset = choose_offset(args, asked.offset, session.robot, summary);
         notice_if_off_map(args, session.map, "--region", asked.bounds);
         notice_about_area(args, session.map, asked.area);
         notice_if_no_layer(args, session.map, asked.layers);
+        notices_about_stance(args, command, session.robot);
         Settings own{{"Layers", args.ground.layers}};
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
@@ -299,7 +295,7 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     add_common_spawn_options(command, *args);
     add_ground(command, args->ground, "all, top, bottom, or N from the top (0 first; default all)");
     add_verdict_options(command, *args);
-    add_stance(command, *args);
+    add_stance(command, *args, Stance::Settled);
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");

@@ -1,5 +1,7 @@
 #include "spelling.h"
 
+#include "common_args.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -55,11 +57,11 @@ std::vector<std::string> likely(const std::string& text, const std::vector<std::
 }
 
 /// Returns "a", "a or b", "a, b or c".
-std::string choice_of(const std::vector<std::string>& words)
+std::string choice_of(const std::vector<std::string>& words, const std::string& last = "or")
 {
     std::string out;
     for (std::size_t i = 0; i < words.size(); ++i)
-        out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+        out += (i == 0 ? "" : i + 1 == words.size() ? " " + last + " " : ", ") + words[i];
     return out;
 }
 
@@ -71,6 +73,18 @@ std::vector<std::string> option_names(const CLI::App& command)
         for (const std::string& name : option->get_snames()) names.push_back("-" + name);
     }
     return names;
+}
+
+/// If a command lacks an option about robots at rest, returns which commands have it. Else returns an empty text.
+std::string where_robots_settle(const CLI::App& app, const std::string& option)
+{
+    std::vector<std::string> commands;
+    for (const CLI::App* const command : app.get_subcommands({}))
+        if (const CLI::Option* const found = command->get_option_no_throw(option);
+            found != nullptr && found->get_group() == help_group::rest)
+            commands.push_back(command->get_name());
+    if (commands.empty()) return "";
+    return "; settled robots are only for " + choice_of(commands, "and");
 }
 
 }  // namespace
@@ -102,7 +116,9 @@ std::string unknown_option(const CLI::App& app)
     for (const std::string& text : command.remaining(true)) {
         if (text.size() < 2 || text[0] != '-') continue;
         const std::string name = text.substr(0, text.find('='));
-        return name + " is not an option of " + command.get_name() + suggestion(name, option_names(command));
+        const std::string settling = where_robots_settle(app, name);
+        return name + " is not an option of " + command.get_name() +
+               (settling.empty() ? suggestion(name, option_names(command)) : settling);
     }
     return "";
 }

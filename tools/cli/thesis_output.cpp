@@ -18,6 +18,14 @@ Settings query_settings(const std::string& command, const QueryArgs& args, const
     if (session.robot.mesh_parts != 1) out.emplace_back("Mesh parts", std::to_string(session.robot.mesh_parts));
     out.emplace_back("Collision", args.collision);
     out.emplace_back("Exhaustive", args.exhaustive ? "yes" : "no");
+    if (!args.is_settled()) return out;
+    const StandLimits& limits = session.judge->options().stand;
+    out.emplace_back("Stance", "settled");
+    out.emplace_back("Lift (m)", number(limits.lift));
+    out.emplace_back("Max slope (rad)", number(limits.max_slope));
+    out.emplace_back("Max tilt (rad)", number(limits.max_tilt));
+    out.emplace_back("Min stability (m)", number(*limits.min_stability));
+    if (limits.drop) out.emplace_back("Drop (m)", number(*limits.drop));
     return out;
 }
 

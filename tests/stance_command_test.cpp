@@ -1,0 +1,134 @@
+#include "arena.h"
+
+#include <spawnfield/poses.h>
+
+#include <algorithm>
+
+using namespace spawnfield;
+
+namespace {
+
+/// Where the training arena has a ramp that rises by 10 degrees.
+const std::string on_ramp = " --region 4,5.5,7,8.5 ";
+
+std::string value_of(const std::string& text, const std::string& key)
+{
+    const std::size_t at = text.find(key + ": ");
+    if (at == std::string::npos) return "";
+    const std::size_t begin = at + key.size() + 2;
+    return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+}  // namespace
+
+TEST_CASE("sample answers for settled robots: the same as with --settle, tilted on a slope, valid as written")
+{
+    const Arena arena;
+    const std::string query = "sample map -n 20 --yaw random -o ";
+    const ProgramRun run = arena(query + "spawns.csv" + on_ramp + husky_option);
+    CHECK(run.status == 0);
+    CHECK_THAT(run.err, Contains("20 of 20 spawns; settled; "));
+    for (const std::string same : {"--settle", "--stance settled"}) {
+        CHECK(arena(query + "same.csv " + same + on_ramp + husky_option).status == 0);
+        CHECK(bytes_of(arena / "same.csv") == bytes_of(arena / "spawns.csv"));
+    }
+    const std::vector<Pose> poses = read_poses(arena / "spawns.csv").poses;
+    REQUIRE(poses.size() == 20);
+    const auto tilted = std::count_if(poses.begin(), poses.end(),
+                                      [](const Pose& pose) { return pose.rotation(2, 2) < std::cos(0.1); });
+    CHECK(tilted > 5);
+    CHECK(arena("check map --poses spawns.csv --require-valid" + husky_option).status == 0);
+
+    CHECK(arena(query + "level.csv --stance level --offset 0.3" + on_ramp + husky_option).status == 0);
+    for (const Pose& pose : read_poses(arena / "level.csv").poses) CHECK(pose.rotation(2, 2) == 1);
+}
+
+TEST_CASE("heatmap and export answer for settled robots unless they are asked for level ones")
+{
+    const Arena arena;
+    const std::string robot = husky_option + "--yaw 30deg --quiet ";
+    for (const std::string command :
+         {"heatmap map --step 1 -o ", "export map --format nav2 --resolution 1 -o ",
+          "export map --format geotiff --resolution 1 -o ", "export map --format ply --step 1 -o "}) {
+        CAPTURE(command);
+        const std::string ending = command.starts_with("heatmap") ? ".svg" : ".yaml";
+        const auto written = [&](const std::string& name, const std::string& options) {
+            CHECK(arena(command + name + ending + " " + options + robot).status == 0);
+            const std::string image = name + (command.find("nav2") == std::string::npos ? ending : ".pgm");
+            return bytes_of(arena / image);
+        };
+        const std::string standard = written("a", "");
+        CHECK(written("b", "--settle ") == standard);
+        CHECK(written("c", "--stance level ") != standard);
+    }
+    const auto comment = [&](const std::string& options) {
+        CHECK(arena("export map --format nav2 --resolution 1 -o x.yaml " + options + robot).status == 0);
+        const std::string text = bytes_of(arena / "x.yaml");
+        return text.substr(0, text.find('\n'));
+    };
+    CHECK_THAT(comment(""), Contains("): where husky can stand, let down onto its layer (top), yaw 0.52") &&
+                                Contains(" rad, raised by 0.02 m"));
+    CHECK_THAT(comment("--stance level "),
+               Contains("): where the origin of husky can be, 0.1 m above its layer (top), yaw 0.52"));
+}
+
+TEST_CASE("options that do not suit the stance are refused, or get a notice")
+{
+    const Arena arena;
+    const std::string offset =
+        "--offset is 0.3, but it is the height of a level robot, and settled robots stand on the "
+        "ground; ";
+    const auto refused = [&](const std::string& command, const std::string& message) {
+        const ProgramRun run = arena(command + husky_option);
+        CAPTURE(command);
+        CHECK(run.status == 2);
+        CHECK_THAT(run.err, Contains(message));
+    };
+    for (const std::string command :
+         {"sample map -n 1", "heatmap map -o x.png", "export map --format nav2 -o x.yaml"}) {
+        refused(command + " --offset 0.3", offset + "add --stance level, or leave --offset out\n");
+        refused(command + " --offset 0.3 --settle", offset + "give --stance level in place of --settle");
+        refused(command + " --collision octree", "not on its voxels; add --stance level\n");
+        refused(command + " --lift 2", "--lift is 2 m, which raises the origin of a robot on level ground to 2");
+    }
+    refused("sample map -n 1 --max-slope 0.3rad", "--max-slope: is \"0.3rad\", needs degrees, for example 20 or 20deg");
+    for (const std::string command : {"search map -n 1", "experiment map -o x"})
+        for (const std::string option : {"--settle", "--stance settled", "--lift 1"})
+            refused(command + " " + option,
+                    option.substr(0, option.find(' ')) + " is not an option of " +
+                        command.substr(0, command.find(' ')) +
+                        "; settled robots are only for check, raster, sample, heatmap and export\n");
+
+    const auto said = [&](const std::string& options) {
+        const ProgramRun run = arena("sample map -n 1 " + options + husky_option);
+        CHECK(run.status == 0);
+        return run.err;
+    };
+    CHECK_THAT(said("--max-slope 50"), Contains("notice: --max-slope 50 is above --max-tilt, 45 degrees"));
+    CHECK_THAT(said("--drop 0.01"), Contains("notice: --drop 0.01 is below --lift, 0.02 m"));
+    CHECK_THAT(said("--stance level --lift 0.1"),
+               Contains("notice: --lift has no effect: it is only for settled poses"));
+    CHECK_THAT(said("--max-slope 20deg --max-tilt 30deg"), !Contains("--max"));
+    CHECK(arena("sample map -n 3 --max-slope 20deg" + husky_option).out ==
+          arena("sample map -n 3 --max-slope 20" + husky_option).out);
+}
+
+TEST_CASE("a thesis result of settled robots lists how they stand")
+{
+    const Arena arena;
+    REQUIRE(arena("sample map -n 3 --drop 0.5 --max-slope 20 --format thesis -o drawn" + husky_option).status == 0);
+    REQUIRE(arena("raster map --dims 2 --step 2 --settle --drop 0.5 --max-slope 20 --format thesis -o raster" +
+                  husky_option)
+                .status == 0);
+    for (const char* const folder : {"drawn", "raster"}) {
+        const std::string stats = bytes_of(arena / folder / "Stats.txt");
+        CHECK(value_of(stats, "Stance") == "settled");
+        CHECK(value_of(stats, "Lift (m)") == "0.02");
+        CHECK(std::stod(value_of(stats, "Max slope (rad)")) == Approx(20 * M_PI / 180));
+        CHECK(std::stod(value_of(stats, "Max tilt (rad)")) == Approx(45 * M_PI / 180));
+        CHECK(std::stod(value_of(stats, "Min stability (m)")) > 0);
+        CHECK(value_of(stats, "Drop (m)") == "0.5");
+    }
+    REQUIRE(arena("sample map -n 3 --stance level --format thesis -o level" + husky_option).status == 0);
+    CHECK(value_of(bytes_of(arena / "level/Stats.txt"), "Stance").empty());
+}
