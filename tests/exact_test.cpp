@@ -147,13 +147,6 @@ compare::Tally real_rasters(const TestMap& map, const compare::TwoJudges& judges
     return tally;
 }
 
-std::string csv(const RasterResult& raster)
-{
-    std::string text;
-    write_raster_csv(raster, false, [&](std::string_view piece) { text += piece; });
-    return text;
-}
-
 }  // namespace
 
 TEST_CASE("every query gives the exhaustive verdicts, pose by pose, in random hard scenes")
@@ -274,7 +267,7 @@ TEST_CASE("a finer mask changes no verdict, only the number of exact checks")
                 const TestMap fine = map_at(hard.scene, resolution, hard.map_bounds);
                 const RasterResult result = raster(Judge(fine, hard.robot), options);
                 CAPTURE(seed, hard.resolution, resolution, dims);
-                CHECK(csv(result) == csv(expected));
+                CHECK(csv_of(result) == csv_of(expected));
                 if (resolution < hard.resolution) fine_checks += result.exact_checks;
             }
         }
@@ -388,7 +381,7 @@ TEST_CASE("with a mask that is made on first use, rasters are the same bytes wit
                 options.step_z = 1.7;
                 options.offset = std::clamp(*options.offset, 0.0, judge.options().max_height);
                 const RasterResult result = raster(judge, options);
-                text += csv(result) + std::to_string(result.exact_checks);
+                text += csv_of(result) + std::to_string(result.exact_checks);
             }
             if (threads == 1) expected = text;
             CAPTURE(seed, threads);

@@ -14,13 +14,6 @@ using namespace spawnfield;
 
 namespace {
 
-std::string csv(const RasterResult& raster)
-{
-    std::string text;
-    write_raster_csv(raster, false, [&](std::string_view piece) { text += piece; });
-    return text;
-}
-
 bool is_same(const Scene& a, const Scene& b)
 {
     const auto is_same_piece = [](const Piece& l, const Piece& r) {
@@ -66,7 +59,7 @@ TEST_CASE("a map made in memory gives the same answers as the folder that bake w
             const Judge of_file(baked, robot, {.obstacles = obstacles}),
                 of_memory(made, robot, {.obstacles = obstacles});
             const RasterResult there = raster(of_file, {.step = 0.7}), here = raster(of_memory, {.step = 0.7});
-            CHECK(csv(here) == csv(there));
+            CHECK(csv_of(here) == csv_of(there));
             CHECK(here.exact_checks == there.exact_checks);
             const SampleOptions wanted{.count = 40, .min_distance = 0.3, .random_yaw = true, .stance = Stance::Level};
             CHECK(spawns_csv(sample(of_memory, wanted)) == spawns_csv(sample(of_file, wanted)));
@@ -146,8 +139,8 @@ TEST_CASE("a robot from code is the one of a file")
     const TestMap map = map_of(random_scene(3));
     const RasterOptions options{.step = 0.6, .yaw = 0.3};
     const RasterResult expected = raster(Judge(map, read), options);
-    CHECK(csv(raster(Judge(map, made), options)) == csv(expected));
-    CHECK(csv(raster(Judge(map, hull), options)) == csv(expected));
+    CHECK(csv_of(raster(Judge(map, made), options)) == csv_of(expected));
+    CHECK(csv_of(raster(Judge(map, hull), options)) == csv_of(expected));
 }
 
 TEST_CASE("parts of a robot that make no sense are refused")

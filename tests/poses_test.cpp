@@ -1,6 +1,7 @@
 #include "catch.h"
 #include "base/number.h"
 #include "temp_folder.h"
+#include "test_map.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/poses.h>
@@ -40,13 +41,6 @@ std::vector<std::string> lines_of(const std::string& text)
     std::vector<std::string> out;
     std::istringstream stream(text);
     for (std::string line; std::getline(stream, line);) out.push_back(line);
-    return out;
-}
-
-std::string raster_csv(const RasterResult& raster, bool aerial)
-{
-    std::string out;
-    write_raster_csv(raster, aerial, [&](std::string_view text) { out += text; });
     return out;
 }
 
@@ -224,7 +218,7 @@ TEST_CASE("a raster is written in its order; a pose whose ground is not a layer 
     raster.yaw = 0.5;
     raster.poses = {
         {1, 2, 0.1, 0, Verdict::Valid}, {1, 2, -3, 1, Verdict::Collision}, {1.5, 2, 1.0 / 3, -1, Verdict::OffTerrain}};
-    CHECK(raster_csv(raster, false) ==
+    CHECK(csv_of(raster, false) ==
           "x,y,z,yaw,layer,verdict\n1,2,0.1,0.5,0,valid\n1,2,-3,0.5,1,collision\n"
           "1.5,2,0.3333333333333333,0.5,,off_terrain\n");
 }
@@ -236,8 +230,8 @@ TEST_CASE("aerial poses are written, in their places, only on request")
     raster.grid = {.x0 = 0, .y0 = 10, .z0 = -1, .step = 0.5, .step_z = 0.1, .cols = 2, .rows = 1, .heights = 3};
     const double top = raster.grid.z_of(2), middle = raster.grid.z_of(1), low = raster.grid.z_of(0);
     raster.poses = {{0, 10, middle, 0, Verdict::Valid}, {0.5, 10, low, -1, Verdict::OffTerrain}};
-    CHECK(lines_of(raster_csv(raster, false)).size() == 3);
-    const auto lines = lines_of(raster_csv(raster, true));
+    CHECK(lines_of(csv_of(raster, false)).size() == 3);
+    const auto lines = lines_of(csv_of(raster, true));
     REQUIRE(lines.size() == 7);
     CHECK(lines[1] == "0,10,-0.8,0,,aerial");
     CHECK(lines[2] == "0,10,-0.9,0,0,valid");
@@ -245,7 +239,7 @@ TEST_CASE("aerial poses are written, in their places, only on request")
     CHECK(lines[4] == "0.5,10,-0.8,0,,aerial");
     CHECK(lines[5] == "0.5,10,-0.9,0,,aerial");
     CHECK(lines[6] == "0.5,10,-1,0,,off_terrain");
-    const PoseTable table = read(raster_csv(raster, true));
+    const PoseTable table = read(csv_of(raster, true));
     CHECK(table.poses[0].position.z() == top);
 }
 

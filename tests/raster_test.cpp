@@ -11,13 +11,6 @@ using namespace spawnfield;
 
 namespace {
 
-std::string csv(const RasterResult& raster, bool aerial = false)
-{
-    std::string text;
-    write_raster_csv(raster, aerial, [&](std::string_view piece) { text += piece; });
-    return text;
-}
-
 Verdict judged(const Judge& judge, const RasterPose& pose, double yaw)
 {
     return judge.check({Vec3(pose.x, pose.y, pose.z), rotation_from_rpy(0, 0, yaw)}).verdict;
@@ -108,7 +101,7 @@ TEST_CASE("aerial poses are written in their places on request")
     const Judge judge(map, husky());
     RasterOptions options{.dims = 3, .step = 2};
     const RasterResult result = raster(judge, options);
-    const std::string all = csv(result, true), few = csv(result, false);
+    const std::string all = csv_of(result, true), few = csv_of(result, false);
     const auto lines = [](const std::string& text) { return std::size_t(std::count(text.begin(), text.end(), '\n')); };
     CHECK(lines(all) == 1 + std::size_t(result.grid.cols) * result.grid.rows * result.grid.heights);
     CHECK(lines(few) == 1 + result.poses.size());
@@ -165,7 +158,7 @@ TEST_CASE("a raster is the same bytes with any number of threads")
     const Judge judge(map, random_robot(4));
     for (const int dims : {2, 3}) {
         const auto text_at = [&](int threads) {
-            return csv(raster(judge, {.dims = dims, .step = 0.4, .threads = threads}));
+            return csv_of(raster(judge, {.dims = dims, .step = 0.4, .threads = threads}));
         };
         const std::string one = text_at(1);
         CHECK(std::count(one.begin(), one.end(), '\n') > 1000);

@@ -331,7 +331,7 @@ TEST_CASE("the touches of round bodies and polyhedra agree with a general method
     const auto turned = [&] {
         return rotation_of_rpy(random.between(-3, 3), random.between(-1.5, 1.5), random.between(-3, 3));
     };
-    int met = 0, facets = 0;
+    int met = 0, triangles = 0;
     for (int k = 0; k < 4000; ++k) {
         const auto some_body = [&](int kind) {
             const Pose pose{anywhere(1), turned()};
@@ -356,13 +356,13 @@ TEST_CASE("the touches of round bodies and polyhedra agree with a general method
         // On a steep surface, a small distance to the side is a large one in height.
         CHECK(std::abs(highest - general->height) <= 1e-9 * general->normal.norm());
         if (second != 4) continue;
-        const auto facet = facet_of({ground.points[0], ground.points[1], ground.points[2]});
-        if (!facet) continue;
-        ++facets;
-        CHECK(std::abs(highest_of(touches_of(body, *facet)) - general->height) <= 1e-9 * general->normal.norm());
+        const auto triangle = touch_triangle_of({ground.points[0], ground.points[1], ground.points[2]});
+        if (!triangle) continue;
+        ++triangles;
+        CHECK(std::abs(highest_of(touches_of(body, *triangle)) - general->height) <= 1e-9 * general->normal.norm());
     }
     CHECK(met >= 1000);
-    CHECK(facets >= 200);
+    CHECK(triangles >= 200);
 }
 
 TEST_CASE("the predicted height of a touch after a small turn is that of the turned body")
@@ -374,14 +374,15 @@ TEST_CASE("the predicted height of a touch after a small turn is that of the tur
         const Pose pose{{between(0.3), between(0.3), 0}, rotation_of_rpy(between(0.5), between(0.5), between(3))};
         const Convex own = k % 2 ? convex_of(box_shape({0.8, 0.5, 0.3}, pose))
                                  : convex_of(cylinder_shape(0.4, 0.2, pose));
-        const auto facet = facet_of({Vec3(between(1), between(1), 0), Vec3(between(1), between(1), between(0.4)),
-                                     Vec3(between(1), between(1), 0)});
-        if (!facet) continue;
+        const auto triangle = touch_triangle_of({Vec3(between(1), between(1), 0),
+                                                 Vec3(between(1), between(1), between(0.4)),
+                                                 Vec3(between(1), between(1), 0)});
+        if (!triangle) continue;
         const Mat3 rotation = rotation_of_rpy(between(1e-4), between(1e-4), 0);
-        const std::vector<Touch> before = touches_of(own, *facet),
-                                 after = touches_of(moved(own, {Vec3::Zero(), rotation}), *facet);
+        const std::vector<Touch> before = touches_of(own, *triangle),
+                                 after = touches_of(moved(own, {Vec3::Zero(), rotation}), *triangle);
         for (const Touch& touch : before) {
-            const auto height = height_after(touch, own, rotation, *facet);
+            const auto height = height_after(touch, own, rotation, *triangle);
             CHECK(height.has_value() == (touch.kind != Touch::Kind::Other));
             const auto is_same = [&](const Touch& other) {
                 return other.kind == touch.kind && other.body == touch.body && other.ground == touch.ground;

@@ -415,17 +415,6 @@ TEST_CASE("sampling of settled poses ends when nothing fits, without a proof")
     CHECK(std::abs(list.undecided_area - 4) <= 1e-6);
 }
 
-namespace {
-
-std::string csv_of(const RasterResult& raster)
-{
-    std::string text;
-    write_raster_csv(raster, false, [&](std::string_view piece) { text += piece; });
-    return text;
-}
-
-}  // namespace
-
 TEST_CASE("a settled raster has the settled pose of every layer, raised by the lift, with any number of threads")
 {
     std::size_t tilted = 0, without_pose = 0;

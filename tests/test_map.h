@@ -4,6 +4,7 @@
 #include "random_scene.h"
 
 #include <spawnfield/bake.h>
+#include <spawnfield/poses.h>
 #include <spawnfield/query.h>
 
 #include <memory>
@@ -52,4 +53,12 @@ inline spawnfield::Judge at_any_height(const spawnfield::Judge& judge)
 inline spawnfield::CollisionChecker checker_of(const spawnfield::Map& map, const spawnfield::Robot& robot)
 {
     return {map.geometry, robot};
+}
+
+/// Returns the file that write_raster_csv() writes.
+inline std::string csv_of(const spawnfield::RasterResult& raster, bool aerial = false)
+{
+    std::string text;
+    spawnfield::write_raster_csv(raster, aerial, [&](std::string_view piece) { text += piece; });
+    return text;
 }

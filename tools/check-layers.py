@@ -6,6 +6,7 @@
 
 A public header include/spawnfield/X.h belongs to the folder that has X.cpp, or else to the folder in OWNERS. The check
 fails if a header belongs to no folder, or if folders form a circle; then it lists the includes that form the circle.
+It also fails if two types of the namespace spawnfield have one name.
 """
 import argparse
 import re
@@ -24,6 +25,10 @@ OWNERS = {  # public headers that have no .cpp file of the same name
     "simulators": "simulators",
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"/]+)/[^"]+"|<spawnfield/(\w+)\.h>)', re.MULTILINE)
+
+UNNAMED_NAMESPACE = re.compile(r"^namespace \{$.*?^\}  // namespace$", re.DOTALL | re.MULTILINE)
+INNER_NAMESPACE = re.compile(r"^namespace (?!spawnfield \{)[\w:]+ \{$.*?^\}  // namespace", re.DOTALL | re.MULTILINE)
+TYPE = re.compile(r"^(?:struct|class|enum class)(?: SPAWNFIELD_API)? (\w+)(?!::)\b[^;{]*\{", re.MULTILINE)
 
 
 def fail(message):
@@ -81,6 +86,20 @@ def by_symbols(build):
     return found
 
 
+def check_type_names():
+    """Fails if two types of the namespace spawnfield have one name. Their inline functions would be mixed up."""
+    files = [file for file in (ROOT / "src").glob("*/*") if file.suffix in (".h", ".cpp")]
+    places = {}
+    for file in sorted(files + list((ROOT / "include/spawnfield").glob("*.h"))):
+        text = UNNAMED_NAMESPACE.sub("", file.read_text(encoding="utf-8"))
+        text = INNER_NAMESPACE.sub("", text)
+        for name in TYPE.findall(text):
+            places.setdefault(name, []).append(str(file.relative_to(ROOT)))
+    for name, where in sorted(places.items()):
+        if len(where) > 1:
+            fail(f"{' and '.join(where)} define {name}; rename one of them")
+
+
 def layers_of(found):
     """Returns lists of folders that depend only on earlier lists, and the folders in or above a circle."""
     layers, rest = [], {folder: set(others) for folder, others in found.items()}
@@ -103,6 +122,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--symbols", metavar="BUILD_FOLDER", type=Path, help="by linked symbols instead of includes")
     build = parser.parse_args().symbols
+    check_type_names()
     found = by_symbols(build) if build else by_includes()
     layers, rest = layers_of(found)
     for number, layer in enumerate(layers, 1):

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <spawnfield/export.h>
+#include <spawnfield/heading_rule.h>
 #include <spawnfield/judge.h>
 #include <spawnfield/region.h>
 
@@ -41,6 +42,9 @@ struct RasterOptions {
     /// value: auto_offset(). Must not be given for settled robots.
     std::optional<double> offset = {};
     double yaw = 0;  ///< rad
+    /// Only for settled robots: chooses the yaw of each pose, in place of `yaw`. For All and Any, it is that of the
+    /// first heading at which the pose is valid.
+    std::optional<HeadingRule> heading = {};
     /// The layers that count. For 3D rasters, the layer is the pose's ground: unless all layers are chosen, aerial
     /// poses and poses over other ground are left out.
     LayerChoice layers = {};
@@ -83,6 +87,10 @@ struct RasterRest {
     /// rad, m, rad, m. NaN: the robot has no room, or the place cannot be used.
     double tilt = std::numeric_limits<double>::quiet_NaN(), margin = tilt, tip_over = tilt, belly = tilt;
 
+    double yaw = 0;  ///< rad
+    /// With a HeadingRule of several headings: bit k is set if the pose is valid at heading k.
+    std::uint64_t valid_headings = 0;
+
     bool has_pose() const { return !std::isnan(tilt); }
 };
 
@@ -91,7 +99,8 @@ struct RasterResult {
     RasterGrid grid;
     Area area = {};  ///< columns outside it were left out
     Stance stance = Stance::Level;
-    double yaw = 0;
+    double yaw = 0;                           ///< rad, of all poses, unless there is a rule
+    std::optional<HeadingRule> heading = {};  ///< then the yaw of a pose is RasterRest::yaw
     /// Height of the poses above their layers, m. For settled poses: of a level robot on level ground, raised by the
     /// lift. Settled poses without RasterRest::has_pose are at this height, too.
     double offset = 0;
@@ -99,7 +108,7 @@ struct RasterResult {
     /// Row by row, y ascending; in a row, x ascending; in a column, from the top down (settled: from the highest layer
     /// down). Without the aerial poses of 3D rasters.
     std::vector<RasterPose> poses;
-    std::vector<RasterRest> rests;  ///< one for each settled pose at one yaw; otherwise empty
+    std::vector<RasterRest> rests;  ///< one for each settled pose; empty for level poses and raster_at_headings()
     VerdictCounts counts;           ///< of all poses, including the aerial ones
     std::uint64_t exact_checks = 0;
 };
@@ -181,6 +190,9 @@ struct SampleOptions {
     std::uint64_t seed = 0;
     /// Settled: spawns are settled poses, raised by StandLimits::lift. Needs JudgeOptions::obstacles Geometry.
     Stance stance = Stance::Settled;
+    /// Only for settled robots: chooses the yaw of each spawn, in place of `yaw` and `random_yaw`. For All and Any, it
+    /// is a random one of the headings at which the pose is valid.
+    std::optional<HeadingRule> heading = {};
     /// Height of the origin of a level robot above its layer, m, at most max_height; no value: auto_offset(). Must not
     /// be given for settled robots.
     std::optional<double> offset = {};

@@ -57,9 +57,9 @@ void append_rest(std::string& text, const RasterRest& rest)
 }
 
 /// Appends a line x,y,z,yaw,layer,verdict for each pose. `rests` is empty, or has one for each pose: then the lines
-/// also have roll, pitch and how the robot stands.
+/// also have roll, pitch and how the robot stands. With a rule, their yaws are those of `rests`.
 void append_rows(std::string& text, std::span<const RasterPose> poses, std::span<const RasterRest> rests,
-                 const std::string& yaw)
+                 const std::string& yaw, const std::optional<HeadingRule>& rule)
 {
     double last_y = std::numeric_limits<double>::quiet_NaN();
     std::string y;  // the text of last_y; a row of poses has the same y, and making the text takes time
@@ -73,11 +73,12 @@ void append_rows(std::string& text, std::span<const RasterPose> poses, std::span
             text += ',';
             append_numbers(text, {rests[i].roll, rests[i].pitch});
         }
-        ((text += ',') += yaw) += ',';
+        ((text += ',') += rule && !rests.empty() ? number(rests[i].yaw) : yaw) += ',';
         if (pose.layer >= 0) text += std::to_string(pose.layer);
         text += ',';
         text += to_string(pose.verdict);
         if (!rests.empty()) append_rest(text, rests[i]);
+        if (rule && rule->has_several()) (text += ',') += std::to_string(rests[i].valid_headings);
         text += '\n';
     }
 }
@@ -108,12 +109,20 @@ Json z_json(const ZRange& z)
     return {limit(z.low), limit(z.high)};
 }
 
+Json yaw_json(const SearchOptions& options) { return options.random_yaw ? Json("random") : Json(options.yaw); }
+
+Json yaw_json(const SampleOptions& options)
+{
+    if (options.heading) return to_string(*options.heading);
+    return options.random_yaw ? Json("random") : Json(options.yaw);
+}
+
 /// Returns the settings that `sample` and `search` share. Limits that are infinite are left out.
 template <class Options>
 Json settings_json(const Options& options, const Judge& judge, int axes)
 {
     Json out = {{"count", options.count}, {"min_distance", options.min_distance}, {"seed", options.seed}};
-    out["yaw"] = options.random_yaw ? Json("random") : Json(options.yaw);
+    out["yaw"] = yaw_json(options);
     out["bounds"] = bounds_json(options.bounds.is_empty() ? judge.map().bounds : options.bounds, axes);
     const JudgeOptions& limits = judge.options();
     if (std::isfinite(limits.max_water_depth)) out["max_water_depth"] = limits.max_water_depth;
@@ -278,13 +287,16 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
             append_rows(
                 texts[i], std::span(poses).subspan(first, count),
                 is_settled ? std::span(raster.rests).subspan(written + first, count) : std::span<const RasterRest>(),
-                yaw);
+                yaw, raster.heading);
         });
         for (const std::string& text : texts) sink(text);
         written += poses.size();
         poses.clear();
     };
-    sink(is_settled ? "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly\n" : "x,y,z,yaw,layer,verdict\n");
+    std::string names = is_settled ? "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly"
+                                   : "x,y,z,yaw,layer,verdict";
+    if (raster.heading && raster.heading->has_several()) names += ",valid_headings";
+    sink(names + "\n");
     for_each_pose(raster, aerial, [&](const RasterPose& pose) {
         poses.push_back(pose);
         if (poses.size() == batch) write();

@@ -11,12 +11,10 @@ Verdict merged(const VerdictTally& tally)
     return Verdict(std::max_element(tally.begin(), tally.end()) - tally.begin());
 }
 
-double heading(int k, int headings) { return 2 * std::numbers::pi * k / headings; }
-
 HeadingsJudge::HeadingsJudge(const Judge::Impl& shared, int headings, double max_height)
     : has_footing_(shared.footing.has_value())
 {
-    for (int k = 0; k < headings; ++k) at_heading_.emplace_back(shared, heading(k, headings), max_height);
+    for (int k = 0; k < headings; ++k) at_heading_.emplace_back(shared, heading_of(k, headings), max_height);
     if (!shared.space) return;
     every_yaw_.emplace(shared.space->impl());
     every_yaw_->set_every_yaw();

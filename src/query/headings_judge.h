@@ -16,10 +16,7 @@ using VerdictTally = std::array<std::uint8_t, verdict_count>;
 /// several, the first of them in the enumeration.
 Verdict merged(const VerdictTally& tally);
 
-/// Returns 2 pi k / headings, rad.
-double heading(int k, int headings);
-
-/// Judges poses at several headings, the yaws heading(k, headings). The column and the ground of a pose are the same
+/// Judges poses at several headings, the yaws heading_of(k, headings). The column and the ground of a pose are the same
 /// for all of them, and most poses are free at every yaw.
 class HeadingsJudge {
 public:

@@ -7,6 +7,7 @@
 #include "query/footing.h"
 #include "settle/settle.h"
 
+#include <spawnfield/heading_rule.h>
 #include <spawnfield/judge.h>
 
 #include <mutex>
@@ -24,6 +25,9 @@ inline bool is_within(const Map& map, const Vec3& position)
 /// Throws ArgumentError if z.low is above z.high, if one of them is NaN, if the offset is given and not finite, or if
 /// it is given for settled robots.
 void check_ground(const char* function, const ZRange& z, Stance stance, const std::optional<double>& offset);
+
+/// Throws ArgumentError if a rule has values beyond their limits, or if it is given for level robots.
+void check_heading(const char* function, const std::optional<HeadingRule>& rule, Stance stance);
 
 /// Throws ArgumentError if the offset is above max_height, because `check` would call such poses aerial.
 void check_offset(const char* function, double offset, double max_height);

@@ -49,6 +49,7 @@ void check(const RasterOptions& options)
             "raster", "area has z limits, but with dims 3 its regions must have none; limit the heights with bounds");
     if (options.stance == Stance::Settled && options.dims != 2)
         throw ArgumentError("raster", "settled poses need dims 2: the robot is let down onto the layers of a column");
+    check_heading("raster", options.heading, options.stance);
     if (!options.snap) return;
     if (options.dims != 3)
         throw ArgumentError("raster", "snap needs dims 3: a pose of a 2D raster stands on its layer by definition");
@@ -265,14 +266,23 @@ private:
         };
         if (headings_ > 0) {
             VerdictTally tally{};
-            for (int k = 0; k < headings_; ++k) ++tally[std::size_t(settled(heading(k, headings_)).verdict)];
+            for (int k = 0; k < headings_; ++k) ++tally[std::size_t(settled(heading_of(k, headings_)).verdict)];
             out.tallies.push_back(tally);
             out.poses.push_back({place.x(), place.y(), place.z() + offset_, layer, merged(tally)});
             return;
         }
-        const SettledPose pose = settled(options_.yaw);
+        StandJudge::Choice choice;
+        if (options_.heading) {
+            choice = stand.judge(column, place, *options_.heading, 0);
+            out.exact_checks += choice.exact_checks;
+        } else {
+            choice.pose = settled(options_.yaw);
+        }
+        const SettledPose& pose = choice.pose;
         RasterRest rest{.layer_height = place.z()};
         if (pose.has_pose) rest = {place.z(), pose.roll, pose.pitch, pose.tilt, pose.margin, pose.tip_over, pose.belly};
+        rest.yaw = pose.yaw;
+        rest.valid_headings = choice.valid_headings;
         out.rests.push_back(rest);
         const double z = pose.has_pose ? pose.lifted(shared_.options.stand.lift).position.z() : place.z() + offset_;
         out.poses.push_back({place.x(), place.y(), z, layer, pose.verdict});
@@ -412,6 +422,7 @@ RasterResult raster_with(const Judge& judge, const RasterOptions& options, int h
     out.dims = options.dims;
     out.stance = options.stance;
     out.yaw = options.yaw;
+    out.heading = options.heading;
     out.offset = chosen_offset(judge, options);
     out.area = options.area;
     if (options.dims == 2) out.z = overlap(map.z_limits, options.z);

@@ -264,7 +264,7 @@ private:
         if (!layer) return out;
         out.on_ground = true;
         out.on_double_ground = layer->is_double_ground && !is_settled_;
-        if (is_settled_) return settle(column, {at.x(), at.y(), layer->height}, out);
+        if (is_settled_) return settle(column, {at.x(), at.y(), layer->height}, from, out);
         out.spawn.position = Vec3(at.x(), at.y(), layer->height + offset_);
         out.near_avoided = !avoided_.is_clear(out.spawn.position);
         if (out.near_avoided) return out;
@@ -276,9 +276,16 @@ private:
     }
 
     /// Lets a candidate down at a place.
-    Candidate settle(const Column& column, const Vec3& place, Candidate out)
+    Candidate settle(const Column& column, const Vec3& place, Draw& from, Candidate out)
     {
-        const SettledPose pose = stand_judges_.local().judge(ColumnView(column), place, out.spawn.yaw);
+        StandJudge& stand = stand_judges_.local();
+        StandJudge::Choice choice;
+        if (options_.heading)
+            choice = stand.judge(ColumnView(column), place, *options_.heading, from.unit());
+        else
+            choice.pose = stand.judge(ColumnView(column), place, out.spawn.yaw);
+        const SettledPose& pose = choice.pose;
+        out.spawn.yaw = pose.yaw;
         out.spawn.position = pose.has_pose ? pose.lifted(shared_.options.stand.lift).position : place;
         out.spawn.roll = pose.roll;
         out.spawn.pitch = pose.pitch;
@@ -286,6 +293,7 @@ private:
         if (out.near_avoided) return out;
         out.clear = taken_.before().is_clear(out.spawn.position);
         out.set(judgement_of(pose));
+        if (options_.heading) out.exact_checks = choice.exact_checks;
         return out;
     }
 
@@ -301,7 +309,7 @@ private:
         }
         ++out.counts[candidate.verdict];
         out.on_double_ground += candidate.on_double_ground;
-        out.exact_checks += candidate.exact_check;
+        out.exact_checks += candidate.exact_checks;
         if (candidate.verdict != Verdict::Valid) return false;
         taken_.add(candidate.spawn.position);
         out.spawns.push_back(candidate.spawn);
@@ -329,6 +337,7 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
 {
     check_spawn_options("sample", wanted);
     check_ground("sample", wanted.z, wanted.stance, wanted.offset);
+    check_heading("sample", wanted.heading, wanted.stance);
     SampleOptions options = wanted;
     options.offset = wanted.offset.value_or(auto_offset(judge.robot()));
     if (options.stance == Stance::Settled)

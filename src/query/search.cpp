@@ -30,6 +30,18 @@ void check_ground(const char* function, const ZRange& z, Stance stance, const st
                                           "ones have an offset; give stance Level, or no offset");
 }
 
+void check_heading(const char* function, const std::optional<HeadingRule>& rule, Stance stance)
+{
+    constexpr int most = 64;  // bits of RasterRest::valid_headings
+    if (!rule) return;
+    if (stance == Stance::Level)
+        throw ArgumentError(function, "heading is given, but stance is Level: only settled robots have a rule for it");
+    if (rule->has_several() && (rule->count < 1 || rule->count > most))
+        throw ArgumentError(function, "heading.count", rule->count, "1 .. " + std::to_string(most));
+    for (const double value : {rule->x, rule->y})
+        if (!std::isfinite(value)) throw ArgumentError(function, "heading.x and y", value, "finite numbers, m");
+}
+
 void check_offset(const char* function, double offset, double max_height)
 {
     if (offset > max_height + touch_tolerance)
@@ -147,7 +159,7 @@ SpawnList search(const Judge& judge, const SearchOptions& options)
         } else {
             checked.add(candidate.spawn.position);
             ++out.counts[candidate.verdict];
-            out.exact_checks += candidate.exact_check;
+            out.exact_checks += candidate.exact_checks;
             if (candidate.verdict == Verdict::Valid) {
                 out.spawns.push_back(candidate.spawn);
                 failures = 0;

@@ -53,14 +53,14 @@ struct Candidate {
     bool off_area = false;
     bool near_avoided = false;
     bool clear = false;
-    bool exact_check = false;
+    std::uint64_t exact_checks = 0;
     Verdict verdict = Verdict::Outside;
     Spawn spawn;
 
     void set(const Judgement& judgement)
     {
         verdict = judgement.verdict;
-        exact_check = judgement.exact_check;
+        exact_checks = judgement.exact_check;
     }
 };
 

@@ -3,6 +3,8 @@
 #include "query/timed_part.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace spawnfield {
 namespace {
@@ -35,7 +37,7 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.verdict = there.verdict;
     out.ground = there.ground;
     if (!is_usable) return out;
-    const Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height, flat_);
+    const Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height, flat_at(yaw));
     out.verdict = Verdict::Collision;
     if (rest.state == Rest::State::Blocked) {
         if (rest.wall) out.hit = CollisionHit{*rest.wall};
@@ -52,6 +54,84 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.contacts = rest.contacts;
     judge_rest(column, rest, out);
     return out;
+}
+
+StandJudge::Choice StandJudge::judge(const ColumnView& column, const Vec3& place, const HeadingRule& rule,
+                                     double chance)
+{
+    if (rule.has_several()) return judge_several(column, place, rule, chance);
+    double yaw = rule.kind == HeadingRule::Kind::Facing ? std::atan2(rule.y - place.y(), rule.x - place.x())
+                                                        : downhill_yaw(place);
+    if (rule.kind == HeadingRule::Kind::Uphill && yaw != 0) yaw += yaw > 0 ? -std::numbers::pi : std::numbers::pi;
+    Choice out{.pose = judge(column, place, yaw)};
+    out.exact_checks = out.pose.exact_check;
+    return out;
+}
+
+StandJudge::Choice StandJudge::judge_several(const ColumnView& column, const Vec3& place, const HeadingRule& rule,
+                                             double chance)
+{
+    Choice out;
+    std::vector<SettledPose> poses;
+    std::vector<std::size_t> valid;
+    VerdictCounts counts;
+    for (int k = 0; k < rule.count; ++k) {
+        poses.push_back(judge(column, place, heading_of(k, rule.count)));
+        out.exact_checks += poses.back().exact_check;
+        ++counts[poses.back().verdict];
+        if (poses.back().verdict != Verdict::Valid) continue;
+        valid.push_back(std::size_t(k));
+        out.valid_headings |= std::uint64_t{1} << k;
+    }
+    const bool is_all = rule.kind == HeadingRule::Kind::All;
+    std::size_t chosen = 0;
+    if (valid.empty() || (is_all && valid.size() < poses.size())) {
+        const auto frequency = [&](const SettledPose& pose) {
+            return is_all ? int(pose.verdict != Verdict::Valid) : int(counts[pose.verdict]);
+        };
+        for (std::size_t k = 1; k < poses.size(); ++k)
+            if (frequency(poses[k]) > frequency(poses[chosen])) chosen = k;
+    } else if (rule.kind == HeadingRule::Kind::Best) {
+        chosen = valid[0];
+        for (const std::size_t k : valid)
+            if (poses[k].margin > poses[chosen].margin + limit_slack) chosen = k;
+    } else {
+        chosen = valid[std::size_t(chance * double(valid.size()))];
+    }
+    out.pose = std::move(poses[chosen]);
+    return out;
+}
+
+/// Returns the yaw in which the ground around a place falls most, by the heights half a robot's length away from it; 0
+/// on level ground. Where there is no ground, the height of the place itself is used.
+double StandJudge::downhill_yaw(const Vec3& place)
+{
+    constexpr double level = 1e-3, steepest = 2;  // slopes; steeper steps lead to other layers
+    const Bounds box = shared_.robot.bounds();
+    const double arm = (box.max - box.min).head<2>().maxCoeff() / 2;
+    const auto rise = [&](const Vec2& way) {
+        double nearest = steepest * arm, out = 0;
+        for (const double height : upright_.column_at(place.head<2>() + way).layers) {
+            if (!(std::abs(height - place.z()) < nearest)) continue;
+            nearest = std::abs(height - place.z());
+            out = height - place.z();
+        }
+        return out;
+    };
+    const Vec2 slope((rise({arm, 0}) - rise({-arm, 0})) / (2 * arm), (rise({0, arm}) - rise({0, -arm})) / (2 * arm));
+    return slope.norm() < level ? 0 : std::atan2(-slope.y(), -slope.x());
+}
+
+/// Returns where the rest on flat ground at a yaw is kept.
+Settler::FlatRest& StandJudge::flat_at(double yaw)
+{
+    constexpr std::size_t most = 64;  // as many as headings of a rule
+    const auto is_there = [&](const Settler::FlatRest& flat) { return flat.yaw == yaw; };
+    const auto found = std::find_if(flats_.begin(), flats_.end(), is_there);
+    if (found != flats_.end()) return *found;
+    if (flats_.size() == most) flats_.clear();
+    if (flats_.empty() || !std::isnan(flats_.back().yaw)) flats_.emplace_back();
+    return flats_.back();
 }
 
 /// Sets the verdict on a robot that was let down, and what it meets.

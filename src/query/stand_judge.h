@@ -2,6 +2,8 @@
 
 #include "query/pose_judge.h"
 
+#include <spawnfield/heading_rule.h>
+
 namespace spawnfield {
 
 /// Lets the robot down and judges its settled poses, for one thread.
@@ -18,13 +20,28 @@ public:
     /// The same, but looks up the column itself.
     SettledPose judge(const Vec3& place, double yaw);
 
+    /// A pose at a heading that was chosen by a rule.
+    struct Choice {
+        SettledPose pose;
+        std::uint64_t valid_headings = 0;  ///< as RasterRest::valid_headings
+        std::uint64_t exact_checks = 0;    ///< at all headings
+    };
+
+    /// The same at the heading that a rule chooses. For All and Any, `chance` (in [0, 1)) selects one of the valid
+    /// headings. If the rule finds no valid pose, returns the first one that has the most frequent verdict or, for All,
+    /// the first one that is not valid.
+    Choice judge(const ColumnView& column, const Vec3& place, const HeadingRule& rule, double chance);
+
 private:
+    Choice judge_several(const ColumnView& column, const Vec3& place, const HeadingRule& rule, double chance);
+    double downhill_yaw(const Vec3& place);
+    Settler::FlatRest& flat_at(double yaw);
     void judge_rest(const ColumnView& column, const Rest& rest, SettledPose& out);
     std::optional<CollisionHit> hit_at(const SettledPose& pose, double raised);
 
     const Judge::Impl& shared_;
     const Settler& settler_;
-    Settler::FlatRest flat_;  ///< for the yaw of the last pose
+    std::vector<Settler::FlatRest> flats_;  ///< at the yaws of some poses before
     PoseJudge upright_;
     PoseChecker checker_;
 };

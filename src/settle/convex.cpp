@@ -53,10 +53,10 @@ Vec3 Convex::support(const Vec3& direction) const
     }
     if (ball > 0) return *best + ball * direction.normalized();
     if (disc == 0) return *best;
-    Vec3 across = direction - direction.dot(axis) * axis;
-    if (across.norm() <= 1e-14 * direction.norm()) return *best;
-    across -= across.dot(axis) * axis;  // repeated: in a short vector, the first rounding error is a large share
-    return *best + disc * across.normalized();
+    Vec3 outward = direction - direction.dot(axis) * axis;
+    if (outward.norm() <= 1e-14 * direction.norm()) return *best;
+    outward -= outward.dot(axis) * axis;  // repeated: in a short vector, the first rounding error is a large share
+    return *best + disc * outward.normalized();
 }
 
 Bounds Convex::bounds() const

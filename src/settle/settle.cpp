@@ -19,8 +19,8 @@ namespace spawnfield {
 
 /// A part of the scene near a robot, relative to the place where the robot is let down.
 struct NearSolid {
-    std::optional<Facet> facet;  ///< if it is a triangle that is not steep
-    Convex body;                 ///< otherwise
+    std::optional<TouchTriangle> triangle;  ///< if it is a triangle that is not steep
+    Convex body;                            ///< otherwise
     Bounds bounds;
     std::uint32_t part = 0;
     Label label = Label::Terrain;
@@ -62,8 +62,9 @@ double highest_possible(const PlacedPart& part, const NearSolid& solid)
 {
     constexpr double rounding = 1e-9;  // m
     double out = solid.bounds.max.z() - part.bounds.min.z();
-    if (solid.facet)
-        out = std::min(out, solid.facet->height - solid.facet->normal.dot(part.body.support(-solid.facet->normal)));
+    if (solid.triangle)
+        out = std::min(out,
+                       solid.triangle->height - solid.triangle->normal.dot(part.body.support(-solid.triangle->normal)));
     return out + rounding;
 }
 
@@ -75,12 +76,12 @@ void cover_edge(NearSolid& first, NearSolid& second, const std::array<int, 3>& s
     const int alone = int(std::find(same.begin(), same.end(), -1) - same.begin()),
               other_alone = 3 - same[std::size_t(alone + 1) % 3] - same[std::size_t(alone + 2) % 3];
     second.wanted.covered_edges |= edge_without(other_alone);
-    const auto &points = first.facet->points, &others = second.facet->points;
+    const auto &points = first.triangle->points, &others = second.triangle->points;
     const Vec3 &shared = points[std::size_t(alone + 1) % 3], &own = points[std::size_t(alone)],
                &other = others[std::size_t(other_alone)];
     const Vec2 edge = (points[std::size_t(alone + 2) % 3] - shared).head<2>();
     const bool is_overhang = !(cross(edge, (own - shared).head<2>()) * cross(edge, (other - shared).head<2>()) < 0);
-    const bool is_ridge = first.facet->normal.dot(other) - first.facet->height < -flat;
+    const bool is_ridge = first.triangle->normal.dot(other) - first.triangle->height < -flat;
     if (!is_overhang && !is_ridge) first.wanted.covered_edges |= edge_without(alone);
 }
 
@@ -93,13 +94,13 @@ void cover_shared(std::vector<NearSolid>& solids)
     constexpr double steepest = 2;
     if (solids.size() > most) return;
     const auto is_ground = [](const NearSolid& solid) {
-        return solid.facet && solid.facet->normal.head<2>().squaredNorm() <= steepest * steepest;
+        return solid.triangle && solid.triangle->normal.head<2>().squaredNorm() <= steepest * steepest;
     };
     for (std::size_t i = 0; i < solids.size(); ++i) {
         if (!is_ground(solids[i])) continue;
         for (std::size_t j = i + 1; j < solids.size(); ++j) {
             if (!is_ground(solids[j]) || !solids[i].bounds.meets(solids[j].bounds)) continue;
-            const auto &first = solids[i].facet->points, &second = solids[j].facet->points;
+            const auto &first = solids[i].triangle->points, &second = solids[j].triangle->points;
             std::array<int, 3> same{-1, -1, -1};  // the corner of the second one that is corner k of the first
             int count = 0;
             for (int k = 0; k < 3; ++k)
@@ -354,8 +355,8 @@ private:
     double touch(const PlacedPart& part, const NearSolid& solid, const WantedTouches& wanted = {})
     {
         touches_.clear();
-        if (solid.facet)
-            add_touches(part.body, *solid.facet, touches_, wanted);
+        if (solid.triangle)
+            add_touches(part.body, *solid.triangle, touches_, wanted);
         else
             add_touches(part.body, solid.body, touches_, wanted);
         return highest_of(touches_);
@@ -432,7 +433,7 @@ private:
 
     static std::optional<Interval> blocked_heights(const Convex& body, const NearSolid& solid)
     {
-        return spawnfield::blocked_heights(body, solid.facet ? convex_of(solid.facet->points) : solid.body);
+        return spawnfield::blocked_heights(body, solid.triangle ? convex_of(solid.triangle->points) : solid.body);
     }
 
     /// Lowers the robot onto the solids that are not higher than about z. It has no room if a solid reaches from below
@@ -555,8 +556,8 @@ private:
     {
         const Convex& body = settler_.parts_[old.part];
         const NearSolid& solid = solids_[old.solid];
-        if (solid.facet && old.touch.kind != Touch::Kind::Other)
-            return height_after(old.touch, body, rotated, *solid.facet);
+        if (solid.triangle && old.touch.kind != Touch::Kind::Other)
+            return height_after(old.touch, body, rotated, *solid.triangle);
         set_rotated(parts_[old.part].body, body, rotated);
         touch(parts_[old.part], solid, {.min_height = old.touch.height - most_seen});
         const Vec3 point = rotated * (rotation(at_.angles).transpose() * old.touch.point);
@@ -805,8 +806,8 @@ std::vector<NearSolid> Settler::solids_near(const Vec3& origin) const
             std::array<Vec3, 3> corners = tile.corners(element);
             for (Vec3& corner : corners) corner -= origin;
             for (const Vec3& corner : corners) solid.bounds.extend(corner);
-            solid.facet = facet_of(corners);
-            if (!solid.facet) solid.body = convex_of(corners);
+            solid.triangle = touch_triangle_of(corners);
+            if (!solid.triangle) solid.body = convex_of(corners);
         } else {
             solid.body = moved(convex_of(tile.primitive(element).shape()), {-origin, Mat3::Identity()});
             solid.bounds = solid.body.bounds();
@@ -819,8 +820,8 @@ Settler::FlatRest Settler::flat_rest(double yaw) const
 {
     const double far = 10 * reach_;
     NearSolid plane;
-    plane.facet = facet_of({Vec3(-far, -far, 0), Vec3(2 * far, -far, 0), Vec3(-far, 2 * far, 0)});
-    for (const Vec3& corner : plane.facet->points) plane.bounds.extend(corner);
+    plane.triangle = touch_triangle_of({Vec3(-far, -far, 0), Vec3(2 * far, -far, 0), Vec3(-far, 2 * far, 0)});
+    for (const Vec3& corner : plane.triangle->points) plane.bounds.extend(corner);
     FlatRest out{yaw, Descent(*this, {plane}, yaw).run()};
     const Mat3 rotation = rotation_from_rpy(out.rest.roll, out.rest.pitch, yaw);
     for (const Convex& part : parts_) {
@@ -837,14 +838,16 @@ std::optional<Rest> Settler::rest_on_flat_ground(const std::vector<NearSolid>& s
 {
     constexpr double same_layer = 1e-9;  // m
     const NearSolid* ground = nullptr;
-    const auto is_level = [](const NearSolid& solid) { return solid.facet && solid.facet->normal.head<2>().isZero(0); };
+    const auto is_level = [](const NearSolid& solid) {
+        return solid.triangle && solid.triangle->normal.head<2>().isZero(0);
+    };
     for (const NearSolid& solid : solids)
-        if (is_level(solid) && std::abs(solid.facet->height) <= same_layer) ground = &solid;
+        if (is_level(solid) && std::abs(solid.triangle->height) <= same_layer) ground = &solid;
     if (ground == nullptr) return std::nullopt;
     if (flat.yaw != yaw) flat = flat_rest(yaw);
     if (flat.rest.state != Rest::State::Standing) return std::nullopt;
-    const double z = ground->facet->height;
-    const auto is_ground = [&](const NearSolid& solid) { return is_level(solid) && solid.facet->height == z; };
+    const double z = ground->triangle->height;
+    const auto is_ground = [&](const NearSolid& solid) { return is_level(solid) && solid.triangle->height == z; };
     for (const NearSolid& solid : solids) {
         if (is_ground(solid) && solid.label == ground->label) continue;
         if (!is_ground(solid) && solid.bounds.max.z() <= z) continue;
@@ -857,7 +860,7 @@ std::optional<Rest> Settler::rest_on_flat_ground(const std::vector<NearSolid>& s
     out.drop_z += z;
     for (RestContact& contact : out.contacts) {
         const auto carries = [&](const NearSolid& solid) {
-            return is_ground(solid) && solid.facet->is_over(contact.point);
+            return is_ground(solid) && solid.triangle->is_over(contact.point);
         };
         const auto below = std::find_if(solids.begin(), solids.end(), carries);
         if (below == solids.end()) return std::nullopt;

@@ -69,7 +69,7 @@ double height_of_crossing(const Vec3& from, const Vec3& along, const Vec3& other
     return other.z() + t * across.z() - from.z() - s * along.z();
 }
 
-/// The upper side of a convex solid, onto which bodies are lowered. Facet has the same functions, see below.
+/// The upper side of a convex solid, onto which bodies are lowered. TouchTriangle has the same functions, see below.
 class Top {
 public:
     explicit Top(const Convex& solid) : points(solid.points), edges(solid.edges), solid_(solid)
@@ -109,26 +109,29 @@ private:
     double highest_ = -std::numeric_limits<double>::infinity();
 };
 
-/// The same for a facet.
-class FacetTop {
+/// The same for a triangle.
+class TriangleTop {
 public:
-    explicit FacetTop(const Facet& facet) : points(facet.points), edges(Facet::edges), facet_(facet) {}
+    explicit TriangleTop(const TouchTriangle& triangle)
+        : points(triangle.points), edges(TouchTriangle::edges), triangle_(triangle)
+    {
+    }
 
     const std::array<Vec3, 3>& points;
     const std::array<std::array<int, 2>, 3>& edges;
 
     std::optional<End> end(double x, double y) const
     {
-        if (!facet_.is_over({x, y, 0})) return std::nullopt;
-        return End{facet_.z_at({x, y, 0}), facet_.normal};
+        if (!triangle_.is_over({x, y, 0})) return std::nullopt;
+        return End{triangle_.z_at({x, y, 0}), triangle_.normal};
     }
 
-    double height_bound(const Vec3& corner) const { return facet_.z_at(corner) - corner.z(); }
+    double height_bound(const Vec3& corner) const { return triangle_.z_at(corner) - corner.z(); }
 
     bool is_passed_by(const Vec3& from, const Vec3& to) const
     {
         int inside = 0;
-        for (const Facet::Side& side : facet_.sides) {
+        for (const TouchTriangle::Side& side : triangle_.sides) {
             const double first = side.inward.x() * from.x() + side.inward.y() * from.y() - side.offset,
                          second = side.inward.x() * to.x() + side.inward.y() * to.y() - side.offset;
             if (first < -rounding && second < -rounding) return true;
@@ -140,14 +143,14 @@ public:
     template <class Visit>
     void visit_faces(const Visit& visit) const
     {
-        visit(facet_.normal.normalized(), [&](const Vec3& point) -> std::optional<double> {
+        visit(triangle_.normal.normalized(), [&](const Vec3& point) -> std::optional<double> {
             const auto top = end(point.x(), point.y());
             return top ? std::optional(top->z) : std::nullopt;
         });
     }
 
 private:
-    const Facet& facet_;
+    const TouchTriangle& triangle_;
 };
 
 double lowest_point(const Convex& body)
@@ -444,13 +447,14 @@ void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& o
     for (const Convex& end : ends_of(ground)) add(body, end);
 }
 
-void add_touches(const Convex& body, const Facet& ground, std::vector<Touch>& out, const WantedTouches& wanted)
+void add_touches(const Convex& body, const TouchTriangle& ground, std::vector<Touch>& out, const WantedTouches& wanted)
 {
-    if (body.is_polyhedron()) return add_polyhedra(body, FacetTop(ground), wanted, out);
-    add_round(body, FacetTop(ground), wanted, out);
+    if (body.is_polyhedron()) return add_polyhedra(body, TriangleTop(ground), wanted, out);
+    add_round(body, TriangleTop(ground), wanted, out);
 }
 
-std::optional<double> height_after(const Touch& touch, const Convex& body, const Mat3& rotation, const Facet& ground)
+std::optional<double> height_after(const Touch& touch, const Convex& body, const Mat3& rotation,
+                                   const TouchTriangle& ground)
 {
     const auto raised = [&](const Vec3& point) { return ground.z_at(point) - point.z(); };
     double out = std::numeric_limits<double>::quiet_NaN();
@@ -469,7 +473,7 @@ std::optional<double> height_after(const Touch& touch, const Convex& body, const
     }
     case Touch::Kind::EdgeOnEdge: {
         const auto& [a, b] = body.edges[touch.body];
-        const auto& [c, d] = Facet::edges[touch.ground];
+        const auto& [c, d] = TouchTriangle::edges[touch.ground];
         const Vec3 &from = body.points[std::size_t(a)], &other = ground.points[std::size_t(c)];
         out = height_of_crossing(rotation * from, rotation * (body.points[std::size_t(b)] - from), other,
                                  ground.points[std::size_t(d)] - other);
@@ -480,12 +484,12 @@ std::optional<double> height_after(const Touch& touch, const Convex& body, const
     return std::isfinite(out) ? std::optional(out) : std::nullopt;
 }
 
-std::optional<Facet> facet_of(const std::array<Vec3, 3>& triangle)
+std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle)
 {
     const auto& [a, b, c] = triangle;
     const Vec3 normal = (b - a).cross(c - a).normalized();
-    if (!(std::abs(normal.z()) * Facet::steepest >= 1)) return std::nullopt;
-    Facet out{triangle, normal / normal.z(), normal.dot(a) / normal.z(), {}};
+    if (!(std::abs(normal.z()) * TouchTriangle::steepest >= 1)) return std::nullopt;
+    TouchTriangle out{triangle, normal / normal.z(), normal.dot(a) / normal.z(), {}};
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec2 from = triangle[k].head<2>(), along = (triangle[(k + 1) % 3] - triangle[k]).head<2>();
         const Vec2 inward = Vec2(-along.y(), along.x()) / (normal.z() < 0 ? -along.norm() : along.norm());
@@ -494,7 +498,7 @@ std::optional<Facet> facet_of(const std::array<Vec3, 3>& triangle)
     return out;
 }
 
-bool Facet::is_over(const Vec3& p) const
+bool TouchTriangle::is_over(const Vec3& p) const
 {
     return std::all_of(sides.begin(), sides.end(), [&](const Side& side) {
         return side.inward.x() * p.x() + side.inward.y() * p.y() >= side.offset - rounding;

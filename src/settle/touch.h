@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/polygon2.h"
 #include "settle/convex.h"
 
 #include <array>
@@ -38,7 +39,7 @@ struct WantedTouches {
 };
 
 /// A triangle of the scene that is not steep, prepared for many touches from above.
-struct Facet {
+struct TouchTriangle {
     static constexpr double steepest = 20;  ///< largest slope
     static constexpr std::array<std::array<int, 2>, 3> edges{{{0, 1}, {1, 2}, {2, 0}}};
 
@@ -55,8 +56,8 @@ struct Facet {
     bool is_over(const Vec3& p) const;  ///< whether p is above or below the triangle or its edges (to 1e-12 m)
 };
 
-/// Returns nothing if the triangle is steeper than Facet::steepest or has no area.
-std::optional<Facet> facet_of(const std::array<Vec3, 3>& triangle);
+/// Returns nothing if the triangle is steeper than TouchTriangle::steepest or has no area.
+std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle);
 
 /// Adds the touches of a body that moves only along z and meets the ground, a convex solid, from above. At the height
 /// of the highest touch the body rests on the ground: on no vertical line is the ground's upper end above the body's
@@ -64,12 +65,14 @@ std::optional<Facet> facet_of(const std::array<Vec3, 3>& triangle);
 /// round bodies, adds only the highest touch of the bodies and of their ends. Surfaces steeper than 1e5 have no
 /// touches. Adds nothing if body and ground do not overlap seen from above.
 void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out, const WantedTouches& wanted = {});
-void add_touches(const Convex& body, const Facet& ground, std::vector<Touch>& out, const WantedTouches& wanted = {});
+void add_touches(const Convex& body, const TouchTriangle& ground, std::vector<Touch>& out,
+                 const WantedTouches& wanted = {});
 
-/// Returns the height of a touch of the body on a facet after the body has been rotated from its own frame, if the same
-/// two features still touch: it is not tested whether they still meet. Returns nothing for Kind::Other, or if they are
-/// parallel.
-std::optional<double> height_after(const Touch& touch, const Convex& body, const Mat3& rotation, const Facet& ground);
+/// Returns the height of a touch of the body on a triangle after the body has been rotated from its own frame, if the
+/// same two features still touch: it is not tested whether they still meet. Returns nothing for Kind::Other, or if they
+/// are parallel.
+std::optional<double> height_after(const Touch& touch, const Convex& body, const Mat3& rotation,
+                                   const TouchTriangle& ground);
 
 /// Returns the highest of these touches for any two bodies, by a general method that takes longer.
 std::optional<Touch> highest_touch(const Convex& body, const Convex& ground);

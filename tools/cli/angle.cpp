@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace spawnfield::cli {
@@ -26,14 +27,55 @@ double parse(const CommonArgs& args, const std::string& text, const std::string&
     return value;
 }
 
+/// Returns a rule from its words before and after the colon; nothing if the first one is not the name of a rule. Throws
+/// ArgumentError.
+std::optional<HeadingRule> parse_rule(const std::string& text)
+{
+    using Kind = HeadingRule::Kind;
+    static const std::map<std::string, Kind> kinds{{"facing", Kind::Facing}, {"downhill", Kind::Downhill},
+                                                   {"uphill", Kind::Uphill}, {"all", Kind::All},
+                                                   {"any", Kind::Any},       {"best", Kind::Best}};
+    const std::size_t colon = text.find(':');
+    const auto found = kinds.find(text.substr(0, colon));
+    if (found == kinds.end()) return std::nullopt;
+    const std::string value = colon == std::string::npos ? "" : text.substr(colon + 1);
+    const auto refuse = [&](const std::string& needs) {
+        throw ArgumentError("--yaw is \"" + text + "\", needs " + needs);
+    };
+    HeadingRule out{.kind = found->second};
+    const char *from = value.data(), *const end = from + value.size();
+    if (out.has_several()) {
+        const auto [stop, error] = std::from_chars(from, end, out.count);
+        if (error != std::errc{} || stop != end || out.count < 1 || out.count > 64)
+            refuse("a number of headings, 1 .. 64, for example " + found->first + ":8");
+    } else if (out.kind == Kind::Facing) {
+        const auto [comma, error] = std::from_chars(from, end, out.x);
+        if (error != std::errc{} || comma == end || *comma != ',')
+            refuse("a point x,y in m, for example facing:3,-1.5");
+        const auto [stop, other] = std::from_chars(comma + 1, end, out.y);
+        if (other != std::errc{} || stop != end || !std::isfinite(out.x) || !std::isfinite(out.y))
+            refuse("a point x,y in m, for example facing:3,-1.5");
+    } else if (colon != std::string::npos) {
+        refuse(found->first + " without anything after it");
+    }
+    return out;
+}
+
 }  // namespace
 
 double parse_yaw(const CommonArgs& args, const std::string& text) { return parse(args, text, ""); }
 
-std::optional<double> parse_yaw_or_random(const CommonArgs& args, const std::string& text)
+YawChoice parse_yaw_choice(const CommonArgs& args, const std::string& text, bool is_settled, bool allow_random)
 {
-    if (text == "random") return std::nullopt;
-    return parse(args, text, ", or random");
+    if (allow_random && text == "random") return {.is_random = true};
+    const std::optional<HeadingRule> rule = parse_rule(text);
+    if (rule && !is_settled)
+        throw ArgumentError("--yaw " + text +
+                            " is only for robots at rest: sample and heatmap without --stance level, raster --settle");
+    if (rule) return {.rule = rule};
+    return {.yaw = parse(args, text,
+                         std::string(allow_random ? ", or random" : "") +
+                             (is_settled ? ", or facing:X,Y, downhill, uphill, all:K, any:K or best:K" : ""))};
 }
 
 }  // namespace spawnfield::cli

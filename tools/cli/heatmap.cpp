@@ -48,7 +48,8 @@ HeatmapQuantity quantity_of(const std::string& name)
 /// Yaws that the picture is made for: one, or 16 headings all around.
 struct Facing {
     bool is_any = false;
-    double yaw = 0;  ///< rad, unless it is any
+    double yaw = 0;                        ///< rad, unless it is any or there is a rule
+    std::optional<HeadingRule> rule = {};  ///< of robots at rest
 };
 
 bool is_same_yaw(double a, double b) { return std::abs(std::remainder(a - b, 2 * std::numbers::pi)) <= 1e-6; }
@@ -58,8 +59,8 @@ Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
 {
     Facing facing;
     if (!args.yaw.empty()) {
-        const std::optional<double> yaw = parse_yaw_or_random(args, args.yaw);
-        return {!yaw, yaw.value_or(0)};
+        const YawChoice yaw = parse_yaw_choice(args, args.yaw, args.is_settled(), true);
+        return {yaw.is_random, yaw.yaw, yaw.rule};
     }
     if (spawns.empty()) return facing;
     facing.yaw = spawns[0].yaw;
@@ -163,6 +164,7 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
         throw ArgumentError("--quantity " + args.quantity +
                             " needs one heading; give --yaw in radians or degrees, for example --yaw 90deg");
     options.yaw = facing.yaw;
+    options.heading = facing.rule;
     const Session session = open_session(args, summary);
     notice_if_off_map(args, session.map, "--bounds", options.bounds);
     notice_about_area(args, session.map, options.area);
@@ -208,10 +210,10 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
     command.add_option("--spawns", args->spawns,
                        "CSV file of spawns to draw, as footprints of the robot or as arrows. A column verdict (from "
                        "`check`) gives their colours (- for standard input)");
-    command.add_option(
-        "--yaw", args->yaw,
-        "Yaw of all poses: " + yaw_help +
-            "; or random: at how many of 16 headings the robot fits (default: that of the spawns, or 0)");
+    command.add_option("--yaw", args->yaw,
+                       "Yaw of all poses: " + yaw_help +
+                           "; or random: at how many of 16 headings the robot fits; for " + heading_help +
+                           " (default: that of the spawns, or 0)");
     start_group(command, help_group::picture);
     command.add_flag("--names", args->names,
                      "Write each spawn's name beside it: its column name, or the number of its row, from 1");

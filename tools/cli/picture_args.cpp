@@ -55,7 +55,10 @@ std::string heatmap_caption(const RasterOptions& options, const GroundArgs& grou
         text = "settled, ";
     else if (options.offset)
         text = "offset " + short_number(*options.offset) + " m, ";
-    text += yaw.empty() ? "yaw " + degrees(options.yaw) : yaw;
+    if (options.heading)
+        text += "yaw " + to_string(*options.heading);
+    else
+        text += yaw.empty() ? "yaw " + degrees(options.yaw) : yaw;
     if (const std::string words = height_words(ground, options.z, judge.map()); options.dims == 2 && !words.empty())
         text += ", " + words;
     if (options.height_check) text += ", " + layer_words(ground.layers);

@@ -59,7 +59,7 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     if (is_3d) add("Step z (m)", number(grid.step_z));
     if (is_3d) add("Snap", options.snap ? "yes" : "no");
     if (options.offset) add("Offset (m)", number(*options.offset));
-    add("Yaw (rad)", number(options.yaw));
+    add("Yaw (rad)", options.heading ? to_string(*options.heading) : number(options.yaw));
     add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, options.dims));
     for (const Region& region : options.area.within) add("Region", region.name);
     for (const Region& region : options.area.keep_out) add("Keep out", region.name);

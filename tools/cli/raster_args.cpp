@@ -44,7 +44,8 @@ CLI::Option* add_dims(CLI::App& command, RasterArgs& args)
 void add_raster_query(CLI::App& command, RasterArgs& args, bool stance)
 {
     add_ground(command, args.ground, "all, top, bottom, or N from the top (0 first; default all)");
-    command.add_option("--yaw", args.yaw, "Yaw of all poses: " + yaw_help + " (default 0)");
+    command.add_option("--yaw", args.yaw,
+                       "Yaw of all poses: " + yaw_help + (stance ? "; for " + heading_help : "") + " (default 0)");
     command.add_flag("--snap", args.snap,
                      "3D: each layer gets a pose --offset above it, in place of the lowest step at or above it");
     command.add_flag("--no-height-check", args.no_height_check, "3D: judge only collisions, at every pose");
@@ -64,8 +65,10 @@ RasterOptions raster_options(const RasterArgs& args, const CLI::App& command)
     if (args.dims == 3)
         refuse(command, {"--floor"}, "is only for --dims 2; in 3D use --z for the heights of the poses");
     notice_idle_options(args, command);
+    const YawChoice yaw = parse_yaw_choice(args, args.yaw, args.is_settled(), false);
     RasterOptions options{.dims = args.dims,
-                          .yaw = parse_yaw(args, args.yaw),
+                          .yaw = yaw.yaw,
+                          .heading = yaw.rule,
                           .layers = parse_layers(args.ground.layers),
                           .height_check = !args.no_height_check,
                           .snap = args.snap,

@@ -64,6 +64,14 @@ std::string shortfall(const Options& options, const QueryArgs& args, const Spawn
            " m2 of the region; it is proven that none fits elsewhere. " + upper_first(advice) + " may give more";
 }
 
+std::string yaw_text(const SearchOptions& options) { return options.random_yaw ? "random" : number(options.yaw); }
+
+std::string yaw_text(const SampleOptions& options)
+{
+    if (options.heading) return to_string(*options.heading);
+    return options.random_yaw ? "random" : number(options.yaw);
+}
+
 /// Returns the options, then those that only this command has (`own`), then what was found.
 template <class Options>
 Settings settings_of(const SpawnArgs& args, const Session& session, const Options& options, const SpawnList& list,
@@ -74,7 +82,7 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const Option
     add("Seed", std::to_string(options.seed));
     add("Count", std::to_string(options.count));
     add("Min distance (m)", number(options.min_distance));
-    add("Yaw (rad)", options.random_yaw ? "random" : number(options.yaw));
+    add("Yaw (rad)", yaw_text(options));
     add("Bounds (m, z up)",
         bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, command == "sample" ? 2 : 3));
     for (const Region& region : options.area.within) add("Region", region.name);
@@ -159,9 +167,10 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
                  Options options)
 {
     const std::string command = app.get_name();
-    const std::optional<double> yaw = parse_yaw_or_random(args, args.yaw);
-    options.random_yaw = !yaw;
-    options.yaw = yaw.value_or(0);
+    const YawChoice yaw = parse_yaw_choice(args, args.yaw, command == "sample" && args.is_settled(), true);
+    options.random_yaw = yaw.is_random;
+    options.yaw = yaw.yaw;
+    if constexpr (std::is_same_v<Options, SampleOptions>) options.heading = yaw.rule;
     options.avoid = read_avoided(args, args.avoid, options.min_distance);
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     if (folder) notice_idle_options(args, app, args.format);
@@ -244,7 +253,9 @@ void add_common_spawn_options(CLI::App& command, SpawnArgs& args)
     add_map_and_robot(command, args);
     add_draws(command, args.draws);
     command.get_option("--count")->required();
-    command.add_option("--yaw", args.yaw, "Yaw of all spawns: " + yaw_help + ", or random (default 0)");
+    command.add_option("--yaw", args.yaw,
+                       "Yaw of all spawns: " + yaw_help + ", or random" +
+                           (command.get_name() == "sample" ? "; for " + heading_help : "") + " (default 0)");
     command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
     std::vector<std::string> formats = pose_formats;
     formats.push_back("thesis");

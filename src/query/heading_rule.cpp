@@ -1,0 +1,21 @@
+#include <spawnfield/heading_rule.h>
+
+#include "base/number.h"
+
+namespace spawnfield {
+
+std::string to_string(const HeadingRule& rule)
+{
+    const auto several = [&](const char* name) { return name + std::to_string(rule.count); };
+    switch (rule.kind) {
+    case HeadingRule::Kind::Facing: return "facing:" + number(rule.x) + "," + number(rule.y);
+    case HeadingRule::Kind::Downhill: return "downhill";
+    case HeadingRule::Kind::Uphill: return "uphill";
+    case HeadingRule::Kind::All: return several("all:");
+    case HeadingRule::Kind::Any: return several("any:");
+    case HeadingRule::Kind::Best: return several("best:");
+    }
+    return "";
+}
+
+}  // namespace spawnfield
