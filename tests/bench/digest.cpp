@@ -61,6 +61,10 @@ std::uint64_t digest_of(const RasterResult& raster)
     Digest digest;
     for (const RasterPose& pose : raster.poses)
         digest.add(pose.x).add(pose.y).add(pose.z).add(pose.layer).add(pose.verdict);
+    for (const RasterRest& rest : raster.rests) {
+        digest.add(rest.roll).add(rest.pitch).add(rest.tilt).add(rest.margin);
+        digest.add(rest.tip_over).add(rest.belly).add(rest.yaw);
+    }
     for (const Verdict verdict : all_verdicts) digest.add(raster.counts[verdict]);
     return digest.value();
 }
@@ -68,7 +72,7 @@ std::uint64_t digest_of(const RasterResult& raster)
 std::uint64_t digest_of(const SpawnList& spawns)
 {
     Digest digest;
-    for (const Spawn& spawn : spawns.spawns) digest.add(spawn.position).add(spawn.yaw);
+    for (const Spawn& spawn : spawns.spawns) digest.add(spawn.position).add(spawn.yaw).add(spawn.roll).add(spawn.pitch);
     for (const Verdict verdict : all_verdicts) digest.add(spawns.counts[verdict]);
     return digest.add(spawns.draws).add(spawns.too_close).value();
 }

@@ -119,9 +119,9 @@ TargetRow at_most(double limit, TargetRow row)
     return row;
 }
 
-std::vector<std::string> sample_args(const std::filesystem::path& map, bool quick)
+std::vector<std::string> sample_args(const std::filesystem::path& map, bool quick, const std::string& stance = "level")
 {
-    return {"sample", map.string(), "-n", quick ? "20" : "2000", "--min-distance", "2.5", "--stance", "level"};
+    return {"sample", map.string(), "-n", quick ? "20" : "2000", "--min-distance", "2.5", "--stance", stance};
 }
 
 /// Upper limits of a bake; infinite: none.
@@ -153,6 +153,8 @@ void measure_samples(const std::filesystem::path& map, const TargetOptions& opti
     report(100, "2,000 samples 2.5 m apart, whole process", few.seconds * 1e3, "ms", few.peak_memory);
     report(10, "2,000 samples 2.5 m apart, query alone", few.query * 1e3, "ms", few.peak_memory);
     report(64, "2,000 samples 2.5 m apart, peak memory", few.peak_memory / mega, "MB", few.peak_memory);
+    const Query settled = query_by_process(sample_args(map, options.quick, "settled"), folder, options.rounds);
+    report(200, "2,000 settled samples 2.5 m apart, whole process", settled.seconds * 1e3, "ms", settled.peak_memory);
     const Query many = query_by_process(
         {"sample", map.string(), "-n", options.quick ? "1000" : "1000000", "--min-distance", "0", "--stance", "level"},
         folder, options.rounds);

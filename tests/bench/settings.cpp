@@ -52,7 +52,10 @@ Setting hills(Extent extent)
                    {"raster2d@0.3", step, 0.3},
                    {"raster2d@1.0", step, 1.0},
                    {"raster2d-1m@0.5", 1, 0.5},
-                   {"raster2d-16-headings@0.5", 1, 0.5, {}, 16}};
+                   {"raster2d-16-headings@0.5", 1, 0.5, {}, 16},
+                   {"settled", step, 0, {}, 1, Stance::Settled},
+                   {"settled-1m", 1, 0, {}, 1, Stance::Settled},
+                   {"settled-16-headings", 4, 0, {}, 16, Stance::Settled}};
     if (extent == Extent::Full) {
         out.cell = 0.1;
         out.poses = 1000000;
@@ -88,7 +91,8 @@ Setting city(Extent extent)
     Setting out{.name = "city", .make = [] { return city_scene(); }, .robot = husky_box, .has_rivals = false};
     out.cell = extent == Extent::Full ? 0.1 : 0.5;
     out.step_3d = 2;
-    out.rasters = {{"raster2d@0.1", extent == Extent::Full ? 0.5 : 1, 0.1}};
+    const double step = extent == Extent::Full ? 0.5 : 1;
+    out.rasters = {{"raster2d@0.1", step, 0.1}, {"settled", step, 0, {}, 1, Stance::Settled}};
     if (extent == Extent::Quick) {
         out.make = [] { return small_city_scene(); };
         make_quick(out);

@@ -353,7 +353,9 @@ Measurement Workbench::read_map()
 
 RasterOptions Workbench::options_2d(const RasterWork& work) const
 {
-    return {.step = work.step, .offset = work.offset, .layers = work.layers};
+    RasterOptions out{.step = work.step, .stance = work.stance, .layers = work.layers};
+    if (work.stance == Stance::Level) out.offset = work.offset;
+    return out;
 }
 
 RasterOptions Workbench::options_3d() const

@@ -17,9 +17,10 @@ namespace bench {
 /// A stage that makes a 2D raster.
 struct RasterWork {
     std::string name;
-    double step, offset;  ///< m
+    double step, offset;  ///< m; settled robots have no offset
     spawnfield::LayerChoice layers = {};
     int headings = 1;  ///< the same raster at this many yaws, spread evenly over a full turn
+    spawnfield::Stance stance = spawnfield::Stance::Level;
 };
 
 /// A scene, and the amount of work for each stage.
@@ -44,10 +45,12 @@ struct Setting {
     std::size_t nav_points = 100000;
 };
 
-/// Returns whether a raster has top layers and one heading only. Alternatives (b) and (d) can answer these.
+/// Returns whether a raster of level robots has top layers and one heading only. Alternatives (b) and (d) can answer
+/// these.
 inline bool is_top_raster(const Setting& setting, const RasterWork& work)
 {
-    return work.headings == 1 && (setting.one_layer || work.layers.kind == spawnfield::LayerChoice::Kind::Top);
+    return work.headings == 1 && work.stance == spawnfield::Stance::Level &&
+           (setting.one_layer || work.layers.kind == spawnfield::LayerChoice::Kind::Top);
 }
 bool has_top_raster(const Setting& setting);
 
