@@ -86,7 +86,8 @@ TEST_CASE("options that do not suit the stance are refused, or get a notice")
     };
     for (const std::string command :
          {"sample map -n 1", "heatmap map -o x.png", "export map --format nav2 -o x.yaml"}) {
-        refused(command + " --offset 0.3", offset + "add --stance level, or leave --offset out\n");
+        refused(command + " --offset 0.3",
+                offset + "add --stance level, or leave --offset out (before version 0.2.0, level was the default)\n");
         refused(command + " --offset 0.3 --settle", offset + "give --stance level in place of --settle");
         refused(command + " --collision octree", "not on its voxels; add --stance level\n");
         refused(command + " --lift 2", "--lift is 2 m, which raises the origin of a robot on level ground to 2");
@@ -105,6 +106,7 @@ TEST_CASE("options that do not suit the stance are refused, or get a notice")
         return run.err;
     };
     CHECK_THAT(said("--max-slope 50"), Contains("notice: --max-slope 50 is above --max-tilt, 45 degrees"));
+    CHECK_THAT(said("--lift 0"), Contains("notice: --lift 0 m leaves the robots in contact with the ground"));
     CHECK_THAT(said("--drop 0.01"), Contains("notice: --drop 0.01 is below --lift, 0.02 m"));
     CHECK_THAT(said("--stance level --lift 0.1"),
                Contains("notice: --lift has no effect: it is only for settled poses"));

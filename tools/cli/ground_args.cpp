@@ -80,7 +80,8 @@ std::optional<double> given_offset(const QueryArgs& args, const GroundArgs& grou
     if (command.count("--offset") > 0)
         throw ArgumentError("--offset is " + ground.offset +
                             ", but it is the height of a level robot, and settled robots stand on the ground; " +
-                            args.how_to_level() + ", or leave --offset out");
+                            args.how_to_level() + ", or leave --offset out" +
+                            (args.has_default_stance() ? " (before version 0.2.0, level was the default)" : ""));
     return std::nullopt;
 }
 

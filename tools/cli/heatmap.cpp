@@ -67,9 +67,9 @@ Facing facing_of(const HeatmapArgs& args, const std::vector<Spawn>& spawns)
     facing.is_any = std::any_of(spawns.begin(), spawns.end(),
                                 [&](const Spawn& spawn) { return !is_same_yaw(spawn.yaw, facing.yaw); });
     if (facing.is_any)
-        notice(args,
-               "the spawns have different yaws: the ground shows at how many of 16 headings the robot fits "
-               "(--yaw RAD shows one)");
+        notice(args, "the spawns have different yaws: the ground shows at how many of 16 headings the robot fits" +
+                         std::string(args.is_settled() ? ", which takes 16 times as long" : "") +
+                         " (--yaw RAD shows one)");
     else if (!is_same_yaw(facing.yaw, 0))
         notice(args, "the ground is shown for yaw " + number(facing.yaw) +
                          " rad, which all spawns have (--yaw RAD shows another)");

@@ -121,6 +121,10 @@ void notices_about_stance(const QueryArgs& args, const CLI::App& command, const 
         notice(args, "--drop " + number(*args.drop) + " is below --lift, " + number(args.lift) +
                          " m: spawns fall from --lift, but only the last " + number(*args.drop) +
                          " m of it are examined; give a --drop of at least " + number(args.lift));
+    if (args.lift < touch_tolerance)
+        notice(args, "--lift " + number(args.lift) +
+                         " m leaves the robots in contact with the ground, which check calls collision and a simulator "
+                         "may push apart");
     if (robot.mass_center) return;
     const Vec3 mass = mass_center_of(robot);
     notice(args, robot.name + " has no centre of mass; that of its parts' volume is used, " + rounded(mass.x()) + ", " +

@@ -26,6 +26,7 @@ struct QueryArgs : CommonArgs, RobotArgs {
 
     Stance stance() const;
     bool is_settled() const { return stance() == Stance::Settled; }
+    bool has_default_stance() const { return given_stance.empty() && !settle; }
     /// Returns what to do for level poses, for messages: "add --stance level", or what replaces --settle.
     std::string how_to_level() const;
 };
