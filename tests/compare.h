@@ -20,6 +20,16 @@ struct Tally {
 };
 
 /// A judge with the mask, and the same one without it.
+/// Number of random scenes.
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+constexpr std::uint64_t scene_count = 300;
+#else
+constexpr std::uint64_t scene_count = 40;  // 300 would take many minutes without optimisation or with a sanitizer
+#endif
+
+/// Counts are checked only over all scenes together. Then every kind of answer must have occurred.
+constexpr bool all_scenes = scene_count >= 300;
+
 struct TwoJudges {
     spawnfield::Judge fast, exhaustive;
 

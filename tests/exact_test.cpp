@@ -16,14 +16,7 @@ using namespace spawnfield;
 
 namespace {
 
-#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-constexpr std::uint64_t scene_count = 300;
-#else
-constexpr std::uint64_t scene_count = 40;  // 300 would take many minutes without optimisation or with a sanitizer
-#endif
-
-/// Counts are checked only over all scenes together. Then every kind of answer must have occurred.
-constexpr bool all_scenes = scene_count >= 300;
+using compare::all_scenes, compare::scene_count;
 
 /// Checks that some poses were proven and some were not; without both, the comparison would mean nothing.
 void check_shares(const compare::Tally& tally, double least_proven)
