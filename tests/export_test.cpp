@@ -876,8 +876,8 @@ TEST_CASE("export names the option that a format needs or refuses, and then writ
     refused("--format nav2 --step 1 -o a.yaml" + husky_option, "--step is not for --format nav2; it is for ply");
     refused("--format geotiff --offset 0.2 -o a.tif", "--offset needs --robot");
     refused("--format geotiff --settle -o a.tif", "--settle needs --robot");
-    refused("--format glb --stance level -o a.glb" + husky_option,
-            "--stance is not for --format glb; it is for nav2, geotiff, ply");
+    refused("--format glb --offset 1 -o a.glb" + husky_option,
+            "--offset is not for --format glb; it is for nav2, geotiff, ply");
     refused("--format geotiff --layers all -o a.tif",
             "--layers is all, needs top, bottom or a number (0 is the highest layer), because a pixel of geotiff has "
             "one value");

@@ -72,6 +72,41 @@ TEST_CASE("heatmap and export answer for settled robots unless they are asked fo
                Contains("): where the origin of husky can be, 0.1 m above its layer (top), yaw 0.52"));
 }
 
+TEST_CASE("export --poses --settle writes where the robot rests, and refuses poses that are not valid there")
+{
+    const Arena arena;
+    arena.write("poses.csv", "name,x,y,z,yaw\na,0,3,0.5,0.3\nb,5.5,7,0.8,0.3\n");  // on the ground, and on the ramp
+    const std::string poses = "--poses poses.csv" + husky_option;
+    REQUIRE(arena("check map --settle -o judged.csv " + poses).status == 0);
+    const std::vector<Pose> given = read_poses(arena / "poses.csv").poses;
+    REQUIRE(arena("export map --format csv --settle --lift 0.05 -o rest.csv " + poses).status == 0);
+    const PoseTable rest = read_poses(arena / "rest.csv");
+    REQUIRE(rest.poses.size() == 2);
+    CHECK(rest.rows[1].starts_with("b,5.5,7,"));
+    for (std::size_t i = 0; i < 2; ++i) {
+        const std::vector<std::string> z = column_of(read_poses(arena / "judged.csv"), "settled_z");
+        CHECK(std::abs(rest.poses[i].position.z() - std::stod(z[i]) - 0.05) <= 1e-9);
+        CHECK((rest.poses[i].rotation(2, 2) < std::cos(0.1)) == (i == 1));
+    }
+    CHECK(arena("check map --require-valid --poses rest.csv" + husky_option).status == 0);
+
+    const ProgramRun given_run = arena("export map --format csv --lift 0.05 -o given.csv " + poses);
+    CHECK_THAT(given_run.err,
+               Contains("notice: --lift has no effect: the poses are written as they are given; --settle"));
+    CHECK(read_poses(arena / "given.csv").poses[1].position == given[1].position);
+
+    arena.write("bad.csv", "name,x,y,z\ngood,0,3,0.5\nbad,50,3,0.5\n");
+    const ProgramRun bad = arena("export map --format sdf --robot-uri model://husky --settle --poses bad.csv -o x.sdf" +
+                                 husky_option);
+    CHECK(bad.status == 2);
+    CHECK_THAT(bad.err, Contains("bad.csv: with --settle, 1 of 2 poses is not valid:\n  bad: outside") &&
+                            Contains("Leave these out; `check --settle` has the verdict of each pose"));
+    CHECK(arena("export map --format csv --settle --poses poses.csv").status == 2);  // needs --robot
+    CHECK(arena("export map --format glb --settle -o a.glb " + poses).status == 0);
+    CHECK(arena("export map --format glb -o b.glb " + poses).status == 0);
+    CHECK(bytes_of(arena / "a.glb") != bytes_of(arena / "b.glb"));
+}
+
 TEST_CASE("options that do not suit the stance are refused, or get a notice")
 {
     const Arena arena;

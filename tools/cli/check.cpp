@@ -32,37 +32,12 @@ void write_verdicts(const CheckArgs& args, const VerdictReport& report)
     });
 }
 
-/// Returns how many poses are not valid, and why the first ones are not.
-std::string not_valid_words(const VerdictReport& report)
-{
-    constexpr std::size_t shown = 5;
-    const std::vector<std::string> names = pose_names(report.table);
-    std::string first;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (report.judgements[i].verdict != Verdict::Valid && ++count <= shown)
-            first += "\n  " + names[i] + ": " + reason(report, i);
-    if (count > shown) first += "\n  and " + std::to_string(count - shown) + " more";
-    return "--require-valid: " + std::to_string(count) + " of " + counted(names.size(), "pose") +
-           (count == 1 ? " is" : " are") + " not valid:" + first;
-}
-
-/// Prints a notice if poses are tilted although the robot is let down level.
-void notice_about_tilted(const CheckArgs& args, const PoseTable& table)
-{
-    const auto is_tilted = [](const Pose& pose) { return pose.rotation(2, 2) < 1 - 1e-12; };
-    const auto count = std::count_if(table.poses.begin(), table.poses.end(), is_tilted);
-    if (count > 0)
-        notice(args, input_name(args.poses) + ": roll and pitch of " + counted(std::uint64_t(count), "pose") +
-                         " are not used, because the robot is let down level");
-}
-
 Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summary)
 {
     const PoseTable table = open_poses(args, args.poses);
     for (const std::string& name : replaced_columns(table, args.is_settled()))
         notice(args, input_name(args.poses) + ": the new column " + name + " replaces the old one");
-    if (args.is_settled()) notice_about_tilted(args, table);
+    if (args.is_settled()) notice_about_tilted(args, args.poses, table);
     const Session session = open_session(args, summary);
     notices_about_stance(args, command, session.robot);
     summary.lap("load");
@@ -86,7 +61,7 @@ Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summar
     const VerdictReport report{table, judgements, *session.judge, args.is_settled() ? &settled : nullptr};
     write_verdicts(args, report);
     if (!args.require_valid || counts[Verdict::Valid] == judgements.size()) return {};
-    return {.status = not_valid, .complaint = not_valid_words(report)};
+    return {.status = not_valid, .complaint = "--require-valid: " + not_valid_words(report)};
 }
 
 }  // namespace

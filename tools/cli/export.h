@@ -26,6 +26,13 @@ struct ExportJob {
     bool was_given(const std::string& option) const { return command.count(option) > 0; }
 };
 
+/// Returns whether the robot is let down at each of --poses: only with --settle or --stance settled. Otherwise, prints
+/// a notice about options without effect.
+bool lets_down_poses(const ExportJob& job);
+
+/// Returns how the robot rests at each pose of --poses. Prints the notices about that.
+std::vector<SettledPose> settled_poses(const ExportJob& job, const PoseTable& table);
+
 /// A row of the table of formats.
 struct ExportFormat {
     const char* name;

@@ -133,6 +133,16 @@ void write_ply(const ExportJob& job)
                  [&](const auto& sink) { spawnfield::write_ply(result, comment_of(job, options, "all"), sink); });
 }
 
+/// Marks where the robot rests, and its verdict there. Without room, the robot stays where the file has it.
+void mark_settled(const ExportJob& job, const PoseTable& table, GlbMarkers& markers)
+{
+    const std::vector<SettledPose> settled = settled_poses(job, table);
+    for (std::size_t i = 0; i < settled.size(); ++i) {
+        markers.verdicts.push_back(settled[i].verdict);
+        if (settled[i].has_pose) markers.poses[i] = settled[i].lifted(0);
+    }
+}
+
 void write_glb(const ExportJob& job)
 {
     GlbMarkers markers;
@@ -142,7 +152,10 @@ void write_glb(const ExportJob& job)
     } else {
         const PoseTable table = open_poses(job.args, job.args.poses);
         markers.poses = table.poses;
-        markers.verdicts = verdicts_of(table, input_name(job.args.poses));
+        if (lets_down_poses(job))
+            mark_settled(job, table, markers);
+        else
+            markers.verdicts = verdicts_of(table, input_name(job.args.poses));
         markers.names = column_of(table, "name");
     }
     const Progress progress = progress_bar(job.args, "export");
@@ -174,7 +187,7 @@ std::vector<ExportFormat> map_formats()
         {"glb",
          "the scene by labels, with a marker at each of --poses: --robot, in the colour of a column verdict",
          {},
-         {"--robot", "--model-path", "--joints", "--mesh-parts", "--poses"},
+         with(stance_options(), {"--robot", "--model-path", "--joints", "--mesh-parts", "--poses", "--max-slope"}),
          write_glb},
     };
 }

@@ -1,24 +1,68 @@
+#include "command.h"
 #include "export.h"
+#include "messages.h"
+#include "streams.h"
+
+#include <spawnfield/error.h>
+
+#include <algorithm>
 
 namespace spawnfield::cli {
 namespace {
 
+/// Replaces the poses by the settled ones, raised by --lift. Throws ArgumentError unless all of them are valid.
+void let_down(const ExportJob& job, PoseTable& table)
+{
+    const std::vector<SettledPose> settled = settled_poses(job, table);
+    std::vector<Judgement> judgements;
+    for (const SettledPose& pose : settled) judgements.push_back(judgement_of(pose));
+    const VerdictReport report{table, judgements, *job.session.judge, &settled};
+    if (std::any_of(judgements.begin(), judgements.end(),
+                    [](const Judgement& judgement) { return judgement.verdict != Verdict::Valid; }))
+        throw ArgumentError(input_name(job.args.poses) + ": with --settle, " + not_valid_words(report) +
+                            "\nLeave these out; `check --settle` has the verdict of each pose. Without --settle, poses "
+                            "are written as they are given");
+    for (std::size_t i = 0; i < settled.size(); ++i) table.poses[i] = settled[i].lifted(job.args.lift);
+}
+
 void write(const ExportJob& job)
 {
     const ExportArgs& args = job.args;
-    export_poses(args, job.command, args.simulator, args.poses,
-                 {args.format, args.out, args.robot, 1, robot_options(args)}, job.session);
+    PoseTable table = open_poses(args, args.poses);
+    if (lets_down_poses(job))
+        let_down(job, table);
+    else
+        notice_not_valid(args, table, args.poses);
+    export_poses(args, job.command, args.simulator, table,
+                 {args.format, args.out, args.robot, table.poses.size(), robot_options(args)}, job.session);
 }
 
 ExportFormat row(const char* name, const char* about)
 {
     std::vector<std::string> takes = simulator_options_of(name), needs = {"--poses"};
-    takes.insert(takes.end(), {"--robot", "--model-path", "--joints", "--mesh-parts"});
+    takes.insert(takes.end(), {"--robot", "--model-path", "--joints", "--mesh-parts", "--max-slope"});
+    takes.insert(takes.end(), stance_options().begin(), stance_options().end());
     if (std::string_view(name) == "isaaclab") needs.push_back("--out");
     return {name, about, std::move(needs), std::move(takes), write};
 }
 
 }  // namespace
+
+bool lets_down_poses(const ExportJob& job)
+{
+    if (job.args.is_settled() && !job.args.has_default_stance()) return true;
+    notice_no_effect(job.args, job.command, {"--max-slope", "--lift", "--max-tilt", "--min-stability", "--drop"},
+                     "the poses are written as they are given; --settle lets the robot down");
+    return false;
+}
+
+std::vector<SettledPose> settled_poses(const ExportJob& job, const PoseTable& table)
+{
+    notice_about_tilted(job.args, job.args.poses, table);
+    notices_about_stance(job.args, job.command, job.session.robot);
+    return job.session.judge->settle(table.poses,
+                                     {.threads = job.args.threads, .progress = progress_bar(job.args, "export")});
+}
 
 std::vector<ExportFormat> pose_export_formats()
 {

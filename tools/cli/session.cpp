@@ -4,6 +4,7 @@
 #include "numbers.h"
 #include "streams.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace spawnfield::cli {
@@ -71,6 +72,29 @@ void notice_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoic
     if (layers.kind == LayerChoice::Kind::Index && layers.index >= map.layers)
         notice(args, "--layers " + std::to_string(layers.index) + " does not exist: a cell of the map has at most " +
                          counted(std::uint64_t(map.layers), "layer") + " (0 is the highest)");
+}
+
+void notice_about_tilted(const CommonArgs& args, const std::string& file, const PoseTable& table)
+{
+    const auto is_tilted = [](const Pose& pose) { return pose.rotation(2, 2) < 1 - 1e-12; };
+    const auto count = std::count_if(table.poses.begin(), table.poses.end(), is_tilted);
+    if (count > 0)
+        notice(args, input_name(file) + ": roll and pitch of " + counted(std::uint64_t(count), "pose") +
+                         " are not used, because the robot is let down level");
+}
+
+std::string not_valid_words(const VerdictReport& report)
+{
+    constexpr std::size_t shown = 5;
+    const std::vector<std::string> names = pose_names(report.table);
+    std::string first;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (report.judgements[i].verdict != Verdict::Valid && ++count <= shown)
+            first += "\n  " + names[i] + ": " + reason(report, i);
+    if (count > shown) first += "\n  and " + std::to_string(count - shown) + " more";
+    return std::to_string(count) + " of " + counted(names.size(), "pose") + (count == 1 ? " is" : " are") +
+           " not valid:" + first;
 }
 
 }  // namespace spawnfield::cli

@@ -4,6 +4,7 @@
 #include "summary.h"
 
 #include <spawnfield/poses.h>
+#include <spawnfield/verdict_report.h>
 
 #include <optional>
 
@@ -23,6 +24,12 @@ Session open_session(const QueryArgs& args, Summary& summary);
 
 /// Reads poses from a CSV file, or from standard input if it is `-`. Prints the file's notices.
 PoseTable open_poses(const CommonArgs& args, const std::string& file);
+
+/// Prints a notice if poses are tilted although the robot is let down level.
+void notice_about_tilted(const CommonArgs& args, const std::string& file, const PoseTable& table);
+
+/// Returns how many poses are not valid, and why the first ones are not.
+std::string not_valid_words(const VerdictReport& report);
 
 /// Print a notice if the answer is known without a query: the region lies off the map, or no column has that layer.
 void notice_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds);

@@ -87,23 +87,6 @@ std::string first_relative_uri(const std::string& text)
     return "";
 }
 
-/// Prints a notice if a column `verdict` says that poses are not valid, because they are exported, too. Other texts in
-/// the column do not count: it may be the user's own.
-void notice_not_valid(const CommonArgs& common, const PoseTable& table, const std::string& file)
-{
-    const auto is_against = [](const std::string& text) {
-        return text != to_string(Verdict::Valid) &&
-               std::any_of(all_verdicts.begin(), all_verdicts.end(), [&](Verdict v) { return text == to_string(v); });
-    };
-    const std::vector<std::string> texts = column_of(table, "verdict");
-    const auto count = std::count_if(texts.begin(), texts.end(), is_against);
-    if (count > 0)
-        notice(common, input_name(file) + ": " + std::to_string(count) + " of " + counted(texts.size(), "pose") +
-                           (count == 1 ? " is" : " are") +
-                           " not valid according to the column verdict, but all poses are exported; to export only the "
-                           "valid ones, remove the other rows from the file (docs/simulators.md has a command for it)");
-}
-
 /// Returns the point on the ground below each robot. Throws ArgumentError if a robot has no ground.
 std::vector<Vec3> points_on_ground(std::span<const RobotStart> robots, const Map& map)
 {
@@ -341,12 +324,24 @@ void SimulatorOutput::write_isaac_lab(std::span<const RobotStart> robots, const 
     folder_->commit();
 }
 
-void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args,
-                  const std::string& poses, SimulatorOutput::Target target, const Session& session)
+void notice_not_valid(const CommonArgs& common, const PoseTable& table, const std::string& file)
 {
-    const PoseTable table = open_poses(common, poses);
-    notice_not_valid(common, table, poses);
-    target.count = table.poses.size();
+    const auto is_against = [](const std::string& text) {
+        return text != to_string(Verdict::Valid) &&
+               std::any_of(all_verdicts.begin(), all_verdicts.end(), [&](Verdict v) { return text == to_string(v); });
+    };
+    const std::vector<std::string> texts = column_of(table, "verdict");
+    const auto count = std::count_if(texts.begin(), texts.end(), is_against);
+    if (count > 0)
+        notice(common, input_name(file) + ": " + std::to_string(count) + " of " + counted(texts.size(), "pose") +
+                           (count == 1 ? " is" : " are") +
+                           " not valid according to the column verdict, but all poses are exported; to export only the "
+                           "valid ones, remove the other rows from the file (docs/simulators.md has a command for it)");
+}
+
+void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, const PoseTable& table,
+                  SimulatorOutput::Target target, const Session& session)
+{
     const SimulatorOutput output(common, command, args, std::move(target));
     std::vector<RobotStart> robots = robot_starts(table);
     output.give_names(robots, column_of(table, "name"));

@@ -74,10 +74,13 @@ private:
     std::unique_ptr<OutputFolder> folder_;
 };
 
-/// Writes the poses of a CSV file in one of `pose_formats`, without judging them. Names are those of --name, else of
-/// the file's column `name`, else robot_{i}. `target.count` is not used. Throws what SimulatorOutput and read_poses()
-/// throw.
-void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args,
-                  const std::string& poses, SimulatorOutput::Target target, const Session& session);
+/// Prints a notice if a column `verdict` says that poses are not valid, because they are exported, too. Other texts in
+/// the column do not count: it may be the user's own.
+void notice_not_valid(const CommonArgs& common, const PoseTable& table, const std::string& file);
+
+/// Writes the poses of a table in one of `pose_formats`. Names are those of --name, else of the table's column `name`,
+/// else robot_{i}. Throws what SimulatorOutput throws.
+void export_poses(const CommonArgs& common, const CLI::App& command, const SimulatorArgs& args, const PoseTable& table,
+                  SimulatorOutput::Target target, const Session& session);
 
 }  // namespace spawnfield::cli
