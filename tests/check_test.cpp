@@ -114,7 +114,7 @@ TEST_CASE("check --require-valid prints why each of the first five poses is not 
     arena.write("poses.csv", "x,y,z\n0,0,-3\n");
     CHECK(arena("check map --poses poses.csv --require-valid -q --robot box:0.5,0.5,1").err ==
           "spawnfield: --require-valid: 1 of 1 pose is not valid:\n"
-          "  pose 1: aerial: no ground below the origin; the lowest ground is 2.95 m above it\n");
+          "  pose 1: aerial: no ground below the origin; the next ground is 2.95 m above the origin\n");
 }
 
 TEST_CASE("check --require-valid does not change the exit status of other failures")

@@ -2,6 +2,7 @@
 #include "test_map.h"
 
 #include <spawnfield/poses.h>
+#include <spawnfield/scene_parts.h>
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -81,8 +82,24 @@ TEST_CASE("a judge says in words why a pose is refused, and names what was hit")
     CHECK(reason(-6.5, -5, 0.1) == "collision with thin_wall");
     CHECK(reason(7, -7, 0.1) == "submerged");
     CHECK(reason(0, 3, 2.5) == "aerial: 2.55 m above the ground, the limit is 1 m");
-    CHECK(reason(0, 3, -9) == "aerial: no ground below the origin; the lowest ground is 8.95 m above it");
+    CHECK(reason(0, 3, -9) == "aerial: no ground below the origin; the next ground is 8.95 m above the origin");
     CHECK(name_of(*judge.check({{-6.5, -5, 0.1}}).hit, judge.map()) == "thin_wall");
+}
+
+TEST_CASE("the reason of a pose that has sunk through a deck names the distance of the deck above it")
+{
+    Scene scene;
+    add_shape(scene, "floor", Label::Terrain, box_shape({4, 4, 1}, {{0, 0, -0.5}}));
+    add_mesh(scene, "deck", Label::Terrain, {{-2, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-2, 2, 2}}, {{0, 1, 2}, {0, 2, 3}},
+             Solid::No);
+    const Judge judge(map_of(scene), husky());
+    const auto reason = [&](double z) {
+        const Pose pose{{0.3, 0.2, z}};
+        return judge.describe(pose, judge.check(pose));
+    };
+    CHECK(reason(1.95) ==
+          "aerial: 1.95 m above the ground, the limit is 1 m; the next ground is 0.05 m above the origin");
+    CHECK(reason(3.5) == "aerial: 1.5 m above the ground, the limit is 1 m");
 }
 
 TEST_CASE("counts by verdict add up")

@@ -321,13 +321,14 @@ std::vector<SettledPose> Judge::settle(std::span<const Pose> poses, const RunOpt
 
 namespace {
 
-/// Returns a hint if all ground of a column is above the origin: the robot may have sunk into it.
-std::string ground_above(const Map& map, const Vec3& origin)
+/// Returns a hint if ground is at most `limit` (m) above the origin: the robot may have sunk into it.
+std::string ground_above(const Map& map, const Vec3& origin, double limit)
 {
     const Column column = column_at(map.geometry, origin.x(), origin.y());
     const std::span<const double> layers = heights_within(column.layers, map.z_limits);
-    if (layers.empty()) return {};
-    return "; the lowest ground is " + rounded(layers.back() - origin.z()) + " m above it";
+    const auto next = std::find_if(layers.rbegin(), layers.rend(), [&](double z) { return z > origin.z(); });
+    if (next == layers.rend() || *next - origin.z() > limit) return {};
+    return "; the next ground is " + rounded(*next - origin.z()) + " m above the origin";
 }
 
 }  // namespace
@@ -339,9 +340,11 @@ std::string Judge::describe(const Pose& pose, const Judgement& judgement) const
     case Verdict::Outside: return verdict + " the map's bounds";
     case Verdict::Aerial:
         if (!judgement.ground)
-            return verdict + ": no ground below the origin" + ground_above(impl_->map, pose.position);
+            return verdict + ": no ground below the origin" +
+                   ground_above(impl_->map, pose.position, std::numeric_limits<double>::infinity());
         return verdict + ": " + rounded(pose.position.z() - judgement.ground->height) +
-               " m above the ground, the limit is " + rounded(impl_->options.max_height) + " m";
+               " m above the ground, the limit is " + rounded(impl_->options.max_height) + " m" +
+               ground_above(impl_->map, pose.position, impl_->options.max_height);
     case Verdict::OffTerrain:
         return verdict + ": the ground is " + impl_->map.geometry.parts()[judgement.ground->part].name;
     case Verdict::Collision: return judgement.hit ? verdict + " with " + name_of(*judgement.hit, impl_->map) : verdict;
