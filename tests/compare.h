@@ -19,7 +19,6 @@ struct Tally {
     void add(const Tally& other);
 };
 
-/// A judge with the mask, and the same one without it.
 /// Number of random scenes.
 #if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 constexpr std::uint64_t scene_count = 300;
@@ -30,6 +29,7 @@ constexpr std::uint64_t scene_count = 40;  // 300 would take many minutes withou
 /// Counts are checked only over all scenes together. Then every kind of answer must have occurred.
 constexpr bool all_scenes = scene_count >= 300;
 
+/// A judge with the mask, and the same one without it.
 struct TwoJudges {
     spawnfield::Judge fast, exhaustive;
 

@@ -3,7 +3,6 @@
 #include "query/timed_part.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace spawnfield {

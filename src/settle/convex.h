@@ -24,8 +24,8 @@ struct Convex {
     std::vector<std::array<int, 2>> edges;  ///< indices in points
     std::vector<std::array<int, 2>>
         edge_planes;  ///< of each edge, indices of the planes that meet there; not for a triangle
-    /// Of its faces. A triangle has five: one for each of its two sides, then one through each edge, perpendicular to
-    /// the triangle. A triangle without area has none.
+    /// The planes of its faces. A triangle has five: one for each of its two sides, then one through each edge,
+    /// perpendicular to the triangle. A triangle without area has none.
     std::vector<Plane> planes;
     bool is_triangle = false;  ///< only the first two planes are faces
 
