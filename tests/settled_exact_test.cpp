@@ -30,15 +30,19 @@ void compare_settled(const Judge& judge, double columns, double yaw, Compared& o
     CHECK(csv_of(fast) == csv_of(raster(without_mask(judge), options)));
     out.counts += fast.counts;
     std::vector<Pose> poses;
+    std::vector<bool> is_below_crest;  // its origin is lower than a crest below its belly
     for (std::size_t i = 0; i < fast.poses.size(); ++i) {
         if (fast.poses[i].verdict != Verdict::Valid) continue;
         const RasterRest& rest = fast.rests[i];
         poses.push_back(
             {{fast.poses[i].x, fast.poses[i].y, fast.poses[i].z}, rotation_from_rpy(rest.roll, rest.pitch, rest.yaw)});
+        is_below_crest.push_back(fast.poses[i].z < rest.layer_height);
     }
-    for (const Judgement& judged : judge.check(poses)) {
-        out.valid_as_given += judged.verdict == Verdict::Valid;
-        out.below_crest += judged.verdict == Verdict::Aerial;  // its origin is lower than a crest below its belly
+    const std::vector<Judgement> as_given = judge.check(poses);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const bool is_valid = as_given[i].verdict == Verdict::Valid;
+        out.valid_as_given += is_valid;
+        out.below_crest += !is_valid && is_below_crest[i];
     }
 }
 

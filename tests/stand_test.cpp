@@ -1,4 +1,5 @@
 #include "catch.h"
+#include "settle/friction.h"
 #include "shared_scenes.h"
 #include "test_map.h"
 
@@ -165,6 +166,62 @@ TEST_CASE("a foot that hangs counts if the robot rocks onto it with little motio
     CHECK(deep.pose.contacts.size() == 3);
 }
 
+TEST_CASE("a robot rests on a line if its mass is below the axle of its wheels, but falls if it is above")
+{
+    const auto on_two_wheels = [](double mass_z) {
+        std::vector<RobotPart> parts{shape_part(box_shape({0.2, 0.2, 0.02}, {{0, 0, 0.1}}), "body")};
+        for (const double y : {-0.2, 0.2})
+            parts.push_back(
+                shape_part(cylinder_shape(0.1, 0.05, {{0, y, 0.1}, rotation_of_rpy(rad(90), 0, 0)}), "wheel"));
+        Robot robot = make_robot("two_wheels", std::move(parts));
+        robot.mass_center = Vec3(0, 0, mass_z);
+        return settle(slope(rad(10)), robot, {0, 0, 1}, {.min_stability = 0.001});
+    };
+    // The wheels touch the slope at an angle of 10 degrees to the vertical. The mass, 0.04 m below the axle, hangs
+    // above that line if the robot has turned by asin(0.1 sin(10 degrees) / 0.04).
+    const Settled rest = on_two_wheels(0.06);
+    CHECK(rest.pose.verdict == Verdict::Valid);
+    CHECK(std::abs(std::abs(rest.pose.pitch) - std::asin(0.1 * std::sin(rad(10)) / 0.04)) <= 1e-4);
+    CHECK(std::abs(rest.pose.margin - 0.001) <= 1e-9);
+    CHECK(on_two_wheels(0.12).pose.verdict == Verdict::Unstable);
+}
+
+TEST_CASE("a robot that needs more friction than it has slides, and the reason says how much it needs")
+{
+    const Robot low = boxy({1, 1, 0.1});
+    for (const double angle : {0.0, 10.0, 20.0, 29.0}) {
+        INFO(angle << " degrees");
+        const double needed = std::tan(rad(angle));
+        CHECK(settle(slope(rad(angle)), low, {0, 0, 0.5}, {.friction = 1.03 * needed}).pose.verdict == Verdict::Valid);
+        if (angle == 0) continue;
+        const Settled slides = settle(slope(rad(angle)), low, {0, 0, 0.5}, {.friction = 0.99 * needed});
+        CHECK(slides.pose.verdict == Verdict::Unstable);
+        CHECK(slides.reason.starts_with("unstable: it slides, because it needs a coefficient of friction of "));
+        CHECK(slides.pose.friction_needed >= needed);
+        CHECK(slides.pose.friction_needed <= 1.04 * needed);
+    }
+}
+
+TEST_CASE("forces balance if they can: walls that face each other hold without friction, one wall never does")
+{
+    const auto contact = [](const Vec3& point, const Vec3& normal) {
+        return RestContact{point, normal.normalized(), 0, 0, Label::Terrain};
+    };
+    const Vec3 mass(0, 0, 0.3);
+    std::vector<RestContact> groove, wall;
+    for (const double y : {-0.2, 0.2})
+        for (const double side : {-1.0, 1.0}) {
+            groove.push_back(contact({0.1 * side, y, 0}, {-side, 0, 1}));
+            wall.push_back(contact({0.1 * side, y, 0}, {1, 0, 0.5}));
+        }
+    CHECK(is_held(groove, mass, 0.01));
+    CHECK_FALSE(is_held(groove, mass + Vec3(0.35, 0, 0), 0.01));  // the moment of the walls is too small
+    CHECK_FALSE(is_held(wall, mass, 1.9));                        // of slope 2
+    CHECK(is_held(wall, mass, 2.1));
+    CHECK(std::abs(friction_needed(wall, mass, 0.8) / 2 - 1) <= 0.035);
+    CHECK(std::isinf(friction_needed(std::span(wall).first(1), mass, 0.8)));
+}
+
 TEST_CASE("a robot without room collides, and the reason names what is in the way")
 {
     Scene scene = floor_scene();
@@ -272,7 +329,7 @@ TEST_CASE("each valid settled pose is valid as it is written, and none of anothe
             const SettledPose& pose = settled[i];
             INFO("seed " << seed << ", pose " << i);
             ++counts[pose.verdict];
-            const bool has_rest = pose.has_pose && pose.contacts.size() >= 3;
+            const bool has_rest = pose.has_pose && pose.contacts.size() >= 2;  // two: it rolls on a line
             if (pose.verdict != Verdict::Valid) continue;
             REQUIRE(has_rest);
             CHECK(pose.tilt <= rad(40) + 1e-9);

@@ -19,6 +19,8 @@ struct StandLimits {
     /// m, >= 0; a robot with a smaller SettledPose::margin is `unstable`. No value: auto_min_stability(); the options
     /// of a Judge always have a value.
     std::optional<double> min_stability = {};
+    /// Coefficient of friction between robot and ground, >= 0. If the robot needs more not to slide, it is `unstable`.
+    double friction = 0.8;
     /// m, > 0; if given, the level robot must be able to fall freely from this height above its settled pose.
     std::optional<double> drop = {};
 };
@@ -55,6 +57,9 @@ struct SettledPose {
     double tip_over = 0;
     /// Smallest vertical distance of the ground from the parts of the robot that do not touch it, m; 0 if all do.
     double belly = 0;
+    /// If it would slide: the coefficient of friction that holds it, more than StandLimits::friction; infinite if that
+    /// is more than 10. 0: it does not slide, or the verdict does not depend on that.
+    double friction_needed = 0;
     std::vector<RestContact> contacts;  ///< the corners of the support polygon are among them
     bool exact_check = false;           ///< whether an exact collision check was made
 

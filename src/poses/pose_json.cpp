@@ -40,6 +40,7 @@ void add_stand_limits(Json& settings, const StandLimits& limits)
     settings["max_slope"] = limits.max_slope;
     settings["max_tilt"] = limits.max_tilt;
     settings["min_stability"] = *limits.min_stability;
+    settings["friction"] = limits.friction;
     if (limits.drop) settings["drop"] = *limits.drop;
 }
 

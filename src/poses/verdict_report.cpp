@@ -66,6 +66,7 @@ Json settled_json(const VerdictReport& report, const SettledPose& pose)
     out["margin"] = pose.margin;
     out["tip_over"] = pose.tip_over;
     out["belly"] = pose.belly;
+    if (pose.friction_needed > 0) out["friction_needed"] = pose.friction_needed;  // infinite: null
     out["contacts"] = Json::array();
     for (const RestContact& contact : pose.contacts)
         out["contacts"].push_back({{"point", vector_json(contact.point)},

@@ -33,6 +33,7 @@ JudgeOptions checked(JudgeOptions options, const Robot& robot)
     require(is_angle(stand.max_slope), "stand.max_slope", stand.max_slope, "> 0 and < pi/2 rad");
     require(is_angle(stand.max_tilt), "stand.max_tilt", stand.max_tilt, "> 0 and < pi/2 rad");
     require(is_length(*stand.min_stability), "stand.min_stability", *stand.min_stability, ">= 0 m");
+    require(stand.friction >= 0 && std::isfinite(stand.friction), "stand.friction", stand.friction, ">= 0");
     require(!stand.drop || (is_length(*stand.drop) && *stand.drop > 0), "stand.drop", stand.drop.value_or(0), "> 0 m");
     return options;
 }
@@ -376,6 +377,12 @@ std::string Judge::describe(const SettledPose& pose) const
     case Verdict::Steep:
         return verdict + ": it tilts by " + degrees(pose.tilt) + ", the limit is " + degrees(limits.max_slope);
     case Verdict::Unstable:
+        if (pose.friction_needed > 0)
+            return verdict + ": it slides, " +
+                   (std::isinf(pose.friction_needed)
+                        ? std::string("at any friction")
+                        : "because it needs a coefficient of friction of " + rounded(pose.friction_needed)) +
+                   ", the limit is " + rounded(limits.friction);
         if (pose.margin >= *limits.min_stability || pose.contacts.size() < 3) return verdict + ": it tips over";
         return verdict + ": its margin is " + rounded(pose.margin) + " m, the limit is " +
                rounded(*limits.min_stability) + " m";

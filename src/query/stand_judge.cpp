@@ -1,6 +1,7 @@
 #include "query/stand_judge.h"
 
 #include "query/timed_part.h"
+#include "settle/friction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -162,11 +163,22 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
         out.verdict = Verdict::Steep;
     else if (out.margin < *limits.min_stability - limit_slack)
         out.verdict = Verdict::Unstable;
+    else if (out.friction_needed = sliding_friction(out); out.friction_needed > 0)
+        out.verdict = Verdict::Unstable;
     else if (is_obstructed || (limits.drop && rest.drop_z < out.position.z() + *limits.drop))
         out.verdict = Verdict::Obstructed;
     else
         out.verdict = Verdict::Valid;
     if (out.verdict != Verdict::Obstructed) out.hit.reset();
+}
+
+/// Returns the coefficient of friction that a robot at rest needs, if that is more than it has; otherwise 0.
+double StandJudge::sliding_friction(const SettledPose& pose) const
+{
+    const double friction = shared_.options.stand.friction;
+    const Pose at = pose.lifted(0);
+    const Vec3 mass = at.position + at.rotation * mass_center_;
+    return is_held(pose.contacts, mass, friction) ? 0 : friction_needed(pose.contacts, mass, friction);
 }
 
 /// Returns what the robot collides with if it is raised from its rest.

@@ -34,8 +34,11 @@ constexpr double contact_tolerance = 1e-9;  // m: touches that are at most this 
 /// and the vertices of real meshes are not more precise.
 constexpr double contact_gap = 1e-3;
 constexpr double rest_tolerance = 1e-7;  // m: the same, if the mass does not sink any more
-constexpr double tie = 1e-12;            // m: touches of one height, up to rounding
-constexpr double smallest_turn = 1e-11;  // rad
+/// A robot also rests on a line, for example on two wheels with its mass below the axle, if its mass is this near above
+/// that line, m, and does not sink any more.
+constexpr double line_tolerance = 1e-6;
+constexpr double tie = 1e-12;                                               // m: touches of one height, up to rounding
+constexpr double smallest_turn = 1e-11;                                     // rad
 constexpr double first_turn = 0.1, least_limit = 0.01, largest_turn = 0.3;  // rad: limits of one step
 /// Touches that are farther below the highest one than this cannot carry the robot after the next step, m: at most
 /// `most_seen`, and this many times the limit of the step and the robot's size.
@@ -46,7 +49,7 @@ constexpr int max_turns = 300;
 // moves by no more than this.
 constexpr double rocking_rise = 0.05;                        // m
 constexpr double rocking_turn = 3 * std::numbers::pi / 180;  // rad
-constexpr int max_rockings = 4;
+constexpr int max_rockings = 6;
 /// Where the mass is exactly above an edge between two ways to rest, the robot turns as if its centre of mass were this
 /// much farther back and to the right, m.
 const Vec3 preference(-1e-7, -0.5e-7, 0);
@@ -174,9 +177,10 @@ double tilt_of(const Vec2& angles)
 struct NearestEdge {
     double distance = std::numeric_limits<double>::infinity();  ///< negative: the point is outside
     Vec2 outward = Vec2::Zero();                                ///< normal of the edge, of length 1
+    Vec2 from = Vec2::Zero(), to = Vec2::Zero();                ///< its ends
 };
 
-/// Returns the nearest edge of a convex polygon (counterclockwise, 3 or more corners).
+/// Returns the nearest edge of a convex polygon (counterclockwise, 2 or more corners; two are a line with two sides).
 NearestEdge nearest_edge(const Polygon2& polygon, const Vec2& point)
 {
     NearestEdge out;
@@ -184,7 +188,7 @@ NearestEdge nearest_edge(const Polygon2& polygon, const Vec2& point)
         const Vec2 &p = polygon[k], &q = polygon[k + 1 < polygon.size() ? k + 1 : 0], along = q - p;
         const double t = std::clamp(along.dot(point - p) / along.squaredNorm(), 0.0, 1.0),
                      distance = (point - p - t * along).norm();
-        if (distance < out.distance) out = {distance, edge_normal(p, q).normalized()};
+        if (distance < out.distance) out = {distance, edge_normal(p, q).normalized(), p, q};
     }
     if (!contains(polygon, point)) out.distance = -out.distance;
     return out;
@@ -273,20 +277,30 @@ private:
         at_.wall = wall;
         if (wall) return Rest::State::Blocked;
         // The mass does not sink any more, so the touches around it are equally high up to rounding.
-        is_stuck_ = !contains(support_polygon(at_, rest_tolerance), mass_center(at_.angles).head<2>());
+        is_stuck_ = !is_balanced();
         return is_stuck_ ? Rest::State::Falling : Rest::State::Standing;
+    }
+
+    /// Returns whether the mass is above the contacts, up to rounding. They may form a line.
+    bool is_balanced() const
+    {
+        const Polygon2 polygon = support_polygon(at_, rest_tolerance);
+        const Vec2 mass = mass_center(at_.angles).head<2>();
+        if (polygon.size() < 2) return false;
+        return contains(polygon, mass) || -nearest_edge(polygon, mass).distance <= line_tolerance;
     }
 
     /// If the mass were beyond the nearest edge of the support polygon, the robot would turn about that edge. If it
     /// then comes to rest after little motion, it stands on the contacts of both poses. Adds them to a rest with a
-    /// margin that is too small.
+    /// margin that is too small. If they are the same contacts, it rolled on them until they carried the mass again: so
+    /// they would do so for any place of the mass up to there, and the edge is moved outwards to there.
     void rock(Rest& rest)
     {
         const Lowered rested = at_;
         Polygon2 polygon = support_polygon(rested, contact_gap);
         const Vec3 mass = settler_.mass_center_;
         const Mat3 rotated = rotation(rested.angles);
-        for (int k = 0; k < max_rockings && polygon.size() >= 3; ++k) {
+        for (int k = 0; k < max_rockings && polygon.size() >= 2; ++k) {
             const NearestEdge edge = nearest_edge(polygon, (rotated * mass).head<2>());
             rest.margin = edge.distance;
             if (edge.distance >= settler_.options_.min_stability) break;
@@ -304,7 +318,10 @@ private:
                 rest.contacts.push_back(contact);
                 polygon.push_back(contact.point.head<2>());
             }
-            if (rest.contacts.size() == before) break;
+            if (rest.contacts.size() == before) {
+                const Vec2 outwards = (settler_.options_.min_stability - edge.distance) * edge.outward;
+                polygon.insert(polygon.end(), {edge.from + outwards, edge.to + outwards});
+            }
             polygon = convex_hull(std::move(polygon));
         }
     }

@@ -82,11 +82,7 @@ public:
 
     std::optional<End> end(double x, double y) const { return end_of(solid_, x, y, 1); }
 
-    /// Returns how far a body with this corner must be raised at most until its corner is not below the solid's top.
-    double height_bound(const Vec3& corner) const { return highest_ - corner.z(); }
-
-    /// Returns whether an edge of a body certainly passes all edges of the solid, seen from above.
-    bool is_passed_by(const Vec3&, const Vec3&) const { return false; }
+    double highest() const { return highest_; }  ///< z of its highest point
 
     /// Calls visit(normal, z) for each upper face: its unit normal, and a function that returns the z of its plane at
     /// the x and y of a point, or nothing if the top is not on the face there (to 1e-9 m).
@@ -126,18 +122,16 @@ public:
         return End{triangle_.z_at({x, y, 0}), triangle_.normal};
     }
 
-    double height_bound(const Vec3& corner) const { return triangle_.z_at(corner) - corner.z(); }
+    const Vec3& normal() const { return triangle_.normal; }
 
-    bool is_passed_by(const Vec3& from, const Vec3& to) const
+    /// Returns how far a point must be raised until it is on the triangle's plane, m.
+    double height_of(const Vec3& point) const { return triangle_.z_at(point) - point.z(); }
+
+    /// Returns how far inside side k a point is, seen from above, m; negative: outside.
+    double inward(std::size_t k, const Vec3& point) const
     {
-        int inside = 0;
-        for (const TouchTriangle::Side& side : triangle_.sides) {
-            const double first = side.inward.x() * from.x() + side.inward.y() * from.y() - side.offset,
-                         second = side.inward.x() * to.x() + side.inward.y() * to.y() - side.offset;
-            if (first < -rounding && second < -rounding) return true;
-            inside += first > rounding && second > rounding;
-        }
-        return inside == 3;
+        const TouchTriangle::Side& side = triangle_.sides[k];
+        return side.inward.x() * point.x() + side.inward.y() * point.y() - side.offset;
     }
 
     template <class Visit>
@@ -160,17 +154,10 @@ double lowest_point(const Convex& body)
     return out;
 }
 
-/// Adds the touches of two polyhedra: corners of one on the other, and pairs of edges that cross seen from above.
-/// Leaves out corners and pairs of edges that touch below wanted.min_height.
+/// Adds the touches of corners of the ground below a polyhedron, without those below wanted.min_height.
 template <class Ground>
-void add_polyhedra(const Convex& body, const Ground& ground, const WantedTouches& wanted, std::vector<Touch>& out)
+void add_corners_below(const Convex& body, const Ground& ground, const WantedTouches& wanted, std::vector<Touch>& out)
 {
-    for (std::size_t j = 0; j < body.points.size(); ++j) {
-        const Vec3& point = body.points[j];
-        if (ground.height_bound(point) < wanted.min_height) continue;
-        if (const auto end = ground.end(point.x(), point.y()))
-            out.push_back(touch_at(end->z - point.z(), point, end->normal, Touch::Kind::CornerOnFace, j));
-    }
     const double bottom = lowest_point(body);
     for (std::size_t k = 0; k < ground.points.size(); ++k) {
         const Vec3& point = ground.points[k];
@@ -179,33 +166,80 @@ void add_polyhedra(const Convex& body, const Ground& ground, const WantedTouches
             out.push_back(touch_at(point.z() - end->z, {point.x(), point.y(), end->z}, end->normal,
                                    Touch::Kind::CornerUnderFace, end->plane, k));
     }
+}
+
+/// Adds the touch of edge j of a polyhedron and edge k of the ground, if they cross seen from above.
+template <class Ground>
+void add_crossing(const Convex& body, std::size_t j, const Ground& ground, std::size_t k, std::vector<Touch>& out)
+{
+    const auto& [a, b] = body.edges[j];
+    const auto& [c, d] = ground.edges[k];
+    const Vec3 &from = body.points[std::size_t(a)], along = body.points[std::size_t(b)] - from;
+    const Vec3 &other = ground.points[std::size_t(c)], across = ground.points[std::size_t(d)] - other;
+    const Vec2 apart = (other - from).head<2>();
+    const double crossing = cross(along.head<2>(), across.head<2>());
+    const double s = cross(apart, across.head<2>()) / crossing, t = cross(apart, along.head<2>()) / crossing;
+    if (!(s >= 0 && s <= 1 && t >= 0 && t <= 1)) return;
+    const Vec3 normal = along.cross(across);
+    if (std::abs(crossing) <= parallel * along.norm() * across.norm() || std::abs(crossing) * steepest < normal.norm())
+        return;
+    const Vec3 point = from + s * along;
+    out.push_back(touch_at(other.z() + t * across.z() - point.z(), point, normal, Touch::Kind::EdgeOnEdge, j, k));
+}
+
+/// Adds the touches of two polyhedra: corners of one on the other, and pairs of edges that cross seen from above.
+/// Leaves out corners and edges that touch below wanted.min_height.
+void add_polyhedra(const Convex& body, const Top& ground, const WantedTouches& wanted, std::vector<Touch>& out)
+{
+    for (std::size_t j = 0; j < body.points.size(); ++j) {
+        const Vec3& point = body.points[j];
+        if (ground.highest() - point.z() < wanted.min_height) continue;
+        if (const auto end = ground.end(point.x(), point.y()))
+            out.push_back(touch_at(end->z - point.z(), point, end->normal, Touch::Kind::CornerOnFace, j));
+    }
+    add_corners_below(body, ground, wanted, out);
     for (std::size_t j = 0; j < body.edges.size(); ++j) {
         const auto& [a, b] = body.edges[j];
-        const Vec3 &from = body.points[std::size_t(a)], &to = body.points[std::size_t(b)];
-        if (!body.is_lower_edge(j) || std::max(ground.height_bound(from), ground.height_bound(to)) < wanted.min_height)
-            continue;
-        const Vec3 along = to - from;
-        const double low = std::min(from.z(), to.z());
-        for (std::size_t k = 0; k < ground.edges.size(); ++k) {
-            const auto& [c, d] = ground.edges[k];
-            const Vec3 &other = ground.points[std::size_t(c)], &end = ground.points[std::size_t(d)];
-            if (!wanted.wants_edge(k) || std::max(other.z(), end.z()) - low < wanted.min_height) continue;
-            // On which sides of the body's edge the ends of the ground's edge are: on one side, they do not cross.
-            const Vec2 apart = (other - from).head<2>();
-            const double first = cross(along.head<2>(), apart), second = cross(along.head<2>(), (end - from).head<2>());
-            if ((first > 0 && second > 0) || (first < 0 && second < 0)) continue;
-            const Vec3 across = end - other;
-            const double crossing = along.x() * across.y() - along.y() * across.x();
-            const double s = cross(apart, across.head<2>()) / crossing, t = cross(apart, along.head<2>()) / crossing;
-            if (!(s >= 0 && s <= 1 && t >= 0 && t <= 1)) continue;
-            const Vec3 normal = along.cross(across);
-            if (std::abs(crossing) <= parallel * along.norm() * across.norm() ||
-                std::abs(crossing) * steepest < normal.norm())
-                continue;
-            const Vec3 point = from + s * along;
-            out.push_back(
-                touch_at(other.z() + t * across.z() - point.z(), point, normal, Touch::Kind::EdgeOnEdge, j, k));
+        const double low = std::min(body.points[std::size_t(a)].z(), body.points[std::size_t(b)].z());
+        if (!body.is_lower_edge(j) || ground.highest() - low < wanted.min_height) continue;
+        for (std::size_t k = 0; k < ground.edges.size(); ++k)
+            if (wanted.wants_edge(k)) add_crossing(body, j, ground, k, out);
+    }
+}
+
+/// The same for a polyhedron on a triangle. Seen from above, an edge can cross a side of the triangle only if its
+/// corners are on different sides of it.
+void add_polyhedra(const Convex& body, const TriangleTop& ground, const WantedTouches& wanted, std::vector<Touch>& out)
+{
+    struct Corner {
+        double height;             ///< by which it must be raised onto the plane of the triangle, m
+        unsigned outside, inside;  ///< bit k: it is on that side of side k of the triangle, by more than rounding
+    };
+    thread_local std::vector<Corner> corners;  // kept, because this is called millions of times
+    corners.clear();
+    for (std::size_t j = 0; j < body.points.size(); ++j) {
+        const Vec3& point = body.points[j];
+        Corner& corner = corners.emplace_back(ground.height_of(point), 0, 0);
+        for (unsigned k = 0; k < 3; ++k) {
+            const double inward = ground.inward(k, point);
+            corner.outside |= unsigned(inward < -rounding) << k;
+            corner.inside |= unsigned(inward > rounding) << k;
         }
+        if (corner.outside == 0 && corner.height >= wanted.min_height)
+            out.push_back(touch_at(corner.height, point, ground.normal(), Touch::Kind::CornerOnFace, j));
+    }
+    add_corners_below(body, ground, wanted, out);
+    const unsigned wanted_sides = ~unsigned(wanted.covered_edges) & 7;
+    if (wanted_sides == 0) return;
+    for (std::size_t j = 0; j < body.edges.size(); ++j) {
+        const auto& [a, b] = body.edges[j];
+        const Corner &from = corners[std::size_t(a)], &to = corners[std::size_t(b)];
+        const unsigned crossed = ~(from.outside & to.outside) & ~(from.inside & to.inside) & wanted_sides;
+        if ((from.outside & to.outside) != 0 || crossed == 0 || std::max(from.height, to.height) < wanted.min_height ||
+            !body.is_lower_edge(j))
+            continue;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (crossed >> k & 1) add_crossing(body, j, ground, k, out);
     }
 }
 

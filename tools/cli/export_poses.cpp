@@ -51,7 +51,8 @@ ExportFormat row(const char* name, const char* about)
 bool lets_down_poses(const ExportJob& job)
 {
     if (job.args.is_settled() && !job.args.has_default_stance()) return true;
-    notice_no_effect(job.args, job.command, {"--max-slope", "--lift", "--max-tilt", "--min-stability", "--drop"},
+    notice_no_effect(job.args, job.command,
+                     {"--max-slope", "--lift", "--max-tilt", "--min-stability", "--friction", "--drop"},
                      "the poses are written as they are given; --settle lets the robot down");
     return false;
 }

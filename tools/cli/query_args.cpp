@@ -96,6 +96,9 @@ void add_stance(CLI::App& command, QueryArgs& args, Stance standard)
     command.add_option("--min-stability", args.min_stability,
                        "m. A robot is unstable if its centre of mass is nearer to the edge of its support polygon "
                        "(default: 0.2 % of the robot's longer side, 2 mm for a robot of 1 m)");
+    command.add_option("--friction", args.friction,
+                       "Coefficient of friction of robot and ground. A robot that would slide is unstable (default "
+                       "0.8)");
     command.add_option("--drop", args.drop,
                        "m. A robot is obstructed if it cannot fall freely from this height, level, onto its settled "
                        "pose (default: not examined)");
@@ -103,15 +106,15 @@ void add_stance(CLI::App& command, QueryArgs& args, Stance standard)
 
 const std::vector<std::string>& stance_options()
 {
-    static const std::vector<std::string> options{"--stance",   "--settle",        "--lift",
-                                                  "--max-tilt", "--min-stability", "--drop"};
+    static const std::vector<std::string> options{"--stance",        "--settle",   "--lift", "--max-tilt",
+                                                  "--min-stability", "--friction", "--drop"};
     return options;
 }
 
 void notices_about_stance(const QueryArgs& args, const CLI::App& command, const Robot& robot)
 {
     if (!args.is_settled())
-        return notice_no_effect(args, command, {"--lift", "--max-tilt", "--min-stability", "--drop"},
+        return notice_no_effect(args, command, {"--lift", "--max-tilt", "--min-stability", "--friction", "--drop"},
                                 "it is only for settled poses (--stance settled)");
     if (args.max_slope && *args.max_slope > args.max_tilt)
         notice(args, "--max-slope " + number(*args.max_slope) + " is above --max-tilt, " + number(args.max_tilt) +
@@ -154,11 +157,12 @@ JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time)
             "geometry, not on its voxels; " +
             args.how_to_level());
     const auto is_angle = [](double degrees) { return degrees > 0 && degrees < 90; };
-    const auto is_length = [](double length) { return length >= 0 && std::isfinite(length); };
+    const auto is_length = [](double value) { return value >= 0 && std::isfinite(value); };
     if (!is_length(args.lift)) throw bad_value("--lift", args.lift, ">= 0 m");
     if (!is_angle(args.max_tilt)) throw bad_value("--max-tilt", args.max_tilt, "> 0 and < 90 degrees");
     if (args.min_stability && !is_length(*args.min_stability))
         throw bad_value("--min-stability", *args.min_stability, ">= 0 m");
+    if (!is_length(args.friction)) throw bad_value("--friction", args.friction, ">= 0");
     if (args.drop && !(is_length(*args.drop) && *args.drop > 0)) throw bad_value("--drop", *args.drop, "> 0 m");
     constexpr double degree = std::numbers::pi / 180;
     JudgeOptions options{.max_height = args.max_height,
@@ -166,8 +170,11 @@ JudgeOptions judge_options(const QueryArgs& args, ExactTime& exact_time)
                          .obstacles = args.collision == "octree" ? Obstacles::Voxels : Obstacles::Geometry,
                          .exhaustive = args.exhaustive,
                          .exact_time = &exact_time};
-    options.stand = {
-        .lift = args.lift, .max_tilt = args.max_tilt * degree, .min_stability = args.min_stability, .drop = args.drop};
+    options.stand = {.lift = args.lift,
+                     .max_tilt = args.max_tilt * degree,
+                     .min_stability = args.min_stability,
+                     .friction = args.friction,
+                     .drop = args.drop};
     if (args.max_slope) (args.is_settled() ? options.stand.max_slope : options.max_slope) = *args.max_slope * degree;
     return options;
 }

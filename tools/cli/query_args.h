@@ -23,6 +23,7 @@ struct QueryArgs : CommonArgs, RobotArgs {
     bool settle = false;                        ///< --settle, short for --stance settled
     double lift = 0.02, max_tilt = 45;          ///< m, degrees
     std::optional<double> min_stability, drop;  ///< m
+    double friction = 0.8;
 
     Stance stance() const;
     bool is_settled() const { return stance() == Stance::Settled; }

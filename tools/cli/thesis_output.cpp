@@ -25,6 +25,7 @@ Settings query_settings(const std::string& command, const QueryArgs& args, const
     out.emplace_back("Max slope (rad)", number(limits.max_slope));
     out.emplace_back("Max tilt (rad)", number(limits.max_tilt));
     out.emplace_back("Min stability (m)", number(*limits.min_stability));
+    out.emplace_back("Friction", number(limits.friction));
     if (limits.drop) out.emplace_back("Drop (m)", number(*limits.drop));
     return out;
 }

@@ -39,7 +39,7 @@ def rows_of(text):
 
 
 def write_ground(program, map_folder, file):
-    """Writes the solid surfaces of a map as an OBJ file in the map's frame."""
+    """Writes the solid surfaces of a map as an OBJ file in the map's frame. Returns the triangles of each obstacle."""
     glb = file.with_suffix(".glb")
     spawnfield(program, "export", map_folder, "--format", "glb", "-o", glb)
     data = glb.read_bytes()
@@ -54,6 +54,7 @@ def write_ground(program, map_folder, file):
         width = 3 if accessor["type"] == "VEC3" else 1
         return np.frombuffer(binary, kind, accessor["count"] * width, start).reshape(-1, width)
 
+    obstacles = []
     with file.open("w") as out:
         count = 0
 
@@ -69,14 +70,40 @@ def write_ground(program, map_folder, file):
                     corners = array(primitive["indices"]).ravel() if "indices" in primitive else range(len(points))
                     for x, y, z in points:  # from glTF's y up to z up
                         out.write(f"v {x:.9g} {-z:.9g} {y:.9g}\n")
-                    for a, b, c in np.asarray(corners).reshape(-1, 3):
+                    faces = np.asarray(corners).reshape(-1, 3)
+                    for a, b, c in faces:
                         out.write(f"f {count + a + 1} {count + b + 1} {count + c + 1}\n")
+                    if document["materials"][primitive["material"]]["name"] == "obstacle":
+                        upright = np.stack([points[:, 0], -points[:, 2], points[:, 1]], axis=1)
+                        obstacles.append(upright[faces])
                     count += len(points)
             for child in node.get("children", []):
                 visit(document["nodes"][child], matrix)
 
         for root in document["scenes"][0]["nodes"]:
             visit(document["nodes"][root], np.eye(4))
+    return obstacles
+
+
+def is_inside(obstacles, point):
+    """Returns whether a vertical line from a point upwards leaves some obstacle once more often than it enters it."""
+    for triangles in obstacles:
+        a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+        near = (triangles[:, :, :2].min(1) <= point[:2]).all(1) & (triangles[:, :, :2].max(1) >= point[:2]).all(1)
+        a, b, c = a[near], b[near], c[near]
+        if not len(a):
+            continue
+
+        def side(p, q):
+            return (q[:, 0] - p[:, 0]) * (point[1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (point[0] - p[:, 0])
+
+        weights = np.stack([side(b, c), side(c, a), side(a, b)], axis=1)
+        over = (weights > 0).all(1) | (weights < 0).all(1)
+        weights = weights[over] / weights[over].sum(1, keepdims=True)
+        heights = (weights * np.stack([a[over, 2], b[over, 2], c[over, 2]], axis=1)).sum(1)
+        if (heights > point[2]).sum() % 2 == 1:
+            return True
+    return False
 
 
 def matrix_of(node):
@@ -188,7 +215,7 @@ def compare(program, robot, count, map_folder):
         pybullet.resetSimulation()
         pybullet.setGravity(0, 0, -9.81)
         info = json.loads(spawnfield(program, "info", robot, "--json"))
-        write_ground(program, map_folder, folder / "ground.obj")
+        obstacles = write_ground(program, map_folder, folder / "ground.obj")
         ground = pybullet.createCollisionShape(pybullet.GEOM_MESH, fileName=str(folder / "ground.obj"),
                                                flags=pybullet.GEOM_FORCE_CONCAVE_TRIMESH)
         pybullet.changeDynamics(pybullet.createMultiBody(0, ground), -1, lateralFriction=1, restitution=0)
@@ -200,6 +227,11 @@ def compare(program, robot, count, map_folder):
         standing = {20: 0, 30: 0}
         for row in places(program, map_folder, robot, count, folder):
             if not row["settled_z"] or row["verdict"] in ("outside", "aerial", "off_terrain", "submerged"):
+                continue
+            # Bullet's meshes are surfaces, so a robot fits into an obstacle. A pose on the layer above belongs there.
+            pose = settled_pose(row)
+            mass = rotation_of(pybullet.getQuaternionFromEuler(pose[3:])) @ mass_center + pose[:3]
+            if row["verdict"] == "collision" and (not row["hit"] or is_inside(obstacles, mass)):
                 continue
             tilt, margin = math.degrees(float(row["tilt"])), float(row["margin"])
             is_kept = stays(body, mass_center, settled_pose(row))
