@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <string>
 
 namespace spawnfield {
@@ -18,15 +19,20 @@ struct HeadingRule {
         Any,       ///< the pose must be valid at one of them or more
         Best       ///< the same; the heading is that with the largest margin
     };
+    static constexpr int most = 64;  ///< headings: the bits of RasterRest::valid_headings
+
     Kind kind = Kind::Any;
     double x = 0, y = 0;  ///< m; only for Facing
-    int count = 8;        ///< 1 .. 64; only for All, Any and Best: the headings are 2 pi k / count
+    int count = 8;        ///< 1 .. most; only for All, Any and Best: the headings are 2 pi k / count
 
     bool has_several() const { return kind >= Kind::All; }
 };
 
 /// Returns a rule as in --yaw: "facing:3,-1", "downhill", "any:8".
 SPAWNFIELD_API std::string to_string(const HeadingRule& rule);
+
+/// Returns how yaws are chosen, for people: the rule, or "random", or `yaw` (rad).
+SPAWNFIELD_API std::string yaw_text(const std::optional<HeadingRule>& rule, bool is_random, double yaw);
 
 /// Returns heading k of `count` headings, rad.
 inline double heading_of(int k, int count) { return 2 * std::numbers::pi * k / count; }

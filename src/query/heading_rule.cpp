@@ -18,4 +18,10 @@ std::string to_string(const HeadingRule& rule)
     return "";
 }
 
+std::string yaw_text(const std::optional<HeadingRule>& rule, bool is_random, double yaw)
+{
+    if (rule) return to_string(*rule);
+    return is_random ? "random" : number(yaw);
+}
+
 }  // namespace spawnfield

@@ -124,11 +124,10 @@ double StandJudge::downhill_yaw(const Vec3& place)
 /// Returns where the rest on flat ground at a yaw is kept.
 Settler::FlatRest& StandJudge::flat_at(double yaw)
 {
-    constexpr std::size_t most = 64;  // as many as headings of a rule
     const auto is_there = [&](const Settler::FlatRest& flat) { return flat.yaw == yaw; };
     const auto found = std::find_if(flats_.begin(), flats_.end(), is_there);
     if (found != flats_.end()) return *found;
-    if (flats_.size() == most) flats_.clear();
+    if (flats_.size() == HeadingRule::most) flats_.clear();
     if (flats_.empty() || !std::isnan(flats_.back().yaw)) flats_.emplace_back();
     return flats_.back();
 }

@@ -46,8 +46,9 @@ std::optional<HeadingRule> parse_rule(const std::string& text)
     const char *from = value.data(), *const end = from + value.size();
     if (out.has_several()) {
         const auto [stop, error] = std::from_chars(from, end, out.count);
-        if (error != std::errc{} || stop != end || out.count < 1 || out.count > 64)
-            refuse("a number of headings, 1 .. 64, for example " + found->first + ":8");
+        if (error != std::errc{} || stop != end || out.count < 1 || out.count > HeadingRule::most)
+            refuse("a number of headings, 1 .. " + std::to_string(HeadingRule::most) + ", for example " + found->first +
+                   ":8");
     } else if (out.kind == Kind::Facing) {
         const auto [comma, error] = std::from_chars(from, end, out.x);
         if (error != std::errc{} || comma == end || *comma != ',')
@@ -71,7 +72,8 @@ YawChoice parse_yaw_choice(const CommonArgs& args, const std::string& text, bool
     const std::optional<HeadingRule> rule = parse_rule(text);
     if (rule && !is_settled)
         throw ArgumentError("--yaw " + text +
-                            " is only for robots at rest: sample and heatmap without --stance level, raster --settle");
+                            " is only for robots at rest: sample and heatmap without --stance level; raster, search "
+                            "and experiment with --settle");
     if (rule) return {.rule = rule};
     return {.yaw = parse(args, text,
                          std::string(allow_random ? ", or random" : "") +
