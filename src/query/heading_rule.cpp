@@ -14,6 +14,8 @@ std::string to_string(const HeadingRule& rule)
     case HeadingRule::Kind::All: return several("all:");
     case HeadingRule::Kind::Any: return several("any:");
     case HeadingRule::Kind::Best: return several("best:");
+    case HeadingRule::Kind::Clearest: return several("best:") + ":clearance";
+    case HeadingRule::Kind::Along: return several("along:");
     }
     return "";
 }

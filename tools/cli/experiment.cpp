@@ -108,6 +108,7 @@ public:
             complete(raster_, args_, session_, summary_);
         }
         notices_about_stance(args_, command_, session_.robot);
+        notice_about_heading(args_, session_.map, args_.search ? search_.heading : raster_.heading);
         summary_.lap("load");
         std::vector<ExperimentRun> runs = args_.search ? run_searches() : run_rasters();
         summary_.lap("query");

@@ -78,6 +78,7 @@ Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summar
     const Session session = open_session(args, summary);
     complete(options, args, session, summary);
     notices_about_stance(args, command, session.robot);
+    notice_about_heading(args, session.map, options.heading);
     summary.lap("load");
     const RasterResult result = raster(*session.judge, options);
     summary.lap("query");

@@ -206,6 +206,7 @@ Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summa
         notice_if_off_map(args, session.map, "--bounds", asked.bounds);
         notice_about_area(args, session.map, asked.area);
         notices_about_stance(args, command, session.robot);
+        notice_about_heading(args, session.map, asked.heading);
         return Settings{{"Max failures", std::to_string(asked.max_failures)},
                         {"Max height (m)", number(session.judge->options().max_height)}};
     };
@@ -235,6 +236,7 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
         notice_about_area(args, session.map, asked.area);
         notice_if_no_layer(args, session.map, asked.layers);
         notices_about_stance(args, command, session.robot);
+        notice_about_heading(args, session.map, asked.heading);
         Settings own{{"Layers", args.ground.layers}};
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
