@@ -122,7 +122,7 @@ TEST_CASE("wrong usage ends with status 2, and the message names option, value a
         {sample + "-n 5 --min-distance -1", "spawnfield: --min-distance is -1, needs >= 0 m"},
         {sample + "-n 5 --yaw north",
          "spawnfield: --yaw is \"north\", needs radians such as 1.57 or degrees such as 90deg, or random, "
-         "or facing:X,Y, downhill, uphill, all:K, any:K or best:K"},
+         "or facing:X,Y, downhill, uphill, all:K, any:K, best:K, best:K:clearance or along"},
         {sample + "-n 5 --region 1,1,0,0",
          "spawnfield: --region: x1 is 0, needs at least x0; give the lower corner first"},
         {search + "-n 5 --max-failures 0", "spawnfield: --max-failures is 0, needs >= 1"},

@@ -85,13 +85,15 @@ TEST_CASE("an experiment with rasters has the counts of raster for each step, in
                                    "--dims 3 --snap --layers top --offset 0.2",
                                    "--dims 3 --no-height-check --bounds 0,0,0,3,3,2",
                                    "--dims 2 --exhaustive",
+                                   "--dims 2 --settle --yaw 0.4 --max-slope 9",
+                                   "--dims 2 --stance settled --yaw any:3 --bounds -5,-5,5,5",
                                    "--dims 2 --region -5,-5,3,4 --keep-out -1,-1,1,1"};
     for (const std::string& option : options) {
         INFO(option);
         const ProgramRun run = arena("experiment map --steps 0.7:1.3:0.3 --runs 2 -o out " + option + husky);
         CHECK(run.status == 0);
         CHECK(run.out.empty());
-        CHECK(run.err.starts_with("spawnfield experiment: out; 2 runs of 3 steps; "));
+        CHECK_THAT(run.err, Contains("spawnfield experiment: out; 2 runs of 3 steps; "));
         const std::vector<Row> rows = rows_of(arena / "out/experiment.csv");
         REQUIRE(rows.size() == 6);
         const bool is_3d = option.find("--dims 3") != std::string::npos;
@@ -165,9 +167,12 @@ TEST_CASE("the report of an experiment has a row per step with mean and sample v
 TEST_CASE("an experiment with searches has the counts of search for each seed")
 {
     const Arena arena;
+    const std::string stance = GENERATE("", " --settle --max-slope 8", " --settle --yaw downhill");
+    CAPTURE(stance);
+    const std::string yaw = stance.find("--yaw") == std::string::npos ? " --yaw 0.3" : "";
     const std::string draws =
-        "map -n 15 --min-distance 0.5 --max-failures 5000 --bounds -9,-9,-0.1,9,9,1 --yaw 0.3 --keep-out -3,-3,3,3" +
-        husky;
+        "map -n 15 --min-distance 0.5 --max-failures 5000 --bounds -9,-9,-0.1,9,9,1 --keep-out -3,-3,3,3" + yaw +
+        stance + husky;
     const nlohmann::json report = summary(arena, "experiment --search --seed 7 --runs 3 -o out " + draws);
     CHECK(report["command"] == "experiment");
     CHECK(report["seed"] == 7);

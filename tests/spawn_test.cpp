@@ -10,6 +10,7 @@
 #include <spawnfield/poses.h>
 
 #include <numbers>
+#include <set>
 
 using namespace spawnfield;
 
@@ -154,6 +155,83 @@ TEST_CASE("search follows its definition, draw by draw")
         for (std::size_t i = 0; i < slow.size(); ++i) CHECK(list.spawns[i].position == slow[i]);
         if (distance > 0) CHECK(smallest_distance(list.spawns) >= distance);
         CHECK(list.counts[Verdict::Valid] == slow.size());
+    }
+}
+
+TEST_CASE("search of settled robots follows its definition, draw by draw, and its spawns are valid")
+{
+    const TestMap map = training_map();
+    const Judge judge(map, husky()), exhaustive = without_mask(judge);
+    const double lift = judge.options().stand.lift;
+    for (const double distance : {0.0, 1.5}) {
+        SearchOptions options{.count = 40,
+                              .min_distance = distance,
+                              .random_yaw = true,
+                              .seed = 3,
+                              .stance = Stance::Settled,
+                              .max_failures = 500};
+        const SpawnList list = search(judge, options);
+        std::vector<Vec3> checked;
+        std::size_t found = 0;
+        for (std::uint64_t index = 0; index < list.draws; ++index) {
+            Draw draw(options.seed, index);
+            Vec3 place;
+            for (int axis = 0; axis < 3; ++axis) place[axis] = draw.uniform(map.bounds.min[axis], map.bounds.max[axis]);
+            const SettledPose pose = exhaustive.settle(place, draw.uniform(-M_PI, M_PI));
+            const Vec3 at = pose.has_pose ? pose.lifted(lift).position : place;
+            const bool clear = std::all_of(checked.begin(), checked.end(),
+                                           [&](const Vec3& other) { return (other - at).norm() >= distance; });
+            if (!clear) continue;
+            checked.push_back(at);
+            if (pose.verdict != Verdict::Valid) continue;
+            REQUIRE(found < list.spawns.size());
+            const Spawn& spawn = list.spawns[found++];
+            CHECK(spawn.position == at);
+            CHECK(spawn.yaw == pose.yaw);
+            CHECK(spawn.roll == pose.roll);
+            CHECK(spawn.pitch == pose.pitch);
+            CHECK(judge.is_valid(pose.lifted(lift)));
+        }
+        CHECK(found == list.spawns.size());
+        CHECK(list.counts.total() == checked.size());
+        CHECK(found >= 30);
+        if (distance > 0) CHECK(smallest_distance(list.spawns) >= distance);
+        const auto is_tilted = [](const Spawn& spawn) { return std::abs(spawn.roll) + std::abs(spawn.pitch) > 0.1; };
+        CHECK(std::count_if(list.spawns.begin(), list.spawns.end(), is_tilted) > 0);
+        for (const int threads : {1, 8}) {
+            options.threads = threads;
+            CHECK(spawns_csv(search(judge, options)) == spawns_csv(list));
+            CHECK(spawns_csv(search(exhaustive, options)) == spawns_csv(list));
+        }
+    }
+}
+
+TEST_CASE("a search of settled robots keeps to the heights of its box and to its region, also with the ground")
+{
+    Scene scene;  // two storeys, 2 m apart
+    hand::add_mesh(scene, Label::Terrain, hand::rectangle(6, 6));
+    hand::add_mesh(scene, Label::Terrain, hand::moved(hand::rectangle(6, 6), {{0, 0, 2}, Mat3::Identity()}));
+    const Judge judge(map_of(scene, 0.1, {{-3, -3, 0}, {3, 3, 3}}), load_robot("box:0.5,0.4,0.3"));
+    SearchOptions options{.count = 30, .stance = Stance::Settled, .max_failures = 2000};
+    const auto storeys = [&] {
+        std::set<double> out;
+        for (const Spawn& spawn : search(judge, options).spawns) out.insert(std::round(spawn.position.z()));
+        return out;
+    };
+    CHECK(storeys() == std::set{0.0, 2.0});
+    options.bounds = {{-3, -3, 0.1}, {3, 3, 3}};  // draws above the lower storey, but its ground is below the box
+    CHECK(storeys() == std::set{2.0});
+    CHECK(search(judge, options).off_area > 0);
+    options.bounds = {{-3, -3, 0}, {3, 3, 1}};
+    CHECK(storeys() == std::set{0.0});
+    options.bounds = {};
+    options.area.within = {box_region(-1, -1, 1, 1, {0.1, 3})};
+    const SpawnList list = search(judge, options);
+    CHECK(list.spawns.size() == 30);
+    CHECK(list.off_area > 0);
+    for (const Spawn& spawn : list.spawns) {
+        CHECK(spawn.position.z() > 1.9);
+        CHECK(spawn.position.head<2>().cwiseAbs().maxCoeff() <= 1);
     }
 }
 

@@ -43,6 +43,39 @@ TEST_CASE("sample answers for settled robots: the same as with --settle, tilted 
     for (const Pose& pose : read_poses(arena / "level.csv").poses) CHECK(pose.rotation(2, 2) == 1);
 }
 
+TEST_CASE("search answers for level robots, and with --settle for settled ones, valid as written")
+{
+    const Arena arena;
+    const std::string query = "search map -n 10 --min-distance 0.5 --yaw random -o ", ramp = " --region 4,5.5,7,8.5";
+    const ProgramRun run = arena(query + "spawns.csv --settle" + ramp + husky_option);
+    CHECK(run.status == 0);
+    CHECK_THAT(run.err, Contains("10 of 10 spawns; settled; "));
+    CHECK(arena(query + "same.csv --stance settled --threads 1" + ramp + husky_option).status == 0);
+    CHECK(bytes_of(arena / "same.csv") == bytes_of(arena / "spawns.csv"));
+    const std::vector<Pose> poses = read_poses(arena / "spawns.csv").poses;
+    REQUIRE(poses.size() == 10);
+    const auto tilted = std::count_if(poses.begin(), poses.end(),
+                                      [](const Pose& pose) { return pose.rotation(2, 2) < std::cos(0.1); });
+    CHECK(tilted > 0);
+    CHECK(arena("check map --poses spawns.csv --require-valid" + husky_option).status == 0);
+    CHECK(arena(query + "lifted.csv --settle --lift 0.05" + ramp + husky_option).status == 0);
+    CHECK(std::abs(read_poses(arena / "lifted.csv").poses[0].position.z() - poses[0].position.z() - 0.03) <= 1e-9);
+    CHECK(arena(query + "gentle.csv --settle --max-slope 5" + ramp + husky_option).status == 0);
+    for (const Pose& pose : read_poses(arena / "gentle.csv").poses) CHECK(pose.rotation(2, 2) >= std::cos(0.0873));
+
+    CHECK(arena(query + "standard.csv" + husky_option).status == 0);
+    CHECK(arena(query + "level.csv --stance level" + husky_option).status == 0);
+    CHECK(bytes_of(arena / "standard.csv") == bytes_of(arena / "level.csv"));
+    for (const Pose& pose : read_poses(arena / "level.csv").poses) CHECK(pose.rotation(2, 2) == 1);
+
+    const ProgramRun rule = arena("search map -n 3 --settle --yaw facing:0,0 --format json" + husky_option);
+    CHECK(rule.status == 0);
+    CHECK_THAT(rule.out, Contains("\"yaw\": \"facing:0,0\"") && Contains("\"lift\": 0.02"));
+    const ProgramRun few = arena("search map -n 3 --settle --min-distance 100 --max-failures 50" + husky_option);
+    CHECK(few.status == 3);
+    CHECK_THAT(few.err, Contains("a smaller --min-distance, a smaller --min-stability, more --max-failures or wider"));
+}
+
 TEST_CASE("heatmap and export answer for settled robots unless they are asked for level ones")
 {
     const Arena arena;
@@ -128,12 +161,23 @@ TEST_CASE("options that do not suit the stance are refused, or get a notice")
         refused(command + " --lift 2", "--lift is 2 m, which raises the origin of a robot on level ground to 2");
     }
     refused("sample map -n 1 --max-slope 0.3rad", "--max-slope: is \"0.3rad\", needs degrees, for example 20 or 20deg");
-    for (const std::string command : {"search map -n 1", "experiment map -o x"})
-        for (const std::string option : {"--settle", "--stance settled", "--lift 1"})
-            refused(command + " " + option,
-                    option.substr(0, option.find(' ')) + " is not an option of " +
-                        command.substr(0, command.find(' ')) +
-                        "; settled robots are only for check, raster, sample, heatmap and export\n");
+    const ProgramRun info = arena("info map --settle");
+    CHECK(info.status == 2);
+    CHECK_THAT(info.err, Contains("--settle is not an option of info; settled robots are only for check, raster, "
+                                  "search, sample, heatmap, export and experiment\n"));
+    const std::string steps = "experiment map -o x --settle --steps 4 --dims ";
+    refused(steps + "2 --offset 0.3", offset + "give --stance level in place of --settle, or leave --offset out\n");
+    refused(steps + "3",
+            "--stance settled (--settle) is only for --dims 2: the robot is let down onto the layers of "
+            "each column; give --dims 2");
+    refused("raster map --dims 3 --step 4 --settle", "--stance settled (--settle) is only for --dims 2");
+    refused("experiment map -o x --settle --search -n 1 --offset 0.3",
+            "--offset is only for rasters, not for --search");
+    refused("search map -n 1 --settle --offset 0.3", "--offset is not an option of search");
+    for (const std::string command : {"search map -n 1 --settle", "experiment map -o x --search -n 1 --settle"}) {
+        refused(command + " --collision octree", "give --stance level in place of --settle");
+        refused(command + " --lift 2", "--lift is 2 m, which raises the origin of a robot on level ground to 2");
+    }
 
     const auto said = [&](const std::string& options) {
         const ProgramRun run = arena("sample map -n 1 " + options + husky_option);
@@ -157,7 +201,10 @@ TEST_CASE("a thesis result of settled robots lists how they stand")
     REQUIRE(arena("raster map --dims 2 --step 2 --settle --drop 0.5 --max-slope 20 --format thesis -o raster" +
                   husky_option)
                 .status == 0);
-    for (const char* const folder : {"drawn", "raster"}) {
+    REQUIRE(
+        arena("search map -n 3 --settle --drop 0.5 --max-slope 20 --format thesis -o searched" + husky_option).status ==
+        0);
+    for (const char* const folder : {"drawn", "raster", "searched"}) {
         const std::string stats = bytes_of(arena / folder / "Stats.txt");
         CHECK(value_of(stats, "Stance") == "settled");
         CHECK(value_of(stats, "Lift (m)") == "0.02");

@@ -131,10 +131,12 @@ struct Spawn {
 inline constexpr double double_ground = 0.1;  ///< m between two layers that are likely the same ground twice
 
 struct SpawnList {
-    std::vector<Spawn> spawns;       ///< in the order in which they were found
-    VerdictCounts counts;            ///< of the positions that were judged
-    std::uint64_t draws = 0;         ///< number of all draws
-    std::uint64_t off_area = 0;      ///< draws outside the options' area
+    std::vector<Spawn> spawns;  ///< in the order in which they were found
+    VerdictCounts counts;       ///< of the positions that were judged
+    std::uint64_t draws = 0;    ///< number of all draws
+    /// Draws outside the options' area. search() of settled robots: or whose ground is outside it, or beyond the
+    /// heights of the box.
+    std::uint64_t off_area = 0;
     std::uint64_t near_avoided = 0;  ///< draws too near to a point of the options' `avoid`
     std::uint64_t too_close = 0;     ///< draws nearer than min_distance to an earlier one
     std::uint64_t exact_checks = 0;
@@ -164,9 +166,16 @@ struct SearchOptions {
     bool random_yaw = false;  ///< uniform in [-pi, pi); false: `yaw`
     double yaw = 0;           ///< rad
     std::uint64_t seed = 0;
-    Bounds bounds = {};  ///< box of the draws; empty: that of the map
-    /// All spawns lie in this area, and draws are made within its bounds. A draw outside the area counts as a failure
-    /// and is not judged (SpawnList::off_area).
+    /// Settled: the robot is let down from each draw, onto the ground at or below it, and the position of the draw is
+    /// that of the settled pose, raised by StandLimits::lift. Spawns are these poses. Needs JudgeOptions::obstacles
+    /// Geometry.
+    Stance stance = Stance::Level;
+    std::optional<HeadingRule> heading = {};  ///< the same as SampleOptions::heading
+    /// Box of the draws; empty: that of the map. Settled: ground beyond its heights does not count (to
+    /// touch_tolerance).
+    Bounds bounds = {};
+    /// All spawns lie in this area, and draws are made within its bounds. Of settled robots, their ground does, too. A
+    /// draw outside the area counts as a failure and is not judged (SpawnList::off_area).
     Area area = {};
     /// A draw that is too near to one of these points counts as a failure and is not judged (SpawnList::near_avoided).
     std::vector<AvoidedPoints> avoid = {};
@@ -177,9 +186,9 @@ struct SearchOptions {
 };
 
 /// Returns spawns from a random search (Ropelato). Draws are uniform in a box. Each draw must keep min_distance to all
-/// positions that were judged before. The search ends after `count` valid draws, or after max_failures draws in a row
-/// without a valid one. Draws too near to an avoided point are failures. Throws ArgumentError for options beyond their
-/// limits, FileError for a damaged map.
+/// positions that were judged before; a settled robot that cannot be let down has the position of its draw. The search
+/// ends after `count` valid draws, or after max_failures draws in a row without a valid one. Draws too near to an
+/// avoided point are failures. Throws ArgumentError for options beyond their limits, FileError for a damaged map.
 SPAWNFIELD_API SpawnList search(const Judge& judge, const SearchOptions& options);
 
 struct SampleOptions {

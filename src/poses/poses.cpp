@@ -109,20 +109,13 @@ Json z_json(const ZRange& z)
     return {limit(z.low), limit(z.high)};
 }
 
-Json yaw_json(const SearchOptions& options) { return options.random_yaw ? Json("random") : Json(options.yaw); }
-
-Json yaw_json(const SampleOptions& options)
-{
-    if (options.heading) return to_string(*options.heading);
-    return options.random_yaw ? Json("random") : Json(options.yaw);
-}
-
 /// Returns the settings that `sample` and `search` share. Limits that are infinite are left out.
 template <class Options>
 Json settings_json(const Options& options, const Judge& judge, int axes)
 {
     Json out = {{"count", options.count}, {"min_distance", options.min_distance}, {"seed", options.seed}};
-    out["yaw"] = yaw_json(options);
+    const bool is_chosen = options.heading || options.random_yaw;
+    out["yaw"] = is_chosen ? Json(yaw_text(options.heading, options.random_yaw, options.yaw)) : Json(options.yaw);
     out["bounds"] = bounds_json(options.bounds.is_empty() ? judge.map().bounds : options.bounds, axes);
     const JudgeOptions& limits = judge.options();
     if (std::isfinite(limits.max_water_depth)) out["max_water_depth"] = limits.max_water_depth;
@@ -367,6 +360,7 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
                         const SearchOptions& options)
 {
     Json settings = settings_json(options, judge, 3);
+    if (options.stance == Stance::Settled) add_stand_limits(settings, judge.options().stand);
     settings["max_height"] = judge.options().max_height;
     settings["max_failures"] = options.max_failures;
     return finished(json_head("search", judge.map(), judge.robot(), std::move(settings)), list.counts, robots);

@@ -14,8 +14,16 @@ std::string to_string(const HeadingRule& rule)
     case HeadingRule::Kind::All: return several("all:");
     case HeadingRule::Kind::Any: return several("any:");
     case HeadingRule::Kind::Best: return several("best:");
+    case HeadingRule::Kind::Clearest: return several("best:") + ":clearance";
+    case HeadingRule::Kind::Along: return several("along:");
     }
     return "";
+}
+
+std::string yaw_text(const std::optional<HeadingRule>& rule, bool is_random, double yaw)
+{
+    if (rule) return to_string(*rule);
+    return is_random ? "random" : number(yaw);
 }
 
 }  // namespace spawnfield

@@ -4,7 +4,6 @@
 #include "query/avoid_index.h"
 #include "query/cell_proofs.h"
 #include "query/spawning.h"
-#include "query/stand_judge.h"
 
 #include <spawnfield/error.h>
 
@@ -278,22 +277,9 @@ private:
     /// Lets a candidate down at a place.
     Candidate settle(const Column& column, const Vec3& place, Draw& from, Candidate out)
     {
-        StandJudge& stand = stand_judges_.local();
-        StandJudge::Choice choice;
-        if (options_.heading)
-            choice = stand.judge(ColumnView(column), place, *options_.heading, from.unit());
-        else
-            choice.pose = stand.judge(ColumnView(column), place, out.spawn.yaw);
-        const SettledPose& pose = choice.pose;
-        out.spawn.yaw = pose.yaw;
-        out.spawn.position = pose.has_pose ? pose.lifted(shared_.options.stand.lift).position : place;
-        out.spawn.roll = pose.roll;
-        out.spawn.pitch = pose.pitch;
+        let_down(stand_judges_.local(), column, place, shared_.options.stand.lift, options_, from, out);
         out.near_avoided = !avoided_.is_clear(out.spawn.position);
-        if (out.near_avoided) return out;
-        out.clear = taken_.before().is_clear(out.spawn.position);
-        out.set(judgement_of(pose));
-        if (options_.heading) out.exact_checks = choice.exact_checks;
+        out.clear = !out.near_avoided && taken_.before().is_clear(out.spawn.position);
         return out;
     }
 

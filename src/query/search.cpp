@@ -32,12 +32,11 @@ void check_ground(const char* function, const ZRange& z, Stance stance, const st
 
 void check_heading(const char* function, const std::optional<HeadingRule>& rule, Stance stance)
 {
-    constexpr int most = 64;  // bits of RasterRest::valid_headings
     if (!rule) return;
     if (stance == Stance::Level)
         throw ArgumentError(function, "heading is given, but stance is Level: only settled robots have a rule for it");
-    if (rule->has_several() && (rule->count < 1 || rule->count > most))
-        throw ArgumentError(function, "heading.count", rule->count, "1 .. " + std::to_string(most));
+    if (rule->has_several() && (rule->count < 1 || rule->count > HeadingRule::most))
+        throw ArgumentError(function, "heading.count", rule->count, "1 .. " + std::to_string(HeadingRule::most));
     for (const double value : {rule->x, rule->y})
         if (!std::isfinite(value)) throw ArgumentError(function, "heading.x and y", value, "finite numbers, m");
 }
@@ -102,72 +101,133 @@ private:
     const double max_height_;
 };
 
+/// One search: makes the draws, and keeps the positions that were judged.
+class Searcher {
+public:
+    Searcher(const Judge& judge, const SearchOptions& options)
+        : shared_(judge.impl()), options_(options), area_(options.area),
+          box_(overlap(chosen_bounds("search", options.bounds, shared_.map.bounds), options.area.bounds())),
+          ground_z_(options.bounds.is_empty() ? ZRange{} : options.bounds.z()), avoided_(options.avoid, box_),
+          far_above_(shared_.options.exhaustive ? nullptr : &shared_.map, shared_.options.max_height),
+          checked_(options.min_distance)
+    {
+    }
+
+    SpawnList run()
+    {
+        SpawnList out;
+        std::uint64_t failures = 0;
+        const auto batch_size = [&](std::uint64_t draws) {
+            return batch_for(options_.count, options_.min_distance, out.spawns.size(), draws);
+        };
+        const auto place = [&](std::uint64_t index) -> Vec2 {
+            Draw draw(options_.seed, index);
+            return position(draw).head<2>();
+        };
+        const auto look_at = [&](std::uint64_t index, PoseJudge& judge) { return look(index, judge); };
+        draw_in_order(0, shared_, options_, out, checked_, batch_size, place, look_at, [&](const Candidate& candidate) {
+            failures = take(candidate, out) ? 0 : failures + 1;
+            return out.spawns.size() < options_.count && failures < options_.max_failures;
+        });
+        return out;
+    }
+
+private:
+    Vec3 position(Draw& draw) const
+    {
+        const double x = draw.uniform(box_.min.x(), box_.max.x()), y = draw.uniform(box_.min.y(), box_.max.y());
+        return Vec3(x, y, draw.uniform(box_.min.z(), box_.max.z()));
+    }
+
+    Candidate look(std::uint64_t index, PoseJudge& judge)
+    {
+        Draw draw(options_.seed, index);
+        Candidate out;
+        const Vec3& p = out.spawn.position = position(draw);
+        out.spawn.yaw = draw_yaw(options_, draw);
+        out.off_area = !area_.contains(p.head<2>(), p.z());
+        if (out.off_area) return out;
+        const bool is_aerial = far_above_.holds(p);
+        if (is_settled_ && !is_aerial) return settle(judge, draw, out);
+        if (!is_clear(out)) return out;
+        if (is_aerial) {
+            out.verdict = Verdict::Aerial;
+            return out;
+        }
+        judge.set_rotation(out.spawn.yaw);
+        out.set(judge.judge(p));
+        return out;
+    }
+
+    /// Sets whether the spawn is far enough from avoided points and from the positions of earlier batches, and returns
+    /// it.
+    bool is_clear(Candidate& out) const
+    {
+        out.near_avoided = !avoided_.is_clear(out.spawn.position);
+        out.clear = !out.near_avoided && checked_.before().is_clear(out.spawn.position);
+        return out.clear;
+    }
+
+    /// Lets the robot of a draw down.
+    Candidate settle(PoseJudge& judge, Draw& draw, Candidate out)
+    {
+        const Vec3 place = out.spawn.position;
+        const Column& column = judge.column_at(place.head<2>());
+        const std::optional<Ground> ground = ground_below(column, place.z());
+        const bool is_near = ground && place.z() - ground->height <= shared_.options.max_height + touch_tolerance;
+        out.off_area = is_near && (!ground_z_.contains(ground->height, touch_tolerance) ||
+                                   !area_.contains(place.head<2>(), ground->height));
+        if (out.off_area) return out;
+        let_down(stand_judges_.local(), column, place, shared_.options.stand.lift, options_, draw, out);
+        is_clear(out);
+        return out;
+    }
+
+    /// Counts a draw. Returns whether it gave a spawn.
+    bool take(const Candidate& candidate, SpawnList& out)
+    {
+        ++out.draws;
+        if (candidate.off_area) {
+            ++out.off_area;
+            return false;
+        }
+        if (candidate.near_avoided) {
+            ++out.near_avoided;
+            return false;
+        }
+        if (!candidate.clear || !checked_.is_still_clear(candidate.spawn.position)) {
+            ++out.too_close;
+            return false;
+        }
+        checked_.add(candidate.spawn.position);
+        ++out.counts[candidate.verdict];
+        out.exact_checks += candidate.exact_checks;
+        if (candidate.verdict != Verdict::Valid) return false;
+        out.spawns.push_back(candidate.spawn);
+        return true;
+    }
+
+    const Judge::Impl& shared_;
+    const SearchOptions& options_;
+    const bool is_settled_ = options_.stance == Stance::Settled;
+    const AreaIndex area_;
+    const Bounds box_;
+    const ZRange ground_z_;  ///< settled: ground beyond it does not count
+    const AvoidIndex avoided_;
+    const FarAbove far_above_;
+    PerThread<StandJudge> stand_judges_{[this] { return StandJudge(shared_); }};  ///< only for settled poses
+    TakenPoints checked_;
+};
+
 }  // namespace
 
 SpawnList search(const Judge& judge, const SearchOptions& options)
 {
     check_spawn_options("search", options);
+    check_heading("search", options.heading, options.stance);
     if (options.max_failures < 1) throw ArgumentError("search", "max_failures", double(options.max_failures), ">= 1");
-    const AreaIndex area(options.area);
-    const Map& map = judge.map();
-    const Bounds box = overlap(chosen_bounds("search", options.bounds, map.bounds), options.area.bounds());
-    const FarAbove far_above(judge.options().exhaustive ? nullptr : &map, judge.options().max_height);
-    const AvoidIndex avoided(options.avoid, box);
-    TakenPoints checked(options.min_distance);
-
-    const auto position = [&](Draw& draw) {
-        const double x = draw.uniform(box.min.x(), box.max.x()), y = draw.uniform(box.min.y(), box.max.y());
-        return Vec3(x, y, draw.uniform(box.min.z(), box.max.z()));
-    };
-    const auto place = [&](std::uint64_t index) -> Vec2 {
-        Draw draw(options.seed, index);
-        return position(draw).head<2>();
-    };
-    const auto look = [&](std::uint64_t index, PoseJudge& pose_judge) {
-        Draw draw(options.seed, index);
-        Candidate out;
-        const Vec3& p = out.spawn.position = position(draw);
-        out.spawn.yaw = draw_yaw(options, draw);
-        out.off_area = !area.contains(p.head<2>(), p.z());
-        if (out.off_area) return out;
-        out.near_avoided = !avoided.is_clear(p);
-        if (out.near_avoided) return out;
-        out.clear = checked.before().is_clear(p);
-        if (!out.clear) return out;
-        if (far_above.holds(p)) {
-            out.verdict = Verdict::Aerial;
-            return out;
-        }
-        pose_judge.set_rotation(out.spawn.yaw);
-        out.set(pose_judge.judge(p));
-        return out;
-    };
-    SpawnList out;
-    std::uint64_t failures = 0;
-    const auto batch_size = [&](std::uint64_t draws) {
-        return batch_for(options.count, options.min_distance, out.spawns.size(), draws);
-    };
-    draw_in_order(0, judge.impl(), options, out, checked, batch_size, place, look, [&](const Candidate& candidate) {
-        ++out.draws;
-        ++failures;
-        if (candidate.off_area) {
-            ++out.off_area;
-        } else if (candidate.near_avoided) {
-            ++out.near_avoided;
-        } else if (!candidate.clear || !checked.is_still_clear(candidate.spawn.position)) {
-            ++out.too_close;
-        } else {
-            checked.add(candidate.spawn.position);
-            ++out.counts[candidate.verdict];
-            out.exact_checks += candidate.exact_checks;
-            if (candidate.verdict == Verdict::Valid) {
-                out.spawns.push_back(candidate.spawn);
-                failures = 0;
-            }
-        }
-        return out.spawns.size() < options.count && failures < options.max_failures;
-    });
-    return out;
+    if (options.stance == Stance::Settled) judge.impl().settler();  // throws if the obstacles are voxels
+    return Searcher(judge, options).run();
 }
 
 }  // namespace spawnfield

@@ -4,6 +4,7 @@
 #include "query/neighbourhoods.h"
 #include "query/pose_judge.h"
 #include "query/spaced_points.h"
+#include "query/stand_judge.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/query.h>
@@ -63,6 +64,25 @@ struct Candidate {
         exact_checks = judgement.exact_check;
     }
 };
+
+/// Lets the robot of a draw down at a place, at the spawn's yaw or at that of the options' rule. Sets the spawn, which
+/// stays at the place if the robot cannot be let down, and the verdict. `column` must be the column at the place.
+template <class Options>
+void let_down(StandJudge& judge, const Column& column, const Vec3& place, double lift, const Options& options,
+              Draw& draw, Candidate& out)
+{
+    StandJudge::Choice choice;
+    if (options.heading) {
+        choice = judge.judge(ColumnView(column), place, *options.heading, draw.unit());
+    } else {
+        choice.pose = judge.judge(ColumnView(column), place, out.spawn.yaw);
+        choice.exact_checks = choice.pose.exact_check;
+    }
+    const SettledPose& pose = choice.pose;
+    out.spawn = {pose.has_pose ? pose.lifted(lift).position : place, pose.yaw, pose.roll, pose.pitch};
+    out.verdict = pose.verdict;
+    out.exact_checks = choice.exact_checks;
+}
 
 /// Positions from which later draws must keep a distance. Draws are examined in batches: first, several threads compare
 /// them with before(). Then is_still_clear() compares them, one after the other, with the positions that were taken

@@ -20,6 +20,21 @@ std::optional<CollisionHit> obstacle_below(const Rest& rest)
     return std::nullopt;
 }
 
+/// Returns the heading with the largest value; of those that differ by at most `equal`, the first one.
+template <class Value>
+std::size_t first_largest(const std::vector<std::size_t>& headings, double equal, const Value& value)
+{
+    std::size_t out = headings.front();
+    double largest = value(out);
+    for (const std::size_t k : std::span(headings).subspan(1)) {
+        const double of_k = value(k);
+        if (!(of_k > largest + equal)) continue;
+        largest = of_k;
+        out = k;
+    }
+    return out;
+}
+
 }  // namespace
 
 SettledPose StandJudge::judge(const Vec3& place, double yaw)
@@ -92,14 +107,66 @@ StandJudge::Choice StandJudge::judge_several(const ColumnView& column, const Vec
         for (std::size_t k = 1; k < poses.size(); ++k)
             if (frequency(poses[k]) > frequency(poses[chosen])) chosen = k;
     } else if (rule.kind == HeadingRule::Kind::Best) {
-        chosen = valid[0];
-        for (const std::size_t k : valid)
-            if (poses[k].margin > poses[chosen].margin + limit_slack) chosen = k;
+        chosen = first_largest(valid, limit_slack, [&](std::size_t k) { return poses[k].margin; });
+    } else if (rule.kind == HeadingRule::Kind::Clearest) {
+        if (!clearances_) clearances_.emplace(shared_.map.geometry, shared_.robot);
+        chosen = first_largest(valid, touch_margin, [&](std::size_t k) {
+            return clearances_->clearance_at(poses[k].lifted(shared_.options.stand.lift));
+        });
+    } else if (rule.kind == HeadingRule::Kind::Along) {
+        chosen = longest_way(place, valid, out, poses);
     } else {
         chosen = valid[std::size_t(chance * double(valid.size()))];
     }
     out.pose = std::move(poses[chosen]);
     return out;
+}
+
+/// Returns the heading in which the robot can go straight ahead for longest; of equal ones the one in which it can also
+/// go back for longest, and of these the first one. `headings` are the valid ones, and `poses` those of all headings.
+std::size_t StandJudge::longest_way(const Vec3& place, const std::vector<std::size_t>& headings, Choice& out,
+                                    const std::vector<SettledPose>& poses)
+{
+    const Bounds box = shared_.robot.bounds();
+    const double step = (box.max.x() - box.min.x()) / 2;
+    const std::vector<std::size_t> ahead = with_longest_way(place, headings, poses, step, out);
+    return with_longest_way(place, ahead, poses, -step, out).front();
+}
+
+/// Returns the headings in which the robot can make the most steps of a length (m; negative: backwards), up to
+/// HeadingRule::most_steps. A step leads to a valid pose at the same yaw, whose ground rises or falls by at most
+/// --max-slope from that of the pose before. If one heading is left, its other steps are not examined.
+std::vector<std::size_t> StandJudge::with_longest_way(const Vec3& place, const std::vector<std::size_t>& headings,
+                                                      const std::vector<SettledPose>& poses, double step, Choice& out)
+{
+    struct Way {
+        std::size_t heading;
+        double ground;  ///< height of the ground of its last pose, m
+    };
+    const double rise = std::abs(step) * std::tan(shared_.options.stand.max_slope) + limit_slack;
+    std::vector<Way> ways;
+    for (const std::size_t k : headings) ways.push_back({k, poses[k].ground->height});
+    const auto can_go_on = [&](Way& way, int steps) {
+        const double yaw = poses[way.heading].yaw;
+        const Vec2 at = place.head<2>() + steps * step * Vec2(std::cos(yaw), std::sin(yaw));
+        const ColumnView column(upright_.column_at(at));
+        const std::optional<Ground> ground = ground_below(column, way.ground + rise);
+        if (!ground || ground->height < way.ground - rise) return false;
+        way.ground = ground->height;
+        const SettledPose pose = judge(column, {at.x(), at.y(), way.ground}, yaw);
+        out.exact_checks += pose.exact_check;
+        return pose.verdict == Verdict::Valid;
+    };
+    for (int steps = 1; steps <= HeadingRule::most_steps && ways.size() > 1; ++steps) {
+        std::vector<Way> next;
+        for (Way way : ways)
+            if (can_go_on(way, steps)) next.push_back(way);
+        if (next.empty()) break;
+        ways = std::move(next);
+    }
+    std::vector<std::size_t> left;
+    for (const Way& way : ways) left.push_back(way.heading);
+    return left;
 }
 
 /// Returns the yaw in which the ground around a place falls most, by the heights half a robot's length away from it; 0
@@ -125,11 +192,10 @@ double StandJudge::downhill_yaw(const Vec3& place)
 /// Returns where the rest on flat ground at a yaw is kept.
 Settler::FlatRest& StandJudge::flat_at(double yaw)
 {
-    constexpr std::size_t most = 64;  // as many as headings of a rule
     const auto is_there = [&](const Settler::FlatRest& flat) { return flat.yaw == yaw; };
     const auto found = std::find_if(flats_.begin(), flats_.end(), is_there);
     if (found != flats_.end()) return *found;
-    if (flats_.size() == most) flats_.clear();
+    if (flats_.size() == HeadingRule::most) flats_.clear();
     if (flats_.empty() || !std::isnan(flats_.back().yaw)) flats_.emplace_back();
     return flats_.back();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "query/clearance.h"
 #include "query/pose_judge.h"
 
 #include <spawnfield/heading_rule.h>
@@ -35,6 +36,10 @@ public:
 
 private:
     Choice judge_several(const ColumnView& column, const Vec3& place, const HeadingRule& rule, double chance);
+    std::size_t longest_way(const Vec3& place, const std::vector<std::size_t>& headings, Choice& out,
+                            const std::vector<SettledPose>& poses);
+    std::vector<std::size_t> with_longest_way(const Vec3& place, const std::vector<std::size_t>& headings,
+                                              const std::vector<SettledPose>& poses, double step, Choice& out);
     double downhill_yaw(const Vec3& place);
     Settler::FlatRest& flat_at(double yaw);
     void judge_rest(const ColumnView& column, const Rest& rest, SettledPose& out);
@@ -47,6 +52,7 @@ private:
     std::vector<Settler::FlatRest> flats_;  ///< at the yaws of some poses before
     PoseJudge upright_;
     PoseChecker checker_;
+    std::optional<ClearanceMeter> clearances_;  ///< made when it is first needed
 };
 
 }  // namespace spawnfield

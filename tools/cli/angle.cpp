@@ -11,6 +11,8 @@
 namespace spawnfield::cli {
 namespace {
 
+constexpr int along_headings = 16;  // of --yaw along
+
 double parse(const CommonArgs& args, const std::string& text, const std::string& others)
 {
     constexpr double radians_per_degree = std::numbers::pi / 180, turn = 2 * std::numbers::pi + 1e-9;
@@ -32,22 +34,32 @@ double parse(const CommonArgs& args, const std::string& text, const std::string&
 std::optional<HeadingRule> parse_rule(const std::string& text)
 {
     using Kind = HeadingRule::Kind;
-    static const std::map<std::string, Kind> kinds{{"facing", Kind::Facing}, {"downhill", Kind::Downhill},
-                                                   {"uphill", Kind::Uphill}, {"all", Kind::All},
-                                                   {"any", Kind::Any},       {"best", Kind::Best}};
+    static const std::map<std::string, Kind> kinds{
+        {"facing", Kind::Facing}, {"downhill", Kind::Downhill}, {"uphill", Kind::Uphill}, {"all", Kind::All},
+        {"any", Kind::Any},       {"best", Kind::Best},         {"along", Kind::Along}};
     const std::size_t colon = text.find(':');
     const auto found = kinds.find(text.substr(0, colon));
     if (found == kinds.end()) return std::nullopt;
-    const std::string value = colon == std::string::npos ? "" : text.substr(colon + 1);
+    std::string value = colon == std::string::npos ? "" : text.substr(colon + 1);
     const auto refuse = [&](const std::string& needs) {
         throw ArgumentError("--yaw is \"" + text + "\", needs " + needs);
     };
     HeadingRule out{.kind = found->second};
+    const std::string clearance = ":clearance";
+    std::string example_end = out.kind == Kind::Best ? " or best:8" + clearance : "";
+    if (out.kind == Kind::Best && value.ends_with(clearance)) {
+        out.kind = Kind::Clearest;
+        value.resize(value.size() - clearance.size());
+        example_end = clearance;
+    }
     const char *from = value.data(), *const end = from + value.size();
-    if (out.has_several()) {
+    if (out.kind == Kind::Along && colon == std::string::npos) {
+        out.count = along_headings;
+    } else if (out.has_several()) {
         const auto [stop, error] = std::from_chars(from, end, out.count);
-        if (error != std::errc{} || stop != end || out.count < 1 || out.count > 64)
-            refuse("a number of headings, 1 .. 64, for example " + found->first + ":8");
+        if (error != std::errc{} || stop != end || out.count < 1 || out.count > HeadingRule::most)
+            refuse("a number of headings, 1 .. " + std::to_string(HeadingRule::most) + ", for example " + found->first +
+                   ":8" + example_end);
     } else if (out.kind == Kind::Facing) {
         const auto [comma, error] = std::from_chars(from, end, out.x);
         if (error != std::errc{} || comma == end || *comma != ',')
@@ -71,11 +83,14 @@ YawChoice parse_yaw_choice(const CommonArgs& args, const std::string& text, bool
     const std::optional<HeadingRule> rule = parse_rule(text);
     if (rule && !is_settled)
         throw ArgumentError("--yaw " + text +
-                            " is only for robots at rest: sample and heatmap without --stance level, raster --settle");
+                            " is only for robots at rest: sample and heatmap without --stance level; raster, search "
+                            "and experiment with --settle");
     if (rule) return {.rule = rule};
-    return {.yaw = parse(args, text,
-                         std::string(allow_random ? ", or random" : "") +
-                             (is_settled ? ", or facing:X,Y, downhill, uphill, all:K, any:K or best:K" : ""))};
+    return {.yaw = parse(
+                args, text,
+                std::string(allow_random ? ", or random" : "") +
+                    (is_settled ? ", or facing:X,Y, downhill, uphill, all:K, any:K, best:K, best:K:clearance or along"
+                                : ""))};
 }
 
 }  // namespace spawnfield::cli

@@ -13,7 +13,8 @@ inline const std::string yaw_help = "radians, or degrees such as 90deg";
 /// The rules of --yaw, for --help.
 inline const std::string heading_help =
     "robots at rest: facing:X,Y (towards a point), downhill or uphill, any:K or all:K (valid at one or at each of K "
-    "headings), or best:K (the one with the largest margin)";
+    "headings), best:K (the one with the largest margin), best:K:clearance (the one farthest from obstacles), or "
+    "along or along:K (the one with the longest way straight ahead; K is 16)";
 
 /// What --yaw can be.
 struct YawChoice {

@@ -85,13 +85,13 @@ Progress share_of_runs(const Progress& whole, std::size_t done, std::size_t all)
 class ExperimentCommand {
 public:
     ExperimentCommand(const ExperimentArgs& args, const CLI::App& command, Summary& summary)
-        : args_(args), summary_(summary)
+        : args_(args), command_(command), summary_(summary)
     {
         check_usage(args, command);
         if (args.search)
             prepare_searches();
         else
-            prepare_rasters(command);
+            prepare_rasters();
     }
 
     Ending run()
@@ -103,9 +103,12 @@ public:
                                           session_.map);
             notice_if_off_map(args_, session_.map, "--bounds", search_.bounds);
             notice_about_area(args_, session_.map, search_.area);
+            if (args_.is_settled()) choose_offset(args_, std::nullopt, session_.robot, summary_);
         } else {
             complete(raster_, args_, session_, summary_);
         }
+        notices_about_stance(args_, command_, session_.robot);
+        notice_about_heading(args_, session_.map, args_.search ? search_.heading : raster_.heading);
         summary_.lap("load");
         std::vector<ExperimentRun> runs = args_.search ? run_searches() : run_rasters();
         summary_.lap("query");
@@ -114,16 +117,19 @@ public:
     }
 
 private:
-    void prepare_rasters(const CLI::App& command)
+    void prepare_rasters()
     {
-        raster_ = raster_options(args_, command);
+        raster_ = raster_options(args_, command_);
         steps_ = step_pairs(args_);
     }
 
     void prepare_searches()
     {
         search_ = search_options(args_, args_.draws, args_.bounds, "experiment", !args_.ground.z.empty());
-        search_.yaw = parse_yaw(args_, args_.yaw);
+        const YawChoice yaw = parse_yaw_choice(args_, args_.yaw, args_.is_settled(), false);
+        search_.yaw = yaw.yaw;
+        search_.heading = yaw.rule;
+        search_.stance = args_.stance();
         search_.area = read_area(args_, args_.area);
     }
 
@@ -197,6 +203,7 @@ private:
     }
 
     const ExperimentArgs& args_;
+    const CLI::App& command_;
     Summary& summary_;
     RasterOptions raster_;  ///< without the steps
     SearchOptions search_;  ///< of the first run
@@ -235,7 +242,7 @@ void add_experiment(CLI::App& app, const std::string& command_line, ChosenComman
     start_group(command, "Searches");
     add_draws(command, args->draws);
     add_max_failures(command, args->draws);
-    add_raster_query(command, *args, false);
+    add_raster_query(command, *args);
     command.footer(
         "Example:\n"
         "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --steps 0.5:2:0.5 --offset 0.5 "

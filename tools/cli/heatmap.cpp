@@ -171,6 +171,7 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     notice_if_no_layer(args, session.map, options.layers);
     options.z = with_floor(options.z, args.ground, session.map);
     notices_about_stance(args, command, session.robot);
+    notice_about_heading(args, session.map, options.heading);
     options.offset = choose_offset(args, options.offset, session.robot, summary);
     require_above_ground(session.robot, options.offset);
     const TerrainMap terrain = read_terrain(session.map);

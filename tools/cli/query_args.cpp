@@ -76,9 +76,10 @@ void add_stance(CLI::App& command, QueryArgs& args, Stance standard)
             "Degrees. Settled robots: one that rests with a larger tilt is steep (default 30). Level robots: " +
             level_max_slope + " (default: slopes do not count)");
     start_group(command, help_group::rest);
-    const std::string level = command.get_option_no_throw("--offset") == nullptr
-                                  ? "the robot is as given"
-                                  : "the robot stands upright, --offset above its layer";
+    const auto has = [&](const char* option) { return command.get_option_no_throw(option) != nullptr; };
+    const std::string level = has("--offset")  ? "the robot stands upright, --offset above its layer"
+                              : has("--poses") ? "the robot is as given"
+                                               : "the robot is upright, at the height of its draw";
     CLI::Option* stance = command
                               .add_option("--stance", args.given_stance,
                                           "settled: the robot is let down at x, y and yaw, and comes to rest on the "

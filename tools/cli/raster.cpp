@@ -35,10 +35,6 @@ void check_write_aerial(const RasterCommandArgs& args, const CLI::App& command, 
 
 RasterOptions options_of(const RasterCommandArgs& args, const CLI::App& command)
 {
-    if (args.is_settled() && args.dims == 3)
-        throw ArgumentError(
-            "--stance settled (--settle) is only for --dims 2: the robot is let down onto the layers of each column; "
-            "give --dims 2");
     RasterOptions options = raster_options(args, command);
     if (args.dims == 2)
         notice_no_effect(args, command, {"--step-z"}, "it is only for --dims 3; in 2D each pose stands on a layer");
@@ -59,7 +55,7 @@ Settings settings_of(const RasterCommandArgs& args, const Session& session, cons
     if (is_3d) add("Step z (m)", number(grid.step_z));
     if (is_3d) add("Snap", options.snap ? "yes" : "no");
     if (options.offset) add("Offset (m)", number(*options.offset));
-    add("Yaw (rad)", options.heading ? to_string(*options.heading) : number(options.yaw));
+    add("Yaw (rad)", yaw_text(options.heading, false, options.yaw));
     add("Bounds (m, z up)", bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, options.dims));
     for (const Region& region : options.area.within) add("Region", region.name);
     for (const Region& region : options.area.keep_out) add("Keep out", region.name);
@@ -82,6 +78,7 @@ Ending run_raster(const RasterCommandArgs& args, const CLI::App& command, Summar
     const Session session = open_session(args, summary);
     complete(options, args, session, summary);
     notices_about_stance(args, command, session.robot);
+    notice_about_heading(args, session.map, options.heading);
     summary.lap("load");
     const RasterResult result = raster(*session.judge, options);
     summary.lap("query");
@@ -127,7 +124,7 @@ void add_raster(CLI::App& app, ChosenCommand& chosen)
                     "csv, or thesis: a folder of Valid_Locations.txt and similar files in Unity's frame (default csv)")
         ->check(one_of({"csv", "thesis"}));
     command.add_option("--heatmap", args->heatmap, "Picture to write: .png, .svg or .pdf (- for standard output)");
-    add_raster_query(command, *args, true);
+    add_raster_query(command, *args);
     command.add_flag("--write-aerial", args->write_aerial,
                      "3D: write aerial poses, too. With --format thesis, in 2D and 3D: also those off the terrain");
     command.footer(

@@ -41,16 +41,15 @@ CLI::Option* add_dims(CLI::App& command, RasterArgs& args)
         ->check(one_of({"2", "3"}));
 }
 
-void add_raster_query(CLI::App& command, RasterArgs& args, bool stance)
+void add_raster_query(CLI::App& command, RasterArgs& args)
 {
     add_ground(command, args.ground, "all, top, bottom, or N from the top (0 first; default all)");
-    command.add_option("--yaw", args.yaw,
-                       "Yaw of all poses: " + yaw_help + (stance ? "; for " + heading_help : "") + " (default 0)");
+    command.add_option("--yaw", args.yaw, "Yaw of all poses: " + yaw_help + "; for " + heading_help + " (default 0)");
     command.add_flag("--snap", args.snap,
                      "3D: each layer gets a pose --offset above it, in place of the lowest step at or above it");
     command.add_flag("--no-height-check", args.no_height_check, "3D: judge only collisions, at every pose");
     add_verdict_options(command, args);
-    if (stance) add_stance(command, args, Stance::Level);
+    add_stance(command, args, Stance::Level);
     add_area(command, args.area);
     command.add_option("--bounds", args.bounds,
                        "x0,y0,z0,x1,y1,z1 in m; in 2D or with --z also x0,y0,x1,y1. In 2D layers beyond z0 .. z1 are "
@@ -60,6 +59,10 @@ void add_raster_query(CLI::App& command, RasterArgs& args, bool stance)
 
 RasterOptions raster_options(const RasterArgs& args, const CLI::App& command)
 {
+    if (args.is_settled() && args.dims == 3)
+        throw ArgumentError(
+            "--stance settled (--settle) is only for --dims 2: the robot is let down onto the layers of each column; "
+            "give --dims 2");
     if (args.dims == 2)
         refuse(command, {"--no-height-check", "--snap"}, "is only for --dims 3: in 2D each pose stands on a layer");
     if (args.dims == 3)

@@ -18,8 +18,8 @@ struct RasterArgs : QueryArgs {
 /// Adds --dims.
 CLI::Option* add_dims(CLI::App& command, RasterArgs& args);
 
-/// Adds the groups of options on poses, ground, region, robot and run, and with `stance` those on robots at rest.
-void add_raster_query(CLI::App& command, RasterArgs& args, bool stance);
+/// Adds the groups of options on poses, ground, robots at rest, region, robot and run.
+void add_raster_query(CLI::App& command, RasterArgs& args);
 
 /// Returns the raster's options without the steps and what complete() adds. Prints notices about options without
 /// effect. Throws ArgumentError for options that do not go together.

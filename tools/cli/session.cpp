@@ -74,6 +74,16 @@ void notice_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoic
                          counted(std::uint64_t(map.layers), "layer") + " (0 is the highest)");
 }
 
+void notice_about_heading(const CommonArgs& args, const Map& map, const std::optional<HeadingRule>& rule)
+{
+    if (!rule || rule->kind != HeadingRule::Kind::Clearest) return;
+    const LabelCount& obstacles = map.geometry.labels()[std::size_t(Label::Obstacle)];
+    if (obstacles.triangles + obstacles.primitives == 0)
+        notice(args, "--yaw " + to_string(*rule) +
+                         " measures the distance to obstacles, but the map has none, so the first valid heading is "
+                         "used; `bake --auto-label slope=30` makes steep faces obstacles");
+}
+
 void notice_about_tilted(const CommonArgs& args, const std::string& file, const PoseTable& table)
 {
     const auto is_tilted = [](const Pose& pose) { return pose.rotation(2, 2) < 1 - 1e-12; };

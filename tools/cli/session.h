@@ -31,6 +31,9 @@ void notice_about_tilted(const CommonArgs& args, const std::string& file, const 
 /// Returns how many poses are not valid, and why the first ones are not.
 std::string not_valid_words(const VerdictReport& report);
 
+/// Prints a notice if a rule needs obstacles, and the map has none.
+void notice_about_heading(const CommonArgs& args, const Map& map, const std::optional<HeadingRule>& rule);
+
 /// Print a notice if the answer is known without a query: the region lies off the map, or no column has that layer.
 void notice_if_off_map(const CommonArgs& args, const Map& map, const std::string& option, const Bounds& bounds);
 void notice_if_no_layer(const CommonArgs& args, const Map& map, const LayerChoice& layers);

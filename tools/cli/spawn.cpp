@@ -43,13 +43,15 @@ std::string shortfall(const Options& options, const QueryArgs& args, const Spawn
 {
     const std::string found = std::to_string(list.spawns.size()),
                       of_count = found + " of " + std::to_string(options.count) + " spawns ";
+    const std::string sample_advice = args.is_settled() ? "a smaller --min-stability or a wider --region"
+                                                        : "another --offset or a wider --region";
+    const std::string search_advice = std::string(args.is_settled() ? "a smaller --min-stability, " : "") +
+                                      "more --max-failures or " +
+                                      (options.area.is_everywhere() ? "wider --bounds" : "a wider --region");
     const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
                                (list.near_avoided > 0 ? "a smaller --avoid-distance, " : "") +
                                (args.max_slope ? "a larger --max-slope, " : "") +
-                               (args.is_settled()              ? "a smaller --min-stability or a wider --region"
-                                : command == "sample"          ? "another --offset or a wider --region"
-                                : options.area.is_everywhere() ? "more --max-failures or wider --bounds"
-                                                               : "more --max-failures or a wider --region");
+                               (command == "sample" ? sample_advice : search_advice);
     if (list.is_full && list.spawns.empty())
         return std::string("no spawn fits: it is proven that no pose is valid") +
                (list.near_avoided > 0 ? " and far enough from the avoided poses; " : "; ") + advice + " may give some";
@@ -64,14 +66,6 @@ std::string shortfall(const Options& options, const QueryArgs& args, const Spawn
            " m2 of the region; it is proven that none fits elsewhere. " + upper_first(advice) + " may give more";
 }
 
-std::string yaw_text(const SearchOptions& options) { return options.random_yaw ? "random" : number(options.yaw); }
-
-std::string yaw_text(const SampleOptions& options)
-{
-    if (options.heading) return to_string(*options.heading);
-    return options.random_yaw ? "random" : number(options.yaw);
-}
-
 /// Returns the options, then those that only this command has (`own`), then what was found.
 template <class Options>
 Settings settings_of(const SpawnArgs& args, const Session& session, const Options& options, const SpawnList& list,
@@ -82,7 +76,7 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const Option
     add("Seed", std::to_string(options.seed));
     add("Count", std::to_string(options.count));
     add("Min distance (m)", number(options.min_distance));
-    add("Yaw (rad)", yaw_text(options));
+    add("Yaw (rad)", yaw_text(options.heading, options.random_yaw, options.yaw));
     add("Bounds (m, z up)",
         bounds_text(options.bounds.is_empty() ? session.map.bounds : options.bounds, command == "sample" ? 2 : 3));
     for (const Region& region : options.area.within) add("Region", region.name);
@@ -94,7 +88,7 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const Option
     out.insert(out.end(), own.begin(), own.end());
     add("Spawns", std::to_string(list.spawns.size()));
     add("Draws", std::to_string(list.draws));
-    if (!options.area.is_everywhere()) add("Draws off the region", std::to_string(list.off_area));
+    if (!options.area.is_everywhere() || list.off_area > 0) add("Draws off the region", std::to_string(list.off_area));
     if (!options.avoid.empty()) add("Draws near avoided poses", std::to_string(list.near_avoided));
     add("Draws too close", std::to_string(list.too_close));
     add("Positions that are not valid", "counted, not written");
@@ -121,7 +115,9 @@ void fill(Summary& summary, const Options& options, const SpawnList& list)
     summary.extra.push_back(
         counted(list.draws, "draw") + ", " + std::to_string(list.too_close) + " too close" +
         (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
-        (options.area.is_everywhere() ? "" : ", " + std::to_string(list.off_area) + " off the region"));
+        (options.area.is_everywhere() && list.off_area == 0
+             ? ""
+             : ", " + std::to_string(list.off_area) + " off the region"));
     summary.draws = {{"all", list.draws},
                      {"too_close", list.too_close},
                      {"near_avoided", list.near_avoided},
@@ -167,10 +163,10 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
                  Options options)
 {
     const std::string command = app.get_name();
-    const YawChoice yaw = parse_yaw_choice(args, args.yaw, command == "sample" && args.is_settled(), true);
+    const YawChoice yaw = parse_yaw_choice(args, args.yaw, args.is_settled(), true);
     options.random_yaw = yaw.is_random;
     options.yaw = yaw.yaw;
-    if constexpr (std::is_same_v<Options, SampleOptions>) options.heading = yaw.rule;
+    options.heading = yaw.rule;
     options.avoid = read_avoided(args, args.avoid, options.min_distance);
     const auto folder = args.is_thesis() ? thesis_folder(args.out) : nullptr;
     if (folder) notice_idle_options(args, app, args.format);
@@ -201,12 +197,16 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
 Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summary)
 {
     SearchOptions options = search_options(args, args.draws, args.bounds, "search", !args.ground.z.empty());
+    options.stance = args.stance();
     options.area = read_area(args, args.area);
     const ZRange heights = heights_of(args.ground, options.bounds, "--bounds");
     const auto prepare = [&](const Session& session, SearchOptions& asked) {
         asked.bounds = with_heights(asked.bounds, heights, session.map);
+        if (args.is_settled()) choose_offset(args, std::nullopt, session.robot, summary);
         notice_if_off_map(args, session.map, "--bounds", asked.bounds);
         notice_about_area(args, session.map, asked.area);
+        notices_about_stance(args, command, session.robot);
+        notice_about_heading(args, session.map, asked.heading);
         return Settings{{"Max failures", std::to_string(asked.max_failures)},
                         {"Max height (m)", number(session.judge->options().max_height)}};
     };
@@ -236,6 +236,7 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
         notice_about_area(args, session.map, asked.area);
         notice_if_no_layer(args, session.map, asked.layers);
         notices_about_stance(args, command, session.robot);
+        notice_about_heading(args, session.map, asked.heading);
         Settings own{{"Layers", args.ground.layers}};
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
@@ -254,8 +255,7 @@ void add_common_spawn_options(CLI::App& command, SpawnArgs& args)
     add_draws(command, args.draws);
     command.get_option("--count")->required();
     command.add_option("--yaw", args.yaw,
-                       "Yaw of all spawns: " + yaw_help + ", or random" +
-                           (command.get_name() == "sample" ? "; for " + heading_help : "") + " (default 0)");
+                       "Yaw of all spawns: " + yaw_help + ", or random; for " + heading_help + " (default 0)");
     command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
     std::vector<std::string> formats = pose_formats;
     formats.push_back("thesis");
@@ -287,11 +287,13 @@ void add_search(CLI::App& app, ChosenCommand& chosen)
     add_common_spawn_options(command, *args);
     add_max_failures(command, args->draws);
     add_verdict_options(command, *args);
+    add_stance(command, *args, Stance::Level);
     start_group(command, help_group::region);
     command.add_option("--bounds", args->bounds,
                        "Box of the draws: x0,y0,z0,x1,y1,z1 in m, or with --z x0,y0,x1,y1 (default: the map's)");
     command.add_option("--z", args->ground.z,
-                       "LOW:HIGH in m: heights of the draws, in place of those of --bounds (5: or :8 for one limit)");
+                       "LOW:HIGH in m: heights of the draws, and of the ground of settled robots, in place of those of "
+                       "--bounds (5: or :8 for one limit)");
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield search /tmp/training --robot box:0.99,0.67,0.39 -n 20 --min-distance 1.5 "
