@@ -41,10 +41,13 @@ constexpr double tie = 1e-12;                                               // m
 constexpr double smallest_turn = 1e-11;                                     // rad
 constexpr double first_turn = 0.1, least_limit = 0.01, largest_turn = 0.3;  // rad: limits of one step
 /// Touches that are farther below the highest one than this cannot carry the robot after the next step, m: at most
-/// `most_seen`, and this many times the limit of the step and the robot's size.
-constexpr double most_seen = 0.2, seen_share = 4;
+/// `most_seen` (of large robots, `large_seen` times the robot's size), and `seen_share` times the limit of the step and
+/// the robot's size.
+constexpr double most_seen = 0.2, large_seen = 0.3, seen_share = 4;
 constexpr double straight_turn = 0.1;  // rad, see descend()
+constexpr double exact_turn = 1e-3;    // rad: after a turn of this size, the touches are where they were expected
 constexpr int max_turns = 300;
+constexpr double same_drift = 1e-9;  // m: much less than `preference`, which would have no effect otherwise
 // A robot whose mass is near an edge of the support polygon may rock onto another contact. It still stands there if it
 // moves by no more than this.
 constexpr double rocking_rise = 0.05;                        // m
@@ -194,6 +197,62 @@ NearestEdge nearest_edge(const Polygon2& polygon, const Vec2& point)
     return out;
 }
 
+/// Returns a convex polygon without corners that are there only by rounding: those very near to another corner or to
+/// the line between their neighbours.
+Polygon2 clear_corners(const Polygon2& polygon)
+{
+    constexpr double shortest_edge = 1e-6, straight = 1e-9;  // m
+    Polygon2 apart, out;
+    for (const Vec2& corner : polygon)
+        if (apart.empty() ||
+            ((corner - apart.back()).norm() >= shortest_edge && (corner - apart.front()).norm() >= shortest_edge))
+            apart.push_back(corner);
+    for (std::size_t k = 0; k < apart.size(); ++k) {
+        const Vec2 &before = apart[(k + apart.size() - 1) % apart.size()], &after = apart[(k + 1) % apart.size()];
+        if (std::abs(cross(after - before, apart[k] - before)) > straight * (after - before).norm())
+            out.push_back(apart[k]);
+    }
+    return out;
+}
+
+/// Returns a segment from the centre of the smaller box to the other one. It ends in the inside of both.
+Convex segment_between(const Bounds& a, const Bounds& b)
+{
+    if ((a.max - a.min).norm() > (b.max - b.min).norm()) return segment_between(b, a);
+    constexpr double inside = 0.5;  // of a ball, a cylinder or a capsule, these points are in the inside
+    const Vec3 from = (a.min + a.max) / 2, middle = (b.min + b.max) / 2, half = inside / 2 * (b.max - b.min);
+    Convex out;
+    out.points = {from, from.cwiseMax(middle - half).cwiseMin(middle + half)};
+    out.edges = {{0, 1}};
+    return out;
+}
+
+/// Returns segments that join parts of a robot between which there is a gap, so that all parts are one body. Uses the
+/// parts' bounds. Source: Prim, Shortest connection networks and some generalizations, 1957.
+std::vector<Convex> joints_of(const std::vector<Convex>& parts)
+{
+    constexpr double least_gap = 1e-9;  // m
+    const auto gap = [](const Bounds& a, const Bounds& b) {
+        return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0).norm();
+    };
+    std::vector<Bounds> bounds;
+    for (const Convex& part : parts) bounds.push_back(part.bounds());
+    std::vector<std::size_t> left, nearest(parts.size(), 0);  // nearest: of the parts that are joined already
+    for (std::size_t p = 1; p < parts.size(); ++p) left.push_back(p);
+    std::vector<Convex> out;
+    while (!left.empty()) {
+        const auto gap_of = [&](std::size_t p) { return gap(bounds[p], bounds[nearest[p]]); };
+        const auto next = std::min_element(left.begin(), left.end(),
+                                           [&](std::size_t p, std::size_t q) { return gap_of(p) < gap_of(q); });
+        const std::size_t joined = *next;
+        left.erase(next);
+        if (gap_of(joined) > least_gap) out.push_back(segment_between(bounds[joined], bounds[nearest[joined]]));
+        for (const std::size_t p : left)
+            if (gap(bounds[p], bounds[joined]) < gap_of(p)) nearest[p] = joined;
+    }
+    return out;
+}
+
 }  // namespace
 
 double Rest::tilt() const { return tilt_of({roll, pitch}); }
@@ -257,6 +316,11 @@ private:
             if (aim.norm() < smallest_turn) break;
             const double share = aim.norm() <= straight ? 1 : way_to_kink(aim);
             const Vec2 turn = share * aim;
+            // A long turn may miss a rest just below the largest tilt.
+            if (turn.norm() > exact_turn && tilt_of(at_.angles + turn) > settler_.options_.max_tilt) {
+                limit_ = turn.lpNorm<Eigen::Infinity>() / 2;
+                continue;
+            }
             if (straight > 0)
                 limit_ = std::clamp(4 * turn.lpNorm<Eigen::Infinity>(), least_limit, largest_turn);
             else
@@ -402,18 +466,44 @@ private:
         Lowered out;
         double z = -underside().value_or(top());
         find_pairs(settler_.options_.max_height);
+        const auto raise = [&](double height, std::size_t solid) {
+            z = height;
+            out.wall = solids_[solid].part;
+            for (Pair& pair : pairs_) pair.is_ceiling &= pair.bottom >= z + contact_tolerance;
+        };
         // The pair that touches highest decides, unless it is a ceiling: then the next one.
-        for (Pair* highest = highest_above(z); highest != nullptr; highest = highest_above(z)) {
+        for (;;) {
+            while (const auto between = solid_between_parts(z)) raise(between->height, between->solid);
+            Pair* const highest = highest_above(z);
+            if (highest == nullptr) break;
             highest->bottom = bottom_of(*highest, highest->height, z + contact_tolerance);
             highest->is_ceiling = highest->bottom >= z + contact_tolerance;
-            if (highest->is_ceiling) continue;
-            z = highest->height;
-            out.wall = solids_[highest->solid].part;
-            for (Pair& pair : pairs_) pair.is_ceiling &= pair.bottom >= z + contact_tolerance;
+            if (!highest->is_ceiling) raise(highest->height, highest->solid);
         }
         if (z > settler_.options_.max_height) return out;
         lower(Vec2::Zero(), z, contact_tolerance, out);
         return out;
+    }
+
+    struct Between {
+        double height;  ///< of the level robot's origin, m
+        std::size_t solid;
+    };
+
+    /// Returns a solid that is between two parts of the level robot at height z, and the height at which it is below
+    /// both. A sheet may be there without touching a part: a foot would be below the ground.
+    std::optional<Between> solid_between_parts(double z)
+    {
+        for (const Convex& joint : settler_.joints_) {
+            const PlacedPart placed{moved(joint, {Vec3::Zero(), rotation(Vec2::Zero())}), {}};
+            for (std::size_t s = 0; s < solids_.size(); ++s) {
+                const double highest = touch(placed, solids_[s]);
+                if (highest <= z + contact_tolerance) continue;
+                if (blocked_heights(placed.body, solids_[s])->bottom < z + contact_tolerance)
+                    return Between{highest, s};
+            }
+        }
+        return std::nullopt;
     }
 
     /// Returns the pair whose highest touch is higher than z and higher than those of the others, without ceilings;
@@ -463,7 +553,8 @@ private:
         out.has_room = false;
         out.wall.reset();
         double ceiling = std::numeric_limits<double>::infinity();
-        const double seen = std::min(most_seen, seen_share * settler_.reach_ * limit_);
+        const double seen = std::min(std::max(most_seen, large_seen * settler_.reach_),
+                                     seen_share * settler_.reach_ * limit_);
         const Attitude attitude(angles, yaw_);
         parts(attitude.rotation);
         find_pairs(z + rise);
@@ -678,7 +769,7 @@ private:
                 drift += lowest.weights[k] * (rise_of_mass(t.touch.point) - t.rise);
                 weights += lowest.weights[k];
             }
-            const bool is_same = (drift / weights - drift_).norm() < 1e-6;
+            const bool is_same = (drift / weights - drift_).norm() < same_drift;
             drift_ = drift / weights;
             if (is_same) break;
         }
@@ -724,9 +815,8 @@ private:
     /// the edge: the smallest of all edges.
     double tip_over(const Polygon2& polygon, const std::vector<RestContact>& contacts, const Vec3& mass) const
     {
-        constexpr double shortest_edge = 1e-6;  // m
         std::vector<Vec3> corners;
-        for (const Vec2& corner : polygon)
+        for (const Vec2& corner : clear_corners(polygon))
             for (const RestContact& contact : contacts)
                 if (contact.point.head<2>() == corner) {
                     corners.push_back(contact.point);
@@ -735,7 +825,6 @@ private:
         double out = std::numbers::pi / 2;
         for (std::size_t k = 0; k < corners.size(); ++k) {
             const Vec3 &p = corners[k], side = corners[k + 1 < corners.size() ? k + 1 : 0] - p;
-            if (side.norm() < shortest_edge) continue;  // rounding decides its direction
             const Vec3 along = side.normalized();
             const Vec3 up = Vec3::UnitZ() - along.z() * along, inward = up.cross(along), arm = mass - p;
             out = std::min(out, std::atan2(arm.dot(inward), arm.dot(up)));
@@ -806,6 +895,7 @@ Settler::Settler(const Geometry& geometry, const Robot& robot, const Options& op
         const Convex& body = parts_.back();
         for (const Vec3& point : body.points) reach_ = std::max(reach_, point.norm() + body.ball + body.disc);
     }
+    joints_ = joints_of(parts_);
 }
 
 /// Returns the solids that the robot may meet, relative to the origin.

@@ -75,6 +75,9 @@ private:
     const Geometry geometry_;
     const Options options_;
     std::vector<Convex> parts_;  ///< in the robot's frame
+    /// Segments between parts that do not touch each other. They only keep the level robot from starting with ground
+    /// between its parts.
+    std::vector<Convex> joints_;
     Vec3 mass_center_;
     double reach_;  ///< m: the distance of the robot's farthest point from its origin
 };

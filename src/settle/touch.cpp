@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace spawnfield {
 namespace {
@@ -16,6 +17,10 @@ constexpr double steepest = 1e5;    ///< largest slope of a touching surface; a 
 constexpr double rounding = 1e-12;  // m
 /// Edges count as parallel if the z of their cross product is at most this share of the product of their lengths.
 constexpr double parallel = 1e-12;
+/// If the sine of the angle between a disc and a face is at most this, the disc may come to lie on the face. Then its
+/// rim also counts as a polygon with this number of corners.
+constexpr double flat_disc = 0.5;
+constexpr int rim_corners = 32;
 constexpr int max_steps = 500;  // of highest_touch()
 /// The newest planes that highest_touch() keeps after a step, besides those that hold the lowest point.
 constexpr std::size_t most_planes = 12;
@@ -351,17 +356,23 @@ void add_rim(const Convex& body, std::size_t index, const Ground& ground, const 
              std::vector<Touch>& out)
 {
     const double radius = body.disc;
-    const Vec3 &centre = body.points[index], &axis = body.axis, &u = body.across;
+    const Vec3 &centre = body.points[index], &axis = body.axis, &u = body.across, v = axis.cross(u);
     ground.visit_faces([&](const Vec3& normal, const auto& z_at) {
+        const auto add = [&](const Vec3& point, Touch::Kind kind) {
+            if (const auto z = z_at(point)) out.push_back(touch_at(*z - point.z(), point, normal, kind, index));
+        };
         const Vec3 across = normal - normal.dot(axis) * axis;
         const double length = across.norm();
-        if (length < 1e-14) return;
-        const Vec3 point = centre - (radius / length) * across;
-        if (const auto z = z_at(point))
-            out.push_back(touch_at(*z - point.z(), point, normal, Touch::Kind::RimOnFace, index));
+        if (length >= 1e-14) add(centre - (radius / length) * across, Touch::Kind::RimOnFace);
+        // A disc that comes to lie on a face touches it at the whole rim. Its lowest point alone would not tell where.
+        if (length > flat_disc) return;
+        for (int k = 0; k < rim_corners; ++k) {
+            const double angle = 2 * std::numbers::pi * k / rim_corners;
+            const Vec3 point = centre + radius * (std::cos(angle) * u + std::sin(angle) * v);
+            if (ground.height_bound(point) >= wanted.min_height) add(point, Touch::Kind::Other);
+        }
     });
     const double bottom = centre.z() - radius * std::sqrt(std::max(0.0, 1 - axis.z() * axis.z()));
-    const Vec3 v = axis.cross(u);
     for (std::size_t k = 0; k < ground.edges.size(); ++k) {
         if (!wanted.wants_edge(k)) continue;
         const auto& [a, b] = ground.edges[k];
