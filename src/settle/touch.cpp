@@ -87,7 +87,8 @@ public:
 
     std::optional<End> end(double x, double y) const { return end_of(solid_, x, y, 1); }
 
-    double highest() const { return highest_; }  ///< z of its highest point
+    /// Returns how far a point must be raised at most until it is not below the solid's top, m.
+    double height_bound(const Vec3& point) const { return highest_ - point.z(); }
 
     /// Calls visit(normal, z) for each upper face: its unit normal, and a function that returns the z of its plane at
     /// the x and y of a point, or nothing if the top is not on the face there (to 1e-9 m).
@@ -130,7 +131,7 @@ public:
     const Vec3& normal() const { return triangle_.normal; }
 
     /// Returns how far a point must be raised until it is on the triangle's plane, m.
-    double height_of(const Vec3& point) const { return triangle_.z_at(point) - point.z(); }
+    double height_bound(const Vec3& point) const { return triangle_.z_at(point) - point.z(); }
 
     /// Returns how far inside side k a point is, seen from above, m; negative: outside.
     double inward(std::size_t k, const Vec3& point) const
@@ -198,15 +199,16 @@ void add_polyhedra(const Convex& body, const Top& ground, const WantedTouches& w
 {
     for (std::size_t j = 0; j < body.points.size(); ++j) {
         const Vec3& point = body.points[j];
-        if (ground.highest() - point.z() < wanted.min_height) continue;
+        if (ground.height_bound(point) < wanted.min_height) continue;
         if (const auto end = ground.end(point.x(), point.y()))
             out.push_back(touch_at(end->z - point.z(), point, end->normal, Touch::Kind::CornerOnFace, j));
     }
     add_corners_below(body, ground, wanted, out);
     for (std::size_t j = 0; j < body.edges.size(); ++j) {
         const auto& [a, b] = body.edges[j];
-        const double low = std::min(body.points[std::size_t(a)].z(), body.points[std::size_t(b)].z());
-        if (!body.is_lower_edge(j) || ground.highest() - low < wanted.min_height) continue;
+        const Vec3 &from = body.points[std::size_t(a)], &to = body.points[std::size_t(b)];
+        if (!body.is_lower_edge(j) || std::max(ground.height_bound(from), ground.height_bound(to)) < wanted.min_height)
+            continue;
         for (std::size_t k = 0; k < ground.edges.size(); ++k)
             if (wanted.wants_edge(k)) add_crossing(body, j, ground, k, out);
     }
@@ -224,7 +226,7 @@ void add_polyhedra(const Convex& body, const TriangleTop& ground, const WantedTo
     corners.clear();
     for (std::size_t j = 0; j < body.points.size(); ++j) {
         const Vec3& point = body.points[j];
-        Corner& corner = corners.emplace_back(ground.height_of(point), 0, 0);
+        Corner& corner = corners.emplace_back(ground.height_bound(point), 0, 0);
         for (unsigned k = 0; k < 3; ++k) {
             const double inward = ground.inward(k, point);
             corner.outside |= unsigned(inward < -rounding) << k;
