@@ -30,19 +30,21 @@ void compare_settled(const Judge& judge, double columns, double yaw, Compared& o
     CHECK(csv_of(fast) == csv_of(raster(without_mask(judge), options)));
     out.counts += fast.counts;
     std::vector<Pose> poses;
-    std::vector<bool> is_below_crest;  // its origin is lower than a crest below its belly
+    std::vector<double> layers;  // heights
     for (std::size_t i = 0; i < fast.poses.size(); ++i) {
         if (fast.poses[i].verdict != Verdict::Valid) continue;
         const RasterRest& rest = fast.rests[i];
+        layers.push_back(rest.layer_height);
         poses.push_back(
             {{fast.poses[i].x, fast.poses[i].y, fast.poses[i].z}, rotation_from_rpy(rest.roll, rest.pitch, rest.yaw)});
-        is_below_crest.push_back(fast.poses[i].z < rest.layer_height);
     }
-    const std::vector<Judgement> as_given = judge.check(poses);
+    const std::vector<Judgement> judged = judge.check(poses);
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        const bool is_valid = as_given[i].verdict == Verdict::Valid;
-        out.valid_as_given += is_valid;
-        out.below_crest += !is_valid && is_below_crest[i];
+        const Verdict verdict = judged[i].verdict;
+        out.valid_as_given += verdict == Verdict::Valid;
+        // Its origin is lower than a crest below its belly, so its ground as given is another one, or there is none.
+        const bool is_below = poses[i].position.z() < layers[i];
+        out.below_crest += verdict == Verdict::Aerial || (verdict == Verdict::OffTerrain && is_below);
     }
 }
 

@@ -50,8 +50,9 @@ constexpr int max_turns = 300;
 constexpr double same_drift = 1e-9;  // m: much less than `preference`, which would have no effect otherwise
 // A robot whose mass is near an edge of the support polygon may rock onto another contact. It still stands there if it
 // moves by no more than this.
-constexpr double rocking_rise = 0.05;                        // m
-constexpr double rocking_turn = 3 * std::numbers::pi / 180;  // rad
+constexpr double rocking_rise = 0.05;                         // m
+constexpr double rocking_turn = 3 * std::numbers::pi / 180;   // rad
+constexpr double rolling_turn = 10 * std::numbers::pi / 180;  // rad: the same if it rolls on a line of contacts
 constexpr int max_rockings = 6;
 /// Where the mass is exactly above an edge between two ways to rest, the robot turns as if its centre of mass were this
 /// much farther back and to the right, m.
@@ -194,6 +195,20 @@ NearestEdge nearest_edge(const Polygon2& polygon, const Vec2& point)
         if (distance < out.distance) out = {distance, edge_normal(p, q).normalized(), p, q};
     }
     if (!contains(polygon, point)) out.distance = -out.distance;
+    return out;
+}
+
+/// Returns the smallest distance of two parallel lines between which a convex polygon fits.
+double width(const Polygon2& polygon)
+{
+    double out = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec2 &p = polygon[k], &q = polygon[k + 1 < polygon.size() ? k + 1 : 0];
+        const Vec2 inward = -edge_normal(p, q).normalized();
+        double across = 0;
+        for (const Vec2& corner : polygon) across = std::max(across, inward.dot(corner - p));
+        out = std::min(out, across);
+    }
     return out;
 }
 
@@ -356,12 +371,14 @@ private:
 
     /// If the mass were beyond the nearest edge of the support polygon, the robot would turn about that edge. If it
     /// then comes to rest after little motion, it stands on the contacts of both poses. Adds them to a rest with a
-    /// margin that is too small. If they are the same contacts, it rolled on them until they carried the mass again: so
-    /// they would do so for any place of the mass up to there, and the edge is moved outwards to there.
+    /// margin that is too small. A robot that rests on a line (its support polygon is narrower than the margin) rolls
+    /// on it until the line carries the mass again: so it would do for any place of the mass up to there, and the edge
+    /// is moved outwards to there.
     void rock(Rest& rest)
     {
         const Lowered rested = at_;
         Polygon2 polygon = support_polygon(rested, contact_gap);
+        bool is_line = width(polygon) < settler_.options_.min_stability, has_rolled = false;
         const Vec3 mass = settler_.mass_center_;
         const Mat3 rotated = rotation(rested.angles);
         for (int k = 0; k < max_rockings && polygon.size() >= 2; ++k) {
@@ -372,17 +389,24 @@ private:
             mass_ = mass + rotated.transpose() * (settler_.options_.min_stability * beyond);
             at_ = rested;
             drift_ = Vec2::Zero();
-            if (descend(straight_turn) != Rest::State::Standing || is_far(at_, rested)) break;
-            const std::size_t before = rest.contacts.size();
-            for (const RestContact& contact : rest_contacts(at_)) {
-                const auto is_there = [&](const RestContact& other) {
+            if (descend(straight_turn) != Rest::State::Standing) break;
+            std::vector<RestContact> more = rest_contacts(at_);
+            std::erase_if(more, [&](const RestContact& contact) {
+                return std::any_of(rest.contacts.begin(), rest.contacts.end(), [&](const RestContact& other) {
                     return (other.point - contact.point).head<2>().norm() < rocking_rise;
-                };
-                if (std::any_of(rest.contacts.begin(), rest.contacts.end(), is_there)) continue;
+                });
+            });
+            const bool is_near = !is_far(at_, rested, rocking_turn);
+            if (!is_near && !(is_line && !is_far(at_, rested, rolling_turn))) break;
+            // On other contacts nearby, it stands as any other robot: it would swing between them and the line.
+            is_line &= more.empty() || !is_near;
+            if (!is_line && (more.empty() || has_rolled)) break;
+            for (const RestContact& contact : more) {
                 rest.contacts.push_back(contact);
                 polygon.push_back(contact.point.head<2>());
             }
-            if (rest.contacts.size() == before) {
+            if (more.empty()) {
+                has_rolled = true;
                 const Vec2 outwards = (settler_.options_.min_stability - edge.distance) * edge.outward;
                 polygon.insert(polygon.end(), {edge.from + outwards, edge.to + outwards});
             }
@@ -390,10 +414,10 @@ private:
         }
     }
 
-    bool is_far(const Lowered& a, const Lowered& b) const
+    bool is_far(const Lowered& a, const Lowered& b, double turn) const
     {
         const double trace = (rotation(a.angles).transpose() * rotation(b.angles)).trace();
-        return std::abs(a.z - b.z) > rocking_rise || (trace - 1) / 2 < std::cos(rocking_turn);
+        return std::abs(a.z - b.z) > rocking_rise || (trace - 1) / 2 < std::cos(turn);
     }
 
     /// Turns the parts of the robot.
