@@ -60,7 +60,9 @@ TEST_CASE("search answers for level robots, and with --settle for settled ones, 
     CHECK(arena("check map --poses spawns.csv --require-valid" + husky_option).status == 0);
     CHECK(arena(query + "lifted.csv --settle --lift 0.05" + ramp + husky_option).status == 0);
     CHECK(std::abs(read_poses(arena / "lifted.csv").poses[0].position.z() - poses[0].position.z() - 0.03) <= 1e-9);
-    CHECK(arena(query + "gentle.csv --settle --max-slope 5" + ramp + husky_option).status == 0);
+    CHECK(
+        arena("search map -n 5 --min-distance 0.5 -o gentle.csv --settle --max-slope 5" + ramp + husky_option).status ==
+        0);
     for (const Pose& pose : read_poses(arena / "gentle.csv").poses) CHECK(pose.rotation(2, 2) >= std::cos(0.0873));
 
     CHECK(arena(query + "standard.csv" + husky_option).status == 0);

@@ -48,7 +48,7 @@ struct SettledPose {
     /// Whether the robot was let down, so that all that follows is known. Otherwise, it has no room, or the place
     /// itself cannot be used, and `position` is the place that was given.
     bool has_pose = false;
-    Vec3 position = Vec3::Zero();         ///< of its origin, m. If it is unstable, where it would have to balance
+    Vec3 position = Vec3::Zero();         ///< of its origin, m. If it falls, where it would have to balance
     double roll = 0, pitch = 0, yaw = 0;  ///< rad, as in URDF's rpy
     double tilt = 0;                      ///< angle between the robot's z axis and the vertical, rad
     /// Distance of the projected centre of mass from the nearest edge of the support polygon, m; negative: outside.
@@ -57,9 +57,8 @@ struct SettledPose {
     double tip_over = 0;
     /// Smallest vertical distance of the ground from the parts of the robot that do not touch it, m; 0 if all do.
     double belly = 0;
-    /// If it would slide: the coefficient of friction that holds it, more than StandLimits::friction; infinite if that
-    /// is more than 10. 0: it does not slide, or the verdict does not depend on that.
-    double friction_needed = 0;
+    bool falls = false;                 ///< Unstable: it falls, at whatever tilt
+    bool slides = false;                ///< Unstable: it needs more friction than StandLimits::friction
     std::vector<RestContact> contacts;  ///< the corners of the support polygon are among them
     bool exact_check = false;           ///< whether an exact collision check was made
 

@@ -2,6 +2,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "poses/pose_json.h"
+#include "settle/friction.h"
 
 #include <spawnfield/frames.h>
 #include <spawnfield/verdict_report.h>
@@ -66,7 +67,9 @@ Json settled_json(const VerdictReport& report, const SettledPose& pose)
     out["margin"] = pose.margin;
     out["tip_over"] = pose.tip_over;
     out["belly"] = pose.belly;
-    if (pose.friction_needed > 0) out["friction_needed"] = pose.friction_needed;  // infinite: null
+    if (pose.slides)  // infinite: null
+        out["friction_needed"] = friction_needed(pose.contacts, mass_center_of(pose, report.judge.robot()),
+                                                 report.judge.options().stand.friction);
     out["contacts"] = Json::array();
     for (const RestContact& contact : pose.contacts)
         out["contacts"].push_back({{"point", vector_json(contact.point)},

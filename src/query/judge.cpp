@@ -3,6 +3,7 @@
 #include "query/neighbourhoods.h"
 #include "query/stand_judge.h"
 #include "query/timed_part.h"
+#include "settle/friction.h"
 
 #include <spawnfield/error.h>
 
@@ -66,6 +67,15 @@ std::optional<Footing> footing_of(const Map& map, const Robot& robot, const Judg
 bool is_submerged(double ground, double water, double max_water_depth)
 {
     return water >= ground - touch_tolerance && water <= ground + max_water_depth + touch_tolerance;
+}
+
+/// Returns how much friction a robot needs not to slide.
+std::string friction_reason(const SettledPose& pose, const Robot& robot, double limit)
+{
+    const double needed = friction_needed(pose.contacts, mass_center_of(pose, robot), limit);
+    const std::string has = ", and --friction is " + rounded(limit);
+    if (std::isinf(needed)) return "not even a coefficient of friction of 10 holds it" + has;
+    return "it needs a coefficient of friction of about " + rounded(std::ceil(100 * needed) / 100) + has;
 }
 
 }  // namespace
@@ -377,13 +387,8 @@ std::string Judge::describe(const SettledPose& pose) const
     case Verdict::Steep:
         return verdict + ": it tilts by " + degrees(pose.tilt) + ", the limit is " + degrees(limits.max_slope);
     case Verdict::Unstable:
-        if (pose.friction_needed > 0)
-            return verdict + ": it slides, " +
-                   (std::isinf(pose.friction_needed)
-                        ? std::string("at any friction")
-                        : "because it needs a coefficient of friction of " + rounded(pose.friction_needed)) +
-                   ", the limit is " + rounded(limits.friction);
-        if (pose.margin >= *limits.min_stability || pose.contacts.size() < 3) return verdict + ": it tips over";
+        if (pose.falls) return verdict + ": it tips over";
+        if (pose.slides) return verdict + ": it slides: " + friction_reason(pose, impl_->robot, limits.friction);
         return verdict + ": its margin is " + rounded(pose.margin) + " m, the limit is " +
                rounded(*limits.min_stability) + " m";
     case Verdict::Obstructed: return verdict + (pose.hit ? " by " + what : "");

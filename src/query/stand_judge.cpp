@@ -25,6 +25,7 @@ template <class Value>
 std::size_t first_largest(const std::vector<std::size_t>& headings, double equal, const Value& value)
 {
     std::size_t out = headings.front();
+    if (headings.size() == 1) return out;
     double largest = value(out);
     for (const std::size_t k : std::span(headings).subspan(1)) {
         const double of_k = value(k);
@@ -223,28 +224,19 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
         if (out.hit && hit_at(out, just_above)) return;
         is_obstructed |= out.hit.has_value();
     }
-    if (rest.state == Rest::State::Falling)
+    if (out.falls = rest.state == Rest::State::Falling; out.falls)
         out.verdict = Verdict::Unstable;
     else if (out.tilt > limits.max_slope + limit_slack)
         out.verdict = Verdict::Steep;
     else if (out.margin < *limits.min_stability - limit_slack)
         out.verdict = Verdict::Unstable;
-    else if (out.friction_needed = sliding_friction(out); out.friction_needed > 0)
+    else if (out.slides = !is_held(out.contacts, mass_center_of(out, shared_.robot), limits.friction); out.slides)
         out.verdict = Verdict::Unstable;
     else if (is_obstructed || (limits.drop && rest.drop_z < out.position.z() + *limits.drop))
         out.verdict = Verdict::Obstructed;
     else
         out.verdict = Verdict::Valid;
     if (out.verdict != Verdict::Obstructed) out.hit.reset();
-}
-
-/// Returns the coefficient of friction that a robot at rest needs, if that is more than it has; otherwise 0.
-double StandJudge::sliding_friction(const SettledPose& pose) const
-{
-    const double friction = shared_.options.stand.friction;
-    const Pose at = pose.lifted(0);
-    const Vec3 mass = at.position + at.rotation * mass_center_;
-    return is_held(pose.contacts, mass, friction) ? 0 : friction_needed(pose.contacts, mass, friction);
 }
 
 /// Returns what the robot collides with if it is raised from its rest.

@@ -11,8 +11,7 @@ namespace spawnfield {
 class StandJudge {
 public:
     explicit StandJudge(const Judge::Impl& shared)
-        : shared_(shared), settler_(shared.settler()), mass_center_(mass_center_of(shared.robot)), upright_(shared, 0),
-          checker_(shared.checker)
+        : shared_(shared), settler_(shared.settler()), upright_(shared, 0), checker_(shared.checker)
     {
     }
 
@@ -43,12 +42,10 @@ private:
     double downhill_yaw(const Vec3& place);
     Settler::FlatRest& flat_at(double yaw);
     void judge_rest(const ColumnView& column, const Rest& rest, SettledPose& out);
-    double sliding_friction(const SettledPose& pose) const;
     std::optional<CollisionHit> hit_at(const SettledPose& pose, double raised);
 
     const Judge::Impl& shared_;
     const Settler& settler_;
-    const Vec3 mass_center_;                ///< in the robot's frame, m
     std::vector<Settler::FlatRest> flats_;  ///< at the yaws of some poses before
     PoseJudge upright_;
     PoseChecker checker_;

@@ -95,14 +95,20 @@ bool is_held(std::span<const RestContact> contacts, const Vec3& mass, double fri
 
 double friction_needed(std::span<const RestContact> contacts, const Vec3& mass, double least)
 {
-    constexpr double most = 10, precision = 0.01;
+    constexpr double most = 10, precision = 0.01, finest = 1e-4;
     if (!is_held(contacts, mass, most)) return std::numeric_limits<double>::infinity();
     double held = most;
-    while (held - least > precision * held) {
+    while (held - least > std::max(precision * held, finest)) {
         const double middle = (least + held) / 2;
         (is_held(contacts, mass, middle) ? held : least) = middle;
     }
     return held;
+}
+
+Vec3 mass_center_of(const SettledPose& pose, const Robot& robot)
+{
+    const Pose at = pose.lifted(0);
+    return at.position + at.rotation * mass_center_of(robot);
 }
 
 }  // namespace spawnfield

@@ -15,7 +15,7 @@ constexpr int max_pivots = 1000;  // degenerate planes could make the method go 
 struct Inequality {
     Vec3 normal;
     double offset;
-    int index;  ///< in the planes; -1: a limit of d
+    int index;  ///< see Minimax::planes
 };
 
 Inequality of_plane(std::span<const MinimaxPlane> planes, std::size_t index)
@@ -29,7 +29,31 @@ Inequality of_limit(int axis, double sign, double limit)
 {
     Vec3 normal = Vec3::Zero();
     normal[axis + 1] = sign;
-    return {normal, -limit, -1};
+    return {normal, -limit, -1 - 2 * axis - (sign > 0)};
+}
+
+Inequality of_index(std::span<const MinimaxPlane> planes, double limit, int index)
+{
+    if (index >= 0) return of_plane(planes, std::size_t(index));
+    return of_limit((-1 - index) / 2, (-1 - index) % 2 == 1 ? 1 : -1, limit);
+}
+
+/// Returns constraints with weights >= 0: the highest plane at d = 0, and the limits towards which it falls.
+std::array<Inequality, 3> first_basis(std::span<const MinimaxPlane> planes, double limit)
+{
+    const auto is_lower = [](const MinimaxPlane& a, const MinimaxPlane& b) { return a.height < b.height; };
+    const auto first = std::size_t(std::max_element(planes.begin(), planes.end(), is_lower) - planes.begin());
+    const Vec2& slope = planes[first].gradient;
+    return {of_plane(planes, first), of_limit(0, slope.x() < 0 ? -1 : 1, limit),
+            of_limit(1, slope.y() < 0 ? -1 : 1, limit)};
+}
+
+/// Returns the inverse of the matrix whose rows are the normals of the constraints.
+Mat3 inverse_of(const std::array<Inequality, 3>& basis)
+{
+    Mat3 normals;
+    for (int k = 0; k < 3; ++k) normals.row(k) = basis[std::size_t(k)].normal.transpose();
+    return normals.inverse();
 }
 
 }  // namespace
@@ -41,26 +65,24 @@ bool Minimax::is_at_limit() const
     return false;
 }
 
-Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit)
+Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit, const std::optional<Minimax>& near)
 {
-    const auto is_lower = [](const MinimaxPlane& a, const MinimaxPlane& b) { return a.height < b.height; };
-    const auto first = std::size_t(std::max_element(planes.begin(), planes.end(), is_lower) - planes.begin());
-    const Vec2& slope = planes[first].gradient;
-    std::array<Inequality, 3> basis{of_plane(planes, first), of_limit(0, slope.x() < 0 ? -1 : 1, limit),
-                                    of_limit(1, slope.y() < 0 ? -1 : 1, limit)};
+    std::array<Inequality, 3> basis = first_basis(planes, limit);
+    if (near) {
+        std::array<Inequality, 3> better;
+        for (std::size_t k = 0; k < 3; ++k) better[k] = of_index(planes, limit, near->planes[k]);
+        const Mat3 inverse = inverse_of(better);
+        if (inverse.allFinite() && inverse.row(0).minCoeff() >= 0) basis = better;
+    }
     double scale = 0;
     for (const MinimaxPlane& plane : planes) scale = std::max(scale, std::abs(plane.height));
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
 
     Minimax out;
     for (int pivot = 0;; ++pivot) {
-        Mat3 normals;
         Vec3 offsets;
-        for (int k = 0; k < 3; ++k) {
-            normals.row(k) = basis[std::size_t(k)].normal.transpose();
-            offsets[k] = basis[std::size_t(k)].offset;
-        }
-        const Mat3 inverse = normals.inverse();
+        for (int k = 0; k < 3; ++k) offsets[k] = basis[std::size_t(k)].offset;
+        const Mat3 inverse = inverse_of(basis);
         const Vec3 point = inverse * offsets, weights = inverse.row(0).transpose();
         out.value = point[0];
         out.at = point.tail<2>();

@@ -5,6 +5,7 @@
 #include <spawnfield/types.h>
 
 #include <array>
+#include <optional>
 #include <span>
 
 namespace spawnfield {
@@ -19,8 +20,8 @@ struct MinimaxPlane {
 struct Minimax {
     Vec2 at = Vec2::Zero();
     double value = 0;  ///< height of the highest plane there
-    /// The three constraints that hold this point, as indices of planes; -1: a limit of d. Their weights are >= 0, and
-    /// those of the planes add up to 1. If no limit holds the point, the weighted sum of the gradients is 0.
+    /// The three constraints that hold this point, as indices of planes; -1 to -4: a limit of d. Their weights are >=
+    /// 0, and those of the planes add up to 1. If no limit holds the point, the weighted sum of the gradients is 0.
     std::array<int, 3> planes{-1, -1, -1};
     std::array<double, 3> weights{};
 
@@ -29,7 +30,8 @@ struct Minimax {
 
 /// Returns the d with |d.x|, |d.y| <= limit at which the highest of the planes (at least one) is lowest: a linear
 /// program with three variables. After 1000 steps, it returns the point that it has reached. Source: the dual simplex
-/// method (Lemke, The dual method of solving the linear programming problem, 1954).
-Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit);
+/// method (Lemke, The dual method of solving the linear programming problem, 1954). `near` may be the solution for
+/// planes that were a little different: then it takes fewer steps.
+Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit, const std::optional<Minimax>& near = {});
 
 }  // namespace spawnfield

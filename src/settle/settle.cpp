@@ -230,14 +230,26 @@ Polygon2 clear_corners(const Polygon2& polygon)
     return out;
 }
 
-/// Returns a segment from the centre of the smaller box to the other one. It ends in the inside of both.
-Convex segment_between(const Bounds& a, const Bounds& b)
+/// Returns a segment from the middle of the smaller body to a near place in the other one. It ends inside both.
+Convex segment_between(const Convex& body, const Convex& other)
 {
-    if ((a.max - a.min).norm() > (b.max - b.min).norm()) return segment_between(b, a);
+    const Bounds a = body.bounds(), b = other.bounds();
+    if ((a.max - a.min).norm() > (b.max - b.min).norm()) return segment_between(other, body);
     constexpr double inside = 0.5;  // of a ball, a cylinder or a capsule, these points are in the inside
-    const Vec3 from = (a.min + a.max) / 2, middle = (b.min + b.max) / 2, half = inside / 2 * (b.max - b.min);
+    const auto middle_of = [](const Convex& convex) -> Vec3 {
+        Vec3 sum = Vec3::Zero();
+        for (const Vec3& point : convex.points) sum += point;
+        return sum / double(convex.points.size());
+    };
+    const auto is_in_other = [&](const Vec3& point) {
+        return std::all_of(other.planes.begin(), other.planes.end(),
+                           [&](const Convex::Plane& plane) { return plane.normal.dot(point) < plane.offset; });
+    };
+    const Vec3 from = middle_of(body), middle = middle_of(other), half = inside / 2 * (b.max - b.min);
+    Vec3 to = from.cwiseMax(middle - half).cwiseMin(middle + half);
+    for (int step = 0; step < 10 && !is_in_other(to); ++step) to = (to + middle) / 2;
     Convex out;
-    out.points = {from, from.cwiseMax(middle - half).cwiseMin(middle + half)};
+    out.points = {from, to};
     out.edges = {{0, 1}};
     return out;
 }
@@ -261,7 +273,7 @@ std::vector<Convex> joints_of(const std::vector<Convex>& parts)
                                            [&](std::size_t p, std::size_t q) { return gap_of(p) < gap_of(q); });
         const std::size_t joined = *next;
         left.erase(next);
-        if (gap_of(joined) > least_gap) out.push_back(segment_between(bounds[joined], bounds[nearest[joined]]));
+        if (gap_of(joined) > least_gap) out.push_back(segment_between(parts[joined], parts[nearest[joined]]));
         for (const std::size_t p : left)
             if (gap(bounds[p], bounds[joined]) < gap_of(p)) nearest[p] = joined;
     }
@@ -383,8 +395,7 @@ private:
         const Mat3 rotated = rotation(rested.angles);
         for (int k = 0; k < max_rockings && polygon.size() >= 2; ++k) {
             const NearestEdge edge = nearest_edge(polygon, (rotated * mass).head<2>());
-            rest.margin = edge.distance;
-            if (edge.distance >= settler_.options_.min_stability) break;
+            if (edge.distance >= settler_.options_.min_stability - contact_tolerance) break;
             const Vec3 beyond(edge.outward.x(), edge.outward.y(), 0);
             mass_ = mass + rotated.transpose() * (settler_.options_.min_stability * beyond);
             at_ = rested;
@@ -412,6 +423,7 @@ private:
             }
             polygon = convex_hull(std::move(polygon));
         }
+        if (polygon.size() >= 2) rest.margin = nearest_edge(polygon, (rotated * mass).head<2>()).distance;
     }
 
     bool is_far(const Lowered& a, const Lowered& b, double turn) const
@@ -506,6 +518,10 @@ private:
         }
         if (z > settler_.options_.max_height) return out;
         lower(Vec2::Zero(), z, contact_tolerance, out);
+        if (const auto between = solid_between_parts(out.z)) {  // the parts find no hold above it
+            out.has_room = false;
+            out.wall = solids_[between->solid].part;
+        }
         return out;
     }
 
@@ -519,9 +535,14 @@ private:
     std::optional<Between> solid_between_parts(double z)
     {
         for (const Convex& joint : settler_.joints_) {
-            const PlacedPart placed{moved(joint, {Vec3::Zero(), rotation(Vec2::Zero())}), {}};
+            PlacedPart placed{moved(joint, {Vec3::Zero(), rotation(Vec2::Zero())}), {}};
+            placed.bounds = placed.body.bounds();
             for (std::size_t s = 0; s < solids_.size(); ++s) {
-                const double highest = touch(placed, solids_[s]);
+                const Bounds& solid = solids_[s].bounds;
+                if (!placed.bounds.meets(solid, 2) || solid.max.z() - placed.bounds.min.z() <= z ||
+                    solid.min.z() - placed.bounds.max.z() >= z + contact_tolerance)
+                    continue;
+                const double highest = touch(placed, solids_[s], {.min_height = z});
                 if (highest <= z + contact_tolerance) continue;
                 if (blocked_heights(placed.body, solids_[s])->bottom < z + contact_tolerance)
                     return Between{highest, s};
@@ -780,10 +801,12 @@ private:
             return attitude.rise(mass - about, -Vec3::UnitZ());
         };
         Vec2 turn = Vec2::Zero();
+        std::optional<Minimax> before;
         for (int round = 0; round < 4; ++round) {
             planes_.clear();
             for (const RestTouch& t : at_.touches) planes_.push_back({t.touch.height, t.rise + drift_});
-            const Minimax lowest = lowest_of_highest(planes_, limit_);
+            const Minimax lowest = lowest_of_highest(planes_, limit_, before);
+            before = lowest;
             turn = lowest.at;
             Vec2 drift = Vec2::Zero();
             double weights = 0;
@@ -846,6 +869,7 @@ private:
                     corners.push_back(contact.point);
                     break;
                 }
+        if (corners.size() < 3) return 0;  // a line
         double out = std::numbers::pi / 2;
         for (std::size_t k = 0; k < corners.size(); ++k) {
             const Vec3 &p = corners[k], side = corners[k + 1 < corners.size() ? k + 1 : 0] - p;
@@ -960,6 +984,7 @@ Settler::FlatRest Settler::flat_rest(double yaw) const
         bounds.min.z() += out.rest.z;
         bounds.max.z() += out.rest.z;
     }
+    for (const Convex& joint : joints_) out.parts.push_back(moved(joint, {Vec3(0, 0, out.rest.z), rotation}).bounds());
     return out;
 }
 

@@ -14,8 +14,8 @@ namespace spawnfield {
 /// How a robot comes to rest that is let down at a place with a yaw.
 struct Rest {
     enum class State {
-        Standing,  ///< it stands on three or more contacts, and its centre of mass is above them
-        Falling,   ///< it tips over: by more than the largest tilt, or on a point or a line
+        Standing,  ///< its centre of mass is above its contacts, which span an area or a line on which it stays
+        Falling,   ///< it tips over: by more than the largest tilt, or on a point or a line on which it does not stay
         Blocked    ///< there is no room for the level robot near the layer, or a wall stops it while it turns
     };
     State state = State::Blocked;
