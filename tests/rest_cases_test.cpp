@@ -859,6 +859,32 @@ TEST_CASE("feet that are not joined to the body stand on sheets and on thin plat
         }
 }
 
+TEST_CASE("no solid may be between the parts of a robot at rest, on flat ground or not")
+{
+    // Two separate boxes, whose middles are 0.1 m high. A post between them is too high from there on.
+    std::vector<RobotPart> parts;
+    for (const double y : {-0.5, 0.5}) parts.push_back(shape_part(box_shape({0.6, 0.2, 0.2}, {{0, y, 0.1}})));
+    const Robot robot = make_robot("boxes", std::move(parts));
+    for (const bool is_sheet : {true, false})  // a sheet of level triangles: the rest on a plane is used again
+        for (const double height : {0.05, 0.095, 0.105, 0.3}) {
+            INFO((is_sheet ? "sheet" : "block") << ", post of " << height << " m");
+            Scene scene;
+            if (is_sheet)
+                add_mesh(scene, "sheet", Label::Terrain, {{-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}},
+                         {{0, 1, 2}, {0, 2, 3}}, Solid::No);
+            else
+                add_block(scene, {-3, -3, -1}, {3, 3, 0});
+            add_block(scene, {-0.05, 0.1, -0.5}, {0.05, 0.2, height});
+            const Rest rest = settled(scene, robot);
+            if (height < 0.1) {
+                check_pose(rest, 0, 0, 0);
+                continue;
+            }
+            CHECK(rest.state == State::Blocked);
+            CHECK(rest.wall == 1U);
+        }
+}
+
 TEST_CASE("a box on a standing cylinder, and a standing cylinder on a strip")
 {
     for (const double yaw : headings) {
