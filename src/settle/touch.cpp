@@ -226,7 +226,7 @@ void add_polyhedra(const Convex& body, const TriangleTop& ground, const WantedTo
     corners.clear();
     for (std::size_t j = 0; j < body.points.size(); ++j) {
         const Vec3& point = body.points[j];
-        Corner& corner = corners.emplace_back(ground.height_bound(point), 0, 0);
+        Corner& corner = corners.emplace_back(Corner{ground.height_bound(point), 0, 0});
         for (unsigned k = 0; k < 3; ++k) {
             const double inward = ground.inward(k, point);
             corner.outside |= unsigned(inward < -rounding) << k;
