@@ -68,7 +68,8 @@ Json settled_json(const VerdictReport& report, const SettledPose& pose)
     out["tip_over"] = pose.tip_over;
     out["belly"] = pose.belly;
     if (pose.slides)  // infinite: null
-        out["friction_needed"] = friction_needed(pose.contacts, mass_center_of(pose, report.judge.robot()),
+        out["friction_needed"] = friction_needed(pose.contacts,
+                                                 mass_center_at(pose, mass_center_of(report.judge.robot())),
                                                  report.judge.options().stand.friction);
     out["contacts"] = Json::array();
     for (const RestContact& contact : pose.contacts)

@@ -72,7 +72,7 @@ bool is_submerged(double ground, double water, double max_water_depth)
 /// Returns how much friction a robot needs not to slide.
 std::string friction_reason(const SettledPose& pose, const Robot& robot, double limit)
 {
-    const double needed = friction_needed(pose.contacts, mass_center_of(pose, robot), limit);
+    const double needed = friction_needed(pose.contacts, mass_center_at(pose, mass_center_of(robot)), limit);
     const std::string has = ", and --friction is " + rounded(limit);
     if (std::isinf(needed)) return "not even a coefficient of friction of 10 holds it" + has;
     return "it needs a coefficient of friction of about " + rounded(std::ceil(100 * needed) / 100) + has;

@@ -230,7 +230,8 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
         out.verdict = Verdict::Steep;
     else if (out.margin < *limits.min_stability - limit_slack)
         out.verdict = Verdict::Unstable;
-    else if (out.slides = !is_held(out.contacts, mass_center_of(out, shared_.robot), limits.friction); out.slides)
+    else if (out.slides = !is_held(out.contacts, mass_center_at(out, settler_.mass_center()), limits.friction);
+             out.slides)
         out.verdict = Verdict::Unstable;
     else if (is_obstructed || (limits.drop && rest.drop_z < out.position.z() + *limits.drop))
         out.verdict = Verdict::Obstructed;

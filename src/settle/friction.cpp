@@ -105,10 +105,10 @@ double friction_needed(std::span<const RestContact> contacts, const Vec3& mass, 
     return held;
 }
 
-Vec3 mass_center_of(const SettledPose& pose, const Robot& robot)
+Vec3 mass_center_at(const SettledPose& pose, const Vec3& mass_center)
 {
     const Pose at = pose.lifted(0);
-    return at.position + at.rotation * mass_center_of(robot);
+    return at.position + at.rotation * mass_center;
 }
 
 }  // namespace spawnfield

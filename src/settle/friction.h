@@ -1,6 +1,5 @@
 #pragma once
 
-#include <spawnfield/robot.h>
 #include <spawnfield/settled_pose.h>
 
 #include <span>
@@ -17,7 +16,7 @@ bool is_held(std::span<const RestContact> contacts, const Vec3& mass, double fri
 /// 10. With `least` itself it must not be held.
 double friction_needed(std::span<const RestContact> contacts, const Vec3& mass, double least);
 
-/// Returns the centre of mass of a robot at rest in the scene's frame.
-Vec3 mass_center_of(const SettledPose& pose, const Robot& robot);
+/// Returns the centre of mass of a robot at rest in the scene's frame, from that in the robot's frame.
+Vec3 mass_center_at(const SettledPose& pose, const Vec3& mass_center);
 
 }  // namespace spawnfield

@@ -60,6 +60,8 @@ public:
 
     Settler(const Geometry& geometry, const Robot& robot, const Options& options);
 
+    const Vec3& mass_center() const { return mass_center_; }  ///< in the robot's frame, m
+
     /// Lets the robot down at (x, y) with this yaw onto the terrain layer at a height. It moves only in z, roll and
     /// pitch: level down to the first contact, then it turns about its contacts so that its centre of mass sinks. Keeps
     /// the rest on a plane in `flat`, so that calls with the same yaw need not compute it again.

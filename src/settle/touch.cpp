@@ -366,7 +366,7 @@ void add_rim(const Convex& body, std::size_t index, const Ground& ground, const 
         const Vec3 across = normal - normal.dot(axis) * axis;
         const double length = across.norm();
         if (length >= 1e-14) add(centre - (radius / length) * across, Touch::Kind::RimOnFace);
-        // A disc that comes to lie on a face touches it at the whole rim. Its lowest point alone would not tell where.
+        // A disc that comes to lie on a face touches it at its whole rim, not only at its lowest point.
         if (length > flat_disc) return;
         for (int k = 0; k < rim_corners; ++k) {
             const double angle = 2 * std::numbers::pi * k / rim_corners;

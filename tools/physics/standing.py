@@ -234,7 +234,7 @@ def compare(program, robot, count, map_folder):
             if row["verdict"] == "collision" and (not row["hit"] or is_inside(obstacles, mass)):
                 continue
             tilt, margin = math.degrees(float(row["tilt"])), float(row["margin"])
-            is_kept = stays(body, mass_center, settled_pose(row))
+            is_kept = stays(body, mass_center, pose)
             if row["verdict"] == "unstable" and margin > 0:
                 narrow += 1
                 narrow_stay += is_kept
