@@ -74,8 +74,9 @@ Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit, co
         const Mat3 inverse = inverse_of(better);
         if (inverse.allFinite() && inverse.row(0).minCoeff() >= 0) basis = better;
     }
-    double scale = 0;
-    for (const MinimaxPlane& plane : planes) scale = std::max(scale, std::abs(plane.height));
+    double scale = 0;  // of the heights that are compared below, so that rounding does not look like a violation
+    for (const MinimaxPlane& plane : planes)
+        scale = std::max(scale, std::abs(plane.height) + limit * plane.gradient.lpNorm<1>());
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
 
     Minimax out;

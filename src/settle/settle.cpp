@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 
 namespace spawnfield {
@@ -45,6 +46,7 @@ constexpr double first_turn = 0.1, least_limit = 0.01, largest_turn = 0.3;  // r
 /// the robot's size.
 constexpr double most_seen = 0.2, large_seen = 0.3, seen_share = 4;
 constexpr double straight_turn = 0.1;  // rad, see descend()
+constexpr double whole_turn = 1e-6;    // a part of a turn that differs from all of it by this share is all of it
 constexpr double exact_turn = 1e-3;    // rad: after a turn of this size, the touches are where they were expected
 constexpr int max_turns = 300;
 constexpr double same_drift = 1e-9;  // m: much less than `preference`, which would have no effect otherwise
@@ -341,8 +343,8 @@ private:
             if (stands()) return Rest::State::Standing;
             const Vec2 aim = falling_turn();
             if (aim.norm() < smallest_turn) break;
-            const double share = aim.norm() <= straight ? 1 : way_to_kink(aim);
-            const Vec2 turn = share * aim;
+            bool is_to_kink = false;
+            const Vec2 turn = aim.norm() <= straight ? aim : first_part(aim, is_to_kink);
             // A long turn may miss a rest just below the largest tilt.
             if (turn.norm() > exact_turn && tilt_of(at_.angles + turn) > settler_.options_.max_tilt) {
                 limit_ = turn.lpNorm<Eigen::Infinity>() / 2;
@@ -363,7 +365,7 @@ private:
             }
             wall.reset();
             std::swap(at_, next_);
-            if (straight == 0 && share < 1 && !at_.touches.empty()) land(turn);
+            if (straight == 0 && is_to_kink && !at_.touches.empty()) land(turn);
         }
         at_.wall = wall;
         if (wall) return Rest::State::Blocked;
@@ -666,21 +668,65 @@ private:
         lower(at_.angles + turn, expected_z(turn), 4 * settler_.reach_ * turn.norm() + contact_tolerance, next_);
     }
 
-    /// Returns the share of a turn up to which the touch that carries the robot does so, before another one takes over.
-    double way_to_kink(const Vec2& turn)
+    /// Returns the part of the turn `aim` (of falling_turn()) during which the touches that carry the robot at its
+    /// beginning do so, before another one takes over; all of it if none does. At its end, these touches and the new
+    /// one are equally high.
+    Vec2 first_part(const Vec2& aim, bool& is_to_kink)
     {
-        const RestTouch& carried = carrier(turn);
+        const RestTouch& carried = carrier(aim);
         const RestTouch* next = nullptr;
-        double share = 1;
+        double share = 1 - whole_turn;
         for (const RestTouch& t : at_.touches) {
-            const double faster = (t.rise - carried.rise).dot(turn);
+            const double faster = (t.rise - carried.rise).dot(aim);
             if (faster <= 0) continue;
             const double there = (carried.touch.height - t.touch.height) / faster;
-            if (there * turn.norm() < smallest_turn || there >= share) continue;
+            if (there * aim.norm() < smallest_turn || there >= share) continue;
             share = there;
             next = &t;
         }
-        return next ? exact_kink(turn, share, carried, *next) : share;
+        is_to_kink = next != nullptr;
+        std::vector<const RestTouch*> touches;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (aim_.planes[k] < 0) continue;
+            const RestTouch& t = at_.touches[std::size_t(aim_.planes[k])];
+            if (!next || t.touch.height >= at_.z - contact_tolerance) touches.push_back(&t);
+        }
+        if (!next) return leveled(aim, touches).value_or(aim);
+        touches.push_back(next);
+        if (touches.size() == 3)
+            if (const auto turn = leveled(share * aim, touches)) return *turn;
+        return exact_kink(aim, share, carried, *next) * aim;
+    }
+
+    /// Returns the turn near `turn` after which two or three touches are equally high. Of two touches, it is the
+    /// nearest one. Returns nothing if it is not found. Source: Broyden, A class of methods for solving nonlinear
+    /// simultaneous equations, 1965.
+    std::optional<Vec2> leveled(const Vec2& turn, std::span<const RestTouch* const> touches)
+    {
+        if (touches.size() < 2) return std::nullopt;
+        const bool is_edge = touches.size() == 2;
+        Eigen::Matrix2d slopes;
+        slopes.row(0) = (touches[1]->rise - touches[0]->rise).transpose();
+        slopes.row(1) = is_edge ? Vec2(-slopes(0, 1), slopes(0, 0)).transpose()
+                                : (touches[2]->rise - touches[0]->rise).transpose().eval();
+        Vec2 out = turn, change = Vec2::Zero(), last = Vec2::Zero();
+        for (int step = 0; step < 10; ++step) {
+            const Mat3 rotated = rotation(at_.angles + out);
+            Vec3 heights = Vec3::Zero();
+            for (std::size_t k = 0; k < touches.size(); ++k) {
+                const auto height = touch_height(*touches[k], rotated);
+                if (!height) return std::nullopt;
+                heights[int(k)] = *height;
+            }
+            const Vec2 rises(heights[1] - heights[0], is_edge ? 0 : heights[2] - heights[0]);
+            if (step > 0) slopes += (rises - last - slopes * change) * change.transpose() / change.squaredNorm();
+            last = rises;
+            change = -(slopes.inverse() * rises);
+            out += change;
+            if (!((out - turn).norm() <= turn.norm() / 4)) return std::nullopt;
+            if (change.norm() < smallest_turn) return out;
+        }
+        return std::nullopt;
     }
 
     /// Returns the share of a turn at which two touches are equally high, near the share that their derivatives
@@ -695,7 +741,7 @@ private:
             const double difference = *height - *carried_height;
             if (step > 0 && share != last) change = (difference - last_difference) / (share - last);
             const double better = share - difference / change;
-            if (!(better > 0 && better <= 1)) return predicted;
+            if (!(std::abs(better - predicted) <= predicted / 4)) return predicted;
             last = std::exchange(share, better);
             last_difference = difference;
             if (std::abs(share - last) * turn.norm() < smallest_turn) break;
@@ -816,6 +862,7 @@ private:
                 drift += lowest.weights[k] * (rise_of_mass(t.touch.point) - t.rise);
                 weights += lowest.weights[k];
             }
+            aim_ = lowest;
             const bool is_same = (drift / weights - drift_).norm() < same_drift;
             drift_ = drift / weights;
             if (is_same) break;
@@ -933,6 +980,7 @@ private:
     double limit_ = first_turn;  ///< of the next step in roll and pitch, rad
     bool is_stuck_ = false;      ///< see descend()
     Vec2 drift_ = Vec2::Zero();  ///< see falling_turn()
+    Minimax aim_;                ///< the last result of falling_turn(), with the touches that carry the robot there
 };
 
 Settler::Settler(const Geometry& geometry, const Robot& robot, const Options& options)
