@@ -28,11 +28,19 @@ double highest_of(const std::vector<Touch>& touches)
     return out;
 }
 
-template <class Ground>
-std::vector<Touch> touches_of(const Convex& body, const Ground& ground)
+std::vector<Touch> touches_of(const Convex& body, const Convex& ground)
 {
     std::vector<Touch> out;
     add_touches(body, ground, out);
+    return out;
+}
+
+std::vector<Touch> touches_of(const Convex& body, const TouchTriangle& ground)
+{
+    PlacedBody placed{.body = body};
+    place(placed, body, Mat3::Identity());
+    std::vector<Touch> out;
+    add_touches(placed, ground, out);
     return out;
 }
 

@@ -110,7 +110,8 @@ const Settler& Judge::Impl::settler() const
                          Settler::Options{.max_tilt = options.stand.max_tilt,
                                           .max_height = options.max_height,
                                           .min_stability = *options.stand.min_stability,
-                                          .headroom = needed_headroom(robot, options.stand)});
+                                          .headroom = needed_headroom(robot, options.stand),
+                                          .wants_drop = options.stand.drop.has_value()});
     });
     return *settler_;
 }

@@ -53,7 +53,7 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.verdict = there.verdict;
     out.ground = there.ground;
     if (!is_usable) return out;
-    const Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height, flat_at(yaw));
+    const Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height, workspace_);
     out.verdict = Verdict::Collision;
     if (rest.state == Rest::State::Blocked) {
         if (rest.wall) out.hit = CollisionHit{*rest.wall};
@@ -188,17 +188,6 @@ double StandJudge::downhill_yaw(const Vec3& place)
     };
     const Vec2 slope((rise({arm, 0}) - rise({-arm, 0})) / (2 * arm), (rise({0, arm}) - rise({0, -arm})) / (2 * arm));
     return slope.norm() < level ? 0 : std::atan2(-slope.y(), -slope.x());
-}
-
-/// Returns where the rest on flat ground at a yaw is kept.
-Settler::FlatRest& StandJudge::flat_at(double yaw)
-{
-    const auto is_there = [&](const Settler::FlatRest& flat) { return flat.yaw == yaw; };
-    const auto found = std::find_if(flats_.begin(), flats_.end(), is_there);
-    if (found != flats_.end()) return *found;
-    if (flats_.size() == HeadingRule::most) flats_.clear();
-    if (flats_.empty() || !std::isnan(flats_.back().yaw)) flats_.emplace_back();
-    return flats_.back();
 }
 
 /// Sets the verdict on a robot that was let down, and what it meets.

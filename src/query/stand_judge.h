@@ -40,13 +40,12 @@ private:
     std::vector<std::size_t> with_longest_way(const Vec3& place, const std::vector<std::size_t>& headings,
                                               const std::vector<SettledPose>& poses, double step, Choice& out);
     double downhill_yaw(const Vec3& place);
-    Settler::FlatRest& flat_at(double yaw);
     void judge_rest(const ColumnView& column, const Rest& rest, SettledPose& out);
     std::optional<CollisionHit> hit_at(const SettledPose& pose, double raised);
 
     const Judge::Impl& shared_;
     const Settler& settler_;
-    std::vector<Settler::FlatRest> flats_;  ///< at the yaws of some poses before
+    Settler::Workspace workspace_;
     PoseJudge upright_;
     PoseChecker checker_;
     std::optional<ClearanceMeter> clearances_;  ///< made when it is first needed

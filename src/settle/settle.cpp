@@ -60,20 +60,12 @@ constexpr int max_rockings = 6;
 /// much farther back and to the right, m.
 const Vec3 preference(-1e-7, -0.5e-7, 0);
 
-/// A part of the robot at its current attitude.
-struct PlacedPart {
-    Convex body;
-    Bounds bounds;
-};
-
 /// Returns a height of the robot above which this part of it cannot touch the solid from above.
-double highest_possible(const PlacedPart& part, const NearSolid& solid)
+double highest_possible(const PlacedBody& part, const NearSolid& solid)
 {
     constexpr double rounding = 1e-9;  // m
     double out = solid.bounds.max.z() - part.bounds.min.z();
-    if (solid.triangle)
-        out = std::min(out,
-                       solid.triangle->height - solid.triangle->normal.dot(part.body.support(-solid.triangle->normal)));
+    if (solid.triangle) out = std::min(out, height_bound(part, *solid.triangle));
     return out + rounding;
 }
 
@@ -125,7 +117,7 @@ void cover_shared(std::vector<NearSolid>& solids)
 }
 
 /// Returns a height of the robot below which this part of it cannot touch the solid from below.
-double lowest_possible(const PlacedPart& part, const NearSolid& solid)
+double lowest_possible(const PlacedBody& part, const NearSolid& solid)
 {
     return solid.bounds.min.z() - part.bounds.max.z();
 }
@@ -286,19 +278,24 @@ std::vector<Convex> joints_of(const std::vector<Convex>& parts)
 
 double Rest::tilt() const { return tilt_of({roll, pitch}); }
 
-/// One robot on its way down.
+/// Robots on their way down, one after another.
 class Settler::Descent {
 public:
-    Descent(const Settler& settler, std::vector<NearSolid> solids, double yaw)
-        : settler_(settler), solids_(std::move(solids)), yaw_(yaw), mass_(settler.mass_center_ + preference)
+    explicit Descent(const Settler& settler) : settler_(settler)
     {
-        for (const Convex& part : settler_.parts_) parts_.push_back({part, {}});
+        for (const Convex& part : settler_.parts_) parts_.push_back({.body = part});
     }
 
-    Rest run()
+    /// Lets the robot down between solids, which are relative to its place.
+    Rest run(std::span<const NearSolid> solids, double yaw)
     {
-        at_ = level();
-        const double drop_z = at_.has_room ? ceiling_above(at_.z) : at_.z;
+        solids_ = solids;
+        yaw_ = yaw;
+        mass_ = settler_.mass_center_ + preference;
+        drift_ = Vec2::Zero();
+        limit_ = first_turn;
+        level(at_);
+        const double drop_z = settler_.options_.wants_drop && at_.has_room ? ceiling_above(at_.z) : at_.z;
         Rest::State state = Rest::State::Blocked;
         if (at_.has_room) {
             const Lowered start = at_;
@@ -435,12 +432,9 @@ private:
     }
 
     /// Turns the parts of the robot.
-    const std::vector<PlacedPart>& parts(const Mat3& rotation)
+    const std::vector<PlacedBody>& parts(const Mat3& rotation)
     {
-        for (std::size_t p = 0; p < parts_.size(); ++p) {
-            set_rotated(parts_[p].body, settler_.parts_[p], rotation);
-            parts_[p].bounds = parts_[p].body.bounds();
-        }
+        for (std::size_t p = 0; p < parts_.size(); ++p) place(parts_[p], settler_.parts_[p], rotation);
         return parts_;
     }
 
@@ -471,11 +465,11 @@ private:
     }
 
     /// Sets touches_ to those of a part of the robot with a solid, and returns the highest of them.
-    double touch(const PlacedPart& part, const NearSolid& solid, const WantedTouches& wanted = {})
+    double touch(const PlacedBody& part, const NearSolid& solid, const WantedTouches& wanted = {})
     {
         touches_.clear();
         if (solid.triangle)
-            add_touches(part.body, *solid.triangle, touches_, wanted);
+            add_touches(part, *solid.triangle, touches_, wanted);
         else
             add_touches(part.body, solid.body, touches_, wanted);
         return highest_of(touches_);
@@ -486,22 +480,22 @@ private:
     {
         static const Convex origin = convex_of(Vec3(0, 0, 0));
         touches_.clear();
-        for (const PlacedPart& part : parts_) add_touches(part.body, origin, touches_);
+        for (const PlacedBody& part : parts_) add_touches(part.body, origin, touches_);
         return touches_.empty() ? std::nullopt : std::optional(-highest_of(touches_));
     }
 
     double top() const
     {
         double out = -std::numeric_limits<double>::infinity();
-        for (const PlacedPart& part : parts_) out = std::max(out, part.bounds.max.z());
+        for (const PlacedBody& part : parts_) out = std::max(out, part.bounds.max.z());
         return out;
     }
 
     /// Lets the level robot down to the lowest height where it has room above its layer.
-    Lowered level()
+    void level(Lowered& out)
     {
         parts(rotation(Vec2::Zero()));
-        Lowered out;
+        out = {};
         double z = -underside().value_or(top());
         find_pairs(settler_.options_.max_height);
         const auto raise = [&](double height, std::size_t solid) {
@@ -518,13 +512,12 @@ private:
             highest->is_ceiling = highest->bottom >= z + contact_tolerance;
             if (!highest->is_ceiling) raise(highest->height, highest->solid);
         }
-        if (z > settler_.options_.max_height) return out;
+        if (z > settler_.options_.max_height) return;
         lower(Vec2::Zero(), z, contact_tolerance, out);
         if (const auto between = solid_between_parts(out.z)) {  // the parts find no hold above it
             out.has_room = false;
             out.wall = solids_[between->solid].part;
         }
-        return out;
     }
 
     struct Between {
@@ -537,8 +530,8 @@ private:
     std::optional<Between> solid_between_parts(double z)
     {
         for (const Convex& joint : settler_.joints_) {
-            PlacedPart placed{moved(joint, {Vec3::Zero(), rotation(Vec2::Zero())}), {}};
-            placed.bounds = placed.body.bounds();
+            PlacedBody placed{.body = joint};
+            place(placed, joint, rotation(Vec2::Zero()));
             for (std::size_t s = 0; s < solids_.size(); ++s) {
                 const Bounds& solid = solids_[s].bounds;
                 if (!placed.bounds.meets(solid, 2) || solid.max.z() - placed.bounds.min.z() <= z ||
@@ -608,7 +601,7 @@ private:
         for (const Pair& pair : pairs_) {
             const double least = std::max(out.z, z - rise) - seen;
             if (pair.possible < least) continue;
-            const PlacedPart& part = parts_[pair.part];
+            const PlacedBody& part = parts_[pair.part];
             const NearSolid& solid = solids_[pair.solid];
             WantedTouches wanted = solid.wanted;
             wanted.min_height = least;
@@ -636,7 +629,7 @@ private:
         double out = std::numeric_limits<double>::infinity();
         find_pairs(z + settler_.options_.headroom);
         for (const Pair& pair : pairs_) {
-            const PlacedPart& part = parts_[pair.part];
+            const PlacedBody& part = parts_[pair.part];
             const NearSolid& solid = solids_[pair.solid];
             if (pair.possible <= z || lowest_possible(part, solid) >= out) continue;
             if (touch(part, solid, {.min_height = z}) <= z + contact_tolerance) continue;
@@ -685,16 +678,17 @@ private:
             next = &t;
         }
         is_to_kink = next != nullptr;
-        std::vector<const RestTouch*> touches;
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (aim_.planes[k] < 0) continue;
-            const RestTouch& t = at_.touches[std::size_t(aim_.planes[k])];
-            if (!next || t.touch.height >= at_.z - contact_tolerance) touches.push_back(&t);
+        std::array<const RestTouch*, 4> touches;
+        std::size_t count = 0;
+        for (const int plane : aim_.planes) {
+            if (plane < 0) continue;
+            const RestTouch& t = at_.touches[std::size_t(plane)];
+            if (!next || t.touch.height >= at_.z - contact_tolerance) touches[count++] = &t;
         }
-        if (!next) return leveled(aim, touches).value_or(aim);
-        touches.push_back(next);
-        if (touches.size() == 3)
-            if (const auto turn = leveled(share * aim, touches)) return *turn;
+        if (!next) return leveled(aim, {touches.data(), count}).value_or(aim);
+        touches[count++] = next;
+        if (count == 3)
+            if (const auto turn = leveled(share * aim, {touches.data(), count})) return *turn;
         return exact_kink(aim, share, carried, *next) * aim;
     }
 
@@ -757,7 +751,7 @@ private:
         const NearSolid& solid = solids_[old.solid];
         if (solid.triangle && old.touch.kind != Touch::Kind::Other)
             return height_after(old.touch, body, rotated, *solid.triangle);
-        set_rotated(parts_[old.part].body, body, rotated);
+        place(parts_[old.part], body, rotated);
         touch(parts_[old.part], solid, {.min_height = old.touch.height - most_seen});
         const Vec3 point = rotated * (rotation(at_.angles).transpose() * old.touch.point);
         std::optional<double> out;
@@ -799,12 +793,18 @@ private:
     }
 
     /// Returns the contact that is nearest to a point, seen from above.
-    RestTouch contact_at(const Vec2& place) const
+    const RestTouch& contact_at(const Vec2& place) const
     {
-        const std::vector<RestTouch> found = contacts(at_);
-        const auto distance = [&](const RestTouch& t) { return (t.touch.point.head<2>() - place).squaredNorm(); };
-        return *std::min_element(found.begin(), found.end(),
-                                 [&](const RestTouch& l, const RestTouch& r) { return distance(l) < distance(r); });
+        const RestTouch* out = nullptr;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const RestTouch& t : at_.touches) {
+            if (t.touch.height < at_.z - contact_tolerance) continue;
+            const double distance = (t.touch.point.head<2>() - place).squaredNorm();
+            if (distance >= nearest) continue;
+            nearest = distance;
+            out = &t;
+        }
+        return *out;
     }
 
     /// Turns the standing robot until three contacts around its mass are equally high up to rounding.
@@ -816,13 +816,13 @@ private:
             std::size_t k = 1;
             while (k + 2 < polygon.size() && cross(polygon[k + 1] - polygon[0], mass - polygon[0]) > 0) ++k;
             if (polygon.size() < 3) return;
-            const std::array corners{contact_at(polygon[0]), contact_at(polygon[k]), contact_at(polygon[k + 1])};
+            const std::array corners{&contact_at(polygon[0]), &contact_at(polygon[k]), &contact_at(polygon[k + 1])};
             Eigen::Matrix2d slopes;
             Vec2 rises;
             for (int row = 0; row < 2; ++row) {
-                const RestTouch& other = corners[std::size_t(row) + 1];
-                slopes.row(row) = (other.rise - corners[0].rise).transpose();
-                rises[row] = corners[0].touch.height - other.touch.height;
+                const RestTouch& other = *corners[std::size_t(row) + 1];
+                slopes.row(row) = (other.rise - corners[0]->rise).transpose();
+                rises[row] = corners[0]->touch.height - other.touch.height;
             }
             if (rises.lpNorm<Eigen::Infinity>() < tie) return;
             const Vec2 turn = slopes.inverse() * rises;
@@ -870,25 +870,20 @@ private:
         return turn;
     }
 
-    /// Returns the touches that carry the robot.
-    static std::vector<RestTouch> contacts(const Lowered& at, double tolerance = contact_tolerance)
-    {
-        std::vector<RestTouch> out;
-        for (const RestTouch& t : at.touches)
-            if (t.touch.height >= at.z - tolerance) out.push_back(t);
-        return out;
-    }
-
     static Polygon2 support_polygon(const Lowered& at, double tolerance = contact_tolerance)
     {
         Polygon2 points;
-        for (const RestTouch& t : contacts(at, tolerance)) points.push_back(t.touch.point.head<2>());
+        points.reserve(at.touches.size());
+        for (const RestTouch& t : at.touches)
+            if (t.touch.height >= at.z - tolerance) points.push_back(t.touch.point.head<2>());
         return convex_hull(std::move(points));
     }
 
     /// Returns whether the robot stands. Remembers a pose in which it would only have to balance.
     bool stands()
     {
+        const auto is_contact = [&](const RestTouch& t) { return t.touch.height >= at_.z - contact_tolerance; };
+        if (std::count_if(at_.touches.begin(), at_.touches.end(), is_contact) < 3) return false;
         const Polygon2 polygon = support_polygon(at_);
         if (polygon.size() < 3) return false;
         balance_ = at_.angles;
@@ -899,9 +894,10 @@ private:
     std::vector<RestContact> rest_contacts(const Lowered& at) const
     {
         std::vector<RestContact> out;
-        for (const RestTouch& t : contacts(at, contact_gap))
-            out.push_back({t.touch.point + at.z * Vec3::UnitZ(), t.touch.normal.normalized(), t.part,
-                           solids_[t.solid].part, solids_[t.solid].label});
+        for (const RestTouch& t : at.touches)
+            if (t.touch.height >= at.z - contact_gap)
+                out.push_back({t.touch.point + at.z * Vec3::UnitZ(), t.touch.normal.normalized(), t.part,
+                               solids_[t.solid].part, solids_[t.solid].label});
         return out;
     }
 
@@ -967,10 +963,10 @@ private:
     }
 
     const Settler& settler_;
-    const std::vector<NearSolid> solids_;
-    const double yaw_;
-    Vec3 mass_;                         ///< the centre of mass in the robot's frame, moved a little
-    std::vector<PlacedPart> parts_;     ///< of the robot, at the attitude that was examined last
+    std::span<const NearSolid> solids_;
+    double yaw_ = 0;
+    Vec3 mass_ = Vec3::Zero();          ///< the centre of mass in the robot's frame, moved a little
+    std::vector<PlacedBody> parts_;     ///< of the robot, at the attitude that was examined last
     std::vector<Pair> pairs_;           ///< at the attitude that was examined last
     std::vector<Touch> touches_;        ///< of the pair that was examined last
     std::vector<MinimaxPlane> planes_;  ///< see falling_turn()
@@ -994,11 +990,28 @@ Settler::Settler(const Geometry& geometry, const Robot& robot, const Options& op
     joints_ = joints_of(parts_);
 }
 
-/// Returns the solids that the robot may meet, relative to the origin.
-std::vector<NearSolid> Settler::solids_near(const Vec3& origin) const
+/// How the robot rests on a horizontal plane at z = 0. It depends only on the yaw.
+struct Settler::FlatRest {
+    double yaw;
+    Rest rest;
+    std::vector<Bounds> parts;  ///< of the robot at rest, m
+};
+
+struct Settler::Workspace::Kept {
+    std::optional<Descent> descent = {};
+    std::vector<FlatRest> flats = {};
+    Vec3 origin = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    std::vector<NearSolid> solids = {};  ///< relative to `origin`
+};
+
+Settler::Workspace::Workspace() : kept_(std::make_unique<Kept>()) {}
+
+Settler::Workspace::~Workspace() = default;
+
+/// Sets `out` to the solids that the robot may meet, relative to the origin.
+void Settler::find_solids_near(const Vec3& origin, std::vector<NearSolid>& out) const
 {
-    std::vector<NearSolid> out;
-    out.reserve(32);
+    out.clear();
     const double x = origin.x(), y = origin.y();
     geometry_.impl().visit_in(x - reach_, y - reach_, x + reach_, y + reach_, [&](const Tile& tile, auto element) {
         if (tile.label(element) == Label::Water || tile.label(element) == Label::Ignore) return;
@@ -1016,16 +1029,16 @@ std::vector<NearSolid> Settler::solids_near(const Vec3& origin) const
             solid.bounds = solid.body.bounds();
         }
     });
-    return out;
+    cover_shared(out);
 }
 
-Settler::FlatRest Settler::flat_rest(double yaw) const
+Settler::FlatRest Settler::flat_rest(double yaw, Descent& descent) const
 {
     const double far = 10 * reach_;
     NearSolid plane;
     plane.triangle = touch_triangle_of({Vec3(-far, -far, 0), Vec3(2 * far, -far, 0), Vec3(-far, 2 * far, 0)});
     for (const Vec3& corner : plane.triangle->points) plane.bounds.extend(corner);
-    FlatRest out{yaw, Descent(*this, {plane}, yaw).run()};
+    FlatRest out{yaw, descent.run({&plane, 1}, yaw), {}};
     const Mat3 rotation = rotation_from_rpy(out.rest.roll, out.rest.pitch, yaw);
     for (const Convex& part : parts_) {
         Bounds& bounds = out.parts.emplace_back(moved(part, {Vec3::Zero(), rotation}).bounds());
@@ -1036,10 +1049,22 @@ Settler::FlatRest Settler::flat_rest(double yaw) const
     return out;
 }
 
+/// Returns how the robot rests on a plane at this yaw. Keeps it for the next robots.
+const Settler::FlatRest& Settler::flat_rest(double yaw, Workspace& workspace) const
+{
+    constexpr std::size_t most = 64;  // no rule has more headings (HeadingRule::most)
+    std::vector<FlatRest>& flats = workspace.kept_->flats;
+    const auto found = std::find_if(flats.begin(), flats.end(), [&](const FlatRest& flat) { return flat.yaw == yaw; });
+    if (found != flats.end()) return *found;
+    if (flats.size() == most) flats.clear();
+    return flats.emplace_back(flat_rest(yaw, *workspace.kept_->descent));
+}
+
 /// Returns the rest on ground that is horizontal below all contacts, and equally high to the bit, if no other solid is
 /// near enough to touch the robot or to be a ceiling. So the way down over a plane and over this ground is the same.
-std::optional<Rest> Settler::rest_on_flat_ground(const std::vector<NearSolid>& solids, double yaw, FlatRest& flat) const
+std::optional<Rest> Settler::rest_on_flat_ground(double yaw, Workspace& workspace) const
 {
+    const std::vector<NearSolid>& solids = workspace.kept_->solids;
     constexpr double same_layer = 1e-9;  // m
     const NearSolid* ground = nullptr;
     const auto is_level = [](const NearSolid& solid) {
@@ -1048,7 +1073,7 @@ std::optional<Rest> Settler::rest_on_flat_ground(const std::vector<NearSolid>& s
     for (const NearSolid& solid : solids)
         if (is_level(solid) && std::abs(solid.triangle->height) <= same_layer) ground = &solid;
     if (ground == nullptr) return std::nullopt;
-    if (flat.yaw != yaw) flat = flat_rest(yaw);
+    const FlatRest& flat = flat_rest(yaw, workspace);
     if (flat.rest.state != Rest::State::Standing) return std::nullopt;
     const double z = ground->triangle->height;
     const auto is_ground = [&](const NearSolid& solid) { return is_level(solid) && solid.triangle->height == z; };
@@ -1075,15 +1100,17 @@ std::optional<Rest> Settler::rest_on_flat_ground(const std::vector<NearSolid>& s
     return out;
 }
 
-Rest Settler::settle(double x, double y, double yaw, double layer, FlatRest& flat) const
+Rest Settler::settle(double x, double y, double yaw, double layer, Workspace& workspace) const
 {
+    Workspace::Kept& kept = *workspace.kept_;
+    if (!kept.descent) kept.descent.emplace(*this);
     const Vec3 origin(x, y, layer);
-    std::vector<NearSolid> solids = solids_near(origin);
-    std::optional<Rest> rest = rest_on_flat_ground(solids, yaw, flat);
-    if (!rest) {
-        cover_shared(solids);
-        rest = Descent(*this, std::move(solids), yaw).run();
+    if (kept.origin != origin) {
+        find_solids_near(origin, kept.solids);
+        kept.origin = origin;
     }
+    std::optional<Rest> rest = rest_on_flat_ground(yaw, workspace);
+    if (!rest) rest = kept.descent->run(kept.solids, yaw);
     rest->z += layer;
     rest->drop_z += layer;
     for (RestContact& contact : rest->contacts) contact.point += origin;
@@ -1092,8 +1119,8 @@ Rest Settler::settle(double x, double y, double yaw, double layer, FlatRest& fla
 
 Rest Settler::settle(double x, double y, double yaw, double layer) const
 {
-    FlatRest flat;
-    return settle(x, y, yaw, layer, flat);
+    Workspace workspace;
+    return settle(x, y, yaw, layer, workspace);
 }
 
 }  // namespace spawnfield

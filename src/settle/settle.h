@@ -6,6 +6,7 @@
 #include <spawnfield/settled_pose.h>
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct Rest {
     double margin = 0;
     /// How far the robot can be raised straight up from its rest until it meets something, m.
     double headroom = std::numeric_limits<double>::infinity();
-    /// Largest height of the level robot's origin from which it falls freely onto its first contacts, m.
+    /// Largest height of the level robot's origin from which it falls freely onto its first contacts, m. Only if
+    /// Options::wants_drop.
     double drop_z = std::numeric_limits<double>::infinity();
     double tip_over = 0, belly = 0;  ///< as in SettledPose
     /// Height of the robot's lowest point on the vertical line through its origin above the origin, m; 0: no such
@@ -49,13 +51,22 @@ public:
         double min_stability = 0;               ///< m; see Rest::margin
         /// m; what is higher above the robot is not examined, and Rest::headroom and drop_z may be too large there.
         double headroom = std::numeric_limits<double>::infinity();
+        bool wants_drop = true;  ///< Rest::drop_z is computed
     };
 
-    /// How the robot rests on a horizontal plane at z = 0. It depends only on the yaw.
-    struct FlatRest {
-        double yaw = std::numeric_limits<double>::quiet_NaN();
-        Rest rest = {};
-        std::vector<Bounds> parts = {};  ///< of the robot at rest, m
+    /// What a thread keeps from one robot to the next one, for one Settler: memory, the solids at the last place, and
+    /// how the robot rests on a plane at its last headings.
+    class Workspace {
+    public:
+        Workspace();
+        ~Workspace();
+        Workspace(const Workspace&) = delete;
+        Workspace& operator=(const Workspace&) = delete;
+
+    private:
+        friend Settler;
+        struct Kept;
+        const std::unique_ptr<Kept> kept_;
     };
 
     Settler(const Geometry& geometry, const Robot& robot, const Options& options);
@@ -63,16 +74,17 @@ public:
     const Vec3& mass_center() const { return mass_center_; }  ///< in the robot's frame, m
 
     /// Lets the robot down at (x, y) with this yaw onto the terrain layer at a height. It moves only in z, roll and
-    /// pitch: level down to the first contact, then it turns about its contacts so that its centre of mass sinks. Keeps
-    /// the rest on a plane in `flat`, so that calls with the same yaw need not compute it again.
-    Rest settle(double x, double y, double yaw, double layer, FlatRest& flat) const;
+    /// pitch: level down to the first contact, then it turns about its contacts so that its centre of mass sinks.
+    Rest settle(double x, double y, double yaw, double layer, Workspace& workspace) const;
     Rest settle(double x, double y, double yaw, double layer) const;
 
 private:
     class Descent;
-    std::vector<NearSolid> solids_near(const Vec3& origin) const;
-    FlatRest flat_rest(double yaw) const;
-    std::optional<Rest> rest_on_flat_ground(const std::vector<NearSolid>& solids, double yaw, FlatRest& flat) const;
+    struct FlatRest;
+    void find_solids_near(const Vec3& origin, std::vector<NearSolid>& out) const;
+    FlatRest flat_rest(double yaw, Descent& descent) const;
+    const FlatRest& flat_rest(double yaw, Workspace& workspace) const;
+    std::optional<Rest> rest_on_flat_ground(double yaw, Workspace& workspace) const;
 
     const Geometry geometry_;
     const Options options_;

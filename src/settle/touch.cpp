@@ -153,21 +153,16 @@ private:
     const TouchTriangle& triangle_;
 };
 
-double lowest_point(const Convex& body)
-{
-    double out = std::numeric_limits<double>::infinity();
-    for (const Vec3& point : body.points) out = std::min(out, point.z());
-    return out;
-}
-
 /// Adds the touches of corners of the ground below a polyhedron, without those below wanted.min_height.
 template <class Ground>
-void add_corners_below(const Convex& body, const Ground& ground, const WantedTouches& wanted, std::vector<Touch>& out)
+void add_corners_below(const Convex& body, const Bounds& bounds, const Ground& ground, const WantedTouches& wanted,
+                       std::vector<Touch>& out)
 {
-    const double bottom = lowest_point(body);
     for (std::size_t k = 0; k < ground.points.size(); ++k) {
         const Vec3& point = ground.points[k];
-        if (point.z() - bottom < wanted.min_height || !wanted.wants_point(k)) continue;
+        if (point.z() - bounds.min.z() < wanted.min_height || !wanted.wants_point(k) ||
+            !bounds.contains_xy(point.x(), point.y(), rounding))
+            continue;
         if (const auto end = end_of(body, point.x(), point.y(), -1))
             out.push_back(touch_at(point.z() - end->z, {point.x(), point.y(), end->z}, end->normal,
                                    Touch::Kind::CornerUnderFace, end->plane, k));
@@ -203,7 +198,7 @@ void add_polyhedra(const Convex& body, const Top& ground, const WantedTouches& w
         if (const auto end = ground.end(point.x(), point.y()))
             out.push_back(touch_at(end->z - point.z(), point, end->normal, Touch::Kind::CornerOnFace, j));
     }
-    add_corners_below(body, ground, wanted, out);
+    add_corners_below(body, body.bounds(), ground, wanted, out);
     for (std::size_t j = 0; j < body.edges.size(); ++j) {
         const auto& [a, b] = body.edges[j];
         const Vec3 &from = body.points[std::size_t(a)], &to = body.points[std::size_t(b)];
@@ -216,37 +211,42 @@ void add_polyhedra(const Convex& body, const Top& ground, const WantedTouches& w
 
 /// The same for a polyhedron on a triangle. Seen from above, an edge can cross a side of the triangle only if its
 /// corners are on different sides of it.
-void add_polyhedra(const Convex& body, const TriangleTop& ground, const WantedTouches& wanted, std::vector<Touch>& out)
+void add_polyhedra(const PlacedBody& placed, const TriangleTop& ground, const WantedTouches& wanted,
+                   std::vector<Touch>& out)
 {
     struct Corner {
         double height;             ///< by which it must be raised onto the plane of the triangle, m
         unsigned outside, inside;  ///< bit k: it is on that side of side k of the triangle, by more than rounding
     };
-    thread_local std::vector<Corner> corners;  // kept, because this is called millions of times
-    corners.clear();
-    for (std::size_t j = 0; j < body.points.size(); ++j) {
-        const Vec3& point = body.points[j];
-        Corner& corner = corners.emplace_back(Corner{ground.height_bound(point), 0, 0});
+    std::array<Corner, 32> few;  // no allocation for boxes and small hulls, because this is called millions of times
+    std::vector<Corner> many(placed.lower_corners.size() > few.size() ? placed.lower_corners.size() : 0);
+    Corner* const corners = many.empty() ? few.data() : many.data();
+    unsigned outside_all = 7;
+    for (std::size_t j = 0; j < placed.lower_corners.size(); ++j) {
+        const PlacedBody::Corner& lower = placed.lower_corners[j];
+        Corner& corner = corners[j];
+        corner = {ground.height_bound(lower.point), 0, 0};
         for (unsigned k = 0; k < 3; ++k) {
-            const double inward = ground.inward(k, point);
+            const double inward = ground.inward(k, lower.point);
             corner.outside |= unsigned(inward < -rounding) << k;
             corner.inside |= unsigned(inward > rounding) << k;
         }
         if (corner.outside == 0 && corner.height >= wanted.min_height)
-            out.push_back(touch_at(corner.height, point, ground.normal(), Touch::Kind::CornerOnFace, j));
+            out.push_back(
+                touch_at(corner.height, lower.point, ground.normal(), Touch::Kind::CornerOnFace, lower.index));
+        outside_all &= corner.outside;
     }
-    add_corners_below(body, ground, wanted, out);
+    if (outside_all != 0) return;
+    add_corners_below(placed.body, placed.bounds, ground, wanted, out);
     const unsigned wanted_sides = ~unsigned(wanted.covered_edges) & 7;
     if (wanted_sides == 0) return;
-    for (std::size_t j = 0; j < body.edges.size(); ++j) {
-        const auto& [a, b] = body.edges[j];
-        const Corner &from = corners[std::size_t(a)], &to = corners[std::size_t(b)];
+    for (const PlacedBody::Edge& edge : placed.lower_edges) {
+        const Corner &from = corners[edge.from], &to = corners[edge.to];
         const unsigned crossed = ~(from.outside & to.outside) & ~(from.inside & to.inside) & wanted_sides;
-        if ((from.outside & to.outside) != 0 || crossed == 0 || std::max(from.height, to.height) < wanted.min_height ||
-            !body.is_lower_edge(j))
+        if ((from.outside & to.outside) != 0 || crossed == 0 || std::max(from.height, to.height) < wanted.min_height)
             continue;
         for (std::size_t k = 0; k < 3; ++k)
-            if (crossed >> k & 1) add_crossing(body, j, ground, k, out);
+            if (crossed >> k & 1) add_crossing(placed.body, edge.index, ground, k, out);
     }
 }
 
@@ -494,10 +494,48 @@ void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& o
     for (const Convex& end : ends_of(ground)) add(body, end);
 }
 
-void add_touches(const Convex& body, const TouchTriangle& ground, std::vector<Touch>& out, const WantedTouches& wanted)
+void add_touches(const PlacedBody& placed, const TouchTriangle& ground, std::vector<Touch>& out,
+                 const WantedTouches& wanted)
 {
-    if (body.is_polyhedron()) return add_polyhedra(body, TriangleTop(ground), wanted, out);
-    add_round(body, TriangleTop(ground), wanted, out);
+    if (placed.body.is_polyhedron()) return add_polyhedra(placed, TriangleTop(ground), wanted, out);
+    add_round(placed.body, TriangleTop(ground), wanted, out);
+}
+
+void place(PlacedBody& out, const Convex& body, const Mat3& rotation)
+{
+    set_rotated(out.body, body, rotation);
+    out.bounds = out.body.bounds();
+    out.lower_corners.clear();
+    out.lower_edges.clear();
+    if (!body.is_polyhedron()) return;
+    constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+    out.places.assign(body.points.size(), none);
+    const auto place_of = [&](int point) {
+        std::uint32_t& place = out.places[std::size_t(point)];
+        if (place == none) {
+            place = std::uint32_t(out.lower_corners.size());
+            out.lower_corners.push_back({out.body.points[std::size_t(point)], std::uint32_t(point)});
+        }
+        return place;
+    };
+    for (std::size_t edge = 0; edge < body.edges.size(); ++edge) {
+        if (!out.body.is_lower_edge(edge)) continue;
+        const auto& [a, b] = body.edges[edge];
+        const std::uint32_t from = place_of(a), to = place_of(b);
+        out.lower_edges.push_back({from, to, std::uint32_t(edge)});
+    }
+    if (body.edges.empty())
+        for (std::size_t point = 0; point < body.points.size(); ++point) place_of(int(point));
+}
+
+double height_bound(const PlacedBody& placed, const TouchTriangle& triangle)
+{
+    if (!placed.body.is_polyhedron())
+        return triangle.height - triangle.normal.dot(placed.body.support(-triangle.normal));
+    double out = -std::numeric_limits<double>::infinity();
+    for (const PlacedBody::Corner& corner : placed.lower_corners)
+        out = std::max(out, triangle.z_at(corner.point) - corner.point.z());
+    return out;
 }
 
 std::optional<double> height_after(const Touch& touch, const Convex& body, const Mat3& rotation,

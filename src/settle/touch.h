@@ -59,13 +59,38 @@ struct TouchTriangle {
 /// Returns nothing if the triangle is steeper than TouchTriangle::steepest or has no area.
 std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle);
 
+/// A convex body at its current attitude, prepared for many touches from above.
+struct PlacedBody {
+    Convex body;
+    Bounds bounds = {};
+    /// Only of polyhedra: the corners and edges of the faces that look downwards. Nothing below touches the others.
+    struct Corner {
+        Vec3 point;
+        std::uint32_t index;  ///< in body.points
+    };
+    struct Edge {
+        std::uint32_t from, to;  ///< indices in lower_corners
+        std::uint32_t index;     ///< in body.edges
+    };
+    std::vector<Corner> lower_corners = {};
+    std::vector<Edge> lower_edges = {};
+    std::vector<std::uint32_t> places = {};  ///< of the body's points in lower_corners, for place()
+};
+
+/// Sets `out` to the body, rotated about the origin of the body's frame. out.body must be a copy of the body or the
+/// result of an earlier call for it.
+void place(PlacedBody& out, const Convex& body, const Mat3& rotation);
+
+/// Returns how far the body must be raised at most until it is not below the triangle's plane, m.
+double height_bound(const PlacedBody& placed, const TouchTriangle& triangle);
+
 /// Adds the touches of a body that moves only along z and meets the ground, a convex solid, from above. At the height
 /// of the highest touch the body rests on the ground: on no vertical line is the ground's upper end above the body's
 /// lower end. The other touches are lower; one of them may become the highest if the body is turned a little. Of two
 /// round bodies, adds only the highest touch of the bodies and of their ends. Surfaces steeper than 1e5 have no
 /// touches. Adds nothing if body and ground do not overlap seen from above.
 void add_touches(const Convex& body, const Convex& ground, std::vector<Touch>& out, const WantedTouches& wanted = {});
-void add_touches(const Convex& body, const TouchTriangle& ground, std::vector<Touch>& out,
+void add_touches(const PlacedBody& placed, const TouchTriangle& ground, std::vector<Touch>& out,
                  const WantedTouches& wanted = {});
 
 /// Returns the height of a touch of the body on a triangle after the body has been rotated from its own frame, if the
