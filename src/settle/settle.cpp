@@ -94,6 +94,9 @@ void cover_shared(std::vector<NearSolid>& solids)
     constexpr std::size_t most = 48;  // of more triangles, the comparisons take longer than they save
     constexpr double steepest = 2;
     if (solids.size() > most) return;
+    const auto is_same = [](const Vec3& p, const Vec3& q) {  // mostly, the first comparison decides
+        return p.x() == q.x() && p.y() == q.y() && p.z() == q.z();
+    };
     const auto is_ground = [](const NearSolid& solid) {
         return solid.triangle && solid.triangle->normal.head<2>().squaredNorm() <= steepest * steepest;
     };
@@ -106,7 +109,7 @@ void cover_shared(std::vector<NearSolid>& solids)
             int count = 0;
             for (int k = 0; k < 3; ++k)
                 for (int l = 0; l < 3; ++l)
-                    if (first[std::size_t(k)] == second[std::size_t(l)]) {
+                    if (is_same(first[std::size_t(k)], second[std::size_t(l)])) {
                         same[std::size_t(k)] = l;
                         solids[j].wanted.covered_points |= std::uint8_t(1 << l);
                         ++count;
@@ -163,6 +166,9 @@ struct Lowered {
     std::vector<RestTouch> touches;
     bool has_room = false;
     std::optional<std::uint32_t> wall = {};  ///< if it has no room: the part of the scene
+    /// Height of the origin from which on a solid above the robot touches it, m. Solids that touch it only above `seen`
+    /// do not count.
+    double ceiling = std::numeric_limits<double>::infinity(), seen = ceiling;
 };
 
 /// Returns the angle between the robot's z axis and the vertical for this roll and pitch, rad.
@@ -295,7 +301,7 @@ public:
         drift_ = Vec2::Zero();
         limit_ = first_turn;
         level(at_);
-        const double drop_z = settler_.options_.wants_drop && at_.has_room ? ceiling_above(at_.z) : at_.z;
+        const double drop_z = settler_.options_.wants_drop && at_.has_room ? ceiling_above(at_) : at_.z;
         Rest::State state = Rest::State::Blocked;
         if (at_.has_room) {
             const Lowered start = at_;
@@ -344,7 +350,8 @@ private:
             const Vec2 turn = aim.norm() <= straight ? aim : first_part(aim, is_to_kink);
             // A long turn may miss a rest just below the largest tilt.
             if (turn.norm() > exact_turn && tilt_of(at_.angles + turn) > settler_.options_.max_tilt) {
-                limit_ = turn.lpNorm<Eigen::Infinity>() / 2;
+                limit_ = 0.9 * share_to_largest_tilt(turn) * turn.lpNorm<Eigen::Infinity>();
+                limit_ = std::max(limit_, exact_turn / 2);
                 continue;
             }
             if (straight > 0)
@@ -592,24 +599,25 @@ private:
         out.touches.clear();
         out.has_room = false;
         out.wall.reset();
-        double ceiling = std::numeric_limits<double>::infinity();
-        const double seen = std::min(std::max(most_seen, large_seen * settler_.reach_),
-                                     seen_share * settler_.reach_ * limit_);
+        out.ceiling = std::numeric_limits<double>::infinity();
+        out.seen = z + rise;
+        const double below = std::min(std::max(most_seen, large_seen * settler_.reach_),
+                                      seen_share * settler_.reach_ * limit_);
         const Attitude attitude(angles, yaw_);
         parts(attitude.rotation);
-        find_pairs(z + rise);
+        find_pairs(out.seen);
         for (const Pair& pair : pairs_) {
-            const double least = std::max(out.z, z - rise) - seen;
+            const double least = std::max(out.z, z - rise) - below;
             if (pair.possible < least) continue;
             const PlacedBody& part = parts_[pair.part];
             const NearSolid& solid = solids_[pair.solid];
             WantedTouches wanted = solid.wanted;
             wanted.min_height = least;
             const double highest = touch(part, solid, wanted);
-            if (highest > z + rise) {
+            if (highest > out.seen) {
                 const double bottom = bottom_of(pair, highest, z - rise);
-                if (bottom < ceiling) {
-                    ceiling = bottom;
+                if (bottom < out.ceiling) {
+                    out.ceiling = bottom;
                     out.wall = solid.part;
                 }
                 if (bottom < z - rise) return;
@@ -620,22 +628,35 @@ private:
                 out.touches.push_back({touch, attitude.rise(touch.point, touch.normal), pair.part, pair.solid});
         }
         if (out.touches.empty()) out.z = z;  // nothing is below it
-        out.has_room = out.z <= ceiling;
+        out.has_room = out.z <= out.ceiling;
     }
 
-    /// Returns the height of the robot's origin at which the robot, raised from z without turning, meets something.
-    double ceiling_above(double z)
+    /// Returns the height of the robot's origin at which the robot, raised without turning, meets something. parts_
+    /// must have its attitude.
+    double ceiling_above(const Lowered& at)
     {
-        double out = std::numeric_limits<double>::infinity();
-        find_pairs(z + settler_.options_.headroom);
+        double out = at.ceiling;
+        find_pairs(at.z + settler_.options_.headroom);
         for (const Pair& pair : pairs_) {
             const PlacedBody& part = parts_[pair.part];
             const NearSolid& solid = solids_[pair.solid];
-            if (pair.possible <= z || lowest_possible(part, solid) >= out) continue;
-            if (touch(part, solid, {.min_height = z}) <= z + contact_tolerance) continue;
+            const double lowest = lowest_possible(part, solid);
+            if (lowest <= at.seen || lowest >= out || pair.possible <= at.z) continue;
+            if (touch(part, solid, {.min_height = at.z}) <= at.z + contact_tolerance) continue;
             out = std::min(out, blocked_heights(part.body, solid)->bottom);
         }
         return out;
+    }
+
+    /// Returns the share of a turn, which leads beyond the largest tilt, with which the robot tilts so much.
+    double share_to_largest_tilt(const Vec2& turn) const
+    {
+        double low = 0, high = 1;
+        for (int step = 0; step < 10; ++step) {
+            const double middle = (low + high) / 2;
+            (tilt_of(at_.angles + middle * turn) > settler_.options_.max_tilt ? high : low) = middle;
+        }
+        return low;
     }
 
     double expected_z(const Vec2& turn) const
@@ -952,7 +973,7 @@ private:
         if (state == Rest::State::Blocked) return out;
         const Polygon2 polygon = support_polygon(at_, contact_gap);
         const Vec3 mass = rotation(at_.angles) * settler_.mass_center_;
-        out.headroom = ceiling_above(at_.z) - at_.z;
+        out.headroom = ceiling_above(at_) - at_.z;
         out.contacts = rest_contacts(at_);
         out.belly = belly(out.contacts);
         out.underside = underside().value_or(0);
