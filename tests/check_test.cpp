@@ -1,6 +1,7 @@
 #include "arena.h"
 
 #include <spawnfield/map.h>
+#include <spawnfield/poses.h>
 
 #include <nlohmann/json.hpp>
 #include <tinyxml2.h>
@@ -362,6 +363,22 @@ TEST_CASE("the valid rows of raster --settle are valid poses as they are written
     CHECK(check.status == 0);
     CHECK(std::count(valid.begin(), valid.end(), '\n') > 900);
     CHECK(tilted > 20);  // on the ramp
+}
+
+TEST_CASE("what rounding leaves of an angle of 0 is not written")
+{
+    using namespace spawnfield;
+    const Arena arena;
+    REQUIRE(arena("raster map --dims 2 --step 0.5 --settle -q -o raster.csv" + husky_option).status == 0);
+    const PoseTable raster = read_poses(arena / "raster.csv");
+    int tilted = 0;
+    for (const char* const column : {"roll", "pitch"})
+        for (const std::string& text : column_of(raster, column)) {
+            CAPTURE(column, text);
+            CHECK((text == "0" || std::abs(std::stod(text)) > 1e-12));
+            tilted += text != "0";
+        }
+    CHECK(tilted > 20);
 }
 
 TEST_CASE("raster and heatmap refuse what they cannot do with settled poses")

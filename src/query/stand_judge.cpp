@@ -12,6 +12,13 @@ namespace {
 constexpr double just_above = 1e-5;   // m: a robot that is raised by this touches nothing any more
 constexpr double limit_slack = 1e-9;  // m and rad, in comparisons with limits
 
+/// Returns an angle without what rounding leaves of 0, such as 5e-20 or -0, which is hard to read in files.
+double without_noise(double angle)
+{
+    constexpr double noise = 1e-12;  // rad: far below what any check notices
+    return std::abs(angle) < noise ? 0.0 : angle;
+}
+
 /// Returns an obstacle on which the robot rests, if there is one.
 std::optional<CollisionHit> obstacle_below(const Rest& rest)
 {
@@ -61,8 +68,8 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     }
     out.has_pose = true;
     out.position.z() = rest.z;
-    out.roll = rest.roll;
-    out.pitch = rest.pitch;
+    out.roll = without_noise(rest.roll);
+    out.pitch = without_noise(rest.pitch);
     out.tilt = rest.tilt();
     out.margin = rest.margin;
     out.tip_over = rest.tip_over;
