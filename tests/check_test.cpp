@@ -271,7 +271,8 @@ TEST_CASE("reports of many poses, which are written in several pieces, are compl
 TEST_CASE("check --settle writes how the robot rests at each pose")
 {
     const Arena arena;
-    arena.write("poses.csv", "name,x,y,z,yaw,margin\nstart,0,3,0.1,0.5,old\nwall,-6.5,-5,0.1,0,\nsky,0,3,2.5,0,\n");
+    arena.write("poses.csv",
+                "name,x,y,z,yaw,margin,reason\nstart,0,3,0.1,0.5,old,old\nwall,-6.5,-5,0.1,0,,\nsky,0,3,2.5,0,,\n");
     const ProgramRun run = arena("check map --poses poses.csv --settle" + husky_option);
     INFO(run.err);
     CHECK(run.status == 0);
@@ -283,15 +284,17 @@ TEST_CASE("check --settle writes how the robot rests at each pose")
     std::getline(lines, line);
     CHECK(line ==
           "name,x,y,z,yaw,verdict,ground,height_above,hit,settled_z,settled_roll,settled_pitch,tilt,margin,"
-          "contacts,tip_over,belly");
+          "contacts,tip_over,belly,reason");
     std::getline(lines, line);
     CHECK(line.starts_with("start,0,3,0.1,0.5,valid,-0.05,0,,-0.05,0,0,0,0.335,"));
     CHECK_THAT(line, Contains(" on floor; "));
-    CHECK(line.ends_with(",0"));
+    CHECK(line.ends_with(",0,"));
     std::getline(lines, line);
-    CHECK(line == "wall,-6.5,-5,0.1,0,collision,-0.05,,thin_wall,,,,,,,,");
+    CHECK(line ==
+          "wall,-6.5,-5,0.1,0,collision,-0.05,,thin_wall,,,,,,,,,"
+          "\"collision: it has no room to settle, because of thin_wall\"");
     std::getline(lines, line);
-    CHECK(line == "sky,0,3,2.5,0,aerial,-0.05,,,,,,,,,,");
+    CHECK(line == "sky,0,3,2.5,0,aerial,-0.05,,,,,,,,,,,\"aerial: 2.55 m above the ground, the limit is 1 m\"");
 
     const ProgramRun json = arena("check map --poses poses.csv --stance settled --drop 2 --format json -q" +
                                   husky_option);
@@ -305,7 +308,9 @@ TEST_CASE("check --settle writes how the robot rests at each pose")
     CHECK(rest.at("contacts").size() == 4);
     CHECK(rest.at("contacts")[0].at("ground") == "floor");
     CHECK(std::abs(rest.at("margin").get<double>() - 0.335) <= 1e-9);
+    CHECK(report.at("poses")[0].at("reason").is_null());
     CHECK(report.at("poses")[1].at("settled").is_null());
+    CHECK(report.at("poses")[1].at("reason") == "collision: it has no room to settle, because of thin_wall");
 
     const ProgramRun junit = arena("check map --poses poses.csv --settle --format junit -q" + husky_option);
     const std::vector<Case> cases = cases_of(junit.out);

@@ -54,10 +54,11 @@ SPAWNFIELD_API std::string verdicts_csv(const PoseTable& table, const std::vecto
                                         const Map& map);
 
 /// The same for robots that were let down at the poses: height_above is that of the settled pose, and the columns
-/// settled_z,settled_roll,settled_pitch,tilt,margin,contacts,tip_over,belly follow; m and rad. They are empty if the
-/// robot was not let down or has no room. `contacts` lists "x y z PART on GROUND", separated by "; ".
-SPAWNFIELD_API std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Map& map,
-                                       const Robot& robot);
+/// settled_z,settled_roll,settled_pitch,tilt,margin,contacts,tip_over,belly,reason follow; m and rad. They are empty if
+/// the robot was not let down or has no room, except `reason`: Judge::describe() of each pose that is not valid.
+/// `contacts` lists "x y z PART on GROUND", separated by "; ". `judge` must be the one that let the robots down.
+SPAWNFIELD_API std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses,
+                                       const Judge& judge);
 
 /// Writes x,y,z,yaw,layer,verdict. With RasterResult::rests, writes
 /// x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly: m and rad. If the robot has no room or the place

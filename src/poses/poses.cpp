@@ -240,21 +240,22 @@ std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& j
     return table_csv(table, false, append);
 }
 
-std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Map& map,
-                        const Robot& robot)
+std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Judge& judge)
 {
     const auto append = [&](std::string& text, std::size_t i) {
         const SettledPose& pose = poses[i];
-        append_verdict(text, judgement_of(pose), map,
+        append_verdict(text, judgement_of(pose), judge.map(),
                        pose.has_pose ? pose.position.z() - pose.ground->height : no_number);
         text += ',';
-        if (!pose.has_pose) {
-            text.append(settled_columns.size() - 1, ',');
-            return;
+        if (pose.has_pose) {
+            append_numbers(text, {pose.position.z(), pose.roll, pose.pitch, pose.tilt, pose.margin});
+            text += ',' + csv_quoted(contacts_text(pose, judge.map(), judge.robot())) + ',';
+            append_numbers(text, {pose.tip_over, pose.belly});
+        } else {
+            text.append(settled_columns.size() - 2, ',');  // all but `reason` are empty
         }
-        append_numbers(text, {pose.position.z(), pose.roll, pose.pitch, pose.tilt, pose.margin});
-        text += ',' + csv_quoted(contacts_text(pose, map, robot)) + ',';
-        append_numbers(text, {pose.tip_over, pose.belly});
+        text += ',';
+        if (pose.verdict != Verdict::Valid) text += csv_quoted(judge.describe(pose));
     };
     return table_csv(table, true, append);
 }
