@@ -352,7 +352,8 @@ TEST_CASE("the valid rows of raster --settle are valid poses as they are written
     std::istringstream lines(bytes_of(arena / "raster.csv"));
     std::string line, valid;
     std::getline(lines, line);
-    CHECK(line == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly");
+    CHECK(line == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly,ground");
+    const std::string names = line + "\n";
     int rows = 0, tilted = 0;
     for (; std::getline(lines, line); ++rows) {
         if (line.find(",valid,") == std::string::npos) continue;
@@ -362,7 +363,7 @@ TEST_CASE("the valid rows of raster --settle are valid poses as they are written
         tilted += std::abs(pitch) > 0.1;
     }
     CHECK(rows == 1700);
-    arena.write("valid.csv", "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly\n" + valid);
+    arena.write("valid.csv", names + valid);
     const ProgramRun check = arena("check map --poses valid.csv --require-valid" + husky_option);
     INFO(check.err);
     CHECK(check.status == 0);
@@ -384,6 +385,24 @@ TEST_CASE("what rounding leaves of an angle of 0 is not written")
             tilted += text != "0";
         }
     CHECK(tilted > 20);
+}
+
+TEST_CASE("rows of raster --settle with their ground as z have the same verdicts from check --settle, valid or not")
+{
+    const Arena arena;
+    REQUIRE(arena("raster map --dims 2 --step 0.4 --settle --yaw 20deg -q -o raster.csv" + husky_option).status == 0);
+    using namespace spawnfield;
+    const PoseTable raster = read_poses(arena / "raster.csv");
+    const std::vector<std::string> x = column_of(raster, "x"), y = column_of(raster, "y"),
+                                   yaw = column_of(raster, "yaw"), ground = column_of(raster, "ground");
+    std::string places = "x,y,z,yaw\n";
+    for (std::size_t i = 0; i < x.size(); ++i) places += x[i] + "," + y[i] + "," + ground[i] + "," + yaw[i] + "\n";
+    arena.write("places.csv", places);
+    REQUIRE(arena("check map --settle --poses places.csv -q -o checked.csv" + husky_option).status == 0);
+    const PoseTable checked = read_poses(arena / "checked.csv");
+    CHECK(column_of(checked, "verdict") == column_of(raster, "verdict"));
+    CHECK(column_of(checked, "margin") == column_of(raster, "margin"));
+    CHECK(column_of(checked, "ground") == ground);
 }
 
 TEST_CASE("raster and heatmap refuse what they cannot do with settled poses")

@@ -126,7 +126,7 @@ TEST_CASE("a raster with several headings finds those that are valid one by one,
         options.threads = 0;
         const std::string text = csv_of(result);
         CHECK(text.substr(0, text.find('\n')) ==
-              "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly,valid_headings");
+              "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly,valid_headings,ground");
     }
     CHECK(at_some > 20);
 }
@@ -336,7 +336,7 @@ TEST_CASE("rules for the heading that are out of range are refused")
         refused(command + " --yaw best:4", "--yaw best:4 is only for robots at rest");
     const ProgramRun run = arena("raster map --dims 2 --settle --step 4 --yaw best:4" + husky_option);
     CHECK(run.status == 0);
-    CHECK_THAT(run.out, Contains(",belly,valid_headings\n"));
+    CHECK_THAT(run.out, Contains(",belly,valid_headings,ground\n"));
     CHECK_THAT(arena("sample map -n 1 --yaw best:4:clearance --format json" + husky_option).out,
                Contains("\"yaw\": \"best:4:clearance\""));
     CHECK_THAT(arena("sample map -n 1 --yaw along --format json" + husky_option).out,

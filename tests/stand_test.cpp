@@ -567,7 +567,7 @@ TEST_CASE("a settled raster on a slope has the tilt of the slope, and its rows a
         CHECK(judge.is_valid({{pose.x, pose.y, pose.z}, rotation_from_rpy(0, result.rests[i].pitch, 0)}));
     }
     const std::string text = csv_of(result);
-    CHECK(text.substr(0, text.find('\n')) == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly");
+    CHECK(text.substr(0, text.find('\n')) == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly,ground");
     CHECK(std::count(text.begin(), text.end(), '\n') == 26);
 }
 

@@ -63,10 +63,10 @@ SPAWNFIELD_API std::string settled_csv(const PoseTable& table, const std::vector
 /// Writes x,y,z,yaw,layer,verdict. With RasterResult::rests, writes
 /// x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly: m and rad. If the robot has no room or the place
 /// cannot be used, roll and pitch are 0, and the last four are empty. With a HeadingRule of several headings, the
-/// column valid_headings follows (bit k of the number: heading k). Passes the text to `sink` in pieces. `layer` is
-/// empty if the ground is not a layer. With `aerial`, also writes the aerial poses of a 3D raster that are not in
-/// raster.poses, at their places in the order. Several threads make the text (0: all cores); it is the same for any
-/// number of them.
+/// column valid_headings follows (bit k of the number: heading k); then `ground`, the height of the layer onto which
+/// the robot was let down. Passes the text to `sink` in pieces. `layer` is empty if the ground is not a layer. With
+/// `aerial`, also writes the aerial poses of a 3D raster that are not in raster.poses, at their places in the order.
+/// Several threads make the text (0: all cores); it is the same for any number of them.
 SPAWNFIELD_API void write_raster_csv(const RasterResult& raster, bool aerial,
                                      const std::function<void(std::string_view)>& sink, int threads = 0);
 

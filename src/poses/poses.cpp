@@ -47,13 +47,27 @@ void append_numbers(std::string& text, std::initializer_list<double> values)
     }
 }
 
-/// Appends the tilt and what follows it in the lines of a settled raster.
-void append_rest(std::string& text, const RasterRest& rest)
+/// Appends a comma, and the number unless it is NaN.
+void append_if_known(std::string& text, double value)
 {
-    for (const double value : {rest.tilt, rest.margin, rest.tip_over, rest.belly}) {
-        text += ',';
-        if (rest.has_pose()) append_number(text, value);
-    }
+    text += ',';
+    if (!std::isnan(value)) append_number(text, value);
+}
+
+/// Appends the tilt and what follows it in the lines of a settled raster.
+void append_rest(std::string& text, const RasterRest& rest, const std::optional<HeadingRule>& rule)
+{
+    for (const double value : {rest.tilt, rest.margin, rest.tip_over, rest.belly}) append_if_known(text, value);
+    if (rule && rule->has_several()) (text += ',') += std::to_string(rest.valid_headings);
+    append_if_known(text, rest.layer_height);
+}
+
+/// Returns the header of a settled raster.
+std::string settled_raster_header(const std::optional<HeadingRule>& rule)
+{
+    std::string names = "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly";
+    if (rule && rule->has_several()) names += ",valid_headings";
+    return names + ",ground";
 }
 
 /// Appends a line x,y,z,yaw,layer,verdict for each pose. `rests` is empty, or has one for each pose: then the lines
@@ -77,8 +91,7 @@ void append_rows(std::string& text, std::span<const RasterPose> poses, std::span
         if (pose.layer >= 0) text += std::to_string(pose.layer);
         text += ',';
         text += to_string(pose.verdict);
-        if (!rests.empty()) append_rest(text, rests[i]);
-        if (rule && rule->has_several()) (text += ',') += std::to_string(rests[i].valid_headings);
+        if (!rests.empty()) append_rest(text, rests[i], rule);
         text += '\n';
     }
 }
@@ -287,10 +300,7 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
         written += poses.size();
         poses.clear();
     };
-    std::string names = is_settled ? "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly"
-                                   : "x,y,z,yaw,layer,verdict";
-    if (raster.heading && raster.heading->has_several()) names += ",valid_headings";
-    sink(names + "\n");
+    sink((is_settled ? settled_raster_header(raster.heading) : "x,y,z,yaw,layer,verdict") + "\n");
     for_each_pose(raster, aerial, [&](const RasterPose& pose) {
         poses.push_back(pose);
         if (poses.size() == batch) write();
