@@ -2,6 +2,8 @@
 
 #include <spawnfield/poses.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 
 using namespace spawnfield;
@@ -76,6 +78,33 @@ TEST_CASE("search answers for level robots, and with --settle for settled ones, 
     const ProgramRun few = arena("search map -n 3 --settle --min-distance 100 --max-failures 50" + husky_option);
     CHECK(few.status == 3);
     CHECK_THAT(few.err, Contains("a smaller --min-distance, a smaller --min-stability, more --max-failures or wider"));
+}
+
+TEST_CASE("settled spawns have their tilt and margin in CSV and JSON, and what their rule measured")
+{
+    const Arena arena;
+    const std::string query = "sample map -n 5 -q --yaw best:4:clearance" + on_ramp + husky_option;
+    REQUIRE(arena(query + "-o spawns.csv").status == 0);
+    REQUIRE(arena(query + "-o named.csv --name 'r{i}'").status == 0);
+    const PoseTable spawns = read_poses(arena / "spawns.csv"), named = read_poses(arena / "named.csv");
+    CHECK(spawns.header == "x,y,z,roll,pitch,yaw,tilt,margin,clearance");
+    CHECK(named.header == "name," + spawns.header);
+    CHECK(named.rows[0] == "r1," + spawns.rows[0]);
+    REQUIRE(arena("check map --settle --poses spawns.csv -q -o checked.csv" + husky_option).status == 0);
+    const nlohmann::json json = nlohmann::json::parse(arena(query + "--format json").out);
+    const PoseTable checked = read_poses(arena / "checked.csv");
+    for (std::size_t i = 0; i < 5; ++i)
+        for (const std::string column : {"tilt", "margin"}) {
+            const double value = std::stod(column_of(spawns, column)[i]);
+            // `check --settle` starts from a yaw that was turned into a rotation and back.
+            CHECK(value == Approx(std::stod(column_of(checked, column)[i])).margin(1e-9));
+            CHECK(json["poses"][i][column] == value);
+            CHECK(json["poses"][i]["clearance"] == std::stod(column_of(spawns, "clearance")[i]));
+        }
+    CHECK_THAT(arena("sample map -n 1 -q --yaw along" + husky_option).out, Contains(",tilt,margin,way\n"));
+    const std::string level = "sample map -n 1 -q --stance level" + husky_option;
+    CHECK(arena(level).out.starts_with("x,y,z,roll,pitch,yaw\n"));
+    CHECK_FALSE(nlohmann::json::parse(arena(level + "--format json").out)["poses"][0].contains("tilt"));
 }
 
 TEST_CASE("heatmap and export answer for settled robots unless they are asked for level ones")

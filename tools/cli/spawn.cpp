@@ -99,9 +99,13 @@ template <class Options>
 void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& session, const Options& options,
            const SpawnList& list)
 {
-    if (!output.has_names()) return write_output(args.out, [&](const auto& sink) { sink(spawns_csv(list)); });
     std::vector<RobotStart> robots = robot_starts(list);
-    output.give_names(robots);
+    std::vector<std::string> names;
+    if (output.has_names()) {
+        output.give_names(robots);
+        for (const RobotStart& robot : robots) names.push_back(robot.name);
+    }
+    if (args.format == "csv") return write_output(args.out, [&](const auto& sink) { sink(spawns_csv(list, names)); });
     output.write(robots, session.map, [&] { return spawns_json(robots, list, *session.judge, options); });
 }
 
