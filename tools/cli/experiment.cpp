@@ -126,7 +126,8 @@ private:
     void prepare_searches()
     {
         search_ = search_options(args_, args_.draws, args_.bounds, "experiment", !args_.ground.z.empty());
-        const YawChoice yaw = parse_yaw_choice(args_, args_.yaw, args_.is_settled(), false);
+        const YawChoice yaw = parse_yaw_choice(args_, args_.yaw, args_.is_settled(), true);
+        search_.random_yaw = yaw.is_random;
         search_.yaw = yaw.yaw;
         search_.heading = yaw.rule;
         search_.stance = args_.stance();
@@ -243,6 +244,8 @@ void add_experiment(CLI::App& app, const std::string& command_line, ChosenComman
     add_draws(command, args->draws);
     add_max_failures(command, args->draws);
     add_raster_query(command, *args);
+    command.get_option("--yaw")->description("Yaw of all poses: " + yaw_help + "; with --search also random; for " +
+                                             heading_help + " (default 0)");
     command.footer(
         "Example:\n"
         "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --steps 0.5:2:0.5 --offset 0.5 "
