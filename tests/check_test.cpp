@@ -1,6 +1,7 @@
 #include "arena.h"
 
 #include <spawnfield/map.h>
+#include <spawnfield/poses.h>
 
 #include <nlohmann/json.hpp>
 #include <tinyxml2.h>
@@ -270,7 +271,8 @@ TEST_CASE("reports of many poses, which are written in several pieces, are compl
 TEST_CASE("check --settle writes how the robot rests at each pose")
 {
     const Arena arena;
-    arena.write("poses.csv", "name,x,y,z,yaw,margin\nstart,0,3,0.1,0.5,old\nwall,-6.5,-5,0.1,0,\nsky,0,3,2.5,0,\n");
+    arena.write("poses.csv",
+                "name,x,y,z,yaw,margin,reason\nstart,0,3,0.1,0.5,old,old\nwall,-6.5,-5,0.1,0,,\nsky,0,3,2.5,0,,\n");
     const ProgramRun run = arena("check map --poses poses.csv --settle" + husky_option);
     INFO(run.err);
     CHECK(run.status == 0);
@@ -282,15 +284,17 @@ TEST_CASE("check --settle writes how the robot rests at each pose")
     std::getline(lines, line);
     CHECK(line ==
           "name,x,y,z,yaw,verdict,ground,height_above,hit,settled_z,settled_roll,settled_pitch,tilt,margin,"
-          "contacts,tip_over,belly");
+          "contacts,tip_over,belly,reason");
     std::getline(lines, line);
     CHECK(line.starts_with("start,0,3,0.1,0.5,valid,-0.05,0,,-0.05,0,0,0,0.335,"));
     CHECK_THAT(line, Contains(" on floor; "));
-    CHECK(line.ends_with(",0"));
+    CHECK(line.ends_with(",0,"));
     std::getline(lines, line);
-    CHECK(line == "wall,-6.5,-5,0.1,0,collision,-0.05,,thin_wall,,,,,,,,");
+    CHECK(line ==
+          "wall,-6.5,-5,0.1,0,collision,-0.05,,thin_wall,,,,,,,,,"
+          "\"collision: it has no room to settle, because of thin_wall\"");
     std::getline(lines, line);
-    CHECK(line == "sky,0,3,2.5,0,aerial,-0.05,,,,,,,,,,");
+    CHECK(line == "sky,0,3,2.5,0,aerial,-0.05,,,,,,,,,,,\"aerial: 2.55 m above the ground, the limit is 1 m\"");
 
     const ProgramRun json = arena("check map --poses poses.csv --stance settled --drop 2 --format json -q" +
                                   husky_option);
@@ -304,7 +308,9 @@ TEST_CASE("check --settle writes how the robot rests at each pose")
     CHECK(rest.at("contacts").size() == 4);
     CHECK(rest.at("contacts")[0].at("ground") == "floor");
     CHECK(std::abs(rest.at("margin").get<double>() - 0.335) <= 1e-9);
+    CHECK(report.at("poses")[0].at("reason").is_null());
     CHECK(report.at("poses")[1].at("settled").is_null());
+    CHECK(report.at("poses")[1].at("reason") == "collision: it has no room to settle, because of thin_wall");
 
     const ProgramRun junit = arena("check map --poses poses.csv --settle --format junit -q" + husky_option);
     const std::vector<Case> cases = cases_of(junit.out);
@@ -346,7 +352,8 @@ TEST_CASE("the valid rows of raster --settle are valid poses as they are written
     std::istringstream lines(bytes_of(arena / "raster.csv"));
     std::string line, valid;
     std::getline(lines, line);
-    CHECK(line == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly");
+    CHECK(line == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly,ground");
+    const std::string names = line + "\n";
     int rows = 0, tilted = 0;
     for (; std::getline(lines, line); ++rows) {
         if (line.find(",valid,") == std::string::npos) continue;
@@ -356,12 +363,46 @@ TEST_CASE("the valid rows of raster --settle are valid poses as they are written
         tilted += std::abs(pitch) > 0.1;
     }
     CHECK(rows == 1700);
-    arena.write("valid.csv", "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly\n" + valid);
+    arena.write("valid.csv", names + valid);
     const ProgramRun check = arena("check map --poses valid.csv --require-valid" + husky_option);
     INFO(check.err);
     CHECK(check.status == 0);
     CHECK(std::count(valid.begin(), valid.end(), '\n') > 900);
     CHECK(tilted > 20);  // on the ramp
+}
+
+TEST_CASE("what rounding leaves of an angle of 0 is not written")
+{
+    using namespace spawnfield;
+    const Arena arena;
+    REQUIRE(arena("raster map --dims 2 --step 0.5 --settle -q -o raster.csv" + husky_option).status == 0);
+    const PoseTable raster = read_poses(arena / "raster.csv");
+    int tilted = 0;
+    for (const char* const column : {"roll", "pitch"})
+        for (const std::string& text : column_of(raster, column)) {
+            CAPTURE(column, text);
+            CHECK((text == "0" || std::abs(std::stod(text)) > 1e-12));
+            tilted += text != "0";
+        }
+    CHECK(tilted > 20);
+}
+
+TEST_CASE("rows of raster --settle with their ground as z have the same verdicts from check --settle, valid or not")
+{
+    const Arena arena;
+    REQUIRE(arena("raster map --dims 2 --step 0.4 --settle --yaw 20deg -q -o raster.csv" + husky_option).status == 0);
+    using namespace spawnfield;
+    const PoseTable raster = read_poses(arena / "raster.csv");
+    const std::vector<std::string> x = column_of(raster, "x"), y = column_of(raster, "y"),
+                                   yaw = column_of(raster, "yaw"), ground = column_of(raster, "ground");
+    std::string places = "x,y,z,yaw\n";
+    for (std::size_t i = 0; i < x.size(); ++i) places += x[i] + "," + y[i] + "," + ground[i] + "," + yaw[i] + "\n";
+    arena.write("places.csv", places);
+    REQUIRE(arena("check map --settle --poses places.csv -q -o checked.csv" + husky_option).status == 0);
+    const PoseTable checked = read_poses(arena / "checked.csv");
+    CHECK(column_of(checked, "verdict") == column_of(raster, "verdict"));
+    CHECK(column_of(checked, "margin") == column_of(raster, "margin"));
+    CHECK(column_of(checked, "ground") == ground);
 }
 
 TEST_CASE("raster and heatmap refuse what they cannot do with settled poses")

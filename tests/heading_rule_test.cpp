@@ -126,7 +126,7 @@ TEST_CASE("a raster with several headings finds those that are valid one by one,
         options.threads = 0;
         const std::string text = csv_of(result);
         CHECK(text.substr(0, text.find('\n')) ==
-              "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly,valid_headings");
+              "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly,valid_headings,ground");
     }
     CHECK(at_some > 20);
 }
@@ -172,7 +172,9 @@ TEST_CASE("the clearest heading of a long robot beside a wall is along the wall"
         add_turned(scene, Label::Terrain, {30, 30, 1}, {0, 0, -0.5}, turn);
         add_turned(scene, Label::Obstacle, {20, 0.2, 1}, {0, 0.9, 0.5}, turn);
         const TestMap map = map_of(scene, 0.1, wide_bounds);
-        CHECK(is_same_angle(rest_at(map, Vec2::Zero(), {.kind = Kind::Clearest, .count = 16}).yaw, turn));
+        const RasterRest rest = rest_at(map, Vec2::Zero(), {.kind = Kind::Clearest, .count = 16});
+        CHECK(is_same_angle(rest.yaw, turn));
+        CHECK(rest.free_length == Approx(0.8 - 0.15).margin(1e-8));
         const Pose pose{{0, 0, 0.02}, rotation_from_rpy(0, 0, turn)};
         CHECK(ClearanceMeter(map.geometry, long_box()).clearance_at(pose) == Approx(0.8 - 0.15).margin(1e-8));
     }
@@ -195,7 +197,10 @@ TEST_CASE("a robot along a corridor or a strip has its direction, towards the fa
             add_turned(corridor, Label::Obstacle, {12, 0.02, 1}, {0, 0.7 * side, 0.5}, turn);
             add_turned(corridor, Label::Obstacle, {0.02, 2, 1}, {6 * side, 0, 0.5}, turn);
         }
-        CHECK(is_same_angle(rest_at(map_of(corridor, 0.1, wide_bounds), place, along).yaw, turn));
+        const RasterRest rest = rest_at(map_of(corridor, 0.1, wide_bounds), place, along);
+        CHECK(is_same_angle(rest.yaw, turn));
+        // Its front, 0.45 m ahead, starts 9 m - 0.01 m before the wall, and it goes on in steps of 0.45 m.
+        CHECK(rest.free_length == Approx(18 * 0.45).margin(1e-9));
         Scene strip;  // a ledge with a step of 5 cm, above ground that is 3 m lower
         add_turned(strip, Label::Terrain, {30, 30, 1}, {0, 0, -3.5}, turn);
         add_turned(strip, Label::Terrain, {12, 0.9, 1}, {0, 0, -0.5}, turn);
@@ -210,7 +215,10 @@ TEST_CASE("of equally long ways ahead, the longer one back decides, then the fir
     Scene open;
     add_turned(open, Label::Terrain, {50, 50, 1}, {0, 0, -0.5}, 0);
     const TestMap plane = map_of(open, 0.1, wide_bounds);
-    CHECK(rest_at(plane, Vec2::Zero(), along).yaw == 0);  // 20 lengths of the robot are 18 m
+    const RasterRest rest = rest_at(plane, Vec2::Zero(), along);
+    CHECK(rest.yaw == 0);
+    CHECK(rest.free_length == Approx(18).margin(1e-9));  // 20 lengths of the robot
+    CHECK(rest_at(plane, Vec2::Zero(), {.kind = Kind::Along, .count = 1}).free_length == rest.free_length);
 
     Scene tee;  // a strip from the middle along x, and one on both sides along y
     add_turned(tee, Label::Terrain, {6, 0.9, 1}, {2.5, 0, -0.5}, 0);
@@ -256,9 +264,12 @@ TEST_CASE("the headings along a way and farthest from obstacles are those that a
                 }
             }
             CHECK((pose.verdict == Verdict::Valid) == (clearest >= 0));
+            CHECK(std::isnan(along.rests[i].free_length) == (pose.verdict != Verdict::Valid));
             if (pose.verdict != Verdict::Valid) continue;
             CHECK(along.rests[i].yaw == way_yaw);
             CHECK(clear.rests[i].yaw == clear_yaw);
+            CHECK(along.rests[i].free_length == Approx(longest.first * 0.45));
+            CHECK(std::abs(clear.rests[i].free_length - clearest) <= 1e-6);
             CHECK(along.rests[i].valid_headings == clear.rests[i].valid_headings);
             chosen_along += way_yaw != 0;
             chosen_clear += clear_yaw != 0;
@@ -280,6 +291,9 @@ TEST_CASE("spawns have the headings of their rule, and are valid")
         SampleOptions options{.count = 60, .min_distance = 0.2, .heading = rule, .threads = 1};
         const SpawnList list = sample(judge, options);
         REQUIRE(list.spawns.size() >= 20);
+        REQUIRE(list.rests.size() == list.spawns.size());
+        const bool is_measured = rule.kind == Kind::Clearest || rule.kind == Kind::Along;
+        for (const SpawnRest& rest : list.rests) CHECK(std::isfinite(rest.free_length) == is_measured);
         std::vector<int> used(5);
         for (const Spawn& spawn : list.spawns) {
             const Vec3& at = spawn.position;
@@ -336,7 +350,9 @@ TEST_CASE("rules for the heading that are out of range are refused")
         refused(command + " --yaw best:4", "--yaw best:4 is only for robots at rest");
     const ProgramRun run = arena("raster map --dims 2 --settle --step 4 --yaw best:4" + husky_option);
     CHECK(run.status == 0);
-    CHECK_THAT(run.out, Contains(",belly,valid_headings\n"));
+    CHECK_THAT(run.out, Contains(",belly,valid_headings,ground\n"));
+    CHECK_THAT(arena("raster map --dims 2 --settle --step 4 --yaw best:4:clearance" + husky_option).out,
+               Contains(",valid_headings,ground,clearance\n"));
     CHECK_THAT(arena("sample map -n 1 --yaw best:4:clearance --format json" + husky_option).out,
                Contains("\"yaw\": \"best:4:clearance\""));
     CHECK_THAT(arena("sample map -n 1 --yaw along --format json" + husky_option).out,

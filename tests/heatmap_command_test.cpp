@@ -135,7 +135,13 @@ TEST_CASE("heat maps of settled robots name the stance, the limit of the tilt an
 {
     const Arena arena;
     CHECK(heatmap(arena, "-o v.svg --max-slope 20").status == 0);
-    CHECK(has(texts_in(arena, "v.svg"), "settled, yaw 0 deg, all layers (valid if one is), tilt up to 20 deg"));
+    CHECK(has(
+        texts_in(arena, "v.svg"),
+        "settled, yaw 0 deg, all layers (valid if one is), tilt up to 20 deg, margin from 0.00198 m, friction 0.8"));
+    CHECK(heatmap(arena, "-o w.svg --friction 0.25 --min-stability 0.05").status == 0);
+    CHECK(
+        has(texts_in(arena, "w.svg"),
+            "settled, yaw 0 deg, all layers (valid if one is), tilt up to 30 deg, margin from 0.05 m, friction 0.25"));
     for (const auto& [quantity, title] :
          {std::pair("tilt", "tilt, degrees"), std::pair("belly", "belly clearance, m")}) {
         CHECK(heatmap(arena, "-o q.svg --quantity " + std::string(quantity)).status == 0);

@@ -204,7 +204,7 @@ TEST_CASE("--yaw takes degrees in every command that has it")
     CHECK(same("raster map" + raster + husky_option));
     CHECK(same("export map --format ply --step 2" + husky_option));
     CHECK(same("heatmap map -o - --step 2" + husky_option));
-    CHECK_THAT(arena("sample map -n 1 --yaw -30deg" + husky_option).out, Contains(",-0.5235987755982988\n"));
+    CHECK_THAT(arena("sample map -n 1 --yaw -30deg" + husky_option).out, Contains(",-0.5235987755982988,0,0.335\n"));
     CHECK(arena("experiment map --dims 2 --steps 2 --yaw 90deg -o e" + husky_option).status == 0);
     CHECK_THAT(arena("experiment map --dims 2 --steps 2 --yaw 90grad -o e" + husky_option).err,
                Contains("--yaw is \"90grad\", needs radians such as 1.57 or degrees such as 90deg\n"));

@@ -185,7 +185,29 @@ TEST_CASE("spawns that were written read back to the same doubles")
     }
 }
 
-TEST_CASE("an empty list of spawns is written as a header") { CHECK(spawns_csv({}) == "x,y,z,roll,pitch,yaw\n"); }
+TEST_CASE("an empty list of spawns is written as a header")
+{
+    CHECK(spawns_csv({}) == "x,y,z,roll,pitch,yaw\n");
+    SpawnList settled;
+    settled.stance = Stance::Settled;
+    CHECK(spawns_csv(settled) == "x,y,z,roll,pitch,yaw,tilt,margin\n");
+}
+
+TEST_CASE("settled spawns are written with their tilt and margin, and with what their rule measured")
+{
+    SpawnList list;
+    list.spawns = {{{1, 2, 3}, 0.5, 0.1, 0.2}};
+    list.rests = {{0.25, 0.125, 7.5}};
+    list.stance = Stance::Settled;
+    CHECK(spawns_csv(list) == "x,y,z,roll,pitch,yaw,tilt,margin\n1,2,3,0.1,0.2,0.5,0.25,0.125\n");
+    list.heading = HeadingRule{.kind = HeadingRule::Kind::Along};
+    CHECK(spawns_csv(list, std::vector<std::string>{"a,b"}) ==
+          "name,x,y,z,roll,pitch,yaw,tilt,margin,way\n\"a,b\",1,2,3,0.1,0.2,0.5,0.25,0.125,7.5\n");
+    list.heading->kind = HeadingRule::Kind::Clearest;
+    CHECK_THAT(spawns_csv(list), Contains(",margin,clearance\n"));
+    list.rests.clear();
+    CHECK_THROWS_WITH(spawns_csv(list), Contains("size of list.rests is 0, needs as many as its spawns"));
+}
 
 TEST_CASE("verdicts follow the columns of the poses")
 {

@@ -313,6 +313,43 @@ TEST_CASE("sample and search write the robots of their CSV file in every format"
     }
 }
 
+TEST_CASE("a notice says by how much a model with another origin than --robot starts too high or too low")
+{
+    const Arena arena;
+    fs::create_directories(arena / "models");
+    const auto write_box = [&](const std::string& file, const std::string& z) {
+        arena.write(file, "<robot name='box'><link name='base'><collision><origin xyz='0 0 " + z +
+                              "'/><geometry><box size='0.6 0.4 0.4'/></geometry></collision></link></robot>");
+    };
+    write_box("centred.urdf", "0");
+    write_box("standing.urdf", "0.2");
+    write_box("models/centred.urdf", "0");
+    arena.write("broken.urdf", "<robot>");
+    const auto said = [&](const std::string& options) {
+        const ProgramRun run = arena("sample map -n 1 --robot standing.urdf -o out " + options);
+        CAPTURE(options, run.err);
+        CHECK(run.status == 0);
+        return run.err;
+    };
+    const std::string words =
+        "its lowest point is 0.2 m below its origin, but that of --robot standing.urdf is 0 m "
+        "below its origin; the simulator puts the model's origin at each pose, so the robots "
+        "start 0.2 m too low; give this model as --robot, or make the origins agree";
+    CHECK_THAT(said("--format sdf --robot-file centred.urdf"), Contains(words));
+    CHECK_THAT(said("--format ros2-launch-xml --robot-file centred.urdf"), Contains(words));
+    CHECK_THAT(said("--format sdf --robot-uri file://centred.urdf"), Contains("file://centred.urdf: " + words));
+    CHECK_THAT(said("--format sdf --robot-uri model://centred.urdf --model-path models"), Contains(words));
+    for (const std::string silent : {"--format sdf --robot-uri model://centred.urdf", "--format sdf",
+                                     "--format sdf --robot-uri broken.urdf", "--format csv"})
+        CHECK_THAT(said(silent), !Contains("lowest point"));
+    CHECK_THAT(arena("sample map -n 1 --robot centred.urdf -o out --format sdf --robot-file standing.urdf").err,
+               Contains("start 0.2 m too high"));
+    arena.write("poses.csv", "x,y,z\n0,3,0\n");
+    const std::string of_poses = "export map --poses poses.csv --format sdf --robot-file centred.urdf -o out";
+    CHECK_THAT(arena(of_poses + " --robot standing.urdf").err, Contains(words));
+    CHECK_THAT(arena(of_poses).err, !Contains("lowest point"));
+}
+
 TEST_CASE("export writes the poses of a CSV file in every format, with roll, pitch and their own names")
 {
     const Arena arena;

@@ -2,6 +2,8 @@
 
 #include <spawnfield/poses.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 
 using namespace spawnfield;
@@ -75,7 +77,70 @@ TEST_CASE("search answers for level robots, and with --settle for settled ones, 
     CHECK_THAT(rule.out, Contains("\"yaw\": \"facing:0,0\"") && Contains("\"lift\": 0.02"));
     const ProgramRun few = arena("search map -n 3 --settle --min-distance 100 --max-failures 50" + husky_option);
     CHECK(few.status == 3);
-    CHECK_THAT(few.err, Contains("a smaller --min-distance, a smaller --min-stability, more --max-failures or wider"));
+    CHECK_THAT(few.err, Contains("a smaller --min-distance") && Contains("more --max-failures or wider --bounds may"));
+}
+
+TEST_CASE("settled spawns have their tilt and margin in CSV and JSON, and what their rule measured")
+{
+    const Arena arena;
+    const std::string query = "sample map -n 5 -q --yaw best:4:clearance" + on_ramp + husky_option;
+    REQUIRE(arena(query + "-o spawns.csv").status == 0);
+    REQUIRE(arena(query + "-o named.csv --name 'r{i}'").status == 0);
+    const PoseTable spawns = read_poses(arena / "spawns.csv"), named = read_poses(arena / "named.csv");
+    CHECK(spawns.header == "x,y,z,roll,pitch,yaw,tilt,margin,clearance");
+    CHECK(named.header == "name," + spawns.header);
+    CHECK(named.rows[0] == "r1," + spawns.rows[0]);
+    REQUIRE(arena("check map --settle --poses spawns.csv -q -o checked.csv" + husky_option).status == 0);
+    const nlohmann::json json = nlohmann::json::parse(arena(query + "--format json").out);
+    const PoseTable checked = read_poses(arena / "checked.csv");
+    for (std::size_t i = 0; i < 5; ++i)
+        for (const std::string column : {"tilt", "margin"}) {
+            const double value = std::stod(column_of(spawns, column)[i]);
+            // `check --settle` starts from a yaw that was turned into a rotation and back.
+            CHECK(value == Approx(std::stod(column_of(checked, column)[i])).margin(1e-9));
+            CHECK(json["poses"][i][column] == value);
+            CHECK(json["poses"][i]["clearance"] == std::stod(column_of(spawns, "clearance")[i]));
+        }
+    CHECK_THAT(arena("sample map -n 1 -q --yaw along" + husky_option).out, Contains(",tilt,margin,way\n"));
+    const std::string level = "sample map -n 1 -q --stance level" + husky_option;
+    CHECK(arena(level).out.starts_with("x,y,z,roll,pitch,yaw\n"));
+    CHECK_FALSE(nlohmann::json::parse(arena(level + "--format json").out)["poses"][0].contains("tilt"));
+}
+
+TEST_CASE("if too few spawns are found, the advice names the options that the verdicts point to")
+{
+    const Arena arena;
+    const auto advice = [&](const std::string& command) {
+        const ProgramRun run = arena(command + husky_option);
+        CAPTURE(command);
+        CHECK(run.status == 3);
+        const std::size_t at = run.err.find("notice: only");
+        return at == std::string::npos ? "" : run.err.substr(at, run.err.find('\n', at) - at);
+    };
+    const std::string sample = "sample map -n 100000 --min-distance 0.3 --region 1.2,5.4,1.9,6.2";  // on the ramp
+    CHECK_THAT(advice(sample + " --max-slope 5"), Contains("a larger --max-slope") && !Contains("--friction"));
+    CHECK_THAT(advice(sample + " --friction 0.1"),
+               Contains("a smaller --min-stability, a larger --friction, a larger --max-tilt or a wider --region may"));
+    CHECK_THAT(advice(sample), !Contains("--friction") && !Contains("--max-slope") && !Contains("--z"));
+    CHECK_THAT(advice(sample + " --z 0:1"), Contains("a wider --z"));
+    CHECK_THAT(advice("sample map -n 10000 --min-distance 0.3 --region 5.5,2,6.5,3 --drop 5"),  // below the block
+               Contains("a smaller --drop or --lift") && !Contains("--friction"));
+    const std::string air = "draws nearer to the ground with --z LOW:HIGH (",
+                      search = "search map -n 50 --max-failures 50 ";
+    for (const std::string stance : {"", "--settle "}) {
+        CHECK_THAT(advice(search + stance + "--bounds -9,-9,2,9,9,9"),
+                   Contains(air) && Contains(" positions were aerial), more"));
+        CHECK_THAT(advice(search + stance + "--min-distance 9 --z=0:0.3"), !Contains(air));
+    }
+}
+
+TEST_CASE("draws above ground beyond the heights of the box are not called off the region without a region")
+{
+    const Arena arena;
+    const std::string search = "search map -n 3 --settle --z 0.2:1.5" + husky_option;
+    CHECK_THAT(arena(search).err,
+               Contains(" above ground beyond the heights of --z or --bounds;") && !Contains("off the region"));
+    CHECK_THAT(arena(search + on_ramp).err, Contains(" off the region;"));
 }
 
 TEST_CASE("heatmap and export answer for settled robots unless they are asked for level ones")

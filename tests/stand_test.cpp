@@ -119,8 +119,22 @@ TEST_CASE("the limits of slope and tilt are inclusive, and a robot beyond the la
     CHECK(settle(slope(rad(31)), low, {0, 0, 0.5}, {.max_slope = rad(35)}).pose.verdict == Verdict::Valid);
     const Settled tipped = settle(slope(rad(46)), low);
     CHECK(tipped.pose.verdict == Verdict::Unstable);
-    CHECK(tipped.reason == "unstable: it tips over");
+    CHECK_THAT(tipped.reason, Contains("unstable: it tips over: it finds no rest within 45 degrees (--max-tilt)"));
     CHECK(settle(slope(rad(46)), low, {0, 0, 0.5}, {.max_tilt = rad(50)}).pose.verdict == Verdict::Steep);
+}
+
+TEST_CASE("a robot that falls has the negative margin and tip-over angle of the pose in which it would balance")
+{
+    Robot robot = on_balls();
+    robot.mass_center = Vec3(half_base + 0.1, 0, 0.15);
+    const Settled rest = settle(floor_scene(), robot, {0, 0, 0.5}, {.max_tilt = rad(10)});
+    CHECK(rest.pose.verdict == Verdict::Unstable);
+    CHECK(rest.pose.falls);
+    CHECK(std::abs(rest.pose.margin + 0.1) <= 1e-9);
+    CHECK(std::abs(rest.pose.tip_over - std::atan2(-0.1, 0.15)) <= 1e-9);
+    CHECK(rest.reason ==
+          "unstable: it tips over: it finds no rest within 10 degrees (--max-tilt); where it would have to balance, "
+          "its margin is -0.1 m");
 }
 
 TEST_CASE("a robot whose mass is too near to the edge of its support is unstable")
@@ -553,7 +567,7 @@ TEST_CASE("a settled raster on a slope has the tilt of the slope, and its rows a
         CHECK(judge.is_valid({{pose.x, pose.y, pose.z}, rotation_from_rpy(0, result.rests[i].pitch, 0)}));
     }
     const std::string text = csv_of(result);
-    CHECK(text.substr(0, text.find('\n')) == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly");
+    CHECK(text.substr(0, text.find('\n')) == "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly,ground");
     CHECK(std::count(text.begin(), text.end(), '\n') == 26);
 }
 

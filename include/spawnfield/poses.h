@@ -54,29 +54,33 @@ SPAWNFIELD_API std::string verdicts_csv(const PoseTable& table, const std::vecto
                                         const Map& map);
 
 /// The same for robots that were let down at the poses: height_above is that of the settled pose, and the columns
-/// settled_z,settled_roll,settled_pitch,tilt,margin,contacts,tip_over,belly follow; m and rad. They are empty if the
-/// robot was not let down or has no room. `contacts` lists "x y z PART on GROUND", separated by "; ".
-SPAWNFIELD_API std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Map& map,
-                                       const Robot& robot);
+/// settled_z,settled_roll,settled_pitch,tilt,margin,contacts,tip_over,belly,reason follow; m and rad. They are empty if
+/// the robot was not let down or has no room, except `reason`: Judge::describe() of each pose that is not valid.
+/// `contacts` lists "x y z PART on GROUND", separated by "; ". `judge` must be the one that let the robots down.
+SPAWNFIELD_API std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses,
+                                       const Judge& judge);
 
 /// Writes x,y,z,yaw,layer,verdict. With RasterResult::rests, writes
 /// x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly: m and rad. If the robot has no room or the place
 /// cannot be used, roll and pitch are 0, and the last four are empty. With a HeadingRule of several headings, the
-/// column valid_headings follows (bit k of the number: heading k). Passes the text to `sink` in pieces. `layer` is
-/// empty if the ground is not a layer. With `aerial`, also writes the aerial poses of a 3D raster that are not in
-/// raster.poses, at their places in the order. Several threads make the text (0: all cores); it is the same for any
-/// number of them.
+/// column valid_headings follows (bit k of the number: heading k); then `ground`, the height of the layer onto which
+/// the robot was let down, and `clearance` or `way` (RasterRest::free_length) with a rule that measures it. Passes the
+/// text to `sink` in pieces. `layer` is empty if the ground is not a layer. With `aerial`, also writes the aerial poses
+/// of a 3D raster that are not in raster.poses, at their places in the order. Several threads make the text (0: all
+/// cores); it is the same for any number of them.
 SPAWNFIELD_API void write_raster_csv(const RasterResult& raster, bool aerial,
                                      const std::function<void(std::string_view)>& sink, int threads = 0);
 
-/// Returns x,y,z,roll,pitch,yaw of each spawn.
-SPAWNFIELD_API std::string spawns_csv(const SpawnList& list);
+/// Returns x,y,z,roll,pitch,yaw of each spawn; for settled robots, tilt and margin follow, and `clearance` or `way`
+/// (SpawnRest::free_length) with a rule that measures it. With names, one for each spawn, the first column is `name`.
+SPAWNFIELD_API std::string spawns_csv(const SpawnList& list, std::span<const std::string> names = {});
 
-/// The same for robots. If they have names, the first column is `name`.
+/// Returns x,y,z,roll,pitch,yaw of robots. If they have names, the first column is `name`.
 SPAWNFIELD_API std::string robots_csv(std::span<const RobotStart> robots);
 
 /// Returns JSON with the map, the robot, the settings, the counts, and the poses with names and quaternions (x, y, z,
-/// w); for a sample, also whether it is full. `robots` are the list's spawns.
+/// w); for a sample, also whether it is full. Poses of settled robots also have tilt and margin, and `clearance` or
+/// `way` as in spawns_csv(). `robots` are the list's spawns.
 SPAWNFIELD_API std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
                                        const SampleOptions& options);
 SPAWNFIELD_API std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,

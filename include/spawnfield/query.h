@@ -90,6 +90,9 @@ struct RasterRest {
     double yaw = 0;  ///< rad
     /// With a HeadingRule of several headings: bit k is set if the pose is valid at heading k.
     std::uint64_t valid_headings = 0;
+    /// m; with HeadingRule::Clearest, the clearance at `yaw` (at most 10 m), and with Along, the length of the way
+    /// straight ahead. NaN: another rule, or no heading is valid.
+    double free_length = std::numeric_limits<double>::quiet_NaN();
 
     bool has_pose() const { return !std::isnan(tilt); }
 };
@@ -128,12 +131,21 @@ struct Spawn {
     double roll = 0, pitch = 0;  ///< rad, as in URDF's rpy
 };
 
+/// How the robot of a settled spawn stands.
+struct SpawnRest {
+    double tilt = 0, margin = 0;                                    ///< rad and m, as in SettledPose
+    double free_length = std::numeric_limits<double>::quiet_NaN();  ///< as in RasterRest
+};
+
 inline constexpr double double_ground = 0.1;  ///< m between two layers that are likely the same ground twice
 
 struct SpawnList {
-    std::vector<Spawn> spawns;  ///< in the order in which they were found
-    VerdictCounts counts;       ///< of the positions that were judged
-    std::uint64_t draws = 0;    ///< number of all draws
+    std::vector<Spawn> spawns;     ///< in the order in which they were found
+    std::vector<SpawnRest> rests;  ///< one for each spawn of settled robots; empty for level ones
+    Stance stance = Stance::Level;
+    std::optional<HeadingRule> heading = {};  ///< that of the options
+    VerdictCounts counts;                     ///< of the positions that were judged
+    std::uint64_t draws = 0;                  ///< number of all draws
     /// Draws outside the options' area. search() of settled robots: or whose ground is outside it, or beyond the
     /// heights of the box.
     std::uint64_t off_area = 0;

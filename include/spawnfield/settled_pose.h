@@ -53,7 +53,7 @@ struct SettledPose {
     double tilt = 0;                      ///< angle between the robot's z axis and the vertical, rad
     /// Distance of the projected centre of mass from the nearest edge of the support polygon, m; negative: outside.
     double margin = 0;
-    /// Smallest angle by which the robot must be turned about an edge of its support polygon until it tips over, rad.
+    /// Smallest turn about an edge of its support polygon with which the robot tips over, rad; negative: it falls.
     double tip_over = 0;
     /// Smallest vertical distance of the ground from the parts of the robot that do not touch it, m; 0 if all do.
     double belly = 0;

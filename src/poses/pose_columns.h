@@ -17,8 +17,8 @@ inline bool is_pose_column(const std::string& name)
 
 /// The columns that `check` writes, and those that it adds for robots that it lets down.
 inline const std::vector<std::string> verdict_columns{"verdict", "ground", "height_above", "hit"};
-inline const std::vector<std::string> settled_columns{"settled_z", "settled_roll", "settled_pitch", "tilt",
-                                                      "margin",    "contacts",     "tip_over",      "belly"};
+inline const std::vector<std::string> settled_columns{"settled_z", "settled_roll", "settled_pitch", "tilt",  "margin",
+                                                      "contacts",  "tip_over",     "belly",         "reason"};
 
 /// Returns whether `check` writes a column with this name: one of the pose as given, or, if `settled`, also one of a
 /// robot that was let down.

@@ -47,13 +47,38 @@ void append_numbers(std::string& text, std::initializer_list<double> values)
     }
 }
 
-/// Appends the tilt and what follows it in the lines of a settled raster.
-void append_rest(std::string& text, const RasterRest& rest)
+/// Appends a comma, and the number unless it is NaN.
+void append_if_known(std::string& text, double value)
 {
-    for (const double value : {rest.tilt, rest.margin, rest.tip_over, rest.belly}) {
-        text += ',';
-        if (rest.has_pose()) append_number(text, value);
-    }
+    text += ',';
+    if (!std::isnan(value)) append_number(text, value);
+}
+
+/// Returns the name of the column for the free length that a rule measures; empty if it measures none.
+std::string free_length_column(const std::optional<HeadingRule>& rule)
+{
+    if (rule && rule->kind == HeadingRule::Kind::Clearest) return "clearance";
+    if (rule && rule->kind == HeadingRule::Kind::Along) return "way";
+    return "";
+}
+
+/// Appends the tilt and what follows it in the lines of a settled raster.
+void append_rest(std::string& text, const RasterRest& rest, const std::optional<HeadingRule>& rule)
+{
+    for (const double value : {rest.tilt, rest.margin, rest.tip_over, rest.belly}) append_if_known(text, value);
+    if (rule && rule->has_several()) (text += ',') += std::to_string(rest.valid_headings);
+    append_if_known(text, rest.layer_height);
+    if (!free_length_column(rule).empty()) append_if_known(text, rest.free_length);
+}
+
+/// Returns the header of a settled raster.
+std::string settled_raster_header(const std::optional<HeadingRule>& rule)
+{
+    std::string names = "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly";
+    if (rule && rule->has_several()) names += ",valid_headings";
+    names += ",ground";
+    if (const std::string name = free_length_column(rule); !name.empty()) names += "," + name;
+    return names;
 }
 
 /// Appends a line x,y,z,yaw,layer,verdict for each pose. `rests` is empty, or has one for each pose: then the lines
@@ -77,8 +102,7 @@ void append_rows(std::string& text, std::span<const RasterPose> poses, std::span
         if (pose.layer >= 0) text += std::to_string(pose.layer);
         text += ',';
         text += to_string(pose.verdict);
-        if (!rests.empty()) append_rest(text, rests[i]);
-        if (rule && rule->has_several()) (text += ',') += std::to_string(rests[i].valid_headings);
+        if (!rests.empty()) append_rest(text, rests[i], rule);
         text += '\n';
     }
 }
@@ -127,14 +151,39 @@ Json settings_json(const Options& options, const Judge& judge, int axes)
     return out;
 }
 
-/// Adds the counts and the poses to `out`, and returns its text.
-std::string finished(Json out, const std::optional<VerdictCounts>& counts, std::span<const RobotStart> robots)
+/// Throws ArgumentError unless a list of settled spawns has a rest for each of them.
+void check_rests(const char* function, const SpawnList& list)
 {
-    if (counts)
-        for (const Verdict verdict : all_verdicts) out["counts"][to_string(verdict)] = (*counts)[verdict];
+    if (list.stance == Stance::Settled && list.rests.size() != list.spawns.size())
+        throw ArgumentError(function, "size of list.rests", double(list.rests.size()),
+                            "as many as its spawns, because they are settled");
+}
+
+/// Adds the poses to `out`, with the rests of settled spawns, and returns its text. `list` is nullptr for poses that
+/// are not spawns.
+std::string finished(Json out, const SpawnList* list, std::span<const RobotStart> robots)
+{
+    const bool has_rests = list != nullptr && list->stance == Stance::Settled;
+    const std::string length_name = has_rests ? free_length_column(list->heading) : "";
     out["poses"] = Json::array();
-    for (const RobotStart& robot : robots) out["poses"].push_back(pose_json(robot));
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+        Json pose = pose_json(robots[i]);
+        if (has_rests) {
+            pose["tilt"] = list->rests[i].tilt;
+            pose["margin"] = list->rests[i].margin;
+        }
+        if (!length_name.empty()) pose[length_name] = list->rests[i].free_length;
+        out["poses"].push_back(std::move(pose));
+    }
     return json_text(out, 2) + "\n";
+}
+
+/// Adds the counts and the spawns to `out`, and returns its text.
+std::string with_spawns(Json out, const SpawnList& list, std::span<const RobotStart> robots)
+{
+    check_rests("spawns_json", list);
+    for (const Verdict verdict : all_verdicts) out["counts"][to_string(verdict)] = list.counts[verdict];
+    return finished(std::move(out), &list, robots);
 }
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
@@ -240,21 +289,22 @@ std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& j
     return table_csv(table, false, append);
 }
 
-std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Map& map,
-                        const Robot& robot)
+std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Judge& judge)
 {
     const auto append = [&](std::string& text, std::size_t i) {
         const SettledPose& pose = poses[i];
-        append_verdict(text, judgement_of(pose), map,
+        append_verdict(text, judgement_of(pose), judge.map(),
                        pose.has_pose ? pose.position.z() - pose.ground->height : no_number);
         text += ',';
-        if (!pose.has_pose) {
-            text.append(settled_columns.size() - 1, ',');
-            return;
+        if (pose.has_pose) {
+            append_numbers(text, {pose.position.z(), pose.roll, pose.pitch, pose.tilt, pose.margin});
+            text += ',' + csv_quoted(contacts_text(pose, judge.map(), judge.robot())) + ',';
+            append_numbers(text, {pose.tip_over, pose.belly});
+        } else {
+            text.append(settled_columns.size() - 2, ',');  // all but `reason` are empty
         }
-        append_numbers(text, {pose.position.z(), pose.roll, pose.pitch, pose.tilt, pose.margin});
-        text += ',' + csv_quoted(contacts_text(pose, map, robot)) + ',';
-        append_numbers(text, {pose.tip_over, pose.belly});
+        text += ',';
+        if (pose.verdict != Verdict::Valid) text += csv_quoted(judge.describe(pose));
     };
     return table_csv(table, true, append);
 }
@@ -286,10 +336,7 @@ void write_raster_csv(const RasterResult& raster, bool aerial, const std::functi
         written += poses.size();
         poses.clear();
     };
-    std::string names = is_settled ? "x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly"
-                                   : "x,y,z,yaw,layer,verdict";
-    if (raster.heading && raster.heading->has_several()) names += ",valid_headings";
-    sink(names + "\n");
+    sink((is_settled ? settled_raster_header(raster.heading) : "x,y,z,yaw,layer,verdict") + "\n");
     for_each_pose(raster, aerial, [&](const RasterPose& pose) {
         poses.push_back(pose);
         if (poses.size() == batch) write();
@@ -329,12 +376,25 @@ std::string robots_csv(std::span<const RobotStart> robots)
     return text;
 }
 
-std::string spawns_csv(const SpawnList& list)
+std::string spawns_csv(const SpawnList& list, std::span<const std::string> names)
 {
-    std::string text = "x,y,z,roll,pitch,yaw\n";
-    for (const Spawn& spawn : list.spawns) {
+    check_rests("spawns_csv", list);
+    const bool is_settled = list.stance == Stance::Settled;
+    const std::string length_name = free_length_column(list.heading);
+    std::string text = names.empty() ? "x,y,z,roll,pitch,yaw" : "name,x,y,z,roll,pitch,yaw";
+    if (is_settled) text += ",tilt,margin";
+    if (!length_name.empty()) text += "," + length_name;
+    text += '\n';
+    for (std::size_t i = 0; i < list.spawns.size(); ++i) {
+        const Spawn& spawn = list.spawns[i];
         const Vec3& position = spawn.position;
+        if (!names.empty()) text += csv_quoted(names[i]) + ',';
         append_numbers(text, {position.x(), position.y(), position.z(), spawn.roll, spawn.pitch, spawn.yaw});
+        if (is_settled) {
+            text += ',';
+            append_numbers(text, {list.rests[i].tilt, list.rests[i].margin});
+        }
+        if (!length_name.empty()) append_if_known(text, list.rests[i].free_length);
         text += '\n';
     }
     return text;
@@ -353,7 +413,7 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
     Json out = json_head("sample", judge.map(), judge.robot(), std::move(settings));
     out["full"] = list.is_full;
     out["undecided_area"] = list.undecided_area;
-    return finished(std::move(out), list.counts, robots);
+    return with_spawns(std::move(out), list, robots);
 }
 
 std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& list, const Judge& judge,
@@ -363,12 +423,12 @@ std::string spawns_json(std::span<const RobotStart> robots, const SpawnList& lis
     if (options.stance == Stance::Settled) add_stand_limits(settings, judge.options().stand);
     settings["max_height"] = judge.options().max_height;
     settings["max_failures"] = options.max_failures;
-    return finished(json_head("search", judge.map(), judge.robot(), std::move(settings)), list.counts, robots);
+    return with_spawns(json_head("search", judge.map(), judge.robot(), std::move(settings)), list, robots);
 }
 
 std::string poses_json(std::span<const RobotStart> robots, const Map& map, const Robot& robot)
 {
-    return finished(json_head("export", map, robot, {}), std::nullopt, robots);
+    return finished(json_head("export", map, robot, {}), nullptr, robots);
 }
 
 }  // namespace spawnfield

@@ -103,7 +103,10 @@ Json verdict_json(const VerdictReport& report, std::size_t index, const std::str
     const std::optional<double> above = height_above(report, index);
     out["height_above"] = above ? Json(*above) : Json();
     out["hit"] = judged.hit ? Json(name_of(*judged.hit, report.judge.map())) : Json();
-    if (report.settled != nullptr) out["settled"] = settled_json(report, (*report.settled)[index]);
+    if (report.settled != nullptr) {
+        out["reason"] = judged.verdict == Verdict::Valid ? Json() : Json(reason(report, index));
+        out["settled"] = settled_json(report, (*report.settled)[index]);
+    }
     out["columns"] = fields_json(report, index, columns);
     return out;
 }

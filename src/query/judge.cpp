@@ -388,7 +388,9 @@ std::string Judge::describe(const SettledPose& pose) const
     case Verdict::Steep:
         return verdict + ": it tilts by " + degrees(pose.tilt) + ", the limit is " + degrees(limits.max_slope);
     case Verdict::Unstable:
-        if (pose.falls) return verdict + ": it tips over";
+        if (pose.falls)
+            return verdict + ": it tips over: it finds no rest within " + degrees(limits.max_tilt) +
+                   " (--max-tilt); where it would have to balance, its margin is " + rounded(pose.margin) + " m";
         if (pose.slides) return verdict + ": it slides: " + friction_reason(pose, impl_->robot, limits.friction);
         return verdict + ": its margin is " + rounded(pose.margin) + " m, the limit is " +
                rounded(*limits.min_stability) + " m";

@@ -283,6 +283,7 @@ private:
         if (pose.has_pose) rest = {place.z(), pose.roll, pose.pitch, pose.tilt, pose.margin, pose.tip_over, pose.belly};
         rest.yaw = pose.yaw;
         rest.valid_headings = choice.valid_headings;
+        rest.free_length = choice.free_length;
         out.rests.push_back(rest);
         const double z = pose.has_pose ? pose.lifted(shared_.options.stand.lift).position.z() : place.z() + offset_;
         out.poses.push_back({place.x(), place.y(), z, layer, pose.verdict});

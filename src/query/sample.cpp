@@ -298,7 +298,7 @@ private:
         out.exact_checks += candidate.exact_checks;
         if (candidate.verdict != Verdict::Valid) return false;
         taken_.add(candidate.spawn.position);
-        out.spawns.push_back(candidate.spawn);
+        add_spawn(candidate, out);
         return true;
     }
 
@@ -334,7 +334,7 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
     // The map counts layers at cell centres only. If a point between centres has more layers, sampling starts again
     // with one more slot.
     for (std::size_t slots = one ? 1 : std::size_t(std::max(1, judge.map().layers));; ++slots) {
-        SpawnList out;
+        SpawnList out = empty_list(options);
         if (Sampler(judge, options, slots).run(out)) return out;
     }
 }

@@ -115,7 +115,7 @@ public:
 
     SpawnList run()
     {
-        SpawnList out;
+        SpawnList out = empty_list(options_);
         std::uint64_t failures = 0;
         const auto batch_size = [&](std::uint64_t draws) {
             return batch_for(options_.count, options_.min_distance, out.spawns.size(), draws);
@@ -203,7 +203,7 @@ private:
         ++out.counts[candidate.verdict];
         out.exact_checks += candidate.exact_checks;
         if (candidate.verdict != Verdict::Valid) return false;
-        out.spawns.push_back(candidate.spawn);
+        add_spawn(candidate, out);
         return true;
     }
 

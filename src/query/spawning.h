@@ -57,6 +57,7 @@ struct Candidate {
     std::uint64_t exact_checks = 0;
     Verdict verdict = Verdict::Outside;
     Spawn spawn;
+    SpawnRest rest;  ///< of a settled robot
 
     void set(const Judgement& judgement)
     {
@@ -80,8 +81,26 @@ void let_down(StandJudge& judge, const Column& column, const Vec3& place, double
     }
     const SettledPose& pose = choice.pose;
     out.spawn = {pose.has_pose ? pose.lifted(lift).position : place, pose.yaw, pose.roll, pose.pitch};
+    out.rest = {pose.tilt, pose.margin, choice.free_length};
     out.verdict = pose.verdict;
     out.exact_checks = choice.exact_checks;
+}
+
+/// Returns a list without spawns, with the options that say how its spawns are placed.
+template <class Options>
+SpawnList empty_list(const Options& options)
+{
+    SpawnList out;
+    out.stance = options.stance;
+    out.heading = options.heading;
+    return out;
+}
+
+/// Appends the spawn of a candidate.
+inline void add_spawn(const Candidate& candidate, SpawnList& out)
+{
+    out.spawns.push_back(candidate.spawn);
+    if (out.stance == Stance::Settled) out.rests.push_back(candidate.rest);
 }
 
 /// Positions from which later draws must keep a distance. Draws are examined in batches: first, several threads compare

@@ -12,6 +12,13 @@ namespace {
 constexpr double just_above = 1e-5;   // m: a robot that is raised by this touches nothing any more
 constexpr double limit_slack = 1e-9;  // m and rad, in comparisons with limits
 
+/// Returns an angle without what rounding leaves of 0, such as 5e-20 or -0, which is hard to read in files.
+double without_noise(double angle)
+{
+    constexpr double noise = 1e-12;  // rad: far below what any check notices
+    return std::abs(angle) < noise ? 0.0 : angle;
+}
+
 /// Returns an obstacle on which the robot rests, if there is one.
 std::optional<CollisionHit> obstacle_below(const Rest& rest)
 {
@@ -25,7 +32,6 @@ template <class Value>
 std::size_t first_largest(const std::vector<std::size_t>& headings, double equal, const Value& value)
 {
     std::size_t out = headings.front();
-    if (headings.size() == 1) return out;
     double largest = value(out);
     for (const std::size_t k : std::span(headings).subspan(1)) {
         const double of_k = value(k);
@@ -61,8 +67,8 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     }
     out.has_pose = true;
     out.position.z() = rest.z;
-    out.roll = rest.roll;
-    out.pitch = rest.pitch;
+    out.roll = without_noise(rest.roll);
+    out.pitch = without_noise(rest.pitch);
     out.tilt = rest.tilt();
     out.margin = rest.margin;
     out.tip_over = rest.tip_over;
@@ -111,9 +117,11 @@ StandJudge::Choice StandJudge::judge_several(const ColumnView& column, const Vec
         chosen = first_largest(valid, limit_slack, [&](std::size_t k) { return poses[k].margin; });
     } else if (rule.kind == HeadingRule::Kind::Clearest) {
         if (!clearances_) clearances_.emplace(shared_.map.geometry, shared_.robot);
-        chosen = first_largest(valid, touch_margin, [&](std::size_t k) {
-            return clearances_->clearance_at(poses[k].lifted(shared_.options.stand.lift));
-        });
+        std::vector<double> clearances(poses.size());
+        for (const std::size_t k : valid)
+            clearances[k] = clearances_->clearance_at(poses[k].lifted(shared_.options.stand.lift));
+        chosen = first_largest(valid, touch_margin, [&](std::size_t k) { return clearances[k]; });
+        out.free_length = clearances[chosen];
     } else if (rule.kind == HeadingRule::Kind::Along) {
         chosen = longest_way(place, valid, out, poses);
     } else {
@@ -125,20 +133,23 @@ StandJudge::Choice StandJudge::judge_several(const ColumnView& column, const Vec
 
 /// Returns the heading in which the robot can go straight ahead for longest; of equal ones the one in which it can also
 /// go back for longest, and of these the first one. `headings` are the valid ones, and `poses` those of all headings.
+/// Sets the length of the way ahead.
 std::size_t StandJudge::longest_way(const Vec3& place, const std::vector<std::size_t>& headings, Choice& out,
                                     const std::vector<SettledPose>& poses)
 {
     const Bounds box = shared_.robot.bounds();
     const double step = (box.max.x() - box.min.x()) / 2;
-    const std::vector<std::size_t> ahead = with_longest_way(place, headings, poses, step, out);
-    return with_longest_way(place, ahead, poses, -step, out).front();
+    const Ways ahead = with_longest_way(place, headings, poses, step, out);
+    out.free_length = ahead.steps * step;
+    return with_longest_way(place, ahead.headings, poses, -step, out).headings.front();
 }
 
 /// Returns the headings in which the robot can make the most steps of a length (m; negative: backwards), up to
 /// HeadingRule::most_steps. A step leads to a valid pose at the same yaw, whose ground rises or falls by at most
-/// --max-slope from that of the pose before. If one heading is left, its other steps are not examined.
-std::vector<std::size_t> StandJudge::with_longest_way(const Vec3& place, const std::vector<std::size_t>& headings,
-                                                      const std::vector<SettledPose>& poses, double step, Choice& out)
+/// --max-slope from that of the pose before. The length of a way back is not needed: if one heading is left, its other
+/// steps backwards are not examined.
+StandJudge::Ways StandJudge::with_longest_way(const Vec3& place, const std::vector<std::size_t>& headings,
+                                              const std::vector<SettledPose>& poses, double step, Choice& out)
 {
     struct Way {
         std::size_t heading;
@@ -158,16 +169,17 @@ std::vector<std::size_t> StandJudge::with_longest_way(const Vec3& place, const s
         out.exact_checks += pose.exact_check;
         return pose.verdict == Verdict::Valid;
     };
-    for (int steps = 1; steps <= HeadingRule::most_steps && ways.size() > 1; ++steps) {
+    Ways longest;
+    while (longest.steps < HeadingRule::most_steps && (step > 0 || ways.size() > 1)) {
         std::vector<Way> next;
         for (Way way : ways)
-            if (can_go_on(way, steps)) next.push_back(way);
+            if (can_go_on(way, longest.steps + 1)) next.push_back(way);
         if (next.empty()) break;
         ways = std::move(next);
+        ++longest.steps;
     }
-    std::vector<std::size_t> left;
-    for (const Way& way : ways) left.push_back(way.heading);
-    return left;
+    for (const Way& way : ways) longest.headings.push_back(way.heading);
+    return longest;
 }
 
 /// Returns the yaw in which the ground around a place falls most, by the heights half a robot's length away from it; 0

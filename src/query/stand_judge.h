@@ -24,8 +24,9 @@ public:
     /// A pose at a heading that was chosen by a rule.
     struct Choice {
         SettledPose pose;
-        std::uint64_t valid_headings = 0;  ///< as RasterRest::valid_headings
-        std::uint64_t exact_checks = 0;    ///< at all headings
+        std::uint64_t valid_headings = 0;                               ///< as RasterRest::valid_headings
+        std::uint64_t exact_checks = 0;                                 ///< at all headings
+        double free_length = std::numeric_limits<double>::quiet_NaN();  ///< as RasterRest::free_length
     };
 
     /// The same at the heading that a rule chooses. For All and Any, `chance` (in [0, 1)) selects one of the valid
@@ -37,8 +38,13 @@ private:
     Choice judge_several(const ColumnView& column, const Vec3& place, const HeadingRule& rule, double chance);
     std::size_t longest_way(const Vec3& place, const std::vector<std::size_t>& headings, Choice& out,
                             const std::vector<SettledPose>& poses);
-    std::vector<std::size_t> with_longest_way(const Vec3& place, const std::vector<std::size_t>& headings,
-                                              const std::vector<SettledPose>& poses, double step, Choice& out);
+    /// The headings with the longest way, and its number of steps.
+    struct Ways {
+        std::vector<std::size_t> headings;
+        int steps = 0;
+    };
+    Ways with_longest_way(const Vec3& place, const std::vector<std::size_t>& headings,
+                          const std::vector<SettledPose>& poses, double step, Choice& out);
     double downhill_yaw(const Vec3& place);
     void judge_rest(const ColumnView& column, const Rest& rest, SettledPose& out);
     std::optional<CollisionHit> hit_at(const SettledPose& pose, double raised);

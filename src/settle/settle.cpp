@@ -977,8 +977,9 @@ private:
         out.contacts = rest_contacts(at_);
         out.belly = belly(out.contacts);
         out.underside = underside().value_or(0);
+        if (polygon.size() == 1) out.margin = -(mass.head<2>() - polygon[0]).norm();
+        if (polygon.size() >= 2) out.margin = nearest_edge(polygon, mass.head<2>()).distance;
         if (polygon.size() < 3) return out;
-        out.margin = nearest_edge(polygon, mass.head<2>()).distance;
         out.tip_over = tip_over(polygon, out.contacts, mass + at_.z * Vec3::UnitZ());
         return out;
     }

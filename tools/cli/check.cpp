@@ -26,7 +26,7 @@ void write_verdicts(const CheckArgs& args, const VerdictReport& report)
         else if (args.format == "junit")
             write_verdicts_junit(report, sink);
         else if (report.settled != nullptr)
-            sink(settled_csv(report.table, *report.settled, report.judge.map(), report.judge.robot()));
+            sink(settled_csv(report.table, *report.settled, report.judge));
         else
             sink(verdicts_csv(report.table, report.judgements, report.judge.map()));
     });

@@ -5,6 +5,7 @@
 #include "messages.h"
 #include "numbers.h"
 #include "raster_args.h"
+#include "spawn_advice.h"
 #include "spawn_args.h"
 
 #include <spawnfield/error.h>
@@ -126,7 +127,8 @@ private:
     void prepare_searches()
     {
         search_ = search_options(args_, args_.draws, args_.bounds, "experiment", !args_.ground.z.empty());
-        const YawChoice yaw = parse_yaw_choice(args_, args_.yaw, args_.is_settled(), false);
+        const YawChoice yaw = parse_yaw_choice(args_, args_.yaw, args_.is_settled(), true);
+        search_.random_yaw = yaw.is_random;
         search_.yaw = yaw.yaw;
         search_.heading = yaw.rule;
         search_.stance = args_.stance();
@@ -172,13 +174,12 @@ private:
     void write(OutputFolder& folder, std::vector<ExperimentRun> runs)
     {
         clear_progress_bar();
-        VerdictCounts counts;
         std::uint64_t exact_checks = 0;
         for (const ExperimentRun& run : runs) {
-            counts += run.counts;
+            counts_ += run.counts;
             exact_checks += run.exact_checks;
         }
-        summary_.set_verdicts(counts, exact_checks);
+        summary_.set_verdicts(counts_, exact_checks);
         Experiment experiment{args_.command_line,  session_.map.name,  session_.map.hash,
                               session_.robot.name, summary_.threads(), {},
                               std::move(runs)};
@@ -195,11 +196,14 @@ private:
         summary_.extra = {args_.out, args_.search ? runs : runs + " of " + counted(steps_.size(), "step")};
         summary_.seed = args_.search ? search_.seed : 0;
         if (short_runs_ == 0) return {};
+        const std::string advice = spawn_advice(args_, args_.ground,
+                                                {.is_search = true,
+                                                 .min_distance = search_.min_distance,
+                                                 .has_region = !search_.area.is_everywhere(),
+                                                 .counts = counts_});
         return {.status = fewer_found,
                 .notice = counted(short_runs_, "run") + " of " + std::to_string(args_.runs) + " found fewer than " +
-                          std::to_string(search_.count) +
-                          " spawns; a smaller --min-distance, more --max-failures or a wider " +
-                          (search_.area.is_everywhere() ? "--bounds" : "--region") + " may give more"};
+                          counted(search_.count, "spawn") + "; " + advice + " may give more"};
     }
 
     const ExperimentArgs& args_;
@@ -209,6 +213,7 @@ private:
     SearchOptions search_;  ///< of the first run
     std::vector<std::pair<double, double>> steps_;
     Session session_;
+    VerdictCounts counts_;  ///< of all runs
     std::uint64_t short_runs_ = 0;
 };
 
@@ -243,6 +248,8 @@ void add_experiment(CLI::App& app, const std::string& command_line, ChosenComman
     add_draws(command, args->draws);
     add_max_failures(command, args->draws);
     add_raster_query(command, *args);
+    command.get_option("--yaw")->description("Yaw of all poses: " + yaw_help + "; with --search also random; for " +
+                                             heading_help + " (default 0)");
     command.footer(
         "Example:\n"
         "  spawnfield experiment /tmp/training --robot box:0.99,0.67,0.39 --dims 2 --steps 0.5:2:0.5 --offset 0.5 "

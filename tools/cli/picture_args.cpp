@@ -62,8 +62,9 @@ std::string heatmap_caption(const RasterOptions& options, const GroundArgs& grou
     if (const std::string words = height_words(ground, options.z, judge.map()); options.dims == 2 && !words.empty())
         text += ", " + words;
     if (options.height_check) text += ", " + layer_words(ground.layers);
-    if (is_settled)
-        text += ", tilt up to " + degrees(judge.options().stand.max_slope);
+    if (const StandLimits& limits = judge.options().stand; is_settled)
+        text += ", tilt up to " + degrees(limits.max_slope) + ", margin from " + short_number(*limits.min_stability) +
+                " m, friction " + short_number(limits.friction);
     else if (const double limit = judge.options().max_slope; std::isfinite(limit))
         text += ", slope up to " + degrees(limit);
     return text;

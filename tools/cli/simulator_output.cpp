@@ -71,6 +71,19 @@ std::string lasting_path(const std::string& option, const std::string& file)
 
 fs::path folder_of(const std::string& file) { return fs::absolute(file).lexically_normal().parent_path(); }
 
+/// Returns the file or folder that a URI names; an empty path if it is not found without a simulator.
+fs::path model_on_disk(const std::string& uri, const std::vector<fs::path>& model_paths)
+{
+    const std::string file = "file://", model = "model://";
+    if (!uri.starts_with(model)) {
+        const fs::path path = uri.starts_with(file) ? uri.substr(file.size()) : uri;
+        return fs::exists(path) ? path : fs::path();
+    }
+    for (const fs::path& folder : model_paths)
+        if (const fs::path path = folder / uri.substr(model.size()); fs::exists(path)) return path;
+    return {};
+}
+
 /// Returns the first relative <uri> of an SDF text; empty if there is none.
 std::string first_relative_uri(const std::string& text)
 {
@@ -171,6 +184,31 @@ SimulatorOutput::SimulatorOutput(const CommonArgs& common, const CLI::App& comma
     tiles_ = parse_tiles(args_.tiles);
     if (target_.out.empty() || target_.out == "-") throw ArgumentError("--format isaaclab needs -o FOLDER");
     folder_ = std::make_unique<OutputFolder>(target_.out, holds_only(isaac_files, "Isaac Lab result"));
+}
+
+void SimulatorOutput::notice_about_model(const Robot& robot) const
+{
+    constexpr double noticeable = 0.005;  // m
+    const std::string uri = is("sdf") ? sdf_.uri : is_ros() ? launch_.file : "";
+    const fs::path file = model_on_disk(uri, target_.reading.model_paths);
+    std::error_code ignored;
+    if (file.empty() || robot.parts.empty() || fs::equivalent(file, target_.robot, ignored)) return;
+    double lowest = 0;
+    try {
+        lowest = load_robot(file.string(), {.model_paths = target_.reading.model_paths}).bounds().min.z();
+    } catch (const FileError&) {
+        return;  // the simulator may still be able to read it
+    }
+    const double too_high = lowest - robot.bounds().min.z();
+    if (std::abs(too_high) < noticeable) return;
+    const auto words = [](double z) {
+        return rounded(std::abs(z)) + " m " + (z > 0 ? "above" : "below") + " its origin";
+    };
+    notice(common_, uri + ": its lowest point is " + words(lowest) + ", but that of --robot " + target_.robot + " is " +
+                        words(robot.bounds().min.z()) +
+                        "; the simulator puts the model's origin at each pose, so the robots start " +
+                        rounded(std::abs(too_high)) + " m too " + (too_high > 0 ? "high" : "low") +
+                        "; give this model as --robot, or make the origins agree");
 }
 
 void SimulatorOutput::give_names(std::vector<RobotStart>& robots, const std::vector<std::string>& own) const
@@ -343,6 +381,7 @@ void export_poses(const CommonArgs& common, const CLI::App& command, const Simul
                   SimulatorOutput::Target target, const Session& session)
 {
     const SimulatorOutput output(common, command, args, std::move(target));
+    output.notice_about_model(session.robot);
     std::vector<RobotStart> robots = robot_starts(table);
     output.give_names(robots, column_of(table, "name"));
     output.write(robots, session.map, [&] { return poses_json(robots, session.map, session.robot); });

@@ -45,6 +45,10 @@ public:
     /// Returns whether the robots have names: in every format except csv without --name.
     bool has_names() const { return !is("csv") || !args_.name.empty(); }
 
+    /// Prints a notice if the model that the simulator loads can be read, and its lowest point is at another height
+    /// than that of the robot whose poses are written: then it starts too high or too low.
+    void notice_about_model(const Robot& robot) const;
+
     /// Gives the robots names and namespaces. Without --name their `own` names are used, if there are any.
     void give_names(std::vector<RobotStart>& robots, const std::vector<std::string>& own = {}) const;
 

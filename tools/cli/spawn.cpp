@@ -7,6 +7,7 @@
 #include "numbers.h"
 #include "output.h"
 #include "simulator_output.h"
+#include "spawn_advice.h"
 #include "spawn_args.h"
 #include "spelling.h"
 #include "thesis_output.h"
@@ -39,19 +40,16 @@ std::string upper_first(std::string text)
 /// Returns why fewer spawns than wanted were found, and what may give more. Here and below, `Options` is SearchOptions
 /// or SampleOptions.
 template <class Options>
-std::string shortfall(const Options& options, const QueryArgs& args, const SpawnList& list, const std::string& command)
+std::string shortfall(const Options& options, const SpawnArgs& args, const SpawnList& list, const std::string& command)
 {
     const std::string found = std::to_string(list.spawns.size()),
                       of_count = found + " of " + std::to_string(options.count) + " spawns ";
-    const std::string sample_advice = args.is_settled() ? "a smaller --min-stability or a wider --region"
-                                                        : "another --offset or a wider --region";
-    const std::string search_advice = std::string(args.is_settled() ? "a smaller --min-stability, " : "") +
-                                      "more --max-failures or " +
-                                      (options.area.is_everywhere() ? "wider --bounds" : "a wider --region");
-    const std::string advice = std::string(options.min_distance > 0 ? "a smaller --min-distance, " : "") +
-                               (list.near_avoided > 0 ? "a smaller --avoid-distance, " : "") +
-                               (args.max_slope ? "a larger --max-slope, " : "") +
-                               (command == "sample" ? sample_advice : search_advice);
+    const std::string advice = spawn_advice(args, args.ground,
+                                            {.is_search = command == "search",
+                                             .min_distance = options.min_distance,
+                                             .has_region = !options.area.is_everywhere(),
+                                             .is_near_avoided = list.near_avoided > 0,
+                                             .counts = list.counts});
     if (list.is_full && list.spawns.empty())
         return std::string("no spawn fits: it is proven that no pose is valid") +
                (list.near_avoided > 0 ? " and far enough from the avoided poses; " : "; ") + advice + " may give some";
@@ -64,6 +62,14 @@ std::string shortfall(const Options& options, const QueryArgs& args, const Spawn
     std::snprintf(area, sizeof area, "%.3g", list.undecided_area);
     return "only " + of_count + "were found. Another one may fit in " + area +
            " m2 of the region; it is proven that none fits elsewhere. " + upper_first(advice) + " may give more";
+}
+
+/// Returns where the draws lie that SpawnList::off_area counts. Without a region, they are draws of a search whose
+/// ground is beyond the heights of the box.
+template <class Options>
+std::string off_area_words(const Options& options)
+{
+    return options.area.is_everywhere() ? "above ground beyond the heights of --z or --bounds" : "off the region";
 }
 
 /// Returns the options, then those that only this command has (`own`), then what was found.
@@ -88,7 +94,8 @@ Settings settings_of(const SpawnArgs& args, const Session& session, const Option
     out.insert(out.end(), own.begin(), own.end());
     add("Spawns", std::to_string(list.spawns.size()));
     add("Draws", std::to_string(list.draws));
-    if (!options.area.is_everywhere() || list.off_area > 0) add("Draws off the region", std::to_string(list.off_area));
+    if (!options.area.is_everywhere() || list.off_area > 0)
+        add(upper_first("draws " + off_area_words(options)), std::to_string(list.off_area));
     if (!options.avoid.empty()) add("Draws near avoided poses", std::to_string(list.near_avoided));
     add("Draws too close", std::to_string(list.too_close));
     add("Positions that are not valid", "counted, not written");
@@ -99,9 +106,13 @@ template <class Options>
 void write(const SpawnArgs& args, const SimulatorOutput& output, const Session& session, const Options& options,
            const SpawnList& list)
 {
-    if (!output.has_names()) return write_output(args.out, [&](const auto& sink) { sink(spawns_csv(list)); });
     std::vector<RobotStart> robots = robot_starts(list);
-    output.give_names(robots);
+    std::vector<std::string> names;
+    if (output.has_names()) {
+        output.give_names(robots);
+        for (const RobotStart& robot : robots) names.push_back(robot.name);
+    }
+    if (args.format == "csv") return write_output(args.out, [&](const auto& sink) { sink(spawns_csv(list, names)); });
     output.write(robots, session.map, [&] { return spawns_json(robots, list, *session.judge, options); });
 }
 
@@ -117,7 +128,7 @@ void fill(Summary& summary, const Options& options, const SpawnList& list)
         (options.avoid.empty() ? "" : ", " + std::to_string(list.near_avoided) + " near avoided poses") +
         (options.area.is_everywhere() && list.off_area == 0
              ? ""
-             : ", " + std::to_string(list.off_area) + " off the region"));
+             : ", " + std::to_string(list.off_area) + " " + off_area_words(options)));
     summary.draws = {{"all", list.draws},
                      {"too_close", list.too_close},
                      {"near_avoided", list.near_avoided},
@@ -175,6 +186,7 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
         output.emplace(args, app, args.simulator,
                        SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args)});
     const Session session = open_session(args, summary);
+    if (output) output->notice_about_model(session.robot);
     const Settings own = query.prepare(session, options);
     const std::string hopeless = query.find_hopeless(session, options);
     notice_about_avoided(args, session.map, options.avoid);

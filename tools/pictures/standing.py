@@ -95,10 +95,11 @@ def settle(program, map_folder, robot, poses):
 
 def describe(row):
     """Returns a line about a row of `check --settle`."""
+    place, verdict = f"{float(row['x']):.2f},{float(row['y']):.2f}", row["reason"] or row["verdict"]
     if not row["settled_z"]:
-        return f"{float(row['x']):.2f},{float(row['y']):.2f}: {row['verdict']}, not drawn: it has no settled pose"
+        return f"{place}: {verdict}; not drawn: it has no settled pose"
     roll, pitch, tilt = (math.degrees(float(row[key])) for key in ("settled_roll", "settled_pitch", "tilt"))
-    return (f"{float(row['x']):.2f},{float(row['y']):.2f}: {row['verdict']}, roll {roll:.1f}, pitch {pitch:.1f}, "
+    return (f"{place}: {verdict}, roll {roll:.1f}, pitch {pitch:.1f}, "
             f"tilt {tilt:.1f} degrees, margin {float(row['margin']):.3f} m, belly {float(row['belly']):.3f} m")
 
 
