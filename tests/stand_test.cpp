@@ -12,8 +12,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <optional>
 
 using namespace spawnfield;
 
@@ -180,25 +182,80 @@ TEST_CASE("a foot that hangs counts if the robot rocks onto it with little motio
     CHECK(deep.pose.contacts.size() == 3);
 }
 
+/// A box between two wheels with the radius 0.1 m, with a ball as a third foot if its place is given, and with the
+/// mass at (mass_x, mass_z) from the middle of the axle.
+Robot on_two_wheels(double mass_x, double mass_z, const std::optional<Vec3>& ball = {})
+{
+    std::vector<RobotPart> parts{shape_part(box_shape({0.2, 0.2, 0.02}, {{0, 0, 0.1}}), "body")};
+    for (const double y : {-0.2, 0.2})
+        parts.push_back(shape_part(cylinder_shape(0.1, 0.05, {{0, y, 0.1}, rotation_of_rpy(rad(90), 0, 0)}), "wheel"));
+    if (ball) parts.push_back(shape_part(sphere_shape(0.02, *ball + Vec3(0, 0, 0.1)), "ball"));
+    Robot out = make_robot("two_wheels", std::move(parts));
+    out.mass_center = Vec3(mass_x, 0, 0.1 + mass_z);
+    return out;
+}
+
 TEST_CASE("a robot rests on a line if its mass is below the axle of its wheels, but falls if it is above")
 {
-    const auto on_two_wheels = [](double mass_z) {
-        std::vector<RobotPart> parts{shape_part(box_shape({0.2, 0.2, 0.02}, {{0, 0, 0.1}}), "body")};
-        for (const double y : {-0.2, 0.2})
-            parts.push_back(
-                shape_part(cylinder_shape(0.1, 0.05, {{0, y, 0.1}, rotation_of_rpy(rad(90), 0, 0)}), "wheel"));
-        Robot robot = make_robot("two_wheels", std::move(parts));
-        robot.mass_center = Vec3(0, 0, mass_z);
-        return settle(slope(rad(10)), robot, {0, 0, 1}, {.min_stability = 0.001});
+    const auto on_slope = [](double mass_z, double min_stability) {
+        return settle(slope(rad(10)), on_two_wheels(0, mass_z), {0, 0, 1}, {.min_stability = min_stability});
     };
     // The wheels touch the slope at an angle of 10 degrees to the vertical. The mass, 0.04 m below the axle, hangs
     // above that line if the robot has turned by asin(0.1 sin(10 degrees) / 0.04).
-    const Settled rest = on_two_wheels(0.06);
+    const Settled rest = on_slope(-0.04, 0.001);
     CHECK(rest.pose.verdict == Verdict::Valid);
     CHECK(std::abs(std::abs(rest.pose.pitch) - std::asin(0.1 * std::sin(rad(10)) / 0.04)) <= 1e-4);
     CHECK(std::abs(rest.pose.margin - 0.001) <= 1e-9);
     CHECK(rest.pose.tip_over <= 1e-3);
-    CHECK(on_two_wheels(0.12).pose.verdict == Verdict::Unstable);
+    CHECK(on_slope(0.02, 0.001).pose.verdict == Verdict::Unstable);
+    // With its mass moved by m, it turns to asin((0.1 sin(10 degrees) +- m) / 0.04): by up to 8.4 or 17.4 degrees.
+    CHECK(on_slope(-0.04, 0.005).pose.verdict == Verdict::Valid);
+    CHECK(on_slope(-0.04, 0.01).pose.verdict == Verdict::Unstable);
+}
+
+TEST_CASE("a robot on two wheels on a slope is valid if a third foot is near the ground on one side")
+{
+    // The ball touches the slope if the robot turns by `gap` more than to the line of its wheels. With its mass moved
+    // by 1 mm, it turns by 1.6 degrees without the ball.
+    const double turned = std::asin(0.1 * std::sin(rad(10)) / 0.04);
+    for (const double gap : {0.3, 1.0, 1.5, 2.5})
+        for (const double side : {-1.0, 1.0}) {  // the slope rises towards +x, or the mirror image
+            INFO(gap << " degrees, side " << side);
+            const Mat3 on_slope = rotation_of_rpy(0, -side * rad(10), 0);
+            const Mat3 touching = rotation_of_rpy(0, -side * (turned + rad(gap)), 0);
+            const Vec3 ball = touching.transpose() * (on_slope * Vec3(-side * 0.3, 0, 0.02 - 0.1));
+            const Settled rest = settle(slope(side * rad(10)), on_two_wheels(0, -0.04, ball), {0, 0, 1},
+                                        {.min_stability = 0.001});
+            CHECK(rest.pose.verdict == Verdict::Valid);
+            CHECK(std::abs(rest.pose.pitch + side * turned) <= 1e-4);
+            CHECK(std::abs(rest.pose.margin - 0.001) <= 1e-6);
+            const bool reaches = gap < 1.6;
+            CHECK(std::any_of(rest.pose.contacts.begin(), rest.pose.contacts.end(),
+                              [](const RestContact& contact) { return contact.part == 3; }) == reaches);
+        }
+}
+
+TEST_CASE("a robot on three feet with its mass near the line of two wheels is valid if it would only roll on them")
+{
+    // The mass is 0.5 mm from the axle, on the side of the ball. Moved by 1 mm, it is on the other side. Below the
+    // axle, it is above the line of the wheels again when the robot has turned by asin(0.5 / 40); above it, never.
+    for (const double side : {-1.0, 1.0}) {
+        INFO("side " << side);
+        const auto on_floor = [&](double mass_z, double min_stability) {
+            return settle(floor_scene(), on_two_wheels(side * 0.0005, mass_z, Vec3(side * 0.3, 0, -0.08)), {0, 0, 0.5},
+                          {.min_stability = min_stability});
+        };
+        const Settled rolls = on_floor(-0.04, 0.001);
+        CHECK(rolls.pose.verdict == Verdict::Valid);
+        CHECK(rolls.pose.tilt <= 1e-9);
+        CHECK(std::abs(rolls.pose.margin - 0.001) <= 1e-6);
+        const Settled tips = on_floor(0.02, 0.001);
+        CHECK(tips.pose.verdict == Verdict::Unstable);
+        CHECK(std::abs(tips.pose.margin - 0.0005) <= 1e-6);
+        // Moved by 7.6 mm, it would turn by asin(7.1 / 40) = 10.2 degrees, which is too far.
+        CHECK(on_floor(-0.04, 0.007).pose.verdict == Verdict::Valid);
+        CHECK(on_floor(-0.04, 0.0076).pose.verdict == Verdict::Unstable);
+    }
 }
 
 TEST_CASE("a robot that needs more friction than it has slides, and the reason says how much it needs")

@@ -389,42 +389,39 @@ private:
 
     /// If the mass were beyond the nearest edge of the support polygon, the robot would turn about that edge. If it
     /// then comes to rest after little motion, it stands on the contacts of both poses. Adds them to a rest with a
-    /// margin that is too small. A robot that rests on a line (its support polygon is narrower than the margin) rolls
-    /// on it until the line carries the mass again: so it would do for any place of the mass up to there, and the edge
-    /// is moved outwards to there.
+    /// margin that is too small. If it only rolls on the contacts that it has, they carry the mass at any place up to
+    /// there, so the edge is moved outwards to there.
     void rock(Rest& rest)
     {
         const Lowered rested = at_;
+        const double enough = settler_.options_.min_stability;
         Polygon2 polygon = support_polygon(rested, contact_gap);
-        bool is_line = width(polygon) < settler_.options_.min_stability, has_rolled = false;
+        const bool is_line = width(polygon) < enough;
         const Vec3 mass = settler_.mass_center_;
         const Mat3 rotated = rotation(rested.angles);
         for (int k = 0; k < max_rockings && polygon.size() >= 2; ++k) {
             const NearestEdge edge = nearest_edge(polygon, (rotated * mass).head<2>());
-            if (edge.distance >= settler_.options_.min_stability - contact_tolerance) break;
+            if (edge.distance >= enough - contact_tolerance) break;
             const Vec3 beyond(edge.outward.x(), edge.outward.y(), 0);
-            mass_ = mass + rotated.transpose() * (settler_.options_.min_stability * beyond);
+            mass_ = mass + rotated.transpose() * (enough * beyond);
             at_ = rested;
             drift_ = Vec2::Zero();
-            if (descend(straight_turn) != Rest::State::Standing) break;
+            const Rest::State state = descend(straight_turn);
+            if (state == Rest::State::Falling || !is_balanced()) break;  // next to a wall, it may be balanced, too
             std::vector<RestContact> more = rest_contacts(at_);
             std::erase_if(more, [&](const RestContact& contact) {
                 return std::any_of(rest.contacts.begin(), rest.contacts.end(), [&](const RestContact& other) {
                     return (other.point - contact.point).head<2>().norm() < rocking_rise;
                 });
             });
-            const bool is_near = !is_far(at_, rested, rocking_turn);
-            if (!is_near && !(is_line && !is_far(at_, rested, rolling_turn))) break;
-            // On other contacts nearby, it stands as any other robot: it would swing between them and the line.
-            is_line &= more.empty() || !is_near;
-            if (!is_line && (more.empty() || has_rolled)) break;
+            const bool is_rolling = is_line || (more.empty() && width(support_polygon(at_, contact_gap)) < enough);
+            if (is_far(at_, rested, is_rolling ? rolling_turn : rocking_turn)) break;
             for (const RestContact& contact : more) {
                 rest.contacts.push_back(contact);
                 polygon.push_back(contact.point.head<2>());
             }
             if (more.empty()) {
-                has_rolled = true;
-                const Vec2 outwards = (settler_.options_.min_stability - edge.distance) * edge.outward;
+                const Vec2 outwards = (enough - edge.distance) * edge.outward;
                 polygon.insert(polygon.end(), {edge.from + outwards, edge.to + outwards});
             }
             polygon = convex_hull(std::move(polygon));

@@ -151,7 +151,9 @@ def make_robot(info, folder):
                  f'<geometry>{geometry_of(part, folder / f"hull_{index}.obj")}</geometry></collision>\n')
     file = folder / "robot.urdf"
     file.write_text(f'<robot name="robot"><link name="base">{link}</link></robot>')
-    body = pybullet.loadURDF(str(file), flags=pybullet.URDF_USE_INERTIA_FROM_FILE)
+    # Without the second flag, Bullet makes prisms with 32 sides of cylinders: wheels that do not roll.
+    body = pybullet.loadURDF(str(file),
+                             flags=pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_IMPLICIT_CYLINDER)
     pybullet.changeDynamics(body, -1, lateralFriction=FRICTION, restitution=0, linearDamping=0, angularDamping=0)
     return body, mass_center
 
@@ -214,6 +216,9 @@ def compare(program, robot, count, map_folder):
         folder = Path(name)
         pybullet.resetSimulation()
         pybullet.setGravity(0, 0, -9.81)
+        # By default, Bullet takes contacts of a part within 2 cm of each other for one. It may then lose the contact
+        # with the triangle below a foot, because of one with the edge of another triangle that is still below it.
+        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=0.001)
         info = json.loads(spawnfield(program, "info", robot, "--json"))
         obstacles = write_ground(program, map_folder, folder / "ground.obj")
         ground = pybullet.createCollisionShape(pybullet.GEOM_MESH, fileName=str(folder / "ground.obj"),
