@@ -363,7 +363,7 @@ private:
             const double sinks = at_.z - next_.z - drift_.dot(turn),
                          expected = at_.z - expected_z(turn) - drift_.dot(turn);
             if (!next_.has_room || sinks < 0.25 * expected - tie) {
-                wall = next_.wall;
+                wall = next_.has_room ? std::nullopt : next_.wall;
                 limit_ = turn.lpNorm<Eigen::Infinity>() / 4;
                 continue;
             }
