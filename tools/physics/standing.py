@@ -137,6 +137,23 @@ def geometry_of(part, file):
     return f'<mesh filename="{write_hull(part["points"], file)}"/>'
 
 
+def start_world():
+    pybullet.resetSimulation()
+    pybullet.setGravity(0, 0, -9.81)
+    # By default, Bullet takes contacts of a part within 2 cm of each other for one. It may then lose the contact with
+    # the triangle below a foot, because of one with the edge of another triangle that is still below it.
+    pybullet.setPhysicsEngineParameter(contactBreakingThreshold=0.001)
+
+
+def make_ground(program, map_folder, folder):
+    """Puts the solid surfaces of a map into Bullet. Returns the triangles of each obstacle."""
+    obstacles = write_ground(program, map_folder, folder / "ground.obj")
+    ground = pybullet.createCollisionShape(pybullet.GEOM_MESH, fileName=str(folder / "ground.obj"),
+                                           flags=pybullet.GEOM_FORCE_CONCAVE_TRIMESH)
+    pybullet.changeDynamics(pybullet.createMultiBody(0, ground), -1, lateralFriction=1, restitution=0)
+    return obstacles
+
+
 def make_robot(info, folder):
     """Returns a rigid body of all parts of the robot, and its centre of mass in the robot's frame, m."""
     mass_center = np.array(info["mass_center"])
@@ -214,16 +231,9 @@ def compare(program, robot, count, map_folder):
     """Prints the row of a map."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        pybullet.resetSimulation()
-        pybullet.setGravity(0, 0, -9.81)
-        # By default, Bullet takes contacts of a part within 2 cm of each other for one. It may then lose the contact
-        # with the triangle below a foot, because of one with the edge of another triangle that is still below it.
-        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=0.001)
+        start_world()
         info = json.loads(spawnfield(program, "info", robot, "--json"))
-        obstacles = write_ground(program, map_folder, folder / "ground.obj")
-        ground = pybullet.createCollisionShape(pybullet.GEOM_MESH, fileName=str(folder / "ground.obj"),
-                                               flags=pybullet.GEOM_FORCE_CONCAVE_TRIMESH)
-        pybullet.changeDynamics(pybullet.createMultiBody(0, ground), -1, lateralFriction=1, restitution=0)
+        obstacles = make_ground(program, map_folder, folder)
         body, mass_center = make_robot(info, folder)
         valid = [row for row in spawns(program, map_folder, robot, count, folder) if row["verdict"] == "valid"]
         kept = sum(stays(body, mass_center, settled_pose(row)) for row in valid)
@@ -267,4 +277,5 @@ def main():
         compare(program, robot, count, map_folder)
 
 
-main()
+if __name__ == "__main__":
+    main()
