@@ -9,7 +9,6 @@ times include all places, also those where the robot cannot stand. Of Bullet, on
 start. Prints a Markdown table row for each map. Needs the Python packages pybullet and numpy.
 """
 import json
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -60,16 +59,5 @@ def compare(program, robot, count, map_folder):
               f"({steps / len(dropped):.0f} steps) | {bullet / ours:.0f} |", flush=True)
 
 
-def main():
-    if len(sys.argv) < 5:
-        sys.exit(__doc__)
-    program, robot, count, maps = sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4:]
-    pybullet.connect(pybullet.DIRECT)
-    print("| robot | map | settled pose | Bullet | times as fast |")
-    print("|---|---|---|---|---|")
-    for map_folder in maps:
-        compare(program, robot, count, map_folder)
-
-
 if __name__ == "__main__":
-    main()
+    standing.run(__doc__, ["robot", "map", "settled pose", "Bullet", "times as fast"], compare)

@@ -265,17 +265,18 @@ def compare(program, robot, count, map_folder):
               f"{share(refused[30], standing[30])} |", flush=True)
 
 
-def main():
+def run(description, columns, compare_map):
+    """Prints a table with a row for each map of the command line."""
     if len(sys.argv) < 5:
-        sys.exit(__doc__)
+        sys.exit(description)
     program, robot, count, maps = sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4:]
     pybullet.connect(pybullet.DIRECT)
-    print("| robot | map | spawns that stay | tipping robots that move | with a small margin that stay | "
-          "standing at 0-20 degrees, refused | at 20-30 degrees |")
-    print("|---|---|---|---|---|---|---|")
+    print("| " + " | ".join(columns) + " |")
+    print("|---" * len(columns) + "|")
     for map_folder in maps:
-        compare(program, robot, count, map_folder)
+        compare_map(program, robot, count, map_folder)
 
 
 if __name__ == "__main__":
-    main()
+    run(__doc__, ["robot", "map", "spawns that stay", "tipping robots that move", "with a small margin that stay",
+                  "standing at 0-20 degrees, refused", "at 20-30 degrees"], compare)
