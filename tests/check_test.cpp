@@ -107,7 +107,7 @@ TEST_CASE("check --require-valid prints why each of the first five poses is not 
     CHECK(run.err ==
           "spawnfield: --require-valid: 7 of 8 poses are not valid:\n"
           "  away: outside the map's bounds\n"
-          "  sky: aerial: 2.55 m above the ground, the limit is 2 m\n"
+          "  sky: aerial: 2.55 m above the ground, the limit is 2 m (--max-height)\n"
           "  cube: off_terrain: the ground is cube_east\n"
           "  wall (pose 5): collision with thin_wall\n"
           "  pose 6: submerged\n"
@@ -150,7 +150,7 @@ TEST_CASE("check --format junit has a test case for each pose, with its verdict 
     CHECK(cases[1].text ==
           "row 2: wall,-6.5,-5,0.1,0\nposition -6.5, -5, 0.1 m; roll, pitch, yaw 0, 0, 0 rad\n"
           "ground at -0.05 m, 0.15 m below the origin\nhit thin_wall\n");
-    CHECK(cases[3].message == "aerial: 2.55 m above the ground, the limit is 2 m");
+    CHECK(cases[3].message == "aerial: 2.55 m above the ground, the limit is 2 m (--max-height)");
     CHECK_THAT(cases[5].text, Contains("no ground below the origin"));
     CHECK_THAT(run.out, Contains("<property name=\"max_height\" value=\"2.0\"/>"));
     CHECK(arena(command + "--threads 3").out == run.out);
@@ -276,7 +276,7 @@ TEST_CASE("check --settle writes how the robot rests at each pose")
     const ProgramRun run = arena("check map --poses poses.csv --settle" + husky_option);
     INFO(run.err);
     CHECK(run.status == 0);
-    CHECK_THAT(run.err, Contains("poses.csv: the new column margin replaces the old one"));
+    CHECK_THAT(run.err, Contains("poses.csv: new columns replace the old ones: margin, reason\n"));
     CHECK_THAT(run.err, Contains("husky has no centre of mass; that of its parts' volume is used"));
     CHECK_THAT(run.err, Contains("3 poses: 1 valid, 1 collision, 1 aerial"));
     std::istringstream lines(run.out);
@@ -294,7 +294,8 @@ TEST_CASE("check --settle writes how the robot rests at each pose")
           "wall,-6.5,-5,0.1,0,collision,-0.05,,thin_wall,,,,,,,,,"
           "\"collision: it has no room to settle, because of thin_wall\"");
     std::getline(lines, line);
-    CHECK(line == "sky,0,3,2.5,0,aerial,-0.05,,,,,,,,,,,\"aerial: 2.55 m above the ground, the limit is 1 m\"");
+    CHECK(line ==
+          "sky,0,3,2.5,0,aerial,-0.05,,,,,,,,,,,\"aerial: 2.55 m above the ground, the limit is 1 m (--max-height)\"");
 
     const ProgramRun json = arena("check map --poses poses.csv --stance settled --drop 2 --format json -q" +
                                   husky_option);

@@ -554,7 +554,8 @@ TEST_CASE("the output of check can be checked again")
     CHECK(arena("check map --poses poses.csv -o once.csv" + husky).status == 0);
     const ProgramRun again = arena("check map --poses once.csv" + husky);
     CHECK(again.out == bytes_of(arena / "once.csv"));
-    CHECK_THAT(again.err, Contains("notice: once.csv: the new column verdict replaces the old one\n"));
+    CHECK_THAT(again.err,
+               Contains("notice: once.csv: new columns replace the old ones: verdict, ground, height_above, hit\n"));
     arena.write("mixed.csv", "hit,x,verdict,y,z\nlamp,0,\"1,2\",0,0.1\n");
     CHECK(arena("check map --poses mixed.csv" + husky).out ==
           "x,y,z,verdict,ground,height_above,hit\n0,0,0.1,valid,-0.05,0.15000000000000002,\n");

@@ -81,7 +81,7 @@ TEST_CASE("a judge says in words why a pose is refused, and names what was hit")
     CHECK(reason(100, 0, 0.1) == "outside the map's bounds");
     CHECK(reason(-6.5, -5, 0.1) == "collision with thin_wall");
     CHECK(reason(7, -7, 0.1) == "submerged");
-    CHECK(reason(0, 3, 2.5) == "aerial: 2.55 m above the ground, the limit is 1 m");
+    CHECK(reason(0, 3, 2.5) == "aerial: 2.55 m above the ground, the limit is 1 m (--max-height)");
     CHECK(reason(0, 3, -9) == "aerial: no ground below the origin; the next ground is 8.95 m above the origin");
     CHECK(name_of(*judge.check({{-6.5, -5, 0.1}}).hit, judge.map()) == "thin_wall");
 }
@@ -97,9 +97,10 @@ TEST_CASE("the reason of a pose that has sunk through a deck names the distance 
         const Pose pose{{0.3, 0.2, z}};
         return judge.describe(pose, judge.check(pose));
     };
-    CHECK(reason(1.95) ==
-          "aerial: 1.95 m above the ground, the limit is 1 m; the next ground is 0.05 m above the origin");
-    CHECK(reason(3.5) == "aerial: 1.5 m above the ground, the limit is 1 m");
+    CHECK(
+        reason(1.95) ==
+        "aerial: 1.95 m above the ground, the limit is 1 m (--max-height); the next ground is 0.05 m above the origin");
+    CHECK(reason(3.5) == "aerial: 1.5 m above the ground, the limit is 1 m (--max-height)");
 }
 
 TEST_CASE("counts by verdict add up")

@@ -114,7 +114,7 @@ TEST_CASE("if too few spawns are found, the advice names the options that the ve
         const ProgramRun run = arena(command + husky_option);
         CAPTURE(command);
         CHECK(run.status == 3);
-        const std::size_t at = run.err.find("notice: only");
+        const std::size_t at = std::min(run.err.find("notice: only"), run.err.find("notice: none"));
         return at == std::string::npos ? "" : run.err.substr(at, run.err.find('\n', at) - at);
     };
     const std::string sample = "sample map -n 100000 --min-distance 0.3 --region 1.2,5.4,1.9,6.2";  // on the ramp
@@ -194,11 +194,13 @@ TEST_CASE("export --poses --settle writes where the robot rests, and refuses pos
     CHECK_THAT(given_run.err,
                Contains("notice: --lift has no effect: the poses are written as they are given; --settle"));
     CHECK(read_poses(arena / "given.csv").poses[1].position == given[1].position);
+    CHECK_THAT(arena("export map --format csv --poses judged.csv -o given.csv" + husky_option).err,
+               Contains("notice: judged.csv: the columns x, y, z, roll, pitch and yaw are written, and not where"));
 
     arena.write("bad.csv", "name,x,y,z\ngood,0,3,0.5\nbad,50,3,0.5\n");
     const ProgramRun bad = arena("export map --format sdf --robot-uri model://husky --settle --poses bad.csv -o x.sdf" +
                                  husky_option);
-    CHECK(bad.status == 2);
+    CHECK(bad.status == 4);
     CHECK_THAT(bad.err, Contains("bad.csv: with --settle, 1 of 2 poses is not valid:\n  bad: outside") &&
                             Contains("Leave these out; `check --settle` has the verdict of each pose"));
     CHECK(arena("export map --format csv --settle --poses poses.csv").status == 2);  // needs --robot

@@ -370,7 +370,7 @@ TEST_CASE("a settled pose belongs to one layer of its column")
     CHECK(settle(scene, on_balls(0.05), {0, 0, 0.06}).pose.verdict == Verdict::Valid);
     const Settled lower = settle(scene, on_balls(0.05), {0, 0, 0.03});
     CHECK(lower.pose.verdict == Verdict::Collision);
-    CHECK(lower.reason == "collision: it comes to rest on the layer above");
+    CHECK(lower.reason == "collision: its pose belongs to a higher layer");
 }
 
 TEST_CASE("the cases in closed form are valid if their robot is stable")

@@ -119,7 +119,7 @@ const char* scale_title(HeatmapQuantity quantity)
 }
 
 /// Returns the scale of a quantity. Heights, rolls and pitches begin at the lowest value, the others at 0; all end at
-/// the largest value.
+/// the largest value, but angles not below 1 degree: on level floors, differences of less mean nothing.
 ColourScale scale_for(const cv::Mat_<float>& values, HeatmapQuantity quantity)
 {
     const bool from_zero = quantity != HeatmapQuantity::Height && quantity != HeatmapQuantity::Roll &&
@@ -132,7 +132,9 @@ ColourScale scale_for(const cv::Mat_<float>& values, HeatmapQuantity quantity)
         }
     if (from_zero || low > high) low = 0;
     if (high < low) high = 1;
+    const bool is_angle = quantity == HeatmapQuantity::Tilt || quantity == HeatmapQuantity::Slope;
     if (from_zero && high == 0) high = 1;
+    if (is_angle) high = std::max(high, 1.0);
     return scale_between(scale_title(quantity), low, high, viridis());
 }
 

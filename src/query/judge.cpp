@@ -333,14 +333,17 @@ std::vector<SettledPose> Judge::settle(std::span<const Pose> poses, const RunOpt
 
 namespace {
 
-/// Returns a hint if ground is at most `limit` (m) above the origin: the robot may have sunk into it.
-std::string ground_above(const Map& map, const Vec3& origin, double limit)
+/// Returns a hint if ground is at most `limit` (m) above the origin: the robot may have sunk into it, or stand over it.
+/// `lowest`: height of the robot's lowest point above its origin, m.
+std::string ground_above(const Map& map, const Vec3& origin, double limit, double lowest)
 {
     const Column column = column_at(map.geometry, origin.x(), origin.y());
     const std::span<const double> layers = heights_within(column.layers, map.z_limits);
     const auto next = std::find_if(layers.rbegin(), layers.rend(), [&](double z) { return z > origin.z(); });
     if (next == layers.rend() || *next - origin.z() > limit) return {};
-    return "; the next ground is " + rounded(*next - origin.z()) + " m above the origin";
+    const bool may_stand_over = *next - origin.z() <= lowest + touch_tolerance;
+    return "; the next ground is " + rounded(*next - origin.z()) + " m above the origin" +
+           (may_stand_over ? ", but not above the robot's lowest point: --settle counts it" : "");
 }
 
 }  // namespace
@@ -348,15 +351,16 @@ std::string ground_above(const Map& map, const Vec3& origin, double limit)
 std::string Judge::describe(const Pose& pose, const Judgement& judgement) const
 {
     const std::string verdict = to_string(judgement.verdict);
+    const double lowest = impl_->robot.bounds().min.z();
     switch (judgement.verdict) {
     case Verdict::Outside: return verdict + " the map's bounds";
     case Verdict::Aerial:
         if (!judgement.ground)
             return verdict + ": no ground below the origin" +
-                   ground_above(impl_->map, pose.position, std::numeric_limits<double>::infinity());
+                   ground_above(impl_->map, pose.position, std::numeric_limits<double>::infinity(), lowest);
         return verdict + ": " + rounded(pose.position.z() - judgement.ground->height) +
-               " m above the ground, the limit is " + rounded(impl_->options.max_height) + " m" +
-               ground_above(impl_->map, pose.position, impl_->options.max_height);
+               " m above the ground, the limit is " + rounded(impl_->options.max_height) + " m (--max-height)" +
+               ground_above(impl_->map, pose.position, impl_->options.max_height, lowest);
     case Verdict::OffTerrain:
         return verdict + ": the ground is " + impl_->map.geometry.parts()[judgement.ground->part].name;
     case Verdict::Collision: return judgement.hit ? verdict + " with " + name_of(*judgement.hit, impl_->map) : verdict;
@@ -383,7 +387,7 @@ std::string Judge::describe(const SettledPose& pose) const
         break;
     case Verdict::Collision:
         if (!pose.has_pose) return verdict + ": it has no room to settle" + (pose.hit ? ", because of " + what : "");
-        if (!pose.hit) return verdict + ": it comes to rest on the layer above";
+        if (!pose.hit) return verdict + ": its pose belongs to a higher layer";
         return verdict + ": it is inside " + what;
     case Verdict::Steep:
         return verdict + ": it tilts by " + degrees(pose.tilt) + ", the limit is " + degrees(limits.max_slope);
@@ -396,7 +400,10 @@ std::string Judge::describe(const SettledPose& pose) const
                rounded(*limits.min_stability) + " m";
     case Verdict::Obstructed: return verdict + (pose.hit ? " by " + what : "");
     case Verdict::Aerial:
-        if (pose.has_pose) return describe(pose.lifted(limits.lift), judgement_of(pose)) + ", raised by the lift";
+        if (pose.has_pose)
+            return describe(pose.lifted(limits.lift), judgement_of(pose)) +
+                   "; this is where it rests, "
+                   "raised by --lift";
         break;
     default: break;
     }

@@ -75,7 +75,14 @@ std::optional<HeadingRule> parse_rule(const std::string& text)
 
 }  // namespace
 
-double parse_yaw(const CommonArgs& args, const std::string& text) { return parse(args, text, ""); }
+double parse_yaw(const CommonArgs& args, const std::string& text)
+{
+    if (parse_rule(text))
+        throw ArgumentError("--yaw is \"" + text +
+                            "\", but this file has one heading, such as 90deg; `raster --settle` and `heatmap` take "
+                            "rules");
+    return parse(args, text, "");
+}
 
 YawChoice parse_yaw_choice(const CommonArgs& args, const std::string& text, bool is_settled, bool allow_random)
 {

@@ -35,8 +35,11 @@ void write_verdicts(const CheckArgs& args, const VerdictReport& report)
 Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summary)
 {
     const PoseTable table = open_poses(args, args.poses);
-    for (const std::string& name : replaced_columns(table, args.is_settled()))
-        notice(args, input_name(args.poses) + ": the new column " + name + " replaces the old one");
+    if (const std::vector<std::string> replaced = replaced_columns(table, args.is_settled()); replaced.size() == 1)
+        notice(args, input_name(args.poses) + ": the new column " + replaced[0] + " replaces the old one");
+    else if (!replaced.empty())
+        notice(args,
+               input_name(args.poses) + ": new columns replace the old ones: " + CLI::detail::join(replaced, ", "));
     if (args.is_settled()) notice_about_tilted(args, args.poses, table);
     const Session session = open_session(args, summary);
     notices_about_stance(args, command, session.robot);

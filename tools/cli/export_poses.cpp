@@ -10,7 +10,7 @@
 namespace spawnfield::cli {
 namespace {
 
-/// Replaces the poses by the settled ones, raised by --lift. Throws ArgumentError unless all of them are valid.
+/// Replaces the poses by the settled ones, raised by --lift. Throws FileError unless all of them are valid.
 void let_down(const ExportJob& job, PoseTable& table)
 {
     const std::vector<SettledPose> settled = settled_poses(job, table);
@@ -19,20 +19,32 @@ void let_down(const ExportJob& job, PoseTable& table)
     const VerdictReport report{table, judgements, *job.session.judge, &settled};
     if (std::any_of(judgements.begin(), judgements.end(),
                     [](const Judgement& judgement) { return judgement.verdict != Verdict::Valid; }))
-        throw ArgumentError(input_name(job.args.poses) + ": with --settle, " + not_valid_words(report) +
+        throw FileError(input_name(job.args.poses),
+                        "with --settle, " + not_valid_words(report) +
                             "\nLeave these out; `check --settle` has the verdict of each pose. Without --settle, poses "
                             "are written as they are given");
     for (std::size_t i = 0; i < settled.size(); ++i) table.poses[i] = settled[i].lifted(job.args.lift);
+}
+
+/// Prints a notice if `check --settle` wrote the file, because its poses are the places where robots were let down.
+void notice_if_settled(const ExportArgs& args, const PoseTable& table)
+{
+    if (!column_of(table, "settled_z").empty())
+        notice(args, input_name(args.poses) +
+                         ": the columns x, y, z, roll, pitch and yaw are written, and not where `check --settle` found "
+                         "that the robots rest; --settle writes that");
 }
 
 void write(const ExportJob& job)
 {
     const ExportArgs& args = job.args;
     PoseTable table = open_poses(args, args.poses);
-    if (lets_down_poses(job))
+    if (lets_down_poses(job)) {
         let_down(job, table);
-    else
+    } else {
         notice_not_valid(args, table, args.poses);
+        notice_if_settled(args, table);
+    }
     export_poses(args, job.command, args.simulator, table,
                  {args.format, args.out, args.robot, table.poses.size(), robot_options(args)}, job.session);
 }

@@ -162,7 +162,8 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     const Facing facing = facing_of(args, picture.spawns);
     if (is_of_rest(picture.quantity) && facing.is_any)
         throw ArgumentError("--quantity " + args.quantity +
-                            " needs one heading; give --yaw in radians or degrees, for example --yaw 90deg");
+                            " needs one heading at each place; give --yaw an angle, for example 90deg, or a rule that "
+                            "chooses one, for example best:16");
     options.yaw = facing.yaw;
     options.heading = facing.rule;
     const Session session = open_session(args, summary);

@@ -42,8 +42,9 @@ std::string upper_first(std::string text)
 template <class Options>
 std::string shortfall(const Options& options, const SpawnArgs& args, const SpawnList& list, const std::string& command)
 {
-    const std::string found = std::to_string(list.spawns.size()),
-                      of_count = found + " of " + std::to_string(options.count) + " spawns ";
+    const std::string found = std::to_string(list.spawns.size()), wanted = std::to_string(options.count),
+                      only = list.spawns.empty() ? "none of " + wanted + " spawns was found"
+                                                 : "only " + found + " of " + wanted + " spawns were found";
     const std::string advice = spawn_advice(args, args.ground,
                                             {.is_search = command == "search",
                                              .min_distance = options.min_distance,
@@ -54,14 +55,14 @@ std::string shortfall(const Options& options, const SpawnArgs& args, const Spawn
         return std::string("no spawn fits: it is proven that no pose is valid") +
                (list.near_avoided > 0 ? " and far enough from the avoided poses; " : "; ") + advice + " may give some";
     if (list.is_full)
-        return "only " + of_count + "fit: it is proven that none can be added to these " + found + "; " + advice +
-               " may give more";
+        return "only " + found + " of " + wanted + " spawns fit: it is proven that none can be added to these " +
+               found + "; " + advice + " may give more";
     if (command == "search" || args.is_settled())
-        return "only " + of_count + "were found; " + advice + " may give more";
+        return only + "; " + advice + " may give " + (list.spawns.empty() ? "some" : "more");
     char area[32];
     std::snprintf(area, sizeof area, "%.3g", list.undecided_area);
-    return "only " + of_count + "were found. Another one may fit in " + area +
-           " m2 of the region; it is proven that none fits elsewhere. " + upper_first(advice) + " may give more";
+    return only + ". Another one may fit in " + area + " m2 of the region; it is proven that none fits elsewhere. " +
+           upper_first(advice) + " may give more";
 }
 
 /// Returns where the draws lie that SpawnList::off_area counts. Without a region, they are draws of a search whose

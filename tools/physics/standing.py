@@ -224,7 +224,7 @@ def spawns(program, map_folder, robot, count, folder):
 
 
 def share(part, whole):
-    return f"{part} of {whole}" + (f" ({100 * part / whole:.1f} %)" if whole else "")
+    return f"{part} of {whole}" + (f" ({100 * part / whole:.2f} %)" if whole else "")
 
 
 def compare(program, robot, count, map_folder):
