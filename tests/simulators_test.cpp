@@ -551,3 +551,27 @@ TEST_CASE("missing options and options that a format cannot use are reported bef
     CHECK(warns_of_relative_paths("near/a.world", "new.sdf"));
     CHECK(arena.names() == std::set<std::string>{"map", "yard.world", "isaac", "thesis", "new.sdf", "near"});
 }
+
+TEST_CASE("a notice says if robots are added to another world than the one from which the map was baked")
+{
+    const Arena arena;
+    const std::string world =
+        "<sdf version='1.7'><world name='w'><model name='ground'><static>true</static><link name='l'>"
+        "<collision name='terrain'><geometry><box><size>9 9 "
+        "1</size></box></geometry></collision></link></model></world>"
+        "</sdf>";
+    arena.write("flat.sdf", world);
+    arena.write("other.sdf", world);
+    REQUIRE(arena("bake flat.sdf -o flat -q --label '*=terrain'").status == 0);
+    const auto notice_with = [&](const std::string& file) {
+        const ProgramRun run = arena(
+            "sample flat -n 1 --robot box:0.5,0.5,0.5 --format sdf --robot-uri model://a -o new.sdf "
+            "--world " +
+            file);
+        CHECK(run.status == 0);
+        return run.err.substr(0, run.err.find('\n'));
+    };
+    CHECK(notice_with("other.sdf") ==
+          "notice: the robots are added to other.sdf, but the map was baked from flat.sdf; are they the same world?");
+    CHECK_THAT(notice_with("flat.sdf"), !Contains("the robots are added to"));
+}

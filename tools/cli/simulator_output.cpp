@@ -211,6 +211,15 @@ void SimulatorOutput::notice_about_model(const Robot& robot) const
                         "; give this model as --robot, or make the origins agree");
 }
 
+void SimulatorOutput::notice_about_world(const Map& map) const
+{
+    const fs::path baked = map.scene_file;
+    const bool is_world = baked.extension() == ".world" || baked.extension() == ".sdf";
+    if (sdf_.world_file.empty() || !is_world || fs::path(sdf_.world_file).filename() == baked) return;
+    notice(common_, "the robots are added to " + fs::path(sdf_.world_file).string() + ", but the map was baked from " +
+                        map.scene_file + "; are they the same world?");
+}
+
 void SimulatorOutput::give_names(std::vector<RobotStart>& robots, const std::vector<std::string>& own) const
 {
     const bool has_own = args_.name.empty() && !own.empty();
@@ -382,6 +391,7 @@ void export_poses(const CommonArgs& common, const CLI::App& command, const Simul
 {
     const SimulatorOutput output(common, command, args, std::move(target));
     output.notice_about_model(session.robot);
+    output.notice_about_world(session.map);
     std::vector<RobotStart> robots = robot_starts(table);
     output.give_names(robots, column_of(table, "name"));
     output.write(robots, session.map, [&] { return poses_json(robots, session.map, session.robot); });

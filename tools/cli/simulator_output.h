@@ -48,6 +48,8 @@ public:
     /// Prints a notice if the model that the simulator loads can be read, and its lowest point is at another height
     /// than that of the robot whose poses are written: then it starts too high or too low.
     void notice_about_model(const Robot& robot) const;
+    /// Prints a notice if robots are added to another world than the one from which the map was baked.
+    void notice_about_world(const Map& map) const;
 
     /// Gives the robots names and namespaces. Without --name their `own` names are used, if there are any.
     void give_names(std::vector<RobotStart>& robots, const std::vector<std::string>& own = {}) const;

@@ -187,7 +187,10 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
         output.emplace(args, app, args.simulator,
                        SimulatorOutput::Target{args.format, args.out, args.robot, options.count, robot_options(args)});
     const Session session = open_session(args, summary);
-    if (output) output->notice_about_model(session.robot);
+    if (output) {
+        output->notice_about_model(session.robot);
+        output->notice_about_world(session.map);
+    }
     const Settings own = query.prepare(session, options);
     const std::string hopeless = query.find_hopeless(session, options);
     notice_about_avoided(args, session.map, options.avoid);
