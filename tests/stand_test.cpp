@@ -350,12 +350,13 @@ TEST_CASE("a robot under a beam cannot be raised, and below a fence it cannot fa
     CHECK(below(0.021, {}).pose.verdict == Verdict::Valid);
     const Settled wedged = below(0.019, {});
     CHECK(wedged.pose.verdict == Verdict::Obstructed);
-    CHECK(wedged.reason == "obstructed by beam");
+    CHECK(wedged.reason == "obstructed by beam: it can be raised by 0.019 m, --lift is 0.02 m");
     CHECK(below(0.019, {.lift = 0.01}).pose.verdict == Verdict::Valid);
     CHECK(below(0.019, {.lift = 0}).pose.verdict == Verdict::Valid);
     CHECK(below(0.2, {}).pose.verdict == Verdict::Valid);
     CHECK(below(0.2, {.drop = 0.19}).pose.verdict == Verdict::Valid);
     CHECK(below(0.2, {.drop = 0.21}).pose.verdict == Verdict::Obstructed);
+    CHECK(below(0.2, {.drop = 0.21}).reason == "obstructed: it can fall from 0.2 m above its rest, --drop is 0.21 m");
 
     // A thin sheet that the robot would pass through on its way up, without touching it at the end.
     Scene scene = floor_scene();

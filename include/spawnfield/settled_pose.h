@@ -4,6 +4,7 @@
 #include <spawnfield/column.h>
 #include <spawnfield/export.h>
 
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -57,6 +58,11 @@ struct SettledPose {
     double tip_over = 0;
     /// Smallest vertical distance of the ground from the parts of the robot that do not touch it, m; 0 if all do.
     double belly = 0;
+    /// How far it can be raised straight up until it meets something, m. Lengths above StandLimits::lift and drop may
+    /// be too large, or infinite.
+    double headroom = std::numeric_limits<double>::infinity();
+    /// Only with StandLimits::drop: height above its rest from which the level robot falls onto it, m; as headroom.
+    double free_fall = std::numeric_limits<double>::infinity();
     bool falls = false;                 ///< Unstable: it falls, at whatever tilt
     bool slides = false;                ///< Unstable: it needs more friction than StandLimits::friction
     std::vector<RestContact> contacts;  ///< the corners of the support polygon are among them

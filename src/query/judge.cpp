@@ -69,6 +69,17 @@ bool is_submerged(double ground, double water, double max_water_depth)
     return water >= ground - touch_tolerance && water <= ground + max_water_depth + touch_tolerance;
 }
 
+/// Returns how far an obstructed robot can be raised, or from where it can fall.
+std::string obstruction(const SettledPose& pose, const StandLimits& limits)
+{
+    if (pose.headroom < limits.lift)
+        return ": it can be raised by " + rounded(pose.headroom) + " m, --lift is " + rounded(limits.lift) + " m";
+    if (limits.drop && pose.free_fall < *limits.drop)
+        return ": it can fall from " + rounded(pose.free_fall) + " m above its rest, --drop is " +
+               rounded(*limits.drop) + " m";
+    return "";
+}
+
 /// Returns how much friction a robot needs not to slide.
 std::string friction_reason(const SettledPose& pose, const Robot& robot, double limit)
 {
@@ -398,7 +409,7 @@ std::string Judge::describe(const SettledPose& pose) const
         if (pose.slides) return verdict + ": it slides: " + friction_reason(pose, impl_->robot, limits.friction);
         return verdict + ": its margin is " + rounded(pose.margin) + " m, the limit is " +
                rounded(*limits.min_stability) + " m";
-    case Verdict::Obstructed: return verdict + (pose.hit ? " by " + what : "");
+    case Verdict::Obstructed: return verdict + (pose.hit ? " by " + what : "") + obstruction(pose, limits);
     case Verdict::Aerial:
         if (pose.has_pose)
             return describe(pose.lifted(limits.lift), judgement_of(pose)) +

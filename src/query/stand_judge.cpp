@@ -218,7 +218,9 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
     // A pose belongs to the layer that carries its origin, so a column has it only once.
     out.verdict = Verdict::Collision;
     if (written.ground->height > out.ground->height + layer_tolerance) return;
-    bool is_obstructed = rest.headroom < limits.lift;
+    out.headroom = rest.headroom;
+    if (limits.drop) out.free_fall = rest.drop_z - rest.z;
+    bool is_obstructed = out.headroom < limits.lift;
     if (rest.state == Rest::State::Standing) {
         out.hit = hit_at(out, std::max(limits.lift, just_above));
         out.exact_check = true;
@@ -234,7 +236,7 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
     else if (out.slides = !is_held(out.contacts, mass_center_at(out, settler_.mass_center()), limits.friction);
              out.slides)
         out.verdict = Verdict::Unstable;
-    else if (is_obstructed || (limits.drop && rest.drop_z < out.position.z() + *limits.drop))
+    else if (is_obstructed || (limits.drop && out.free_fall < *limits.drop))
         out.verdict = Verdict::Obstructed;
     else
         out.verdict = Verdict::Valid;
