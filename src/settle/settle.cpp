@@ -1,6 +1,7 @@
 #include "settle/settle.h"
 
 #include "base/polygon2.h"
+#include "base/rotation.h"
 #include "geometry/geometry_impl.h"
 #include "settle/minimax.h"
 #include "settle/touch.h"
@@ -144,9 +145,8 @@ struct Attitude {
     Mat3 rotation;
     Vec3 roll_axis, pitch_axis;  ///< about which the robot turns if its roll or its pitch changes
 
-    Attitude(const Vec2& angles, double yaw)
-        : rotation(rotation_from_rpy(angles[0], angles[1], yaw)), roll_axis(rotation.col(0)),
-          pitch_axis(-std::sin(yaw), std::cos(yaw), 0)
+    Attitude(const Mat3& rotation_, const CosSin& yaw)
+        : rotation(rotation_), roll_axis(rotation.col(0)), pitch_axis(-yaw.sin, yaw.cos, 0)
     {
     }
 
@@ -162,7 +162,8 @@ struct Attitude {
 /// The robot with a roll and a pitch, lowered onto the solids below it.
 struct Lowered {
     Vec2 angles = Vec2::Zero();  ///< roll and pitch, rad
-    double z = 0;                ///< of its origin, m
+    Mat3 rotation = Mat3::Identity();
+    double z = 0;  ///< of its origin, m
     std::vector<RestTouch> touches;
     bool has_room = false;
     std::optional<std::uint32_t> wall = {};  ///< if it has no room: the part of the scene
@@ -296,7 +297,7 @@ public:
     Rest run(std::span<const NearSolid> solids, double yaw)
     {
         solids_ = solids;
-        yaw_ = yaw;
+        face(yaw);
         mass_ = settler_.mass_center_ + preference;
         drift_ = Vec2::Zero();
         limit_ = first_turn;
@@ -323,9 +324,35 @@ public:
     }
 
 private:
-    Mat3 rotation(const Vec2& angles) const { return rotation_from_rpy(angles[0], angles[1], yaw_); }
+    /// Sets the yaw of the robot.
+    void face(double yaw)
+    {
+        if (yaw_ == yaw) return;
+        yaw_ = yaw;
+        yaw_parts_ = CosSin(yaw);
+        known_angles_.setConstant(std::numeric_limits<double>::quiet_NaN());
+        placed_.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
 
-    Vec3 mass_center(const Vec2& angles) const { return rotation(angles) * mass_; }
+    Mat3 rotation(const Vec2& angles)
+    {
+        if (angles != known_angles_) {
+            known_ = rotation_from_rpy(CosSin(angles[0]), CosSin(angles[1]), yaw_parts_);
+            known_angles_ = angles;
+        }
+        return known_;
+    }
+
+    Vec3 mass_center(const Lowered& at) const { return at.rotation * mass_; }
+
+    /// Returns whether a robot with this rotation tilts by more than the largest tilt.
+    bool tilts_too_far(const Mat3& rotation) const
+    {
+        constexpr double rounding = 1e-12;
+        const double cosine = rotation(2, 2);
+        return cosine <= least_cosine_ + rounding &&
+               std::acos(std::clamp(cosine, -1.0, 1.0)) > settler_.options_.max_tilt;
+    }
 
     /// Turns the robot until it stands or falls, or until a wall stops it. Up to `straight` (rad), it turns at once to
     /// where the touches let it rest, and may miss a rest before that. Otherwise, it stops at each new contact. At 0,
@@ -339,7 +366,7 @@ private:
         is_stuck_ = false;
         std::optional<std::uint32_t> wall;
         for (int step = 0; step < max_turns; ++step) {
-            if (at_.touches.empty() || tilt_of(at_.angles) > settler_.options_.max_tilt) {
+            if (at_.touches.empty() || tilts_too_far(at_.rotation)) {
                 lower(balance_, balance_z_, contact_tolerance, at_);
                 return Rest::State::Falling;
             }
@@ -349,7 +376,7 @@ private:
             bool is_to_kink = false;
             const Vec2 turn = aim.norm() <= straight ? aim : first_part(aim, is_to_kink);
             // A long turn may miss a rest just below the largest tilt.
-            if (turn.norm() > exact_turn && tilt_of(at_.angles + turn) > settler_.options_.max_tilt) {
+            if (turn.norm() > exact_turn && tilts_too_far(rotation(at_.angles + turn))) {
                 limit_ = 0.9 * share_to_largest_tilt(turn) * turn.lpNorm<Eigen::Infinity>();
                 limit_ = std::max(limit_, exact_turn / 2);
                 continue;
@@ -382,7 +409,7 @@ private:
     bool is_balanced() const
     {
         const Polygon2 polygon = support_polygon(at_, rest_tolerance);
-        const Vec2 mass = mass_center(at_.angles).head<2>();
+        const Vec2 mass = mass_center(at_).head<2>();
         if (polygon.size() < 2) return false;
         return contains(polygon, mass) || -nearest_edge(polygon, mass).distance <= line_tolerance;
     }
@@ -398,7 +425,7 @@ private:
         Polygon2 polygon = support_polygon(rested, contact_gap);
         const bool is_line = width(polygon) < enough;
         const Vec3 mass = settler_.mass_center_;
-        const Mat3 rotated = rotation(rested.angles);
+        const Mat3 rotated = rested.rotation;
         for (int k = 0; k < max_rockings && polygon.size() >= 2; ++k) {
             const NearestEdge edge = nearest_edge(polygon, (rotated * mass).head<2>());
             if (edge.distance >= enough - contact_tolerance) break;
@@ -431,15 +458,16 @@ private:
 
     bool is_far(const Lowered& a, const Lowered& b, double turn) const
     {
-        const double trace = (rotation(a.angles).transpose() * rotation(b.angles)).trace();
+        const double trace = (a.rotation.transpose() * b.rotation).trace();
         return std::abs(a.z - b.z) > rocking_rise || (trace - 1) / 2 < std::cos(turn);
     }
 
     /// Turns the parts of the robot.
-    const std::vector<PlacedBody>& parts(const Mat3& rotation)
+    void turn_parts(const Mat3& rotation)
     {
+        if (rotation == placed_) return;
         for (std::size_t p = 0; p < parts_.size(); ++p) place(parts_[p], settler_.parts_[p], rotation);
-        return parts_;
+        placed_ = rotation;
     }
 
     /// A part of the robot and a solid.
@@ -498,8 +526,9 @@ private:
     /// Lets the level robot down to the lowest height where it has room above its layer.
     void level(Lowered& out)
     {
-        parts(rotation(Vec2::Zero()));
+        turn_parts(rotation(Vec2::Zero()));
         out = {};
+        out.rotation = placed_;
         double z = -underside().value_or(top());
         find_pairs(settler_.options_.max_height);
         const auto raise = [&](double height, std::size_t solid) {
@@ -600,8 +629,9 @@ private:
         out.seen = z + rise;
         const double below = std::min(std::max(most_seen, large_seen * settler_.reach_),
                                       seen_share * settler_.reach_ * limit_);
-        const Attitude attitude(angles, yaw_);
-        parts(attitude.rotation);
+        const Attitude attitude(rotation(angles), yaw_parts_);
+        out.rotation = attitude.rotation;
+        turn_parts(attitude.rotation);
         find_pairs(out.seen);
         for (const Pair& pair : pairs_) {
             const double least = std::max(out.z, z - rise) - below;
@@ -646,12 +676,12 @@ private:
     }
 
     /// Returns the share of a turn, which leads beyond the largest tilt, with which the robot tilts so much.
-    double share_to_largest_tilt(const Vec2& turn) const
+    double share_to_largest_tilt(const Vec2& turn)
     {
         double low = 0, high = 1;
         for (int step = 0; step < 10; ++step) {
             const double middle = (low + high) / 2;
-            (tilt_of(at_.angles + middle * turn) > settler_.options_.max_tilt ? high : low) = middle;
+            (tilts_too_far(rotation(at_.angles + middle * turn)) ? high : low) = middle;
         }
         return low;
     }
@@ -770,8 +800,9 @@ private:
         if (solid.triangle && old.touch.kind != Touch::Kind::Other)
             return height_after(old.touch, body, rotated, *solid.triangle);
         place(parts_[old.part], body, rotated);
+        placed_.setConstant(std::numeric_limits<double>::quiet_NaN());
         touch(parts_[old.part], solid, {.min_height = old.touch.height - most_seen});
-        const Vec3 point = rotated * (rotation(at_.angles).transpose() * old.touch.point);
+        const Vec3 point = rotated * (at_.rotation.transpose() * old.touch.point);
         std::optional<double> out;
         double nearest = std::numeric_limits<double>::infinity();
         for (const Touch& t : touches_) {
@@ -830,7 +861,7 @@ private:
     {
         for (int step = 0; step < 4; ++step) {
             const Polygon2 polygon = support_polygon(at_);
-            const Vec2 mass = mass_center(at_.angles).head<2>();
+            const Vec2 mass = mass_center(at_).head<2>();
             std::size_t k = 1;
             while (k + 2 < polygon.size() && cross(polygon[k + 1] - polygon[0], mass - polygon[0]) > 0) ++k;
             if (polygon.size() < 3) return;
@@ -858,7 +889,7 @@ private:
     /// the linear program returns; so that is repeated a few times.
     Vec2 falling_turn()
     {
-        const Attitude attitude(at_.angles, yaw_);
+        const Attitude attitude(at_.rotation, yaw_parts_);
         const Vec3 mass = attitude.rotation * mass_;
         // How the mass rises with roll and pitch while the robot turns about one of its points.
         const auto rise_of_mass = [&](const Vec3& about) -> Vec2 {
@@ -906,7 +937,7 @@ private:
         if (polygon.size() < 3) return false;
         balance_ = at_.angles;
         balance_z_ = at_.z;
-        return contains(polygon, mass_center(at_.angles).head<2>());
+        return contains(polygon, mass_center(at_).head<2>());
     }
 
     std::vector<RestContact> rest_contacts(const Lowered& at) const
@@ -960,7 +991,6 @@ private:
 
     Rest rest(Rest::State state)
     {
-        parts(rotation(at_.angles));
         Rest out;
         out.state = state;
         out.wall = at_.wall;
@@ -968,8 +998,9 @@ private:
         out.roll = at_.angles[0];
         out.pitch = at_.angles[1];
         if (state == Rest::State::Blocked) return out;
+        turn_parts(at_.rotation);
         const Polygon2 polygon = support_polygon(at_, contact_gap);
-        const Vec3 mass = rotation(at_.angles) * settler_.mass_center_;
+        const Vec3 mass = at_.rotation * settler_.mass_center_;
         out.headroom = ceiling_above(at_) - at_.z;
         out.contacts = rest_contacts(at_);
         out.belly = belly(out.contacts);
@@ -983,7 +1014,12 @@ private:
 
     const Settler& settler_;
     std::span<const NearSolid> solids_;
-    double yaw_ = 0;
+    double yaw_ = std::numeric_limits<double>::quiet_NaN();
+    CosSin yaw_parts_{0};
+    const double least_cosine_ = std::cos(settler_.options_.max_tilt);  ///< of the tilt
+    Vec2 known_angles_;                                                 ///< the argument of the last rotation()
+    Mat3 known_;                                                        ///< its result
+    Mat3 placed_;                                                       ///< the rotation of parts_; NaN: not one
     Vec3 mass_ = Vec3::Zero();          ///< the centre of mass in the robot's frame, moved a little
     std::vector<PlacedBody> parts_;     ///< of the robot, at the attitude that was examined last
     std::vector<Pair> pairs_;           ///< at the attitude that was examined last

@@ -64,17 +64,19 @@ struct PlacedBody {
     Convex body;
     Bounds bounds = {};
     /// Only of polyhedra: the corners and edges of the faces that look downwards. Nothing below touches the others.
-    struct Corner {
-        Vec3 point;
-        std::uint32_t index;  ///< in body.points
+    struct Corners {
+        std::vector<double> x, y, z;         ///< an even number of values: the last corner may be there twice
+        std::vector<std::uint32_t> indices;  ///< in body.points
     };
     struct Edge {
         std::uint32_t from, to;  ///< indices in lower_corners
         std::uint32_t index;     ///< in body.edges
     };
-    std::vector<Corner> lower_corners = {};
+    Corners lower_corners = {};
     std::vector<Edge> lower_edges = {};
-    std::vector<std::uint32_t> places = {};  ///< of the body's points in lower_corners, for place()
+    /// A bit for each plane that looks downwards: those for which the corners and edges were chosen. Nothing: they must
+    /// be chosen anew.
+    std::optional<std::uint64_t> lower_planes = {};
 };
 
 /// Sets `out` to the body, rotated about the origin of the body's frame. out.body must be a copy of the body or the
