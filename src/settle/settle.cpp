@@ -2,8 +2,8 @@
 
 #include "base/polygon2.h"
 #include "base/rotation.h"
-#include "geometry/geometry_impl.h"
 #include "settle/minimax.h"
+#include "settle/near_solids.h"
 #include "settle/touch.h"
 
 #include <Eigen/Geometry>
@@ -18,16 +18,6 @@
 #include <utility>
 
 namespace spawnfield {
-
-/// A part of the scene near a robot, relative to the place where the robot is let down.
-struct NearSolid {
-    std::optional<TouchTriangle> triangle;  ///< if it is a triangle that is not steep
-    Convex body;                            ///< otherwise
-    Bounds bounds;
-    std::uint32_t part = 0;
-    Label label = Label::Terrain;
-    WantedTouches wanted;  ///< of robots that lie on the ground of all solids
-};
 
 namespace {
 
@@ -68,56 +58,6 @@ double highest_possible(const PlacedBody& part, const NearSolid& solid)
     double out = solid.bounds.max.z() - part.bounds.min.z();
     if (solid.triangle) out = std::min(out, height_bound(part, *solid.triangle));
     return out + rounding;
-}
-
-/// Marks the edge that two triangles share. Corner k of the first one is corner same[k] of the second one, -1: none.
-void cover_edge(NearSolid& first, NearSolid& second, const std::array<int, 3>& same)
-{
-    constexpr double flat = 1e-13;  // m
-    const auto edge_without = [](int corner) { return std::uint8_t(1 << (corner + 1) % 3); };
-    const int alone = int(std::find(same.begin(), same.end(), -1) - same.begin()),
-              other_alone = 3 - same[std::size_t(alone + 1) % 3] - same[std::size_t(alone + 2) % 3];
-    second.wanted.covered_edges |= edge_without(other_alone);
-    const auto &points = first.triangle->points, &others = second.triangle->points;
-    const Vec3 &shared = points[std::size_t(alone + 1) % 3], &own = points[std::size_t(alone)],
-               &other = others[std::size_t(other_alone)];
-    const Vec2 edge = (points[std::size_t(alone + 2) % 3] - shared).head<2>();
-    const bool is_overhang = !(cross(edge, (own - shared).head<2>()) * cross(edge, (other - shared).head<2>()) < 0);
-    const bool is_ridge = first.triangle->normal.dot(other) - first.triangle->height < -flat;
-    if (!is_overhang && !is_ridge) first.wanted.covered_edges |= edge_without(alone);
-}
-
-/// Marks what nothing comes to lie on from above, unless it also lies on another triangle: corners and edges that
-/// several triangles share, in all but one of them; and edges in a valley or in a plane, in both triangles. Leaves out
-/// triangles that may be walls, because what touches them is examined one by one.
-void cover_shared(std::vector<NearSolid>& solids)
-{
-    constexpr std::size_t most = 48;  // of more triangles, the comparisons take longer than they save
-    constexpr double steepest = 2;
-    if (solids.size() > most) return;
-    const auto is_same = [](const Vec3& p, const Vec3& q) {  // mostly, the first comparison decides
-        return p.x() == q.x() && p.y() == q.y() && p.z() == q.z();
-    };
-    const auto is_ground = [](const NearSolid& solid) {
-        return solid.triangle && solid.triangle->normal.head<2>().squaredNorm() <= steepest * steepest;
-    };
-    for (std::size_t i = 0; i < solids.size(); ++i) {
-        if (!is_ground(solids[i])) continue;
-        for (std::size_t j = i + 1; j < solids.size(); ++j) {
-            if (!is_ground(solids[j]) || !solids[i].bounds.meets(solids[j].bounds)) continue;
-            const auto &first = solids[i].triangle->points, &second = solids[j].triangle->points;
-            std::array<int, 3> same{-1, -1, -1};  // the corner of the second one that is corner k of the first
-            int count = 0;
-            for (int k = 0; k < 3; ++k)
-                for (int l = 0; l < 3; ++l)
-                    if (is_same(first[std::size_t(k)], second[std::size_t(l)])) {
-                        same[std::size_t(k)] = l;
-                        solids[j].wanted.covered_points |= std::uint8_t(1 << l);
-                        ++count;
-                    }
-            if (count == 2) cover_edge(solids[i], solids[j], same);
-        }
-    }
 }
 
 /// Returns a height of the robot below which this part of it cannot touch the solid from below.
@@ -503,7 +443,7 @@ private:
         if (solid.triangle)
             add_touches(part, *solid.triangle, touches_, wanted);
         else
-            add_touches(part.body, solid.body, touches_, wanted);
+            add_touches(part.body, *solid.body, touches_, wanted);
         return highest_of(touches_);
     }
 
@@ -613,7 +553,7 @@ private:
 
     static std::optional<Interval> blocked_heights(const Convex& body, const NearSolid& solid)
     {
-        return spawnfield::blocked_heights(body, solid.triangle ? convex_of(solid.triangle->points) : solid.body);
+        return spawnfield::blocked_heights(body, solid.triangle ? convex_of(solid.triangle->points) : *solid.body);
     }
 
     /// Lowers the robot onto the solids that are not higher than about z. It has no room if a solid reaches from below
@@ -1055,37 +995,12 @@ struct Settler::FlatRest {
 struct Settler::Workspace::Kept {
     std::optional<Descent> descent = {};
     std::vector<FlatRest> flats = {};
-    Vec3 origin = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-    std::vector<NearSolid> solids = {};  ///< relative to `origin`
+    std::optional<NearSolids> near = {};
 };
 
 Settler::Workspace::Workspace() : kept_(std::make_unique<Kept>()) {}
 
 Settler::Workspace::~Workspace() = default;
-
-/// Sets `out` to the solids that the robot may meet, relative to the origin.
-void Settler::find_solids_near(const Vec3& origin, std::vector<NearSolid>& out) const
-{
-    out.clear();
-    const double x = origin.x(), y = origin.y();
-    geometry_.impl().visit_in(x - reach_, y - reach_, x + reach_, y + reach_, [&](const Tile& tile, auto element) {
-        if (tile.label(element) == Label::Water || tile.label(element) == Label::Ignore) return;
-        NearSolid& solid = out.emplace_back();
-        solid.part = tile.part(element);
-        solid.label = tile.label(element);
-        if (tile.is_triangle(element)) {
-            std::array<Vec3, 3> corners = tile.corners(element);
-            for (Vec3& corner : corners) corner -= origin;
-            for (const Vec3& corner : corners) solid.bounds.extend(corner);
-            solid.triangle = touch_triangle_of(corners);
-            if (!solid.triangle) solid.body = convex_of(corners);
-        } else {
-            solid.body = moved(convex_of(tile.primitive(element).shape()), {-origin, Mat3::Identity()});
-            solid.bounds = solid.body.bounds();
-        }
-    });
-    cover_shared(out);
-}
 
 Settler::FlatRest Settler::flat_rest(double yaw, Descent& descent) const
 {
@@ -1117,9 +1032,9 @@ const Settler::FlatRest& Settler::flat_rest(double yaw, Workspace& workspace) co
 
 /// Returns the rest on ground that is horizontal below all contacts, and equally high to the bit, if no other solid is
 /// near enough to touch the robot or to be a ceiling. So the way down over a plane and over this ground is the same.
-std::optional<Rest> Settler::rest_on_flat_ground(double yaw, Workspace& workspace) const
+std::optional<Rest> Settler::rest_on_flat_ground(double yaw, const std::vector<NearSolid>& solids,
+                                                 Workspace& workspace) const
 {
-    const std::vector<NearSolid>& solids = workspace.kept_->solids;
     constexpr double same_layer = 1e-9;  // m
     const NearSolid* ground = nullptr;
     const auto is_level = [](const NearSolid& solid) {
@@ -1159,17 +1074,22 @@ Rest Settler::settle(double x, double y, double yaw, double layer, Workspace& wo
 {
     Workspace::Kept& kept = *workspace.kept_;
     if (!kept.descent) kept.descent.emplace(*this);
+    if (!kept.near) kept.near.emplace(geometry_, reach_);
     const Vec3 origin(x, y, layer);
-    if (kept.origin != origin) {
-        find_solids_near(origin, kept.solids);
-        kept.origin = origin;
-    }
-    std::optional<Rest> rest = rest_on_flat_ground(yaw, workspace);
-    if (!rest) rest = kept.descent->run(kept.solids, yaw);
+    const std::vector<NearSolid>& solids = kept.near->at(origin);
+    std::optional<Rest> rest = rest_on_flat_ground(yaw, solids, workspace);
+    if (!rest) rest = kept.descent->run(solids, yaw);
     rest->z += layer;
     rest->drop_z += layer;
     for (RestContact& contact : rest->contacts) contact.point += origin;
     return *std::move(rest);
+}
+
+void Settler::expect(const Rect& places, Workspace& workspace) const
+{
+    Workspace::Kept& kept = *workspace.kept_;
+    if (!kept.near) kept.near.emplace(geometry_, reach_);
+    kept.near->expect(places);
 }
 
 Rest Settler::settle(double x, double y, double yaw, double layer) const
