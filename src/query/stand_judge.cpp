@@ -20,9 +20,9 @@ double without_noise(double angle)
 }
 
 /// Returns an obstacle on which the robot rests, if there is one.
-std::optional<CollisionHit> obstacle_below(const Rest& rest)
+std::optional<CollisionHit> obstacle_below(const std::vector<RestContact>& contacts)
 {
-    for (const RestContact& contact : rest.contacts)
+    for (const RestContact& contact : contacts)
         if (contact.label != Label::Terrain) return CollisionHit{contact.ground};
     return std::nullopt;
 }
@@ -59,7 +59,7 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.verdict = there.verdict;
     out.ground = there.ground;
     if (!is_usable) return out;
-    const Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height, workspace_);
+    Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height, workspace_);
     out.verdict = Verdict::Collision;
     if (rest.state == Rest::State::Blocked) {
         if (rest.wall) out.hit = CollisionHit{*rest.wall};
@@ -73,7 +73,7 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.margin = rest.margin;
     out.tip_over = rest.tip_over;
     out.belly = rest.belly;
-    out.contacts = rest.contacts;
+    out.contacts = std::move(rest.contacts);
     judge_rest(column, rest, out);
     return out;
 }
@@ -213,7 +213,7 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
         return;
     }
     out.verdict = Verdict::OffTerrain;
-    out.hit = obstacle_below(rest);
+    out.hit = obstacle_below(out.contacts);
     if (out.hit) return;
     // A pose belongs to the layer that carries its origin, so a column has it only once.
     out.verdict = Verdict::Collision;

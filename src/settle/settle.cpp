@@ -40,7 +40,8 @@ constexpr double straight_turn = 0.1;  // rad, see descend()
 constexpr double whole_turn = 1e-6;    // a part of a turn that differs from all of it by this share is all of it
 constexpr double exact_turn = 1e-3;    // rad: after a turn of this size, the touches are where they were expected
 constexpr int max_turns = 300;
-constexpr double same_drift = 1e-9;  // m: much less than `preference`, which would have no effect otherwise
+constexpr std::size_t most_yaws = 64;  // of robots that are kept: no rule has more headings (HeadingRule::most)
+constexpr double same_drift = 1e-9;    // m: much less than `preference`, which would have no effect otherwise
 // A robot whose mass is near an edge of the support polygon may rock onto another contact. It still stands there if it
 // moves by no more than this.
 constexpr double rocking_rise = 0.05;                         // m
@@ -110,6 +111,17 @@ struct Lowered {
     /// Height of the origin from which on a solid above the robot touches it, m. Solids that touch it only above `seen`
     /// do not count.
     double ceiling = std::numeric_limits<double>::infinity(), seen = ceiling;
+
+    void clear()  // keeps the memory
+    {
+        angles.setZero();
+        rotation.setIdentity();
+        z = 0;
+        touches.clear();
+        has_room = false;
+        wall.reset();
+        ceiling = seen = std::numeric_limits<double>::infinity();
+    }
 };
 
 /// Returns the angle between the robot's z axis and the vertical for this roll and pitch, rad.
@@ -159,6 +171,8 @@ Polygon2 clear_corners(const Polygon2& polygon)
 {
     constexpr double shortest_edge = 1e-6, straight = 1e-9;  // m
     Polygon2 apart, out;
+    apart.reserve(polygon.size());
+    out.reserve(polygon.size());
     for (const Vec2& corner : polygon)
         if (apart.empty() ||
             ((corner - apart.back()).norm() >= shortest_edge && (corner - apart.front()).norm() >= shortest_edge))
@@ -230,7 +244,7 @@ class Settler::Descent {
 public:
     explicit Descent(const Settler& settler) : settler_(settler)
     {
-        for (const Convex& part : settler_.parts_) parts_.push_back({.body = part});
+        for (const Convex& part : settler_.parts_) turned_.push_back({.body = part});
     }
 
     /// Lets the robot down between solids, which are relative to its place.
@@ -245,10 +259,10 @@ public:
         const double drop_z = settler_.options_.wants_drop && at_.has_room ? ceiling_above(at_) : at_.z;
         Rest::State state = Rest::State::Blocked;
         if (at_.has_room) {
-            const Lowered start = at_;
+            start_ = at_;
             state = descend(0);
             if (state == Rest::State::Falling && is_stuck_) {  // again, without the stops in which it is stuck
-                const Lowered stuck = std::exchange(at_, start);
+                const Lowered stuck = std::exchange(at_, start_);
                 drift_ = Vec2::Zero();
                 if (descend(straight_turn) == Rest::State::Standing)
                     state = Rest::State::Standing;
@@ -272,6 +286,37 @@ private:
         yaw_parts_ = CosSin(yaw);
         known_angles_.setConstant(std::numeric_limits<double>::quiet_NaN());
         placed_.setConstant(std::numeric_limits<double>::quiet_NaN());
+        level_ = &level_robot(yaw);
+    }
+
+    /// The level robot at a yaw.
+    struct Level {
+        double yaw;
+        Mat3 rotation;
+        std::vector<PlacedBody> parts, joints;
+        double bottom;  ///< z of its lowest point on the vertical line through its origin, or of its top, m
+    };
+
+    /// Returns the level robot at this yaw. Keeps it for the next places.
+    const Level& level_robot(double yaw)
+    {
+        const auto found = std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) { return l.yaw == yaw; });
+        if (found != levels_.end()) return *found;
+        if (levels_.size() == most_yaws) levels_.clear();
+        Level& out = levels_.emplace_back();
+        out.yaw = yaw;
+        out.rotation = rotation(Vec2::Zero());
+        const auto placed = [&](const std::vector<Convex>& bodies) {
+            std::vector<PlacedBody> all;
+            for (const Convex& body : bodies) place(all.emplace_back(PlacedBody{.body = body}), body, out.rotation);
+            return all;
+        };
+        out.parts = placed(settler_.parts_);
+        out.joints = placed(settler_.joints_);
+        double top = -std::numeric_limits<double>::infinity();
+        for (const PlacedBody& part : out.parts) top = std::max(top, part.bounds.max.z());
+        out.bottom = underside(out.parts).value_or(top);
+        return out;
     }
 
     Mat3 rotation(const Vec2& angles)
@@ -402,12 +447,17 @@ private:
         return std::abs(a.z - b.z) > rocking_rise || (trace - 1) / 2 < std::cos(turn);
     }
 
-    /// Turns the parts of the robot.
+    /// Sets parts_ to those of the robot with this rotation.
     void turn_parts(const Mat3& rotation)
     {
         if (rotation == placed_) return;
-        for (std::size_t p = 0; p < parts_.size(); ++p) place(parts_[p], settler_.parts_[p], rotation);
         placed_ = rotation;
+        if (rotation == level_->rotation) {
+            parts_ = level_->parts;
+            return;
+        }
+        for (std::size_t p = 0; p < turned_.size(); ++p) place(turned_[p], settler_.parts_[p], rotation);
+        parts_ = turned_;
     }
 
     /// A part of the robot and a solid.
@@ -448,28 +498,21 @@ private:
     }
 
     /// Returns the lowest point of the robot on the vertical line through its origin, relative to the origin.
-    std::optional<double> underside()
+    static std::optional<double> underside(std::span<const PlacedBody> parts)
     {
-        static const Convex origin = convex_of(Vec3(0, 0, 0));
-        touches_.clear();
-        for (const PlacedBody& part : parts_) add_touches(part.body, origin, touches_);
-        return touches_.empty() ? std::nullopt : std::optional(-highest_of(touches_));
-    }
-
-    double top() const
-    {
-        double out = -std::numeric_limits<double>::infinity();
-        for (const PlacedBody& part : parts_) out = std::max(out, part.bounds.max.z());
+        std::optional<double> out;
+        for (const PlacedBody& part : parts)
+            if (const auto end = lower_end(part, 0, 0)) out = std::min(out.value_or(*end), *end);
         return out;
     }
 
     /// Lets the level robot down to the lowest height where it has room above its layer.
     void level(Lowered& out)
     {
-        turn_parts(rotation(Vec2::Zero()));
-        out = {};
-        out.rotation = placed_;
-        double z = -underside().value_or(top());
+        turn_parts(level_->rotation);
+        out.clear();
+        out.rotation = level_->rotation;
+        double z = -level_->bottom;
         find_pairs(settler_.options_.max_height);
         const auto raise = [&](double height, std::size_t solid) {
             z = height;
@@ -502,9 +545,7 @@ private:
     /// both. A sheet may be there without touching a part: a foot would be below the ground.
     std::optional<Between> solid_between_parts(double z)
     {
-        for (const Convex& joint : settler_.joints_) {
-            PlacedBody placed{.body = joint};
-            place(placed, joint, rotation(Vec2::Zero()));
+        for (const PlacedBody& placed : level_->joints) {
             for (std::size_t s = 0; s < solids_.size(); ++s) {
                 const Bounds& solid = solids_[s].bounds;
                 if (!placed.bounds.meets(solid, 2) || solid.max.z() - placed.bounds.min.z() <= z ||
@@ -739,9 +780,9 @@ private:
         const NearSolid& solid = solids_[old.solid];
         if (solid.triangle && old.touch.kind != Touch::Kind::Other)
             return height_after(old.touch, body, rotated, *solid.triangle);
-        place(parts_[old.part], body, rotated);
+        place(turned_[old.part], body, rotated);
         placed_.setConstant(std::numeric_limits<double>::quiet_NaN());
-        touch(parts_[old.part], solid, {.min_height = old.touch.height - most_seen});
+        touch(turned_[old.part], solid, {.min_height = old.touch.height - most_seen});
         const Vec3 point = rotated * (at_.rotation.transpose() * old.touch.point);
         std::optional<double> out;
         double nearest = std::numeric_limits<double>::infinity();
@@ -883,6 +924,7 @@ private:
     std::vector<RestContact> rest_contacts(const Lowered& at) const
     {
         std::vector<RestContact> out;
+        out.reserve(at.touches.size());
         for (const RestTouch& t : at.touches)
             if (t.touch.height >= at.z - contact_gap)
                 out.push_back({t.touch.point + at.z * Vec3::UnitZ(), t.touch.normal.normalized(), t.part,
@@ -895,6 +937,7 @@ private:
     double tip_over(const Polygon2& polygon, const std::vector<RestContact>& contacts, const Vec3& mass) const
     {
         std::vector<Vec3> corners;
+        corners.reserve(polygon.size());
         for (const Vec2& corner : clear_corners(polygon))
             for (const RestContact& contact : contacts)
                 if (contact.point.head<2>() == corner) {
@@ -944,7 +987,7 @@ private:
         out.headroom = ceiling_above(at_) - at_.z;
         out.contacts = rest_contacts(at_);
         out.belly = belly(out.contacts);
-        out.underside = underside().value_or(0);
+        out.underside = underside(parts_).value_or(0);
         if (polygon.size() == 1) out.margin = -(mass.head<2>() - polygon[0]).norm();
         if (polygon.size() >= 2) out.margin = nearest_edge(polygon, mass.head<2>()).distance;
         if (polygon.size() < 3) return out;
@@ -959,13 +1002,16 @@ private:
     const double least_cosine_ = std::cos(settler_.options_.max_tilt);  ///< of the tilt
     Vec2 known_angles_;                                                 ///< the argument of the last rotation()
     Mat3 known_;                                                        ///< its result
-    Mat3 placed_;                                                       ///< the rotation of parts_; NaN: not one
-    Vec3 mass_ = Vec3::Zero();          ///< the centre of mass in the robot's frame, moved a little
-    std::vector<PlacedBody> parts_;     ///< of the robot, at the attitude that was examined last
-    std::vector<Pair> pairs_;           ///< at the attitude that was examined last
-    std::vector<Touch> touches_;        ///< of the pair that was examined last
-    std::vector<MinimaxPlane> planes_;  ///< see falling_turn()
-    Lowered at_, next_;
+    Mat3 placed_;                                                       ///< the rotation of parts_; NaN: none
+    Vec3 mass_ = Vec3::Zero();                ///< the centre of mass in the robot's frame, moved a little
+    std::vector<Level> levels_;               ///< at the last yaws
+    const Level* level_ = nullptr;            ///< at yaw_
+    std::vector<PlacedBody> turned_;          ///< the parts of the robot
+    std::span<const PlacedBody> parts_ = {};  ///< turned_ or those of level_: at the attitude that was examined last
+    std::vector<Pair> pairs_;                 ///< at the attitude that was examined last
+    std::vector<Touch> touches_;              ///< of the pair that was examined last
+    std::vector<MinimaxPlane> planes_;        ///< see falling_turn()
+    Lowered at_, next_, start_;
     Vec2 balance_ = Vec2::Zero();  ///< angles at which it last touched the ground with an area
     double balance_z_ = 0;
     double limit_ = first_turn;  ///< of the next step in roll and pitch, rad
@@ -1022,11 +1068,10 @@ Settler::FlatRest Settler::flat_rest(double yaw, Descent& descent) const
 /// Returns how the robot rests on a plane at this yaw. Keeps it for the next robots.
 const Settler::FlatRest& Settler::flat_rest(double yaw, Workspace& workspace) const
 {
-    constexpr std::size_t most = 64;  // no rule has more headings (HeadingRule::most)
     std::vector<FlatRest>& flats = workspace.kept_->flats;
     const auto found = std::find_if(flats.begin(), flats.end(), [&](const FlatRest& flat) { return flat.yaw == yaw; });
     if (found != flats.end()) return *found;
-    if (flats.size() == most) flats.clear();
+    if (flats.size() == most_yaws) flats.clear();
     return flats.emplace_back(flat_rest(yaw, *workspace.kept_->descent));
 }
 

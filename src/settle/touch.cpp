@@ -667,6 +667,21 @@ std::optional<double> upper_end(const Convex& body, double x, double y)
     return std::isfinite(low) ? std::optional(2 * middle.z() - low) : std::nullopt;
 }
 
+std::optional<double> lower_end(const PlacedBody& placed, double x, double y)
+{
+    if (placed.body.is_polyhedron()) {
+        if (!placed.bounds.contains_xy(x, y, rounding)) return std::nullopt;
+        const auto end = end_of(placed.body, x, y, -1);
+        return end ? std::optional(end->z) : std::nullopt;
+    }
+    const Convex point = convex_of(Vec3(x, y, 0));
+    std::vector<Touch> touches;
+    add_touches(placed.body, point, touches);
+    double low = std::numeric_limits<double>::infinity();
+    for (const Touch& touch : touches) low = std::min(low, -touch.height);
+    return std::isfinite(low) ? std::optional(low) : std::nullopt;
+}
+
 std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid)
 {
     const auto highest = [](const Convex& a, const Convex& b) {

@@ -111,4 +111,7 @@ std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid)
 /// Returns the z of a body's upper end on the vertical line through (x, y), or nothing if the line misses the body.
 std::optional<double> upper_end(const Convex& body, double x, double y);
 
+/// The same for the lower end of a body at its current attitude.
+std::optional<double> lower_end(const PlacedBody& placed, double x, double y);
+
 }  // namespace spawnfield
