@@ -300,7 +300,7 @@ private:
         rest.valid_headings = choice.valid_headings;
         rest.free_length = choice.free_length;
         out.rests.push_back(rest);
-        const double z = pose.has_pose ? pose.lifted(shared_.options.stand.lift).position.z() : place.z() + offset_;
+        const double z = pose.has_pose ? pose.position.z() + shared_.options.stand.lift : place.z() + offset_;
         out.poses.push_back({place.x(), place.y(), z, layer, pose.verdict});
     }
 

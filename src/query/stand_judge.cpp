@@ -208,7 +208,8 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
     const StandLimits& limits = shared_.options.stand;
     Judgement written;
     // The robot may stand over a crest that is higher than its origin, for example if that is between its feet.
-    if (!upright_.judge_ground(column, out.lifted(limits.lift).position, written, std::max(rest.underside, 0.0))) {
+    const Pose lifted = out.lifted(limits.lift);
+    if (!upright_.judge_ground(column, lifted.position, written, std::max(rest.underside, 0.0))) {
         out.verdict = written.verdict;
         return;
     }
@@ -220,9 +221,9 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
     if (written.ground->height > out.ground->height + layer_tolerance) return;
     bool is_obstructed = rest.headroom < limits.lift;
     if (rest.state == Rest::State::Standing) {
-        out.hit = hit_at(out, std::max(limits.lift, just_above));
+        out.hit = hit_at(limits.lift >= just_above ? lifted : out.lifted(just_above), column);
         out.exact_check = true;
-        if (out.hit && hit_at(out, just_above)) return;
+        if (out.hit && hit_at(out.lifted(just_above), column)) return;
         is_obstructed |= out.hit.has_value();
     }
     if (out.falls = rest.state == Rest::State::Falling; out.falls)
@@ -231,7 +232,8 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
         out.verdict = Verdict::Steep;
     else if (out.margin < *limits.min_stability - limit_slack)
         out.verdict = Verdict::Unstable;
-    else if (out.slides = !is_held(out.contacts, mass_center_at(out, settler_.mass_center()), limits.friction);
+    else if (out.slides = !is_held(out.contacts, out.position + lifted.rotation * settler_.mass_center(),
+                                   limits.friction);
              out.slides)
         out.verdict = Verdict::Unstable;
     else if (is_obstructed || (limits.drop && rest.drop_z < out.position.z() + *limits.drop))
@@ -241,11 +243,11 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
     if (out.verdict != Verdict::Obstructed) out.hit.reset();
 }
 
-/// Returns what the robot collides with if it is raised from its rest.
-std::optional<CollisionHit> StandJudge::hit_at(const SettledPose& pose, double raised)
+/// Returns what the robot collides with at a pose in a column.
+std::optional<CollisionHit> StandJudge::hit_at(const Pose& pose, const ColumnView& column)
 {
     const TimedPart timed(shared_.options.exact_time);
-    return checker_.find_hit(pose.lifted(raised));
+    return checker_.find_hit(pose, &column);
 }
 
 }  // namespace spawnfield

@@ -50,7 +50,7 @@ private:
                           const std::vector<SettledPose>& poses, double step, Choice& out);
     double downhill_yaw(const Vec3& place);
     void judge_rest(const ColumnView& column, const Rest& rest, SettledPose& out);
-    std::optional<CollisionHit> hit_at(const SettledPose& pose, double raised);
+    std::optional<CollisionHit> hit_at(const Pose& pose, const ColumnView& column);
 
     const Judge::Impl& shared_;
     const Settler& settler_;

@@ -213,19 +213,17 @@ constexpr SideBits all_sides = 7;
 SideBits outside_of(SideBits bits) { return bits & all_sides; }
 SideBits inside_of(SideBits bits) { return bits >> 3 & all_sides; }
 
-/// Sets, for each corner of a body, the height by which it must be raised onto the plane of the triangle (m), and its
-/// bits. Returns the bits that all corners have.
-SideBits compare_corners(const PlacedBody::Corners& corners, const TouchTriangle& triangle, double* heights,
-                         SideBits* bits)
+/// Sets the bits of each corner of a body. Returns the bits that all corners have.
+SideBits compare_corners(const PlacedBody::Corners& corners, const TouchTriangle& triangle, SideBits* bits)
 {
-    const double *const x = corners.x.data(), *const y = corners.y.data(), *const z = corners.z.data();
-    const double height = triangle.height, slope_x = triangle.normal.x(), slope_y = triangle.normal.y();
+    const double *const x = corners.x.data(), *const y = corners.y.data();
     const auto& [a, b, c] = triangle.sides;
     const double ax = a.inward.x(), ay = a.inward.y(), a0 = a.offset, bx = b.inward.x(), by = b.inward.y(),
                  b0 = b.offset, cx = c.inward.x(), cy = c.inward.y(), c0 = c.offset;
+    const std::size_t count = corners.x.size();
     SideBits all = ~SideBits{0};
-    for (std::size_t j = 0; j < corners.x.size(); ++j) {
-        heights[j] = height - slope_x * x[j] - slope_y * y[j] - z[j];
+#pragma omp simd reduction(& : all)
+    for (std::size_t j = 0; j < count; ++j) {
         const double in_a = ax * x[j] + ay * y[j] - a0, in_b = bx * x[j] + by * y[j] - b0,
                      in_c = cx * x[j] + cy * y[j] - c0;
         bits[j] = (in_a < -rounding ? SideBits{1} : 0) | (in_b < -rounding ? SideBits{2} : 0) |
@@ -243,30 +241,34 @@ void add_polyhedra(const PlacedBody& placed, const TriangleTop& ground, const Wa
 {
     constexpr std::size_t few =
         32;  // no allocation for boxes and small hulls, because this is called millions of times
-    std::array<double, few> few_heights;
     std::array<SideBits, few> few_bits;
     const PlacedBody::Corners& corners = placed.lower_corners;
-    const std::size_t many = corners.x.size() > few ? corners.x.size() : 0;
-    std::vector<double> many_heights(many);
-    std::vector<SideBits> many_bits(many);
-    double* const heights = many > 0 ? many_heights.data() : few_heights.data();
-    SideBits* const bits = many > 0 ? many_bits.data() : few_bits.data();
-    const SideBits all = compare_corners(corners, ground.triangle(), heights, bits);
+    std::vector<SideBits> many_bits(corners.x.size() > few ? corners.x.size() : 0);
+    SideBits* const bits = many_bits.empty() ? few_bits.data() : many_bits.data();
+    const TouchTriangle& triangle = ground.triangle();
+    const SideBits all = compare_corners(corners, triangle, bits);
     if (outside_of(all) != 0) return;
-    for (std::size_t j = 0; j < corners.indices.size(); ++j)
-        if (outside_of(bits[j]) == 0 && heights[j] >= wanted.min_height)
-            out.push_back({heights[j],
+    const auto height_of = [&](std::size_t j) {
+        return triangle.height - triangle.normal.x() * corners.x[j] - triangle.normal.y() * corners.y[j] - corners.z[j];
+    };
+    for (std::size_t j = 0; j < corners.indices.size(); ++j) {
+        if (outside_of(bits[j]) != 0) continue;
+        const double height = height_of(j);
+        if (height >= wanted.min_height)
+            out.push_back({height,
                            {corners.x[j], corners.y[j], corners.z[j]},
-                           ground.triangle().normal,
+                           triangle.normal,
                            Touch::Kind::CornerOnFace,
                            corners.indices[j],
                            0});
+    }
     add_corners_below(placed.body, placed.bounds, ground, wanted, out);
     const SideBits wanted_sides = ~SideBits{wanted.covered_edges} & ~inside_of(all) & all_sides;
     if (wanted_sides == 0) return;
     for (const PlacedBody::Edge& edge : placed.lower_edges) {
         const SideBits both = bits[edge.from] & bits[edge.to], crossed = ~inside_of(both) & wanted_sides;
-        if (outside_of(both) != 0 || crossed == 0 || std::max(heights[edge.from], heights[edge.to]) < wanted.min_height)
+        if (outside_of(both) != 0 || crossed == 0 ||
+            std::max(height_of(edge.from), height_of(edge.to)) < wanted.min_height)
             continue;
         for (std::size_t k = 0; k < 3; ++k)
             if (crossed >> k & 1) add_crossing(placed.body, edge.index, ground, k, out);
