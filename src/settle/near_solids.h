@@ -36,6 +36,7 @@ private:
     /// An element of the geometry, in the scene's frame.
     struct Element {
         std::array<Vec3, 3> corners;              ///< of a triangle
+        std::optional<TriangleShape> shape;       ///< of a triangle that is not steep
         std::shared_ptr<const Convex> primitive;  ///< otherwise
         std::uint32_t part;
         Label label;
@@ -48,9 +49,10 @@ private:
     };
     static constexpr std::uint32_t none = std::uint32_t(-1);
 
-    void gather(const Rect& area, const Vec3& origin);
-    void cover_shared(const Vec3& origin);
-    void cover_pair(std::uint32_t i, std::uint32_t j, const TouchTriangle& first, const TouchTriangle& second);
+    void gather(const Rect& area);
+    void cover_shared();
+    void cover_edge(std::uint32_t i, const std::array<std::uint32_t, 3>& others, std::uint32_t j,
+                    const std::array<std::uint32_t, 3>& points, std::size_t k);
     void select(const Vec3& place, const Rect& area);
     static void set(NearSolid& solid, const Element& element, const Vec3& place);
 
@@ -58,7 +60,7 @@ private:
     double reach_;
     std::optional<Rect> expected_;
     Rect known_{0, 0, -1, -1};       ///< all elements that meet this rectangle are in elements_
-    std::vector<Element> elements_;  ///< in the order of Geometry::Impl::visit_in()
+    std::vector<Element> elements_;  ///< in the order of Geometry::Impl::visit_near()
     std::vector<ElementBox> boxes_;  ///< of elements_
     std::vector<FlatEdge> flat_edges_;
     Vec3 place_ = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -632,18 +632,48 @@ std::optional<double> height_after(const Touch& touch, const Convex& body, const
     return std::isfinite(out) ? std::optional(out) : std::nullopt;
 }
 
-std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle)
+namespace {
+
+std::array<Vec3, 3> sides_of(const std::array<Vec3, 3>& triangle)
 {
     const auto& [a, b, c] = triangle;
-    const Vec3 normal = (b - a).cross(c - a).normalized();
-    if (!(std::abs(normal.z()) * TouchTriangle::steepest >= 1)) return std::nullopt;
-    TouchTriangle out{triangle, normal / normal.z(), normal.dot(a) / normal.z(), {}};
+    return {b - a, c - b, a - c};
+}
+
+TouchTriangle placed(const TriangleShape& shape, const std::array<Vec3, 3>& triangle)
+{
+    const Vec3& normal = shape.unit_normal;
+    TouchTriangle out{triangle, normal / normal.z(), normal.dot(triangle[0]) / normal.z(), {}};
+    for (std::size_t k = 0; k < 3; ++k) out.sides[k] = {shape.inwards[k], shape.inwards[k].dot(triangle[k].head<2>())};
+    return out;
+}
+
+}  // namespace
+
+std::optional<TriangleShape> triangle_shape_of(const std::array<Vec3, 3>& triangle)
+{
+    TriangleShape out;
+    out.sides = sides_of(triangle);
+    out.unit_normal = out.sides[0].cross(triangle[2] - triangle[0]).normalized();
+    const double up = out.unit_normal.z();
+    if (!(std::abs(up) * TouchTriangle::steepest >= 1)) return std::nullopt;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vec2 from = triangle[k].head<2>(), along = (triangle[(k + 1) % 3] - triangle[k]).head<2>();
-        const Vec2 inward = Vec2(-along.y(), along.x()) / (normal.z() < 0 ? -along.norm() : along.norm());
-        out.sides[k] = {inward, inward.dot(from)};
+        const Vec2 along = out.sides[k].head<2>();
+        out.inwards[k] = Vec2(-along.y(), along.x()) / (up < 0 ? -along.norm() : along.norm());
     }
     return out;
+}
+
+std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle)
+{
+    const std::optional<TriangleShape> shape = triangle_shape_of(triangle);
+    return shape ? std::optional(placed(*shape, triangle)) : std::nullopt;
+}
+
+std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle,
+                                               const std::optional<TriangleShape>& known)
+{
+    return known && known->sides == sides_of(triangle) ? placed(*known, triangle) : touch_triangle_of(triangle);
 }
 
 bool TouchTriangle::is_over(const Vec3& p) const

@@ -56,8 +56,21 @@ struct TouchTriangle {
     bool is_over(const Vec3& p) const;  ///< whether p is above or below the triangle or its edges (to 1e-12 m)
 };
 
+/// What of a TouchTriangle does not depend on where it is.
+struct TriangleShape {
+    std::array<Vec3, 3> sides;    ///< side k is from corner k to the next corner
+    Vec3 unit_normal;             ///< of length 1
+    std::array<Vec2, 3> inwards;  ///< TouchTriangle::Side::inward
+};
+
 /// Returns nothing if the triangle is steeper than TouchTriangle::steepest or has no area.
 std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle);
+std::optional<TriangleShape> triangle_shape_of(const std::array<Vec3, 3>& triangle);
+
+/// The same for a triangle whose shape is known from another place. If its sides differ from those there by rounding,
+/// the shape is computed anew: so the result is always the same as without `known`.
+std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle,
+                                               const std::optional<TriangleShape>& known);
 
 /// A convex body at its current attitude, prepared for many touches from above.
 struct PlacedBody {
