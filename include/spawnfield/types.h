@@ -49,8 +49,9 @@ struct Bounds {
     /// Returns whether the boxes, including their surfaces, share a point. Only the first `axes` axes count.
     bool meets(const Bounds& other, int axes = 3) const
     {
-        return (min.head(axes).array() <= other.max.head(axes).array()).all() &&
-               (max.head(axes).array() >= other.min.head(axes).array()).all();
+        for (int axis = 0; axis < axes; ++axis)
+            if (!(min[axis] <= other.max[axis] && max[axis] >= other.min[axis])) return false;
+        return true;
     }
     ZRange z() const { return {min.z(), max.z()}; }
     void extend(const Vec3& point)

@@ -11,6 +11,7 @@ Polygon2 convex_hull(Polygon2 points)
     points.erase(std::unique(points.begin(), points.end()), points.end());
     if (points.size() < 3) return points;
     Polygon2 hull;
+    hull.reserve(points.size() + 1);
     const auto add = [&](const Vec2& p, std::size_t kept) {
         while (hull.size() >= kept + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
             hull.pop_back();

@@ -1,4 +1,5 @@
 #include "base/number.h"
+#include "base/rotation.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/types.h>
@@ -21,13 +22,7 @@ ArgumentError::ArgumentError(const std::string& function, const std::string& arg
 
 Mat3 rotation_from_rpy(double roll, double pitch, double yaw)
 {
-    const double cr = std::cos(roll), sr = std::sin(roll);
-    const double cp = std::cos(pitch), sp = std::sin(pitch);
-    const double cy = std::cos(yaw), sy = std::sin(yaw);
-    Mat3 rotation;
-    rotation << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, sy * cp, sy * sp * sr + cy * cr,
-        sy * sp * cr - cy * sr, -sp, cp * sr, cp * cr;
-    return rotation;
+    return rotation_from_rpy(CosSin(roll), CosSin(pitch), CosSin(yaw));
 }
 
 std::string to_string(const Bounds& bounds, int axes)

@@ -170,7 +170,10 @@ struct CollisionChecker::Impl {
                 look(*column, pose.position.z() + *part.axis_z);
             } else {
                 const Vec3 centre = pose.rotation * part.centre + pose.position;
-                look(column_at(geometry, centre.x(), centre.y()), centre.z());
+                if (column != nullptr && centre.head<2>() == pose.position.head<2>())
+                    look(*column, centre.z());
+                else
+                    look(column_at(geometry, centre.x(), centre.y()), centre.z());
             }
         }
         return best;

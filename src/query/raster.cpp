@@ -119,7 +119,16 @@ void reserve_poses(std::vector<RasterPose>& poses, const std::vector<Row>& rows,
 /// Judges strips of rows. In a strip, it goes from block to block, so that neighbouring columns share work.
 class RasterJudge {
 public:
-    static constexpr int most_rows = 32, block = 128;  ///< rows of a strip; columns of a block
+    static constexpr int most_rows = 32, most_columns = 128;  ///< of a strip and a block
+
+    /// Returns the number of rows and columns of a block of settled poses. The robots of a block share the search for
+    /// the solids below them, if their columns are near enough to each other. 1: they are not.
+    static int settled_block(const Settler& settler, double step)
+    {
+        constexpr double size = 8;  // of a block's side, times the robot's reach
+        constexpr int most = 8;
+        return std::clamp(int(size * settler.reach() / step), 1, most);
+    }
 
     RasterJudge(const Judge::Impl& shared, const RasterOptions& options, const RasterGrid& grid, double offset,
                 double top, int headings)
@@ -127,6 +136,9 @@ public:
           ground_z_(overlap(shared.map.z_limits, options.dims == 2 ? options.z : ZRange{})), area_(options.area),
           is_everywhere_(area_.is_everywhere()), headings_(headings)
     {
+        if (!is_settled_) return;
+        const int settled = settled_block(shared.settler(), options.step);
+        if (settled > 1) block_ = settled;
     }
 
     /// Judges as many rows as `out` has entries, beginning with row `first`.
@@ -135,14 +147,17 @@ public:
         Worker& worker = workers_.local();
         if (options_.dims == 2 && is_everywhere_)
             for (Row& row : out) row.poses.reserve(std::size_t(grid_.cols));  // one layer for each column, mostly
-        for (int col = 0; col < grid_.cols; col += block) {
-            const int cols = std::min(block, grid_.cols - col);
+        for (int col = 0; col < grid_.cols; col += block_) {
+            const int cols = std::min(block_, grid_.cols - col);
             if (area_.misses({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
                               grid_.y_of(first + int(out.size()) - 1)}))
                 continue;
             if (options_.height_check)
                 worker.columns.set(shared_.map.geometry,
                                    {grid_.x0, grid_.y0, grid_.step, col, first, cols, int(out.size())});
+            if (worker.stand && block_ < most_columns)
+                worker.stand->expect({grid_.x_of(col), grid_.y_of(first), grid_.x_of(col + cols - 1),
+                                      grid_.y_of(first + int(out.size()) - 1)});
             for (int i = 0; i < cols; ++i) worker.x[std::size_t(i)] = grid_.x_of(col + i);
             for (int j = 0; j < int(out.size()); ++j)
                 judge_row(worker, std::span(worker.x).first(std::size_t(cols)), j, grid_.y_of(first + j),
@@ -154,13 +169,13 @@ private:
     /// What a thread keeps from strip to strip: mostly memory.
     struct Worker {
         // Only one of these three has a value:
-        std::optional<PoseJudge> judge;                     ///< of level poses at options.yaw
-        std::optional<HeadingsJudge> at_headings;           ///< of level poses at several yaws
-        std::optional<StandJudge> stand;                    ///< of settled poses
-        Columns columns;                                    ///< of the current block
-        std::array<double, block> x;                        ///< of the block's columns
-        std::array<Columns::OpenGround, block> ground;      ///< in one row of the block
-        std::array<PoseJudge::RowVerdict, block> verdicts;  ///< in the same row
+        std::optional<PoseJudge> judge;                            ///< of level poses at options.yaw
+        std::optional<HeadingsJudge> at_headings;                  ///< of level poses at several yaws
+        std::optional<StandJudge> stand;                           ///< of settled poses
+        Columns columns;                                           ///< of the current block
+        std::array<double, most_columns> x;                        ///< of the block's columns
+        std::array<Columns::OpenGround, most_columns> ground;      ///< in one row of the block
+        std::array<PoseJudge::RowVerdict, most_columns> verdicts;  ///< in the same row
 
         explicit Worker(const RasterJudge& raster)
         {
@@ -285,7 +300,7 @@ private:
         rest.valid_headings = choice.valid_headings;
         rest.free_length = choice.free_length;
         out.rests.push_back(rest);
-        const double z = pose.has_pose ? pose.lifted(shared_.options.stand.lift).position.z() : place.z() + offset_;
+        const double z = pose.has_pose ? pose.position.z() + shared_.options.stand.lift : place.z() + offset_;
         out.poses.push_back({place.x(), place.y(), z, layer, pose.verdict});
     }
 
@@ -373,6 +388,7 @@ private:
     const bool is_everywhere_;
     const int headings_;  ///< 0: only options.yaw
     const bool is_settled_ = options_.stance == Stance::Settled;
+    int block_ = most_columns;  ///< columns of a block
     /// Whether all poses on open ground are judged alike: at one yaw, above their layer, anywhere.
     const bool is_simple_ = options_.dims == 2 && !is_settled_ && options_.height_check && headings_ == 0 &&
                             is_everywhere_ && offset_ >= 0 && options_.layers.includes(0, 1);
@@ -432,9 +448,10 @@ RasterResult raster_with(const Judge& judge, const RasterOptions& options, int h
     const RasterJudge strips(judge.impl(), options, out.grid, out.offset, bounds.max.z(), headings);
     map.geometry.impl().tiles().expect_all();
     const auto rows = std::size_t(out.grid.rows);
-    // Rows share no work without the height check and with settled poses, and each row takes long.
-    const bool share_work = options.height_check && options.stance == Stance::Level;
-    const std::size_t most_rows = share_work ? RasterJudge::most_rows : 1;
+    // Rows share no work without the height check, and each row takes long.
+    std::size_t most_rows = options.height_check ? RasterJudge::most_rows : 1;
+    if (options.stance == Stance::Settled)
+        most_rows = std::size_t(RasterJudge::settled_block(judge.impl().settler(), out.grid.step));
     const std::size_t strip = std::clamp<std::size_t>(rows / std::size_t(4 * thread_count(options.threads)), 1,
                                                       most_rows);
     std::size_t rows_taken = 0;

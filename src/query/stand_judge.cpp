@@ -20,9 +20,9 @@ double without_noise(double angle)
 }
 
 /// Returns an obstacle on which the robot rests, if there is one.
-std::optional<CollisionHit> obstacle_below(const Rest& rest)
+std::optional<CollisionHit> obstacle_below(const std::vector<RestContact>& contacts)
 {
-    for (const RestContact& contact : rest.contacts)
+    for (const RestContact& contact : contacts)
         if (contact.label != Label::Terrain) return CollisionHit{contact.ground};
     return std::nullopt;
 }
@@ -59,7 +59,7 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.verdict = there.verdict;
     out.ground = there.ground;
     if (!is_usable) return out;
-    const Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height, workspace_);
+    Rest rest = settler_.settle(place.x(), place.y(), yaw, there.ground->height, workspace_);
     out.verdict = Verdict::Collision;
     if (rest.state == Rest::State::Blocked) {
         if (rest.wall) out.hit = CollisionHit{*rest.wall};
@@ -73,7 +73,7 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.margin = rest.margin;
     out.tip_over = rest.tip_over;
     out.belly = rest.belly;
-    out.contacts = rest.contacts;
+    out.contacts = std::move(rest.contacts);
     judge_rest(column, rest, out);
     return out;
 }
@@ -208,12 +208,13 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
     const StandLimits& limits = shared_.options.stand;
     Judgement written;
     // The robot may stand over a crest that is higher than its origin, for example if that is between its feet.
-    if (!upright_.judge_ground(column, out.lifted(limits.lift).position, written, std::max(rest.underside, 0.0))) {
+    const Pose lifted = out.lifted(limits.lift);
+    if (!upright_.judge_ground(column, lifted.position, written, std::max(rest.underside, 0.0))) {
         out.verdict = written.verdict;
         return;
     }
     out.verdict = Verdict::OffTerrain;
-    out.hit = obstacle_below(rest);
+    out.hit = obstacle_below(out.contacts);
     if (out.hit) return;
     // A pose belongs to the layer that carries its origin, so a column has it only once.
     out.verdict = Verdict::Collision;
@@ -222,9 +223,9 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
     if (limits.drop) out.free_fall = rest.drop_z - rest.z;
     bool is_obstructed = out.headroom < limits.lift;
     if (rest.state == Rest::State::Standing) {
-        out.hit = hit_at(out, std::max(limits.lift, just_above));
+        out.hit = hit_at(limits.lift >= just_above ? lifted : out.lifted(just_above), column);
         out.exact_check = true;
-        if (out.hit && hit_at(out, just_above)) return;
+        if (out.hit && hit_at(out.lifted(just_above), column)) return;
         is_obstructed |= out.hit.has_value();
     }
     if (out.falls = rest.state == Rest::State::Falling; out.falls)
@@ -233,7 +234,8 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
         out.verdict = Verdict::Steep;
     else if (out.margin < *limits.min_stability - limit_slack)
         out.verdict = Verdict::Unstable;
-    else if (out.slides = !is_held(out.contacts, mass_center_at(out, settler_.mass_center()), limits.friction);
+    else if (out.slides = !is_held(out.contacts, out.position + lifted.rotation * settler_.mass_center(),
+                                   limits.friction);
              out.slides)
         out.verdict = Verdict::Unstable;
     else if (is_obstructed || (limits.drop && out.free_fall < *limits.drop))
@@ -243,11 +245,11 @@ void StandJudge::judge_rest(const ColumnView& column, const Rest& rest, SettledP
     if (out.verdict != Verdict::Obstructed) out.hit.reset();
 }
 
-/// Returns what the robot collides with if it is raised from its rest.
-std::optional<CollisionHit> StandJudge::hit_at(const SettledPose& pose, double raised)
+/// Returns what the robot collides with at a pose in a column.
+std::optional<CollisionHit> StandJudge::hit_at(const Pose& pose, const ColumnView& column)
 {
     const TimedPart timed(shared_.options.exact_time);
-    return checker_.find_hit(pose.lifted(raised));
+    return checker_.find_hit(pose, &column);
 }
 
 }  // namespace spawnfield

@@ -15,6 +15,9 @@ public:
     {
     }
 
+    /// Announces that most of the next places are in this rectangle. They share work if it is small.
+    void expect(const Rect& places) { settler_.expect(places, workspace_); }
+
     /// Judges the robot that is let down at (x, y) with a yaw onto the ground at or below z. `column` must be the
     /// column at (x, y).
     SettledPose judge(const ColumnView& column, const Vec3& place, double yaw);
@@ -47,7 +50,7 @@ private:
                           const std::vector<SettledPose>& poses, double step, Choice& out);
     double downhill_yaw(const Vec3& place);
     void judge_rest(const ColumnView& column, const Rest& rest, SettledPose& out);
-    std::optional<CollisionHit> hit_at(const SettledPose& pose, double raised);
+    std::optional<CollisionHit> hit_at(const Pose& pose, const ColumnView& column);
 
     const Judge::Impl& shared_;
     const Settler& settler_;

@@ -83,6 +83,7 @@ bool is_held(std::span<const RestContact> contacts, const Vec3& mass, double fri
     // Mostly, vertical forces hold it: at contacts whose normal is near enough to the vertical.
     const double least_z = 1 / std::sqrt(1 + friction * friction);
     Polygon2 support;
+    support.reserve(contacts.size());
     for (const RestContact& contact : contacts)
         if (contact.normal.z() >= least_z) support.push_back(contact.point.head<2>());
     support = convex_hull(std::move(support));

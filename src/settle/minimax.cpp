@@ -56,6 +56,44 @@ Mat3 inverse_of(const std::array<Inequality, 3>& basis)
     return normals.inverse();
 }
 
+/// Returns the largest size of a height that the planes may have within the limits.
+double largest_height(std::span<const MinimaxPlane> planes, double limit)
+{
+    double out = 0;
+#pragma omp simd reduction(max : out)
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+        const MinimaxPlane& plane = planes[k];
+        out = std::max(out,
+                       std::abs(plane.height) + limit * (std::abs(plane.gradient.x()) + std::abs(plane.gradient.y())));
+    }
+    return out;
+}
+
+/// Returns the constraint (see Minimax::planes) that a point (u, d.x, d.y) violates most, and sets `worst` to by how
+/// much. Violations by at most `plane_noise` or `limit_noise` do not count; without others, `worst` remains 0.
+int most_violated(std::span<const MinimaxPlane> planes, double limit, const Vec3& point, double plane_noise,
+                  double limit_noise, double& worst)
+{
+    int out = -1;
+    double highest = point[0] + plane_noise;
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+        const MinimaxPlane& plane = planes[k];
+        const double height = plane.height + plane.gradient.x() * point[1] + plane.gradient.y() * point[2];
+        if (height <= highest) continue;
+        highest = height;
+        worst = highest - point[0];
+        out = int(k);
+    }
+    for (int axis = 0; axis < 2; ++axis)
+        for (const double sign : {-1.0, 1.0}) {
+            const double violation = -limit - sign * point[axis + 1];
+            if (violation <= std::max(worst, limit_noise)) continue;
+            worst = violation;
+            out = -1 - 2 * axis - (sign > 0);
+        }
+    return out;
+}
+
 }  // namespace
 
 bool Minimax::is_at_limit() const
@@ -67,23 +105,24 @@ bool Minimax::is_at_limit() const
 
 Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit, const std::optional<Minimax>& near)
 {
-    std::array<Inequality, 3> basis = first_basis(planes, limit);
+    std::array<Inequality, 3> basis;
+    Mat3 inverse;
+    bool is_good = false;
     if (near) {
-        std::array<Inequality, 3> better;
-        for (std::size_t k = 0; k < 3; ++k) better[k] = of_index(planes, limit, near->planes[k]);
-        const Mat3 inverse = inverse_of(better);
-        if (inverse.allFinite() && inverse.row(0).minCoeff() >= 0) basis = better;
+        for (std::size_t k = 0; k < 3; ++k) basis[k] = of_index(planes, limit, near->planes[k]);
+        inverse = inverse_of(basis);
+        is_good = inverse.allFinite() && inverse.row(0).minCoeff() >= 0;
     }
-    double scale = 0;  // of the heights that are compared below, so that rounding does not look like a violation
-    for (const MinimaxPlane& plane : planes)
-        scale = std::max(scale, std::abs(plane.height) + limit * plane.gradient.lpNorm<1>());
+    if (!is_good) {
+        basis = first_basis(planes, limit);
+        inverse = inverse_of(basis);
+    }
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+    const double noise = rounding * largest_height(planes, limit);  // less than this is not a violation
 
     Minimax out;
     for (int pivot = 0;; ++pivot) {
-        Vec3 offsets;
-        for (int k = 0; k < 3; ++k) offsets[k] = basis[std::size_t(k)].offset;
-        const Mat3 inverse = inverse_of(basis);
+        const Vec3 offsets(basis[0].offset, basis[1].offset, basis[2].offset);
         const Vec3 point = inverse * offsets, weights = inverse.row(0).transpose();
         out.value = point[0];
         out.at = point.tail<2>();
@@ -93,31 +132,11 @@ Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit, co
         }
         if (pivot == max_pivots) return out;
 
-        Inequality entering{Vec3::Zero(), 0, -1};
         double worst = 0;
-        const auto consider = [&](const Inequality& inequality, double tolerance) {
-            const double violation = inequality.offset - inequality.normal.dot(point);
-            if (violation <= std::max(worst, tolerance)) return;
-            worst = violation;
-            entering = inequality;
-        };
-        double highest = point[0] + rounding * scale;
-        int violated = -1;
-        for (std::size_t k = 0; k < planes.size(); ++k) {
-            const MinimaxPlane& plane = planes[k];
-            const double height = plane.height + plane.gradient.x() * point[1] + plane.gradient.y() * point[2];
-            if (height <= highest) continue;
-            highest = height;
-            violated = int(k);
-        }
-        if (violated >= 0) {
-            entering = of_plane(planes, std::size_t(violated));
-            worst = highest - point[0];
-        }
-        for (int axis = 0; axis < 2; ++axis)
-            for (const double sign : {-1.0, 1.0}) consider(of_limit(axis, sign, limit), rounding * limit);
+        const int violated = most_violated(planes, limit, point, noise, rounding * limit, worst);
         if (worst == 0) return out;
 
+        const Inequality entering = of_index(planes, limit, violated);
         const Vec3 share = inverse.transpose() * entering.normal;  // entering = the sum of share[k] * basis[k]
         int leaving = -1;
         double least = std::numeric_limits<double>::infinity();
@@ -131,6 +150,7 @@ Minimax lowest_of_highest(std::span<const MinimaxPlane> planes, double limit, co
         }
         if (leaving < 0) return out;  // only rounding leads here: u has no upper limit, so there is a solution
         basis[std::size_t(leaving)] = entering;
+        inverse = inverse_of(basis);
     }
 }
 

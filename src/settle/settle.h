@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/rect.h"
 #include "settle/convex.h"
 
 #include <spawnfield/geometry.h>
@@ -78,13 +79,18 @@ public:
     Rest settle(double x, double y, double yaw, double layer, Workspace& workspace) const;
     Rest settle(double x, double y, double yaw, double layer) const;
 
+    double reach() const { return reach_; }  ///< m: the distance of the robot's farthest point from its origin
+
+    /// Announces that most of the next robots are let down in this rectangle. They share work if it is small.
+    void expect(const Rect& places, Workspace& workspace) const;
+
 private:
     class Descent;
     struct FlatRest;
-    void find_solids_near(const Vec3& origin, std::vector<NearSolid>& out) const;
     FlatRest flat_rest(double yaw, Descent& descent) const;
     const FlatRest& flat_rest(double yaw, Workspace& workspace) const;
-    std::optional<Rest> rest_on_flat_ground(double yaw, Workspace& workspace) const;
+    std::optional<Rest> rest_on_flat_ground(double yaw, const std::vector<NearSolid>& solids,
+                                            Workspace& workspace) const;
 
     const Geometry geometry_;
     const Options options_;
@@ -93,7 +99,7 @@ private:
     /// between its parts.
     std::vector<Convex> joints_;
     Vec3 mass_center_;
-    double reach_;  ///< m: the distance of the robot's farthest point from its origin
+    double reach_;
 };
 
 }  // namespace spawnfield

@@ -128,17 +128,10 @@ public:
         return End{triangle_.z_at({x, y, 0}), triangle_.normal};
     }
 
-    const Vec3& normal() const { return triangle_.normal; }
-
     /// Returns how far a point must be raised until it is on the triangle's plane, m.
     double height_bound(const Vec3& point) const { return triangle_.z_at(point) - point.z(); }
 
-    /// Returns how far inside side k a point is, seen from above, m; negative: outside.
-    double inward(std::size_t k, const Vec3& point) const
-    {
-        const TouchTriangle::Side& side = triangle_.sides[k];
-        return side.inward.x() * point.x() + side.inward.y() * point.y() - side.offset;
-    }
+    const TouchTriangle& triangle() const { return triangle_; }
 
     template <class Visit>
     void visit_faces(const Visit& visit) const
@@ -182,7 +175,9 @@ void add_crossing(const Convex& body, std::size_t j, const Ground& ground, std::
     const double s = cross(apart, across.head<2>()) / crossing, t = cross(apart, along.head<2>()) / crossing;
     if (!(s >= 0 && s <= 1 && t >= 0 && t <= 1)) return;
     const Vec3 normal = along.cross(across);
-    if (std::abs(crossing) <= parallel * along.norm() * across.norm() || std::abs(crossing) * steepest < normal.norm())
+    const double square = crossing * crossing;
+    if (square <= parallel * parallel * along.squaredNorm() * across.squaredNorm() ||
+        square * steepest * steepest < normal.squaredNorm())
         return;
     const Vec3 point = from + s * along;
     out.push_back(touch_at(other.z() + t * across.z() - point.z(), point, normal, Touch::Kind::EdgeOnEdge, j, k));
@@ -209,41 +204,71 @@ void add_polyhedra(const Convex& body, const Top& ground, const WantedTouches& w
     }
 }
 
+/// Bits of a point beside the three sides of a triangle, seen from above: bit k is set if the point is outside of side
+/// k by more than rounding, bit 3 + k if it is inside of side k by more than rounding. They are as wide as a double, so
+/// that several are computed at a time.
+using SideBits = std::int64_t;
+constexpr SideBits all_sides = 7;
+
+SideBits outside_of(SideBits bits) { return bits & all_sides; }
+SideBits inside_of(SideBits bits) { return bits >> 3 & all_sides; }
+
+/// Sets the bits of each corner of a body. Returns the bits that all corners have.
+SideBits compare_corners(const PlacedBody::Corners& corners, const TouchTriangle& triangle, SideBits* bits)
+{
+    const double *const x = corners.x.data(), *const y = corners.y.data();
+    const auto& [a, b, c] = triangle.sides;
+    const double ax = a.inward.x(), ay = a.inward.y(), a0 = a.offset, bx = b.inward.x(), by = b.inward.y(),
+                 b0 = b.offset, cx = c.inward.x(), cy = c.inward.y(), c0 = c.offset;
+    const std::size_t count = corners.x.size();
+    SideBits all = ~SideBits{0};
+#pragma omp simd reduction(& : all)
+    for (std::size_t j = 0; j < count; ++j) {
+        const double in_a = ax * x[j] + ay * y[j] - a0, in_b = bx * x[j] + by * y[j] - b0,
+                     in_c = cx * x[j] + cy * y[j] - c0;
+        bits[j] = (in_a < -rounding ? SideBits{1} : 0) | (in_b < -rounding ? SideBits{2} : 0) |
+                  (in_c < -rounding ? SideBits{4} : 0) | (in_a > rounding ? SideBits{8} : 0) |
+                  (in_b > rounding ? SideBits{16} : 0) | (in_c > rounding ? SideBits{32} : 0);
+        all &= bits[j];
+    }
+    return all;
+}
+
 /// The same for a polyhedron on a triangle. Seen from above, an edge can cross a side of the triangle only if its
 /// corners are on different sides of it.
 void add_polyhedra(const PlacedBody& placed, const TriangleTop& ground, const WantedTouches& wanted,
                    std::vector<Touch>& out)
 {
-    struct Corner {
-        double height;             ///< by which it must be raised onto the plane of the triangle, m
-        unsigned outside, inside;  ///< bit k: it is on that side of side k of the triangle, by more than rounding
+    constexpr std::size_t few =
+        32;  // no allocation for boxes and small hulls, because this is called millions of times
+    std::array<SideBits, few> few_bits;
+    const PlacedBody::Corners& corners = placed.lower_corners;
+    std::vector<SideBits> many_bits(corners.x.size() > few ? corners.x.size() : 0);
+    SideBits* const bits = many_bits.empty() ? few_bits.data() : many_bits.data();
+    const TouchTriangle& triangle = ground.triangle();
+    const SideBits all = compare_corners(corners, triangle, bits);
+    if (outside_of(all) != 0) return;
+    const auto height_of = [&](std::size_t j) {
+        return triangle.height - triangle.normal.x() * corners.x[j] - triangle.normal.y() * corners.y[j] - corners.z[j];
     };
-    std::array<Corner, 32> few;  // no allocation for boxes and small hulls, because this is called millions of times
-    std::vector<Corner> many(placed.lower_corners.size() > few.size() ? placed.lower_corners.size() : 0);
-    Corner* const corners = many.empty() ? few.data() : many.data();
-    unsigned outside_all = 7;
-    for (std::size_t j = 0; j < placed.lower_corners.size(); ++j) {
-        const PlacedBody::Corner& lower = placed.lower_corners[j];
-        Corner& corner = corners[j];
-        corner = {ground.height_bound(lower.point), 0, 0};
-        for (unsigned k = 0; k < 3; ++k) {
-            const double inward = ground.inward(k, lower.point);
-            corner.outside |= unsigned(inward < -rounding) << k;
-            corner.inside |= unsigned(inward > rounding) << k;
-        }
-        if (corner.outside == 0 && corner.height >= wanted.min_height)
-            out.push_back(
-                touch_at(corner.height, lower.point, ground.normal(), Touch::Kind::CornerOnFace, lower.index));
-        outside_all &= corner.outside;
+    for (std::size_t j = 0; j < corners.indices.size(); ++j) {
+        if (outside_of(bits[j]) != 0) continue;
+        const double height = height_of(j);
+        if (height >= wanted.min_height)
+            out.push_back({height,
+                           {corners.x[j], corners.y[j], corners.z[j]},
+                           triangle.normal,
+                           Touch::Kind::CornerOnFace,
+                           corners.indices[j],
+                           0});
     }
-    if (outside_all != 0) return;
     add_corners_below(placed.body, placed.bounds, ground, wanted, out);
-    const unsigned wanted_sides = ~unsigned(wanted.covered_edges) & 7;
+    const SideBits wanted_sides = ~SideBits{wanted.covered_edges} & ~inside_of(all) & all_sides;
     if (wanted_sides == 0) return;
     for (const PlacedBody::Edge& edge : placed.lower_edges) {
-        const Corner &from = corners[edge.from], &to = corners[edge.to];
-        const unsigned crossed = ~(from.outside & to.outside) & ~(from.inside & to.inside) & wanted_sides;
-        if ((from.outside & to.outside) != 0 || crossed == 0 || std::max(from.height, to.height) < wanted.min_height)
+        const SideBits both = bits[edge.from] & bits[edge.to], crossed = ~inside_of(both) & wanted_sides;
+        if (outside_of(both) != 0 || crossed == 0 ||
+            std::max(height_of(edge.from), height_of(edge.to)) < wanted.min_height)
             continue;
         for (std::size_t k = 0; k < 3; ++k)
             if (crossed >> k & 1) add_crossing(placed.body, edge.index, ground, k, out);
@@ -501,25 +526,36 @@ void add_touches(const PlacedBody& placed, const TouchTriangle& ground, std::vec
     add_round(placed.body, TriangleTop(ground), wanted, out);
 }
 
-void place(PlacedBody& out, const Convex& body, const Mat3& rotation)
+namespace {
+
+/// Returns a bit for each plane of a polyhedron that looks downwards; nothing if there are too many planes.
+std::optional<std::uint64_t> planes_below(const Convex& body)
 {
-    set_rotated(out.body, body, rotation);
-    out.bounds = out.body.bounds();
-    out.lower_corners.clear();
-    out.lower_edges.clear();
-    if (!body.is_polyhedron()) return;
+    if (body.planes.size() > 64) return std::nullopt;
+    std::uint64_t out = 0;
+    for (std::size_t k = 0; k < body.planes.size(); ++k) out |= std::uint64_t(body.planes[k].normal.z() < 0) << k;
+    return out;
+}
+
+/// Chooses the corners and edges of a polyhedron that belong to faces that look downwards.
+void choose_lower(PlacedBody& out)
+{
     constexpr auto none = std::numeric_limits<std::uint32_t>::max();
-    out.places.assign(body.points.size(), none);
+    const Convex& body = out.body;
+    std::vector<std::uint32_t>& corners = out.lower_corners.indices;
+    corners.clear();
+    out.lower_edges.clear();
+    std::vector<std::uint32_t> places(body.points.size(), none);  // of the body's points in `corners`
     const auto place_of = [&](int point) {
-        std::uint32_t& place = out.places[std::size_t(point)];
+        std::uint32_t& place = places[std::size_t(point)];
         if (place == none) {
-            place = std::uint32_t(out.lower_corners.size());
-            out.lower_corners.push_back({out.body.points[std::size_t(point)], std::uint32_t(point)});
+            place = std::uint32_t(corners.size());
+            corners.push_back(std::uint32_t(point));
         }
         return place;
     };
     for (std::size_t edge = 0; edge < body.edges.size(); ++edge) {
-        if (!out.body.is_lower_edge(edge)) continue;
+        if (!body.is_lower_edge(edge)) continue;
         const auto& [a, b] = body.edges[edge];
         const std::uint32_t from = place_of(a), to = place_of(b);
         out.lower_edges.push_back({from, to, std::uint32_t(edge)});
@@ -528,13 +564,40 @@ void place(PlacedBody& out, const Convex& body, const Mat3& rotation)
         for (std::size_t point = 0; point < body.points.size(); ++point) place_of(int(point));
 }
 
+}  // namespace
+
+void place(PlacedBody& out, const Convex& body, const Mat3& rotation)
+{
+    set_rotated(out.body, body, rotation);
+    out.bounds = out.body.bounds();
+    if (!body.is_polyhedron()) return;
+    const std::optional<std::uint64_t> lower_planes = planes_below(out.body);
+    PlacedBody::Corners& corners = out.lower_corners;
+    if (!lower_planes || lower_planes != out.lower_planes) choose_lower(out);
+    out.lower_planes = lower_planes;
+    const std::size_t count = corners.indices.size(), even = count + count % 2;
+    corners.x.resize(even);
+    corners.y.resize(even);
+    corners.z.resize(even);
+    for (std::size_t j = 0; j < even; ++j) {
+        const Vec3& point = out.body.points[corners.indices[std::min(j, count - 1)]];
+        corners.x[j] = point.x();
+        corners.y[j] = point.y();
+        corners.z[j] = point.z();
+    }
+}
+
 double height_bound(const PlacedBody& placed, const TouchTriangle& triangle)
 {
     if (!placed.body.is_polyhedron())
         return triangle.height - triangle.normal.dot(placed.body.support(-triangle.normal));
+    const PlacedBody::Corners& corners = placed.lower_corners;
+    const double *const x = corners.x.data(), *const y = corners.y.data(), *const z = corners.z.data();
+    const double height = triangle.height, slope_x = triangle.normal.x(), slope_y = triangle.normal.y();
     double out = -std::numeric_limits<double>::infinity();
-    for (const PlacedBody::Corner& corner : placed.lower_corners)
-        out = std::max(out, triangle.z_at(corner.point) - corner.point.z());
+#pragma omp simd reduction(max : out)
+    for (std::size_t j = 0; j < corners.x.size(); ++j)
+        out = std::max(out, height - slope_x * x[j] - slope_y * y[j] - z[j]);
     return out;
 }
 
@@ -569,18 +632,48 @@ std::optional<double> height_after(const Touch& touch, const Convex& body, const
     return std::isfinite(out) ? std::optional(out) : std::nullopt;
 }
 
-std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle)
+namespace {
+
+std::array<Vec3, 3> sides_of(const std::array<Vec3, 3>& triangle)
 {
     const auto& [a, b, c] = triangle;
-    const Vec3 normal = (b - a).cross(c - a).normalized();
-    if (!(std::abs(normal.z()) * TouchTriangle::steepest >= 1)) return std::nullopt;
-    TouchTriangle out{triangle, normal / normal.z(), normal.dot(a) / normal.z(), {}};
+    return {b - a, c - b, a - c};
+}
+
+TouchTriangle placed(const TriangleShape& shape, const std::array<Vec3, 3>& triangle)
+{
+    const Vec3& normal = shape.unit_normal;
+    TouchTriangle out{triangle, normal / normal.z(), normal.dot(triangle[0]) / normal.z(), {}};
+    for (std::size_t k = 0; k < 3; ++k) out.sides[k] = {shape.inwards[k], shape.inwards[k].dot(triangle[k].head<2>())};
+    return out;
+}
+
+}  // namespace
+
+std::optional<TriangleShape> triangle_shape_of(const std::array<Vec3, 3>& triangle)
+{
+    TriangleShape out;
+    out.sides = sides_of(triangle);
+    out.unit_normal = out.sides[0].cross(triangle[2] - triangle[0]).normalized();
+    const double up = out.unit_normal.z();
+    if (!(std::abs(up) * TouchTriangle::steepest >= 1)) return std::nullopt;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vec2 from = triangle[k].head<2>(), along = (triangle[(k + 1) % 3] - triangle[k]).head<2>();
-        const Vec2 inward = Vec2(-along.y(), along.x()) / (normal.z() < 0 ? -along.norm() : along.norm());
-        out.sides[k] = {inward, inward.dot(from)};
+        const Vec2 along = out.sides[k].head<2>();
+        out.inwards[k] = Vec2(-along.y(), along.x()) / (up < 0 ? -along.norm() : along.norm());
     }
     return out;
+}
+
+std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle)
+{
+    const std::optional<TriangleShape> shape = triangle_shape_of(triangle);
+    return shape ? std::optional(placed(*shape, triangle)) : std::nullopt;
+}
+
+std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle,
+                                               const std::optional<TriangleShape>& known)
+{
+    return known && known->sides == sides_of(triangle) ? placed(*known, triangle) : touch_triangle_of(triangle);
 }
 
 bool TouchTriangle::is_over(const Vec3& p) const
@@ -604,6 +697,21 @@ std::optional<double> upper_end(const Convex& body, double x, double y)
     double low = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches) low = std::min(low, -touch.height);
     return std::isfinite(low) ? std::optional(2 * middle.z() - low) : std::nullopt;
+}
+
+std::optional<double> lower_end(const PlacedBody& placed, double x, double y)
+{
+    if (placed.body.is_polyhedron()) {
+        if (!placed.bounds.contains_xy(x, y, rounding)) return std::nullopt;
+        const auto end = end_of(placed.body, x, y, -1);
+        return end ? std::optional(end->z) : std::nullopt;
+    }
+    const Convex point = convex_of(Vec3(x, y, 0));
+    std::vector<Touch> touches;
+    add_touches(placed.body, point, touches);
+    double low = std::numeric_limits<double>::infinity();
+    for (const Touch& touch : touches) low = std::min(low, -touch.height);
+    return std::isfinite(low) ? std::optional(low) : std::nullopt;
 }
 
 std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid)

@@ -56,25 +56,40 @@ struct TouchTriangle {
     bool is_over(const Vec3& p) const;  ///< whether p is above or below the triangle or its edges (to 1e-12 m)
 };
 
+/// What of a TouchTriangle does not depend on where it is.
+struct TriangleShape {
+    std::array<Vec3, 3> sides;    ///< side k is from corner k to the next corner
+    Vec3 unit_normal;             ///< of length 1
+    std::array<Vec2, 3> inwards;  ///< TouchTriangle::Side::inward
+};
+
 /// Returns nothing if the triangle is steeper than TouchTriangle::steepest or has no area.
 std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle);
+std::optional<TriangleShape> triangle_shape_of(const std::array<Vec3, 3>& triangle);
+
+/// The same for a triangle whose shape is known from another place. If its sides differ from those there by rounding,
+/// the shape is computed anew: so the result is always the same as without `known`.
+std::optional<TouchTriangle> touch_triangle_of(const std::array<Vec3, 3>& triangle,
+                                               const std::optional<TriangleShape>& known);
 
 /// A convex body at its current attitude, prepared for many touches from above.
 struct PlacedBody {
     Convex body;
     Bounds bounds = {};
     /// Only of polyhedra: the corners and edges of the faces that look downwards. Nothing below touches the others.
-    struct Corner {
-        Vec3 point;
-        std::uint32_t index;  ///< in body.points
+    struct Corners {
+        std::vector<double> x, y, z;         ///< an even number of values: the last corner may be there twice
+        std::vector<std::uint32_t> indices;  ///< in body.points
     };
     struct Edge {
         std::uint32_t from, to;  ///< indices in lower_corners
         std::uint32_t index;     ///< in body.edges
     };
-    std::vector<Corner> lower_corners = {};
+    Corners lower_corners = {};
     std::vector<Edge> lower_edges = {};
-    std::vector<std::uint32_t> places = {};  ///< of the body's points in lower_corners, for place()
+    /// A bit for each plane that looks downwards: those for which the corners and edges were chosen. Nothing: they must
+    /// be chosen anew.
+    std::optional<std::uint64_t> lower_planes = {};
 };
 
 /// Sets `out` to the body, rotated about the origin of the body's frame. out.body must be a copy of the body or the
@@ -108,5 +123,8 @@ std::optional<Interval> blocked_heights(const Convex& body, const Convex& solid)
 
 /// Returns the z of a body's upper end on the vertical line through (x, y), or nothing if the line misses the body.
 std::optional<double> upper_end(const Convex& body, double x, double y);
+
+/// The same for the lower end of a body at its current attitude.
+std::optional<double> lower_end(const PlacedBody& placed, double x, double y);
 
 }  // namespace spawnfield

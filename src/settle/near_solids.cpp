@@ -1,0 +1,254 @@
+#include "settle/near_solids.h"
+
+#include "base/rounding.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+/// Returns whether a triangle is ground. Steeper ones may be walls, and what touches them is examined fully.
+bool is_ground(const TriangleShape& shape)
+{
+    constexpr double steepest = 2;
+    return shape.unit_normal.head<2>().squaredNorm() <=
+           steepest * steepest * shape.unit_normal.z() * shape.unit_normal.z();
+}
+
+std::array<Vec3, 3> moved_by(const std::array<Vec3, 3>& corners, const Vec3& by)
+{
+    return {corners[0] + by, corners[1] + by, corners[2] + by};
+}
+
+/// The limits of a rectangle as floats. For boxes of floats, they are the same as those of the rectangle.
+struct Limits {
+    float low_x, low_y, high_x, high_y;
+
+    explicit Limits(const Rect& area)
+        : low_x(rounded_up(area.low_x)), low_y(rounded_up(area.low_y)), high_x(rounded_down(area.high_x)),
+          high_y(rounded_down(area.high_y))
+    {
+    }
+
+    bool meet(const ElementBox& box) const
+    {
+        return box.min[0] <= high_x && box.max[0] >= low_x && box.min[1] <= high_y && box.max[1] >= low_y;
+    }
+};
+
+/// An edge that two triangles share.
+struct SharedEdge {
+    int alone, other_alone;  ///< the corners of the first and the second triangle that are not on the edge
+
+    /// Corner k of the first triangle is corner same[k] of the second one, -1: none. Exactly two are the same.
+    explicit SharedEdge(const std::array<int, 3>& same)
+        : alone(int(std::find(same.begin(), same.end(), -1) - same.begin())),
+          other_alone(3 - same[std::size_t(alone + 1) % 3] - same[std::size_t(alone + 2) % 3])
+    {
+    }
+
+    static std::uint8_t edge_without(int corner) { return std::uint8_t(1 << (corner + 1) % 3); }
+
+    /// Returns a number that is negative if the triangles are on different sides of the edge, seen from above, m^4.
+    double overhang(const std::array<Vec3, 3>& first, const std::array<Vec3, 3>& second) const
+    {
+        const Vec3 &shared = first[std::size_t(alone + 1) % 3], &own = first[std::size_t(alone)],
+                   &other = second[std::size_t(other_alone)];
+        const Vec2 edge = (first[std::size_t(alone + 2) % 3] - shared).head<2>();
+        return cross(edge, (own - shared).head<2>()) * cross(edge, (other - shared).head<2>());
+    }
+
+    /// Returns whether nothing comes to lie on the edge that does not also lie on one of the triangles.
+    bool is_valley(const TouchTriangle& first, const TouchTriangle& second) const
+    {
+        constexpr double flat = 1e-13;  // m
+        const double rise = first.normal.dot(second.points[std::size_t(other_alone)]) - first.height;
+        return overhang(first.points, second.points) < 0 && !(rise < -flat);
+    }
+};
+
+}  // namespace
+
+const std::vector<NearSolid>& NearSolids::at(const Vec3& place)
+{
+    if (place_ == place) return solids_;
+    const auto around = [&](const Rect& places) {
+        return Rect{places.low_x - reach_, places.low_y - reach_, places.high_x + reach_, places.high_y + reach_};
+    };
+    const auto contains = [](const Rect& outer, const Rect& inner) {
+        return outer.low_x <= inner.low_x && outer.low_y <= inner.low_y && outer.high_x >= inner.high_x &&
+               outer.high_y >= inner.high_y;
+    };
+    const Rect here{place.x(), place.y(), place.x(), place.y()}, area = around(here);
+    place_.setConstant(std::numeric_limits<double>::quiet_NaN());  // remains so if a tile is damaged
+    if (!contains(known_, area)) gather(expected_ && contains(*expected_, here) ? around(*expected_) : area);
+    select(place, area);
+    place_ = place;
+    return solids_;
+}
+
+/// Finds the elements in an area.
+void NearSolids::gather(const Rect& area)
+{
+    known_ = {0, 0, -1, -1};
+    elements_.clear();
+    boxes_.clear();
+    const Limits limits(area);
+    geometry_.impl().visit_near(
+        area.low_x, area.low_y, area.high_x, area.high_y, [&](const Tile& tile, std::uint32_t number) {
+            if (tile.label(number) == Label::Water || tile.label(number) == Label::Ignore) return;
+            const ElementBox box = tile.box(number);
+            if (!limits.meet(box)) return;
+            Element& element = elements_.emplace_back();
+            element.part = tile.part(number);
+            element.label = tile.label(number);
+            if (tile.is_triangle(number)) {
+                element.corners = tile.corners(number);
+                element.shape = triangle_shape_of(element.corners);
+            } else {
+                element.primitive = std::make_shared<const Convex>(convex_of(tile.primitive(number).shape()));
+            }
+            boxes_.push_back(box);
+        });
+    cover_shared();
+    numbers_.assign(elements_.size(), none);
+    known_ = area;
+}
+
+namespace {
+
+/// Numbers points in the order in which they are first seen. Equal points get the same number.
+class PointNumbers {
+public:
+    explicit PointNumbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 1), none) { points_.reserve(most); }
+
+    std::uint32_t number_of(const Vec3& point)
+    {
+        const auto bits = [&](int axis) { return std::bit_cast<std::uint64_t>(point[axis] + 0.0); };  // -0 is 0
+        constexpr std::uint64_t odd = 0x9E3779B97F4A7C15;
+        const std::uint64_t hash = ((bits(0) * odd ^ bits(1)) * odd ^ bits(2)) * odd;
+        std::size_t slot = hash >> 32 & (slots_.size() - 1);
+        while (slots_[slot] != none && points_[slots_[slot]] != point) slot = (slot + 1) & (slots_.size() - 1);
+        if (slots_[slot] == none) {
+            slots_[slot] = std::uint32_t(points_.size());
+            points_.push_back(point);
+        }
+        return slots_[slot];
+    }
+
+private:
+    static constexpr std::uint32_t none = std::uint32_t(-1);
+    std::vector<std::uint32_t> slots_;  ///< numbers of points, or none
+    std::vector<Vec3> points_;
+};
+
+}  // namespace
+
+/// Marks what nothing comes to lie on from above, unless it also lies on another triangle: corners and edges that
+/// several triangles share, in all but one of them; and edges in a valley or in a plane, in both triangles. Leaves out
+/// triangles that may be walls, because what touches them is examined one by one.
+void NearSolids::cover_shared()
+{
+    struct Corner {
+        std::array<std::uint32_t, 3> points;  ///< of its triangle
+        std::uint32_t element, before;        ///< index in `corners` of an earlier one at the same point, or none
+    };
+    flat_edges_.clear();
+    PointNumbers numbers(3 * elements_.size());
+    std::vector<Corner> corners;
+    std::vector<std::uint32_t> last;  // of each point, an index in `corners`
+    corners.reserve(3 * elements_.size());
+    last.reserve(3 * elements_.size());
+    for (std::uint32_t e = 0; e < elements_.size(); ++e) {
+        Element& element = elements_[e];
+        if (!element.shape || !is_ground(*element.shape)) continue;
+        std::array<std::uint32_t, 3> points;
+        for (std::size_t k = 0; k < 3; ++k) {
+            points[k] = numbers.number_of(element.corners[k]);
+            if (points[k] < last.size())
+                element.wanted.covered_points |= std::uint8_t(1 << k);
+            else
+                last.push_back(none);
+        }
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::uint32_t c = last[points[k]]; c != none; c = corners[c].before)
+                cover_edge(corners[c].element, corners[c].points, e, points, k);
+        for (const std::uint32_t point : points) {
+            corners.push_back({points, e, last[point]});
+            last[point] = std::uint32_t(corners.size() - 1);
+        }
+    }
+}
+
+/// The same for two triangles that share corner k of the second one, if they also share the next corner, and not the
+/// third one. `others` and `points` are the numbers of their corners.
+void NearSolids::cover_edge(std::uint32_t i, const std::array<std::uint32_t, 3>& others, std::uint32_t j,
+                            const std::array<std::uint32_t, 3>& points, std::size_t k)
+{
+    constexpr double clear = 1e-10;  // m or m^4: more than what rounding changes
+    std::array<int, 3> same;
+    for (std::size_t l = 0; l < 3; ++l)
+        same[l] = others[l] == points[0] ? 0 : others[l] == points[1] ? 1 : others[l] == points[2] ? 2 : -1;
+    if (std::count(same.begin(), same.end(), -1) != 1) return;
+    const SharedEdge edge(same);
+    if (edge.other_alone != int(k + 2) % 3) return;
+    Element &first = elements_[i], &second = elements_[j];
+    second.wanted.covered_edges |= SharedEdge::edge_without(edge.other_alone);
+    const Vec3& normal = first.shape->unit_normal;
+    const double overhang = edge.overhang(first.corners, second.corners),
+                 rise = normal.dot(second.corners[std::size_t(edge.other_alone)] - first.corners[0]) / normal.z();
+    if (std::abs(overhang) <= clear || std::abs(rise) <= clear)
+        flat_edges_.push_back({i, j, same});
+    else if (overhang < 0 && rise > 0)
+        first.wanted.covered_edges |= SharedEdge::edge_without(edge.alone);
+}
+
+/// Sets solids_ to the elements that meet a rectangle, relative to a place.
+void NearSolids::select(const Vec3& place, const Rect& area)
+{
+    constexpr std::size_t most_covered = 48;  // with more solids, nothing counts as covered
+    const Limits limits(area);
+    std::size_t count = 0;
+    selected_.clear();
+    for (std::uint32_t e = 0; e < elements_.size(); ++e)
+        if (limits.meet(boxes_[e])) selected_.push_back(e);
+    solids_.resize(selected_.size());
+    for (const std::uint32_t e : selected_) {
+        numbers_[e] = std::uint32_t(count);
+        set(solids_[count++], elements_[e], place);
+    }
+    for (const auto& [first, second, same] : flat_edges_) {
+        if (numbers_[first] == none || numbers_[second] == none) continue;
+        const SharedEdge edge(same);
+        NearSolid& solid = solids_[numbers_[first]];
+        if (edge.is_valley(*solid.triangle, *solids_[numbers_[second]].triangle))
+            solid.wanted.covered_edges |= SharedEdge::edge_without(edge.alone);
+    }
+    for (const std::uint32_t e : selected_) numbers_[e] = none;
+    if (solids_.size() > most_covered)
+        for (NearSolid& solid : solids_) solid.wanted = {};
+}
+
+/// Sets a solid to an element, relative to a place.
+void NearSolids::set(NearSolid& solid, const Element& element, const Vec3& place)
+{
+    solid.part = element.part;
+    solid.label = element.label;
+    solid.wanted = element.wanted;
+    solid.triangle.reset();
+    solid.body.reset();
+    if (element.primitive) {
+        solid.body = std::make_unique<const Convex>(moved(*element.primitive, {-place, Mat3::Identity()}));
+        solid.bounds = solid.body->bounds();
+        return;
+    }
+    const std::array<Vec3, 3> corners = moved_by(element.corners, -place);
+    solid.bounds = {corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]),
+                    corners[0].cwiseMax(corners[1]).cwiseMax(corners[2])};
+    solid.triangle = touch_triangle_of(corners, element.shape);
+    if (!solid.triangle) solid.body = std::make_unique<const Convex>(convex_of(corners));
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "base/rect.h"
+#include "geometry/geometry_impl.h"
+#include "settle/touch.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace spawnfield {
+
+/// A part of the scene near a robot, relative to the place where the robot is let down.
+struct NearSolid {
+    std::optional<TouchTriangle> triangle;  ///< if it is a triangle that is not steep
+    std::unique_ptr<const Convex> body;     ///< otherwise
+    Bounds bounds;
+    std::uint32_t part = 0;
+    Label label = Label::Terrain;
+    WantedTouches wanted;  ///< of robots that lie on the ground of all solids
+};
+
+/// Finds the solids near one place after the other. Places that follow each other in a small area share work.
+class NearSolids {
+public:
+    /// `reach` is the distance of the robot's farthest point from its origin, m.
+    NearSolids(const Geometry& geometry, double reach) : geometry_(geometry), reach_(reach) {}
+
+    /// Announces that most of the next places are in this rectangle: its solids are prepared once for all of them.
+    void expect(const Rect& places) { expected_ = places; }
+
+    /// Returns the solids that the robot may meet at a place, relative to the place.
+    const std::vector<NearSolid>& at(const Vec3& place);
+
+private:
+    /// An element of the geometry, in the scene's frame.
+    struct Element {
+        std::array<Vec3, 3> corners;              ///< of a triangle
+        std::optional<TriangleShape> shape;       ///< of a triangle that is not steep
+        std::shared_ptr<const Convex> primitive;  ///< otherwise
+        std::uint32_t part;
+        Label label;
+        WantedTouches wanted;
+    };
+    /// Two triangles with a common edge, which may be a ridge or a valley by rounding only.
+    struct FlatEdge {
+        std::uint32_t first, second;  ///< indices in elements_
+        std::array<int, 3> same;      ///< corner k of the first one is corner same[k] of the second one, -1: none
+    };
+    static constexpr std::uint32_t none = std::uint32_t(-1);
+
+    void gather(const Rect& area);
+    void cover_shared();
+    void cover_edge(std::uint32_t i, const std::array<std::uint32_t, 3>& others, std::uint32_t j,
+                    const std::array<std::uint32_t, 3>& points, std::size_t k);
+    void select(const Vec3& place, const Rect& area);
+    static void set(NearSolid& solid, const Element& element, const Vec3& place);
+
+    Geometry geometry_;
+    double reach_;
+    std::optional<Rect> expected_;
+    Rect known_{0, 0, -1, -1};       ///< all elements that meet this rectangle are in elements_
+    std::vector<Element> elements_;  ///< in the order of Geometry::Impl::visit_near()
+    std::vector<ElementBox> boxes_;  ///< of elements_
+    std::vector<FlatEdge> flat_edges_;
+    Vec3 place_ = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    std::vector<NearSolid> solids_;        ///< at place_
+    std::vector<std::uint32_t> selected_;  ///< of solids_: their index in elements_
+    std::vector<std::uint32_t> numbers_;   ///< of elements_: their index in solids_, or none
+};
+
+}  // namespace spawnfield
