@@ -108,11 +108,13 @@ StandJudge::Choice StandJudge::judge_several(const ColumnView& column, const Vec
     const bool is_all = rule.kind == HeadingRule::Kind::All;
     std::size_t chosen = 0;
     if (valid.empty() || (is_all && valid.size() < poses.size())) {
-        const auto frequency = [&](const SettledPose& pose) {
-            return is_all ? int(pose.verdict != Verdict::Valid) : int(counts[pose.verdict]);
+        // Of equally frequent verdicts, the one with the smallest number, as merged() does.
+        const auto rank = [&](const SettledPose& pose) {
+            return is_all ? int(pose.verdict != Verdict::Valid)
+                          : int(counts[pose.verdict]) * int(verdict_count) - int(pose.verdict);
         };
         for (std::size_t k = 1; k < poses.size(); ++k)
-            if (frequency(poses[k]) > frequency(poses[chosen])) chosen = k;
+            if (rank(poses[k]) > rank(poses[chosen])) chosen = k;
     } else if (rule.kind == HeadingRule::Kind::Best) {
         chosen = first_largest(valid, limit_slack, [&](std::size_t k) { return poses[k].margin; });
     } else if (rule.kind == HeadingRule::Kind::Clearest) {

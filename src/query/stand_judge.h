@@ -33,8 +33,8 @@ public:
     };
 
     /// The same at the heading that a rule chooses. For All and Any, `chance` (in [0, 1)) selects one of the valid
-    /// headings. If the rule finds no valid pose, returns the first one that has the most frequent verdict or, for All,
-    /// the first one that is not valid.
+    /// headings. If the rule finds no valid pose, returns the first one that has the most frequent verdict (of equally
+    /// frequent ones, that with the smallest number) or, for All, the first one that is not valid.
     Choice judge(const ColumnView& column, const Vec3& place, const HeadingRule& rule, double chance);
 
 private:

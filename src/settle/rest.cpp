@@ -25,10 +25,17 @@ std::vector<RestContact> Settler::Descent::rest_contacts(const Lowered& at) cons
 {
     std::vector<RestContact> out;
     out.reserve(at.touches.size());
-    for (const RestTouch& t : at.touches)
-        if (t.touch.height >= at.z - contact_gap)
-            out.push_back({t.touch.point + at.z * Vec3::UnitZ(), t.touch.normal.normalized(), t.part,
-                           solids_[t.solid].part, solids_[t.solid].label});
+    const auto is_same = [](const RestContact& a, const RestContact& b) {  // for example on both sides of a sheet
+        return a.part == b.part && a.ground == b.ground && a.point == b.point &&
+               (a.normal - b.normal).norm() <= contact_tolerance;
+    };
+    for (const RestTouch& t : at.touches) {
+        if (t.touch.height < at.z - contact_gap) continue;
+        const RestContact contact{t.touch.point + at.z * Vec3::UnitZ(), t.touch.normal.normalized(), t.part,
+                                  solids_[t.solid].part, solids_[t.solid].label};
+        if (std::none_of(out.begin(), out.end(), [&](const RestContact& other) { return is_same(contact, other); }))
+            out.push_back(contact);
+    }
     return out;
 }
 
