@@ -79,8 +79,8 @@ void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces
 
 void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
 {
-    x_.resize(std::size_t(grid.cols) + 1);  // one more for SeenTriangle::sides_of
-    for (int i = 0; i <= grid.cols; ++i) x_[std::size_t(i)] = grid.x_of(grid.first_col + i);
+    x_.resize(std::size_t(grid.cols) + TriangleSides::width - 1);
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = grid.x_of(grid.first_col + int(i));
     const BlockIndex index(grid);
     const double low_x = x_[0], high_x = x_[std::size_t(grid.cols) - 1], low_y = grid.y_of(grid.first_row),
                  high_y = grid.y_of(grid.first_row + grid.rows - 1);
@@ -90,9 +90,7 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
         const auto columns = std::uint32_t(range.last_col + 1 - range.first_col) *
                              std::uint32_t(range.last_row + 1 - range.first_row);
         if (columns <= tile.elements()) {  // most elements meet no column
-            for (int j = range.first_row; j <= range.last_row; ++j)
-                for (int i = range.first_col; i <= range.last_col; ++i)
-                    add_column(tile, surfaces, x_[std::size_t(i)], grid.y_of(grid.first_row + j), slots_[number(i, j)]);
+            add_columns(tile, surfaces, grid, range);
             return;
         }
         const std::uint64_t elements = tile.near(low_x, low_y, high_x, high_y);
@@ -115,31 +113,49 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
 
 void Columns::add_triangle(const SeenTriangle& seen, const ColumnGrid& grid, const ColumnRange& range)
 {
-    constexpr int most = 64;  // columns of a row that are looked at together, so that no branch depends on one of them
+    constexpr int most = TriangleSides::most;
+    const TriangleSides sides(seen);
     const TrianglePlane plane(seen);  // nearly all triangles with a range of columns are met by one
     for (int j = range.first_row; j <= range.last_row; ++j) {
         const double y = grid.y_of(grid.first_row + j);
         for (int first = range.first_col; first <= range.last_col; first += most) {
             const double* const x = x_.data() + first;
             Slot* const slots = slots_.data() + number(first, j);
-            const auto [inside, rim] = seen.sides_of(x, std::min(most, range.last_col + 1 - first), y);
+            const auto [inside, rim] = sides.of(x, std::min(most, range.last_col + 1 - first), y);
             for_each_bit(inside, [&](std::uint32_t k) { add_inside(slots[k], plane, x[k], y); });
             for_each_bit(rim, [&](std::uint32_t k) { add_rim(slots[k], seen, plane, x[k], y); });
         }
     }
 }
 
-/// Adds the hits of one vertical line with the elements of a tile.
-void Columns::add_column(const Tile& tile, Surfaces surfaces, double x, double y, Slot& slot)
+/// Adds the hits of these columns with the elements of a tile. There are at most TileBoxes::most of them.
+void Columns::add_columns(const Tile& tile, Surfaces surfaces, const ColumnGrid& grid, const ColumnRange& range)
 {
-    for_each_bit(tile.near(x, y, x, y), [&](std::uint32_t element) {
+    std::array<std::uint64_t, TileBoxes::most> near_x;
+    for (int i = range.first_col; i <= range.last_col; ++i)
+        near_x[std::size_t(i - range.first_col)] = tile.near_x(x_[std::size_t(i)]);
+    for (int j = range.first_row; j <= range.last_row; ++j) {
+        const double y = grid.y_of(grid.first_row + j);
+        const std::uint64_t near_y = tile.near_y(y);
+        if (near_y == 0) continue;
+        for (int i = range.first_col; i <= range.last_col; ++i)
+            add_column(tile, near_x[std::size_t(i - range.first_col)] & near_y, surfaces, x_[std::size_t(i)], y,
+                       slots_[number(i, j)]);
+    }
+}
+
+/// Adds the hits of one vertical line with these elements of a tile.
+inline void Columns::add_column(const Tile& tile, std::uint64_t elements, Surfaces surfaces, double x, double y,
+                                Slot& slot)
+{
+    for_each_bit(elements, [&](std::uint32_t element) {
         if (!counts(tile, element, surfaces)) return;
         if (!tile.is_triangle(element)) {
             if (const auto hit = hit_of(tile, element, x, y)) add(slot, *hit);
             return;
         }
         const SeenTriangle seen(tile, element);
-        const auto [inside, rim] = seen.sides_of(x, y);
+        const auto [inside, rim] = TriangleSides(seen).of(x, y);
         if (inside != 0)
             add_inside(slot, TrianglePlane(seen), x, y);
         else if (rim != 0)

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <optional>
 
@@ -56,82 +57,115 @@ public:
     using Place = Eigen::Array2d;  ///< x and y, m
 
     [[gnu::always_inline]] SeenTriangle(const Tile& tile, std::uint32_t triangle)
-        : tile_(tile), triangle_(triangle), corners_(tile.corners(triangle))
+        : tile_(tile), triangle_(triangle), a_(corner(0)), b_(corner(1)), c_(corner(2))
     {
-        const Place a = corners_[0].head<2>(), b = corners_[1].head<2>(), c = corners_[2].head<2>();
+        const Place a = a_.head<2>(), b = b_.head<2>(), c = c_.head<2>();
         low_corner_ = a.min(b).min(c);
         high_corner_ = a.max(b).max(c);
-        rim_ = 4 * touch_tolerance * (high_corner_ - low_corner_).sum();
     }
 
     // The rectangle around the triangle, seen from above:
     const Place& low_corner() const { return low_corner_; }
     const Place& high_corner() const { return high_corner_; }
 
-    /// Which of some vertical lines pass through a triangle, one bit for each. Rim: so near to an edge that only
-    /// hit_at_rim() can decide. All others are outside.
-    struct Sides {
-        std::uint64_t inside = 0, rim = 0;
-    };
-    /// Looks at the lines at (x[0], y), …, (x[count - 1], y), m; at most 64. If the count is odd, x[count] must exist,
-    /// too.
-    Sides sides_of(const double* x, int count, double y) const
-    {
-        std::uint64_t all_inside = 0, all_outside = 0;
-        const auto& [p, q, r] = corners_;
-        const double py = p.y() - y, qy = q.y() - y, ry = r.y() - y;
-        for (int k = 0; k < count; k += 2) {
-            // The cross product of the vectors to two corners is twice the area of the triangle between the line and an
-            // edge. A line on the same side of all edges, and clear of them, goes through the triangle. A line that is
-            // clearly left of one edge and clearly right of another one does not. Clear lines are far from an edge, so
-            // that neither rounding nor a tolerance decides. There is no branch, because one that is predicted wrongly
-            // takes longer than all this.
-            const Two lines{x[k], x[k + 1]};
-            const Two px = p.x() - lines, qx = q.x() - lines, rx = r.x() - lines;
-            const Two pq = px * qy - py * qx, qr = qx * ry - qy * rx, rp = rx * py - ry * px;
-            const Two low = least(least(pq, qr), rp), high = most(most(pq, qr), rp);
-            const TwoMasks inside = (low > rim_) | (high < -rim_), outside = (high > rim_) & (low < -rim_);
-            all_inside |= bits_of(inside) << k;
-            all_outside |= bits_of(outside) << k;
-        }
-        const std::uint64_t asked = bits_between(0, count - 1);
-        return {all_inside & asked, ~(all_inside | all_outside) & asked};
-    }
-    /// The same for one line.
-    Sides sides_of(double x, double y) const
-    {
-        const std::array twice{x, x};
-        return sides_of(twice.data(), 1, y);
-    }
+    std::array<Vec3, 3> corners() const { return {a_, b_, c_}; }
 
     /// Returns the hit of a line at the rim, if it meets the triangle, whose plane is given. A vertical triangle of a
     /// sheet is never met.
     std::optional<SurfaceHit> hit_at_rim(const TrianglePlane& plane, double x, double y) const;
 
     /// Returns the hit of the vertical line through (x, y), if it meets the triangle.
-    std::optional<SurfaceHit> hit(double x, double y) const
-    {
-        const auto [inside, rim] = sides_of(x, y);
-        if (inside != 0) return TrianglePlane(*this).hit_inside(x, y);
-        return rim != 0 ? hit_at_rim(TrianglePlane(*this), x, y) : std::nullopt;
-    }
+    std::optional<SurfaceHit> hit(double x, double y) const;
 
 private:
     friend TrianglePlane;
+    friend class TriangleSides;
 
-    using Two = double __attribute__((vector_size(16)));  ///< two lines in one register; also an extension of clang
-    using TwoMasks = decltype(Two{} < Two{});             ///< all bits of a number are equal
-
-    static Two least(const Two& a, const Two& b) { return a < b ? a : b; }
-    static Two most(const Two& a, const Two& b) { return a > b ? a : b; }
-    static std::uint64_t bits_of(const TwoMasks& masks) { return std::uint64_t((masks[0] & 1) | (masks[1] & 2)); }
+    const Vec3& corner(std::size_t k) const { return tile_.vertices[tile_.triangles[triangle_].corners[k]]; }
     double height_at_rim(const TrianglePlane& plane, double x, double y) const;
 
     const Tile& tile_;
     const std::uint32_t triangle_;
-    const std::array<Vec3, 3> corners_;
+    const Vec3 &a_, &b_, &c_;
     Place low_corner_, high_corner_;
-    double rim_;  ///< m2; a line is clear of an edge if their cross product is above this, or below the negative
+};
+
+/// Finds out which vertical lines pass through a triangle.
+///
+/// The cross product of the vectors to two corners is twice the area of the triangle between the line and an edge. If
+/// all three are clearly positive, the line goes through the triangle (or negative: the triangle is then turned round).
+/// If one is clearly negative, it does not. Clear lines are so far from an edge that neither rounding nor a tolerance
+/// decides. So single floats suffice, which fit four lines into a register.
+class TriangleSides {
+public:
+    static constexpr int width = 4;  ///< lines that are looked at together
+    static constexpr int most = 64;  ///< lines of a call
+
+    [[gnu::always_inline]] explicit TriangleSides(const SeenTriangle& seen) : x_(seen.a_.x()), y_(seen.a_.y())
+    {
+        const double bx = seen.b_.x() - x_, by = seen.b_.y() - y_, cx = seen.c_.x() - x_, cy = seen.c_.y() - y_;
+        const double area = bx * cy - by * cx, sign = area < 0 ? -1 : 1;
+        bx_ = float(sign * bx);
+        by_ = float(sign * by);
+        cx_ = float(sign * cx);
+        cy_ = float(sign * cy);
+        area_ = float(sign * area);
+        size_ = (seen.high_corner_ - seen.low_corner_).sum();
+    }
+
+    /// Which lines pass through the triangle, one bit for each. Rim: so near to an edge that only
+    /// SeenTriangle::hit_at_rim() can decide. All others are outside.
+    struct Sides {
+        std::uint64_t inside = 0, rim = 0;
+    };
+    /// Looks at the lines at (x[0], y), …, (x[count - 1], y), ascending, m; at most 64. x must have up to three more
+    /// entries, so that their number is a multiple of `width`.
+    Sides of(const double* x, int count, double y) const
+    {
+        const double from_a = y - y_,
+                     reach = std::abs(from_a) + std::max(std::abs(x[0] - x_), std::abs(x[count - 1] - x_));
+        // 1e-6 is more than 12 rounding errors of a float.
+        const Four rim = all(float(size_ * (4 * touch_tolerance + 1e-6 * (size_ + reach))));
+        const Four ab_y = all(bx_ * float(from_a)), ca_y = all(cx_ * float(from_a));
+        std::uint64_t all_inside = 0, all_outside = 0;
+        for (int k = 0; k < count; k += width) {  // without a branch that depends on a line
+            const Four at{float(x[k] - x_), float(x[k + 1] - x_), float(x[k + 2] - x_), float(x[k + 3] - x_)};
+            const Four ab = ab_y - all(by_) * at, ca = all(cy_) * at - ca_y, bc = all(area_) - ab - ca;
+            const Four low = least(least(ab, ca), bc);
+            const std::uint32_t bits = bits_of(low > rim, low < -rim);
+            all_inside |= std::uint64_t{bits & 15} << k;
+            all_outside |= std::uint64_t{bits >> 4} << k;
+        }
+        const std::uint64_t asked = bits_between(0, count - 1);
+        return {all_inside & asked, ~(all_inside | all_outside) & asked};
+    }
+    /// The same for one line.
+    Sides of(double x, double y) const
+    {
+        const std::array<double, width> same{x, x, x, x};
+        return of(same.data(), 1, y);
+    }
+
+private:
+    using Four = float __attribute__((vector_size(16)));  ///< four lines in one register; also an extension of clang
+    using FourMasks = decltype(Four{} < Four{});          ///< all bits of a number are equal
+
+    static Four all(float value) { return Four{value, value, value, value}; }
+    static Four least(const Four& a, const Four& b) { return a < b ? a : b; }
+    /// Returns bits 0 .. 3 from the first masks and bits 4 .. 7 from the second.
+    static std::uint32_t bits_of(const FourMasks& first, const FourMasks& second)
+    {
+        const FourMasks marks = (first & FourMasks{1, 2, 4, 8}) | (second & FourMasks{16, 32, 64, 128});
+        std::array<std::uint64_t, 2> twos;
+        std::memcpy(&twos, &marks, sizeof twos);
+        const std::uint64_t both = twos[0] | twos[1];
+        return std::uint32_t(both | both >> 32);
+    }
+
+    const double x_, y_;       ///< of the first corner, m
+    float bx_, by_, cx_, cy_;  ///< of the others, from the first one, m
+    float area_;               ///< twice the area, m2
+    double size_;              ///< m
 };
 
 /// Returns where the vertical line through (x, y) meets an element of a tile, if it does.
