@@ -98,53 +98,40 @@ private:
 /// decides. So single floats suffice, which fit four lines into a register.
 class TriangleSides {
 public:
+    using Place = SeenTriangle::Place;
     static constexpr int width = 4;  ///< lines that are looked at together
-    static constexpr int most = 64;  ///< lines of a call
 
-    [[gnu::always_inline]] explicit TriangleSides(const SeenTriangle& seen) : x_(seen.a_.x()), y_(seen.a_.y())
+    /// The lines that are asked for lie in the rectangle from `first` to `last`, m.
+    [[gnu::always_inline]] TriangleSides(const SeenTriangle& seen, const Place& first, const Place& last)
+        : corner_(seen.a_.head<2>())
     {
-        const double bx = seen.b_.x() - x_, by = seen.b_.y() - y_, cx = seen.c_.x() - x_, cy = seen.c_.y() - y_;
-        const double area = bx * cy - by * cx, sign = area < 0 ? -1 : 1;
+        const double bx = seen.b_.x() - corner_[0], by = seen.b_.y() - corner_[1], cx = seen.c_.x() - corner_[0],
+                     cy = seen.c_.y() - corner_[1], area = bx * cy - by * cx, sign = area < 0 ? -1 : 1;
         bx_ = float(sign * bx);
-        by_ = float(sign * by);
         cx_ = float(sign * cx);
-        cy_ = float(sign * cy);
-        area_ = float(sign * area);
-        size_ = (seen.high_corner_ - seen.low_corner_).sum();
+        by_ = all(float(sign * by));
+        cy_ = all(float(sign * cy));
+        area_ = all(float(sign * area));
+        const double size = (seen.high_corner_ - seen.low_corner_).sum(),
+                     reach = (first - corner_).abs().max((last - corner_).abs()).sum();
+        constexpr double rounding = 1e-6;  // more than 12 rounding errors of a float
+        rim_ = all(float(size * (4 * touch_tolerance + rounding * (size + reach))));
     }
+    TriangleSides(const SeenTriangle& seen, double x, double y) : TriangleSides(seen, Place(x, y), Place(x, y)) {}
 
-    /// Which lines pass through the triangle, one bit for each. Rim: so near to an edge that only
+    /// What is known of four lines before their y.
+    struct Lines;
+    /// Returns the lines at x[0] .. x[3], m.
+    Lines at(const double* x) const;
+
+    /// Which of four lines pass through the triangle, one bit for each. Rim: so near to an edge that only
     /// SeenTriangle::hit_at_rim() can decide. All others are outside.
     struct Sides {
-        std::uint64_t inside = 0, rim = 0;
+        std::uint32_t inside, rim;
     };
-    /// Looks at the lines at (x[0], y), …, (x[count - 1], y), ascending, m; at most 64. x must have up to three more
-    /// entries, so that their number is a multiple of `width`.
-    Sides of(const double* x, int count, double y) const
-    {
-        const double from_a = y - y_,
-                     reach = std::abs(from_a) + std::max(std::abs(x[0] - x_), std::abs(x[count - 1] - x_));
-        // 1e-6 is more than 12 rounding errors of a float.
-        const Four rim = all(float(size_ * (4 * touch_tolerance + 1e-6 * (size_ + reach))));
-        const Four ab_y = all(bx_ * float(from_a)), ca_y = all(cx_ * float(from_a));
-        std::uint64_t all_inside = 0, all_outside = 0;
-        for (int k = 0; k < count; k += width) {  // without a branch that depends on a line
-            const Four at{float(x[k] - x_), float(x[k + 1] - x_), float(x[k + 2] - x_), float(x[k + 3] - x_)};
-            const Four ab = ab_y - all(by_) * at, ca = all(cy_) * at - ca_y, bc = all(area_) - ab - ca;
-            const Four low = least(least(ab, ca), bc);
-            const std::uint32_t bits = bits_of(low > rim, low < -rim);
-            all_inside |= std::uint64_t{bits & 15} << k;
-            all_outside |= std::uint64_t{bits >> 4} << k;
-        }
-        const std::uint64_t asked = bits_between(0, count - 1);
-        return {all_inside & asked, ~(all_inside | all_outside) & asked};
-    }
+    Sides of(const Lines& lines, double y) const;
     /// The same for one line.
-    Sides of(double x, double y) const
-    {
-        const std::array<double, width> same{x, x, x, x};
-        return of(same.data(), 1, y);
-    }
+    Sides of(double x, double y) const;
 
 private:
     using Four = float __attribute__((vector_size(16)));  ///< four lines in one register; also an extension of clang
@@ -159,14 +146,42 @@ private:
         std::array<std::uint64_t, 2> twos;
         std::memcpy(&twos, &marks, sizeof twos);
         const std::uint64_t both = twos[0] | twos[1];
-        return std::uint32_t(both | both >> 32);
+        return std::uint32_t(both | both >> 32) & 255;
     }
 
-    const double x_, y_;       ///< of the first corner, m
-    float bx_, by_, cx_, cy_;  ///< of the others, from the first one, m
-    float area_;               ///< twice the area, m2
-    double size_;              ///< m
+    const Place corner_;  ///< the first one, m
+    float bx_, cx_;       ///< of the other corners, from the first one, m
+    Four by_, cy_;        ///< in all four numbers
+    Four area_;           ///< twice the area, m2
+    Four rim_;            ///< m2; a cross product above it is clearly positive
 };
+
+struct TriangleSides::Lines {
+    Four ab, ca;  ///< the parts of the cross products with two edges that depend on x, m2
+};
+
+inline TriangleSides::Lines TriangleSides::at(const double* x) const
+{
+    const double from = corner_[0];
+    const Four at{float(x[0] - from), float(x[1] - from), float(x[2] - from), float(x[3] - from)};
+    return {by_ * at, cy_ * at};
+}
+
+inline TriangleSides::Sides TriangleSides::of(const Lines& lines, double y) const
+{
+    const float from_corner = float(y - corner_[1]);
+    const Four ab = all(bx_ * from_corner) - lines.ab, ca = lines.ca - all(cx_ * from_corner), bc = area_ - ab - ca;
+    const Four low = least(least(ab, ca), bc);
+    const std::uint32_t bits = bits_of(low > rim_, low < -rim_), inside = bits & 15;
+    return {inside, ~(inside | bits >> 4) & 15};
+}
+
+inline TriangleSides::Sides TriangleSides::of(double x, double y) const
+{
+    const std::array<double, width> same{x, x, x, x};
+    const Sides sides = of(at(same.data()), y);
+    return {sides.inside & 1, sides.rim & 1};
+}
 
 /// Returns where the vertical line through (x, y) meets an element of a tile, if it does.
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y);
