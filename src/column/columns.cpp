@@ -161,7 +161,7 @@ inline void Columns::add_column(const Tile& tile, std::uint64_t elements, Surfac
             return;
         }
         const SeenTriangle seen(tile, element);
-        const auto [inside, rim] = TriangleSides(seen, x, y).of(x, y);
+        const auto [inside, rim] = seen.sides_of(x, y);
         if (inside != 0)
             add_inside(slot, TrianglePlane(seen), x, y);
         else if (rim != 0)

@@ -148,7 +148,7 @@ std::optional<SurfaceHit> SeenTriangle::hit_at_rim(const TrianglePlane& plane, d
 
 std::optional<SurfaceHit> SeenTriangle::hit(double x, double y) const
 {
-    const auto [inside, rim] = TriangleSides(*this, x, y).of(x, y);
+    const auto [inside, rim] = sides_of(x, y);
     if (inside != 0) return TrianglePlane(*this).hit_inside(x, y);
     return rim != 0 ? hit_at_rim(TrianglePlane(*this), x, y) : std::nullopt;
 }

@@ -59,16 +59,34 @@ public:
     [[gnu::always_inline]] SeenTriangle(const Tile& tile, std::uint32_t triangle)
         : tile_(tile), triangle_(triangle), a_(corner(0)), b_(corner(1)), c_(corner(2))
     {
-        const Place a = a_.head<2>(), b = b_.head<2>(), c = c_.head<2>();
-        low_corner_ = a.min(b).min(c);
-        high_corner_ = a.max(b).max(c);
     }
 
     // The rectangle around the triangle, seen from above:
-    const Place& low_corner() const { return low_corner_; }
-    const Place& high_corner() const { return high_corner_; }
+    Place low_corner() const { return a().min(b()).min(c()); }
+    Place high_corner() const { return a().max(b()).max(c()); }
 
     std::array<Vec3, 3> corners() const { return {a_, b_, c_}; }
+
+    /// Which vertical lines pass through the triangle, one bit for each. Rim: so near to an edge that only hit_at_rim()
+    /// can decide. All others are outside.
+    struct Sides {
+        std::uint32_t inside, rim;
+    };
+    /// Looks at one line.
+    ///
+    /// The cross product of the vectors to two corners is twice the area of the triangle between the line and an edge.
+    /// If all three clearly have the same sign, the line goes through the triangle. If two clearly have different
+    /// signs, it does not. Clear lines are so far from an edge that neither rounding nor a tolerance decides.
+    Sides sides_of(double x, double y) const
+    {
+        const double ax = a_.x() - x, ay = a_.y() - y, bx = b_.x() - x, by = b_.y() - y, cx = c_.x() - x,
+                     cy = c_.y() - y, ab = ax * by - ay * bx, bc = bx * cy - by * cx, ca = cx * ay - cy * ax,
+                     low = std::min(std::min(ab, bc), ca), high = std::max(std::max(ab, bc), ca),
+                     size = std::abs(ax) + std::abs(ay) + std::abs(bx) + std::abs(by) + std::abs(cx) + std::abs(cy),
+                     rim = 4 * touch_tolerance * size;
+        const bool inside = (low > rim) | (high < -rim), outside = (high > rim) & (low < -rim);
+        return {inside, !(inside | outside)};
+    }
 
     /// Returns the hit of a line at the rim, if it meets the triangle, whose plane is given. A vertical triangle of a
     /// sheet is never met.
@@ -84,18 +102,17 @@ private:
     const Vec3& corner(std::size_t k) const { return tile_.vertices[tile_.triangles[triangle_].corners[k]]; }
     double height_at_rim(const TrianglePlane& plane, double x, double y) const;
 
+    Place a() const { return a_.head<2>(); }
+    Place b() const { return b_.head<2>(); }
+    Place c() const { return c_.head<2>(); }
+
     const Tile& tile_;
     const std::uint32_t triangle_;
     const Vec3 &a_, &b_, &c_;
-    Place low_corner_, high_corner_;
 };
 
-/// Finds out which vertical lines pass through a triangle.
-///
-/// The cross product of the vectors to two corners is twice the area of the triangle between the line and an edge. If
-/// all three are clearly positive, the line goes through the triangle (or negative: the triangle is then turned round).
-/// If one is clearly negative, it does not. Clear lines are so far from an edge that neither rounding nor a tolerance
-/// decides. So single floats suffice, which fit four lines into a register.
+/// Does the same as SeenTriangle::sides_of() for many lines: four at a time, in single floats, for which clear lines
+/// are farther from an edge. If the triangle faces downwards, the signs of all cross products are turned round.
 class TriangleSides {
 public:
     using Place = SeenTriangle::Place;
@@ -103,7 +120,7 @@ public:
 
     /// The lines that are asked for lie in the rectangle from `first` to `last`, m.
     [[gnu::always_inline]] TriangleSides(const SeenTriangle& seen, const Place& first, const Place& last)
-        : corner_(seen.a_.head<2>())
+        : corner_(seen.a())
     {
         const double bx = seen.b_.x() - corner_[0], by = seen.b_.y() - corner_[1], cx = seen.c_.x() - corner_[0],
                      cy = seen.c_.y() - corner_[1], area = bx * cy - by * cx, sign = area < 0 ? -1 : 1;
@@ -112,26 +129,18 @@ public:
         by_ = all(float(sign * by));
         cy_ = all(float(sign * cy));
         area_ = all(float(sign * area));
-        const double size = (seen.high_corner_ - seen.low_corner_).sum(),
+        const double size = std::abs(bx) + std::abs(by) + std::abs(cx) + std::abs(cy),
                      reach = (first - corner_).abs().max((last - corner_).abs()).sum();
         constexpr double rounding = 1e-6;  // more than 12 rounding errors of a float
         rim_ = all(float(size * (4 * touch_tolerance + rounding * (size + reach))));
     }
-    TriangleSides(const SeenTriangle& seen, double x, double y) : TriangleSides(seen, Place(x, y), Place(x, y)) {}
 
     /// What is known of four lines before their y.
     struct Lines;
     /// Returns the lines at x[0] .. x[3], m.
     Lines at(const double* x) const;
 
-    /// Which of four lines pass through the triangle, one bit for each. Rim: so near to an edge that only
-    /// SeenTriangle::hit_at_rim() can decide. All others are outside.
-    struct Sides {
-        std::uint32_t inside, rim;
-    };
-    Sides of(const Lines& lines, double y) const;
-    /// The same for one line.
-    Sides of(double x, double y) const;
+    SeenTriangle::Sides of(const Lines& lines, double y) const;
 
 private:
     using Four = float __attribute__((vector_size(16)));  ///< four lines in one register; also an extension of clang
@@ -167,20 +176,13 @@ inline TriangleSides::Lines TriangleSides::at(const double* x) const
     return {by_ * at, cy_ * at};
 }
 
-inline TriangleSides::Sides TriangleSides::of(const Lines& lines, double y) const
+inline SeenTriangle::Sides TriangleSides::of(const Lines& lines, double y) const
 {
     const float from_corner = float(y - corner_[1]);
     const Four ab = all(bx_ * from_corner) - lines.ab, ca = lines.ca - all(cx_ * from_corner), bc = area_ - ab - ca;
     const Four low = least(least(ab, ca), bc);
     const std::uint32_t bits = bits_of(low > rim_, low < -rim_), inside = bits & 15;
     return {inside, ~(inside | bits >> 4) & 15};
-}
-
-inline TriangleSides::Sides TriangleSides::of(double x, double y) const
-{
-    const std::array<double, width> same{x, x, x, x};
-    const Sides sides = of(at(same.data()), y);
-    return {sides.inside & 1, sides.rim & 1};
 }
 
 /// Returns where the vertical line through (x, y) meets an element of a tile, if it does.

@@ -34,10 +34,9 @@ std::optional<SurfaceHit> uniform_hit(const Tile& tile, std::uint32_t triangle, 
     // Computed heights of a triangle at -0 m may be 0 or -0.
     if (a.z() != b.z() || a.z() != c.z() || (a.z() == 0 && std::signbit(a.z()))) return std::nullopt;
     const SeenTriangle seen(tile, triangle);
-    const TriangleSides sides(seen, {rect.low_x, rect.low_y}, {rect.high_x, rect.high_y});
     for (const double y : {rect.low_y, rect.high_y})
         for (const double x : {rect.low_x, rect.high_x})
-            if (sides.of(x, y).inside == 0) return std::nullopt;
+            if (seen.sides_of(x, y).inside == 0) return std::nullopt;
     return TrianglePlane(seen).hit_inside(rect.high_x, rect.high_y);
 }
 

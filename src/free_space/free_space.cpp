@@ -422,13 +422,13 @@ Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const 
 std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, const Vec3& position) const
 {
     constexpr int side = BoundsTile::side;
-    const double cell = raster_.levels()[pass.level].cell, u = (position.x() - raster_.x0) / cell,
-                 v = (position.y() - raster_.y0) / cell, z = position.z();
+    const double per_cell = 1 / raster_.levels()[pass.level].cell, x = position.x() - raster_.x0,
+                 y = position.y() - raster_.y0, z = position.z();
     const Rect &reach = part.reach, &core = *part.core;
-    const CellRange cols{floor_of(u + reach.low_x / cell), floor_of(u + reach.high_x / cell)},
-        rows{floor_of(v + reach.low_y / cell), floor_of(v + reach.high_y / cell)},
-        core_cols{ceil_of(u + core.low_x / cell), floor_of(u + core.high_x / cell) - 1},
-        core_rows{ceil_of(v + core.low_y / cell), floor_of(v + core.high_y / cell) - 1};
+    const CellRange cols{floor_of((x + reach.low_x) * per_cell), floor_of((x + reach.high_x) * per_cell)},
+        rows{floor_of((y + reach.low_y) * per_cell), floor_of((y + reach.high_y) * per_cell)},
+        core_cols{ceil_of((x + core.low_x) * per_cell), floor_of((x + core.high_x) * per_cell) - 1},
+        core_rows{ceil_of((y + core.low_y) * per_cell), floor_of((y + core.high_y) * per_cell) - 1};
     if (cols.first < 0 || cols.last >= int(raster_.whole_cols(pass.level)) || rows.first < 0 ||
         rows.last >= int(raster_.whole_rows(pass.level)))
         return std::nullopt;
