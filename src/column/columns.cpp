@@ -79,20 +79,19 @@ void Columns::look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces
 
 void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces)
 {
-    x_.resize(std::size_t(grid.cols) + 1);  // one more for SeenTriangle::sides_of
-    for (int i = 0; i <= grid.cols; ++i) x_[std::size_t(i)] = grid.x_of(grid.first_col + i);
+    x_.resize(std::size_t(grid.cols) + TriangleSides::width - 1);
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = grid.x_of(grid.first_col + int(i));
+    y_.resize(std::size_t(grid.rows));
+    for (std::size_t j = 0; j < y_.size(); ++j) y_[j] = grid.y_of(grid.first_row + int(j));
     const BlockIndex index(grid);
-    const double low_x = x_[0], high_x = x_[std::size_t(grid.cols) - 1], low_y = grid.y_of(grid.first_row),
-                 high_y = grid.y_of(grid.first_row + grid.rows - 1);
+    const double low_x = x_[0], high_x = x_[std::size_t(grid.cols) - 1], low_y = y_.front(), high_y = y_.back();
     geometry.impl().visit_whole_tiles(low_x, low_y, high_x, high_y, [&](const Tile& tile, const ElementBox& box) {
         ColumnRange range;
         if (!index.find({box.min[0], box.min[1]}, {box.max[0], box.max[1]}, range)) return;
         const auto columns = std::uint32_t(range.last_col + 1 - range.first_col) *
                              std::uint32_t(range.last_row + 1 - range.first_row);
         if (columns <= tile.elements()) {  // most elements meet no column
-            for (int j = range.first_row; j <= range.last_row; ++j)
-                for (int i = range.first_col; i <= range.last_col; ++i)
-                    add_column(tile, surfaces, x_[std::size_t(i)], grid.y_of(grid.first_row + j), slots_[number(i, j)]);
+            add_columns(tile, surfaces, range);
             return;
         }
         const std::uint64_t elements = tile.near(low_x, low_y, high_x, high_y);
@@ -100,12 +99,11 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
             if (!counts(tile, element, surfaces)) return;
             if (!tile.is_triangle(element)) {
                 const Bounds bounds = tile.bounds(element);
-                if (index.find(bounds.min.head<2>(), bounds.max.head<2>(), range))
-                    add_primitive(tile, element, grid, range);
+                if (index.find(bounds.min.head<2>(), bounds.max.head<2>(), range)) add_primitive(tile, element, range);
                 return;
             }
             const SeenTriangle seen(tile, element);
-            if (index.find(seen.low_corner(), seen.high_corner(), range)) add_triangle(seen, grid, range);
+            if (index.find(seen.low_corner(), seen.high_corner(), range)) add_triangle(seen, range);
         });
     });
     if (listed_.empty()) return;
@@ -113,26 +111,50 @@ void Columns::scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces su
         if (slot.has_more) complete(slot);
 }
 
-void Columns::add_triangle(const SeenTriangle& seen, const ColumnGrid& grid, const ColumnRange& range)
+void Columns::add_triangle(const SeenTriangle& seen, const ColumnRange& range)
 {
-    constexpr int most = 64;  // columns of a row that are looked at together, so that no branch depends on one of them
+    const auto place_of = [&](int col, int row) {
+        return SeenTriangle::Place(x_[std::size_t(col)], y_[std::size_t(row)]);
+    };
+    const TriangleSides sides(seen, place_of(range.first_col, range.first_row),
+                              place_of(range.last_col, range.last_row));
     const TrianglePlane plane(seen);  // nearly all triangles with a range of columns are met by one
-    for (int j = range.first_row; j <= range.last_row; ++j) {
-        const double y = grid.y_of(grid.first_row + j);
-        for (int first = range.first_col; first <= range.last_col; first += most) {
-            const double* const x = x_.data() + first;
-            Slot* const slots = slots_.data() + number(first, j);
-            const auto [inside, rim] = seen.sides_of(x, std::min(most, range.last_col + 1 - first), y);
-            for_each_bit(inside, [&](std::uint32_t k) { add_inside(slots[k], plane, x[k], y); });
-            for_each_bit(rim, [&](std::uint32_t k) { add_rim(slots[k], seen, plane, x[k], y); });
+    constexpr int width = TriangleSides::width;
+    for (int first = range.first_col; first <= range.last_col; first += width) {
+        const double* const x = x_.data() + first;
+        const TriangleSides::Lines lines = sides.at(x);
+        const std::uint32_t asked = 15 >> std::max(0, first + width - 1 - range.last_col);
+        Slot* slots = slots_.data() + number(first, range.first_row);
+        for (int j = range.first_row; j <= range.last_row; ++j, slots += cols_) {
+            const double y = y_[std::size_t(j)];
+            const auto [inside, rim] = sides.of(lines, y);  // no branch depends on a single line
+            for_each_bit(inside & asked, [&](std::uint32_t k) { add_inside(slots[k], plane, x[k], y); });
+            for_each_bit(rim & asked, [&](std::uint32_t k) { add_rim(slots[k], seen, plane, x[k], y); });
         }
     }
 }
 
-/// Adds the hits of one vertical line with the elements of a tile.
-void Columns::add_column(const Tile& tile, Surfaces surfaces, double x, double y, Slot& slot)
+/// Adds the hits of these columns with the elements of a tile. There are at most TileBoxes::most of them.
+void Columns::add_columns(const Tile& tile, Surfaces surfaces, const ColumnRange& range)
 {
-    for_each_bit(tile.near(x, y, x, y), [&](std::uint32_t element) {
+    std::array<std::uint64_t, TileBoxes::most> near_x;
+    for (int i = range.first_col; i <= range.last_col; ++i)
+        near_x[std::size_t(i - range.first_col)] = tile.near_x(x_[std::size_t(i)]);
+    for (int j = range.first_row; j <= range.last_row; ++j) {
+        const double y = y_[std::size_t(j)];
+        const std::uint64_t near_y = tile.near_y(y);
+        if (near_y == 0) continue;
+        for (int i = range.first_col; i <= range.last_col; ++i)
+            add_column(tile, near_x[std::size_t(i - range.first_col)] & near_y, surfaces, x_[std::size_t(i)], y,
+                       slots_[number(i, j)]);
+    }
+}
+
+/// Adds the hits of one vertical line with these elements of a tile.
+inline void Columns::add_column(const Tile& tile, std::uint64_t elements, Surfaces surfaces, double x, double y,
+                                Slot& slot)
+{
+    for_each_bit(elements, [&](std::uint32_t element) {
         if (!counts(tile, element, surfaces)) return;
         if (!tile.is_triangle(element)) {
             if (const auto hit = hit_of(tile, element, x, y)) add(slot, *hit);
@@ -161,11 +183,11 @@ inline void Columns::add_rim(Slot& slot, const SeenTriangle& seen, const Triangl
         hit->filled ? add(slot, *hit) : add_sheet(slot, *hit, hit->z.top);
 }
 
-void Columns::add_primitive(const Tile& tile, std::uint32_t element, const ColumnGrid& grid, const ColumnRange& range)
+void Columns::add_primitive(const Tile& tile, std::uint32_t element, const ColumnRange& range)
 {
     for (int j = range.first_row; j <= range.last_row; ++j)
         for (int i = range.first_col; i <= range.last_col; ++i)
-            if (const auto hit = hit_of(tile, element, x_[std::size_t(i)], grid.y_of(grid.first_row + j)))
+            if (const auto hit = hit_of(tile, element, x_[std::size_t(i)], y_[std::size_t(j)]))
                 add(slots_[number(i, j)], *hit);
 }
 

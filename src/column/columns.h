@@ -137,11 +137,12 @@ private:
 
     void look_up(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
     void scan(const Geometry& geometry, const ColumnGrid& grid, Surfaces surfaces);
-    void add_triangle(const SeenTriangle& seen, const ColumnGrid& grid, const ColumnRange& range);
-    void add_column(const Tile& tile, Surfaces surfaces, double x, double y, Slot& slot);
+    void add_triangle(const SeenTriangle& seen, const ColumnRange& range);
+    void add_columns(const Tile& tile, Surfaces surfaces, const ColumnRange& range);
+    void add_column(const Tile& tile, std::uint64_t elements, Surfaces surfaces, double x, double y, Slot& slot);
     void add_inside(Slot& slot, const TrianglePlane& plane, double x, double y);
     void add_rim(Slot& slot, const SeenTriangle& seen, const TrianglePlane& plane, double x, double y);
-    void add_primitive(const Tile& tile, std::uint32_t element, const ColumnGrid& grid, const ColumnRange& range);
+    void add_primitive(const Tile& tile, std::uint32_t element, const ColumnRange& range);
     void add_sheet(Slot& slot, const SurfaceHit& hit, double z);
     void add(Slot& slot, const SurfaceHit& hit);
     void list(Slot& slot, const SurfaceHit& hit);
@@ -150,7 +151,7 @@ private:
     std::size_t number(int i, int j) const { return std::size_t(j) * std::size_t(cols_) + std::size_t(i); }
 
     int cols_ = 0;
-    std::vector<double> x_;  ///< of the block's columns, m; while scanning
+    std::vector<double> x_, y_;  ///< of the block's columns, m, and x of a few more for TriangleSides; while scanning
     std::vector<Slot> slots_;
     Column column_;
     std::vector<Start> starts_;

@@ -84,9 +84,8 @@ bool is_touched(const std::array<Vec3, 3>& corners, double sign, double x, doubl
 
 TrianglePlane::TrianglePlane(const SeenTriangle& triangle)
 {
-    const auto& [a, b, c] = triangle.corners_;
-    const Vec3 ab = b - a, ac = c - a;
-    const Interval heights = extent(triangle.corners_, 2);
+    const Vec3 &a = triangle.a_, &b = triangle.b_, &c = triangle.c_, ab = b - a, ac = c - a;
+    const Interval heights{std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()})};
     twice_area = ab.x() * ac.y() - ab.y() * ac.x();
     x = a.x();
     y = a.y();
@@ -117,33 +116,41 @@ TrianglePlane::TrianglePlane(const SeenTriangle& triangle)
 /// At a corner, this is exactly the corner's height, so that all triangles at that corner agree.
 double SeenTriangle::height_at_rim(const TrianglePlane& plane, double x, double y) const
 {
-    for (const Vec3& corner : corners_)
-        if (corner.x() == x && corner.y() == y) return std::max(corner.z(), plane.low);
+    for (const Vec3* const corner : {&a_, &b_, &c_})
+        if (corner->x() == x && corner->y() == y) return std::max(corner->z(), plane.low);
     return plane.height(x, y);
 }
 
 std::optional<SurfaceHit> SeenTriangle::hit_at_rim(const TrianglePlane& plane, double x, double y) const
 {
-    if (!may_meet(corners_, x, y)) return std::nullopt;
+    const std::array<Vec3, 3> corners = this->corners();
+    if (!may_meet(corners, x, y)) return std::nullopt;
     SurfaceHit out = plane.hit;
-    out.crosses = out.filled && is_crossed(corners_, x, y);
+    out.crosses = out.filled && is_crossed(corners, x, y);
     if (out.crosses) out.crossing = height_at_rim(plane, x, y);
     const auto squared_length = [](const Vec3& p, const Vec3& q) { return (q - p).head<2>().squaredNorm(); };
-    const auto& [a, b, c] = corners_;
+    const auto& [a, b, c] = corners;
     const double longest = std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
     // If the triangle is thinner than the tolerance, its height at a point is undefined.
     const bool is_vertical = plane.twice_area * plane.twice_area <= squared_tolerance * longest;
     if (is_vertical) {
         // Computed even if `crosses` is true: because of rounding, a line in a vertical triangle may also cross it.
-        const auto met = out.filled ? segment(corners_, x, y) : std::nullopt;
+        const auto met = out.filled ? segment(corners, x, y) : std::nullopt;
         out.touches = met.has_value();
         if (met) out.z = *met;
     } else {
-        out.touches = !out.crosses && is_touched(corners_, plane.twice_area > 0 ? 1 : -1, x, y);
+        out.touches = !out.crosses && is_touched(corners, plane.twice_area > 0 ? 1 : -1, x, y);
         if (out.touches) out.z.bottom = out.z.top = height_at_rim(plane, x, y);
     }
     if (!out.crosses && !out.touches) return std::nullopt;
     return out;
+}
+
+std::optional<SurfaceHit> SeenTriangle::hit(double x, double y) const
+{
+    const auto [inside, rim] = sides_of(x, y);
+    if (inside != 0) return TrianglePlane(*this).hit_inside(x, y);
+    return rim != 0 ? hit_at_rim(TrianglePlane(*this), x, y) : std::nullopt;
 }
 
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y)

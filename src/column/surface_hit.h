@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <optional>
 
@@ -56,52 +57,35 @@ public:
     using Place = Eigen::Array2d;  ///< x and y, m
 
     [[gnu::always_inline]] SeenTriangle(const Tile& tile, std::uint32_t triangle)
-        : tile_(tile), triangle_(triangle), corners_(tile.corners(triangle))
+        : tile_(tile), triangle_(triangle), a_(corner(0)), b_(corner(1)), c_(corner(2))
     {
-        const Place a = corners_[0].head<2>(), b = corners_[1].head<2>(), c = corners_[2].head<2>();
-        low_corner_ = a.min(b).min(c);
-        high_corner_ = a.max(b).max(c);
-        rim_ = 4 * touch_tolerance * (high_corner_ - low_corner_).sum();
     }
 
     // The rectangle around the triangle, seen from above:
-    const Place& low_corner() const { return low_corner_; }
-    const Place& high_corner() const { return high_corner_; }
+    Place low_corner() const { return a().min(b()).min(c()); }
+    Place high_corner() const { return a().max(b()).max(c()); }
 
-    /// Which of some vertical lines pass through a triangle, one bit for each. Rim: so near to an edge that only
-    /// hit_at_rim() can decide. All others are outside.
+    std::array<Vec3, 3> corners() const { return {a_, b_, c_}; }
+
+    /// Which vertical lines pass through the triangle, one bit for each. Rim: so near to an edge that only hit_at_rim()
+    /// can decide. All others are outside.
     struct Sides {
-        std::uint64_t inside = 0, rim = 0;
+        std::uint32_t inside, rim;
     };
-    /// Looks at the lines at (x[0], y), …, (x[count - 1], y), m; at most 64. If the count is odd, x[count] must exist,
-    /// too.
-    Sides sides_of(const double* x, int count, double y) const
-    {
-        std::uint64_t all_inside = 0, all_outside = 0;
-        const auto& [p, q, r] = corners_;
-        const double py = p.y() - y, qy = q.y() - y, ry = r.y() - y;
-        for (int k = 0; k < count; k += 2) {
-            // The cross product of the vectors to two corners is twice the area of the triangle between the line and an
-            // edge. A line on the same side of all edges, and clear of them, goes through the triangle. A line that is
-            // clearly left of one edge and clearly right of another one does not. Clear lines are far from an edge, so
-            // that neither rounding nor a tolerance decides. There is no branch, because one that is predicted wrongly
-            // takes longer than all this.
-            const Two lines{x[k], x[k + 1]};
-            const Two px = p.x() - lines, qx = q.x() - lines, rx = r.x() - lines;
-            const Two pq = px * qy - py * qx, qr = qx * ry - qy * rx, rp = rx * py - ry * px;
-            const Two low = least(least(pq, qr), rp), high = most(most(pq, qr), rp);
-            const TwoMasks inside = (low > rim_) | (high < -rim_), outside = (high > rim_) & (low < -rim_);
-            all_inside |= bits_of(inside) << k;
-            all_outside |= bits_of(outside) << k;
-        }
-        const std::uint64_t asked = bits_between(0, count - 1);
-        return {all_inside & asked, ~(all_inside | all_outside) & asked};
-    }
-    /// The same for one line.
+    /// Looks at one line.
+    ///
+    /// The cross product of the vectors to two corners is twice the area of the triangle between the line and an edge.
+    /// If all three clearly have the same sign, the line goes through the triangle. If two clearly have different
+    /// signs, it does not. Clear lines are so far from an edge that neither rounding nor a tolerance decides.
     Sides sides_of(double x, double y) const
     {
-        const std::array twice{x, x};
-        return sides_of(twice.data(), 1, y);
+        const double ax = a_.x() - x, ay = a_.y() - y, bx = b_.x() - x, by = b_.y() - y, cx = c_.x() - x,
+                     cy = c_.y() - y, ab = ax * by - ay * bx, bc = bx * cy - by * cx, ca = cx * ay - cy * ax,
+                     low = std::min(std::min(ab, bc), ca), high = std::max(std::max(ab, bc), ca),
+                     size = std::abs(ax) + std::abs(ay) + std::abs(bx) + std::abs(by) + std::abs(cx) + std::abs(cy),
+                     rim = 4 * touch_tolerance * size;
+        const bool inside = (low > rim) | (high < -rim), outside = (high > rim) & (low < -rim);
+        return {inside, !(inside | outside)};
     }
 
     /// Returns the hit of a line at the rim, if it meets the triangle, whose plane is given. A vertical triangle of a
@@ -109,30 +93,97 @@ public:
     std::optional<SurfaceHit> hit_at_rim(const TrianglePlane& plane, double x, double y) const;
 
     /// Returns the hit of the vertical line through (x, y), if it meets the triangle.
-    std::optional<SurfaceHit> hit(double x, double y) const
-    {
-        const auto [inside, rim] = sides_of(x, y);
-        if (inside != 0) return TrianglePlane(*this).hit_inside(x, y);
-        return rim != 0 ? hit_at_rim(TrianglePlane(*this), x, y) : std::nullopt;
-    }
+    std::optional<SurfaceHit> hit(double x, double y) const;
 
 private:
     friend TrianglePlane;
+    friend class TriangleSides;
 
-    using Two = double __attribute__((vector_size(16)));  ///< two lines in one register; also an extension of clang
-    using TwoMasks = decltype(Two{} < Two{});             ///< all bits of a number are equal
-
-    static Two least(const Two& a, const Two& b) { return a < b ? a : b; }
-    static Two most(const Two& a, const Two& b) { return a > b ? a : b; }
-    static std::uint64_t bits_of(const TwoMasks& masks) { return std::uint64_t((masks[0] & 1) | (masks[1] & 2)); }
+    const Vec3& corner(std::size_t k) const { return tile_.vertices[tile_.triangles[triangle_].corners[k]]; }
     double height_at_rim(const TrianglePlane& plane, double x, double y) const;
+
+    Place a() const { return a_.head<2>(); }
+    Place b() const { return b_.head<2>(); }
+    Place c() const { return c_.head<2>(); }
 
     const Tile& tile_;
     const std::uint32_t triangle_;
-    const std::array<Vec3, 3> corners_;
-    Place low_corner_, high_corner_;
-    double rim_;  ///< m2; a line is clear of an edge if their cross product is above this, or below the negative
+    const Vec3 &a_, &b_, &c_;
 };
+
+/// Does the same as SeenTriangle::sides_of() for many lines: four at a time, in single floats, for which clear lines
+/// are farther from an edge. If the triangle faces downwards, the signs of all cross products are turned round.
+class TriangleSides {
+public:
+    using Place = SeenTriangle::Place;
+    static constexpr int width = 4;  ///< lines that are looked at together
+
+    /// The lines that are asked for lie in the rectangle from `first` to `last`, m.
+    [[gnu::always_inline]] TriangleSides(const SeenTriangle& seen, const Place& first, const Place& last)
+        : corner_(seen.a())
+    {
+        const double bx = seen.b_.x() - corner_[0], by = seen.b_.y() - corner_[1], cx = seen.c_.x() - corner_[0],
+                     cy = seen.c_.y() - corner_[1], area = bx * cy - by * cx, sign = area < 0 ? -1 : 1;
+        bx_ = float(sign * bx);
+        cx_ = float(sign * cx);
+        by_ = all(float(sign * by));
+        cy_ = all(float(sign * cy));
+        area_ = all(float(sign * area));
+        const double size = std::abs(bx) + std::abs(by) + std::abs(cx) + std::abs(cy),
+                     reach = (first - corner_).abs().max((last - corner_).abs()).sum();
+        constexpr double rounding = 1e-6;  // more than 12 rounding errors of a float
+        rim_ = all(float(size * (4 * touch_tolerance + rounding * (size + reach))));
+    }
+
+    /// What is known of four lines before their y.
+    struct Lines;
+    /// Returns the lines at x[0] .. x[3], m.
+    Lines at(const double* x) const;
+
+    SeenTriangle::Sides of(const Lines& lines, double y) const;
+
+private:
+    using Four = float __attribute__((vector_size(16)));  ///< four lines in one register; also an extension of clang
+    using FourMasks = decltype(Four{} < Four{});          ///< all bits of a number are equal
+
+    static Four all(float value) { return Four{value, value, value, value}; }
+    static Four least(const Four& a, const Four& b) { return a < b ? a : b; }
+    /// Returns bits 0 .. 3 from the first masks and bits 4 .. 7 from the second.
+    static std::uint32_t bits_of(const FourMasks& first, const FourMasks& second)
+    {
+        const FourMasks marks = (first & FourMasks{1, 2, 4, 8}) | (second & FourMasks{16, 32, 64, 128});
+        std::array<std::uint64_t, 2> twos;
+        std::memcpy(&twos, &marks, sizeof twos);
+        const std::uint64_t both = twos[0] | twos[1];
+        return std::uint32_t(both | both >> 32) & 255;
+    }
+
+    const Place corner_;  ///< the first one, m
+    float bx_, cx_;       ///< of the other corners, from the first one, m
+    Four by_, cy_;        ///< in all four numbers
+    Four area_;           ///< twice the area, m2
+    Four rim_;            ///< m2; a cross product above it is clearly positive
+};
+
+struct TriangleSides::Lines {
+    Four ab, ca;  ///< the parts of the cross products with two edges that depend on x, m2
+};
+
+inline TriangleSides::Lines TriangleSides::at(const double* x) const
+{
+    const double from = corner_[0];
+    const Four at{float(x[0] - from), float(x[1] - from), float(x[2] - from), float(x[3] - from)};
+    return {by_ * at, cy_ * at};
+}
+
+inline SeenTriangle::Sides TriangleSides::of(const Lines& lines, double y) const
+{
+    const float from_corner = float(y - corner_[1]);
+    const Four ab = all(bx_ * from_corner) - lines.ab, ca = lines.ca - all(cx_ * from_corner), bc = area_ - ab - ca;
+    const Four low = least(least(ab, ca), bc);
+    const std::uint32_t bits = bits_of(low > rim_, low < -rim_), inside = bits & 15;
+    return {inside, ~(inside | bits >> 4) & 15};
+}
 
 /// Returns where the vertical line through (x, y) meets an element of a tile, if it does.
 std::optional<SurfaceHit> hit_of(const Tile& tile, std::uint32_t element, double x, double y);

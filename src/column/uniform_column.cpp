@@ -34,10 +34,9 @@ std::optional<SurfaceHit> uniform_hit(const Tile& tile, std::uint32_t triangle, 
     // Computed heights of a triangle at -0 m may be 0 or -0.
     if (a.z() != b.z() || a.z() != c.z() || (a.z() == 0 && std::signbit(a.z()))) return std::nullopt;
     const SeenTriangle seen(tile, triangle);
-    for (const double y : {rect.low_y, rect.high_y}) {
-        const std::array both{rect.low_x, rect.high_x};
-        if (seen.sides_of(both.data(), 2, y).inside != 0b11) return std::nullopt;
-    }
+    for (const double y : {rect.low_y, rect.high_y})
+        for (const double x : {rect.low_x, rect.high_x})
+            if (seen.sides_of(x, y).inside == 0) return std::nullopt;
     return TrianglePlane(seen).hit_inside(rect.high_x, rect.high_y);
 }
 

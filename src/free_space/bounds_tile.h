@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/bits.h"
 #include "base/tile_store.h"
 
 #include <spawnfield/shape.h>
@@ -40,6 +41,18 @@ struct CellIntervals {
     /// Returns the marks of the cells of a row of the tile, one bit for each.
     std::uint64_t marks_of(std::uint32_t row) const { return marks == nullptr ? 0 : marks[row]; }
     bool has(std::uint32_t cell) const { return marks != nullptr && (marks[cell / 64] >> (cell % 64) & 1) != 0; }
+    /// Calls visit(col, intervals) for each marked cell of a row of the tile. It takes less time than of() for each.
+    template <class Visit>
+    void visit_row(std::uint32_t row, const Visit& visit) const
+    {
+        if (marks == nullptr || marks[row] == 0) return;
+        std::size_t rank = ranks[row];  // a row has 64 cells
+        for_each_bit(marks[row], [&](std::uint32_t col) {
+            const std::size_t list = lists == nullptr ? rank : lists[rank];
+            visit(col, std::span(spans + starts[list], spans + starts[list + 1]));
+            ++rank;
+        });
+    }
     /// Returns the intervals of a marked cell.
     std::span<const QuantizedSpan> of(std::uint32_t cell) const
     {

@@ -151,6 +151,9 @@ void Mask::choose_passes(Part& part) const
         if (part.passes.size() <= count) part.passes.emplace_back();
         if (part.passes[count].level != level) part.passes[count].tiles = {};
         part.passes[count].level = level;
+        if (!raster_.levels().empty())
+            part.passes[count].window = int(std::floor((reach.high_x - reach.low_x) / raster_.levels()[level].cell)) +
+                                        1;
         part.passes[count].is_ready = false;
         ++count;
     }
@@ -231,36 +234,81 @@ void Mask::open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, Op
 {
     out.col = out.row = OpenTile::none;  // remains so if open() throws because the tile is damaged
     out.tile = raster_.open(level, col, row);
-    if (!out.tile.is_empty()) out.inverse_quantum = 1 / out.tile.quantum;
+    out.inverse_quantum = out.tile.is_empty() ? 0 : 1 / out.tile.quantum;
     out.col = col;
     out.row = row;
     out.first_row = OpenTile::none;
+    if (out.tile.is_empty()) {
+        out.highest = {};
+        out.windows = {};
+    }
 }
 
-/// Sets `highest` and `listed` for these rows of the tile. Does nothing if it has been set for them already: poses of
-/// one row of a raster share it.
-void Mask::OpenTile::set_rows(std::uint32_t first, std::uint32_t last)
+/// Sets `highest` and all that follows from it for these rows of the tile. Does nothing if it has been set for them
+/// already: poses of one row of a raster share it.
+void Mask::OpenTile::set_rows(std::uint32_t first, std::uint32_t last, int wide)
 {
-    if (first == first_row && last == last_row) return;
+    if (tile.is_empty() || (first == first_row && last == last_row && wide == window)) return;
     first_row = first;
     last_row = last;
-    std::array<std::uint16_t, BoundsTile::side> maxima{};  // a local array, so that the compiler uses vectors
+    window = wide;
+    Values maxima{}, around;  // local arrays, so that the compiler uses vectors
     listed = 0;
     for (std::uint32_t r = first; r <= last; ++r) {
         const std::uint16_t* const tops = tile.tops + r * BoundsTile::side;
         for (std::size_t c = 0; c < BoundsTile::side; ++c) maxima[c] = maxima[c] < tops[c] ? tops[c] : maxima[c];
         listed |= tile.bounds.marks_of(r);
     }
-    highest = maxima;
+    std::copy(maxima.begin(), maxima.end(), highest.begin());
+    around = maxima;
+    for (int by = 1; by < std::min(window, int(BoundsTile::side)); ++by) {
+        const std::uint16_t* const next = highest.data() + by;
+        for (std::size_t c = 0; c < BoundsTile::side; ++c) around[c] = around[c] < next[c] ? next[c] : around[c];
+    }
+    windows = around;
+    has_gaps = false;
 }
 
-/// Looks at these columns of the tile, in the rows that set_rows() got, for cells that reach up to z.
-Mask::Surroundings Mask::OpenTile::around(int first_col, int last_col, double z) const
+/// Sets `floors` and `ceilings` for the rows first_row .. last_row.
+void Mask::OpenTile::set_gaps()
 {
-    std::uint32_t top = 0;
-    for (int c = first_col; c <= last_col; ++c) top = std::max<std::uint32_t>(top, highest[std::size_t(c)]);
-    if (top <= values_below(tile, inverse_quantum, z)) return Surroundings::Clear;
-    return (listed & bits_between(first_col, last_col)) != 0 ? Surroundings::Layered : Surroundings::Plain;
+    Values high_floors{}, low_ceilings;
+    low_ceilings.fill(std::numeric_limits<std::uint16_t>::max());
+    for (std::uint32_t r = first_row; r <= last_row; ++r) {
+        Values lowest;
+        std::copy_n(tile.tops + r * BoundsTile::side, BoundsTile::side, lowest.begin());
+        tile.bounds.visit_row(r, [&](std::uint32_t c, std::span<const QuantizedSpan> spans) {
+            lowest[c] = spans[0].top;
+            if (spans.size() > 1) low_ceilings[c] = std::min(low_ceilings[c], spans[1].bottom);
+        });
+        for (std::size_t c = 0; c < BoundsTile::side; ++c)
+            high_floors[c] = high_floors[c] < lowest[c] ? lowest[c] : high_floors[c];
+    }
+    has_gaps = true;
+    floors = high_floors;
+    ceilings = low_ceilings;
+}
+
+/// Looks at these columns of the tile, in the rows that set_rows() got, for what lies between two heights, m.
+Mask::Surroundings Mask::OpenTile::around(int first_col, int last_col, double bottom, double top)
+{
+    const auto highest_of = [&](const auto& heights) {
+        return *std::max_element(heights.begin() + first_col, heights.begin() + last_col + 1);
+    };
+    if (are_below(highest_of(highest), bottom)) return Surroundings::Clear;
+    if ((listed & bits_between(first_col, last_col)) == 0) return Surroundings::Plain;
+    if (!has_gaps) set_gaps();
+    const std::uint16_t ceiling = *std::min_element(ceilings.begin() + first_col, ceilings.begin() + last_col + 1);
+    return tile.height(ceiling) > top && are_below(highest_of(floors), bottom) ? Surroundings::Clear
+                                                                               : Surroundings::Layered;
+}
+
+/// Returns a tile of the pass's level, after set_rows() for these rows, which count from its first one.
+Mask::OpenTile& Mask::rows_of(Pass& pass, int tile_col, int tile_row, const CellRange& rows) const
+{
+    OpenTile& open = tile_of(pass, std::uint32_t(tile_col), std::uint32_t(tile_row));
+    open.set_rows(std::uint32_t(rows.first), std::uint32_t(rows.last), pass.window);
+    return open;
 }
 
 /// Looks at the rectangle of coarse cells around the part at each pose (x[i], y, z[i]) whose z[i] is not NaN.
@@ -269,37 +317,43 @@ void Mask::look_around(const Part& part, Pass& pass, std::span<const double> x, 
 {
     constexpr int side = BoundsTile::side;
     const double per_cell = 1 / raster_.levels()[pass.level].cell;
-    const Rect& reach = part.reach;
+    // Copies, because the compiler cannot know that writing to `out` does not change them.
+    const Rect reach = part.reach;
+    const double x0 = raster_.x0, lowest = part.footprint.outer.bottom;
     const int low_row = floor_of((y - raster_.y0 + reach.low_y) * per_cell),
               high_row = floor_of((y - raster_.y0 + reach.high_y) * per_cell),
-              cols = int(raster_.whole_cols(pass.level));
+              cols = int(raster_.whole_cols(pass.level)), window = pass.window;
     const bool is_known = low_row >= 0 && high_row < int(raster_.whole_rows(pass.level));
     std::fill(out.begin(), out.end(), is_known ? Surroundings::Clear : Surroundings::Plain);
     if (!is_known) return;
     for (int tile_row = low_row / side; tile_row <= high_row / side; ++tile_row) {
-        const int first_row = std::max(low_row - tile_row * side, 0),
-                  last_row = std::min(high_row - tile_row * side, side - 1);
-        const OpenTile* open = nullptr;
+        const CellRange rows{std::max(low_row - tile_row * side, 0), std::min(high_row - tile_row * side, side - 1)};
+        OpenTile* open = nullptr;
         int tile_col = -1;  // of `open`
+        const auto set_tile = [&](int col) {
+            if (col == tile_col) return;
+            open = &rows_of(pass, col, tile_row, rows);
+            tile_col = col;
+        };
         for (std::size_t i = 0; i < x.size(); ++i) {
-            if (out[i] != Surroundings::Clear || std::isnan(z[i])) continue;
-            const double from_left = x[i] - raster_.x0, bottom = z[i] + part.footprint.outer.bottom;
+            const double from_left = x[i] - x0, bottom = z[i] + lowest;
             const int low_col = floor_of((from_left + reach.low_x) * per_cell),
                       high_col = floor_of((from_left + reach.high_x) * per_cell);
             if (low_col < 0 || high_col >= cols) {
                 out[i] = Surroundings::Plain;
                 continue;
             }
-            for (int col = low_col / side; out[i] == Surroundings::Clear && col <= high_col / side; ++col) {
-                if (col != tile_col) {
-                    OpenTile& next = tile_of(pass, std::uint32_t(col), std::uint32_t(tile_row));
-                    if (!next.tile.is_empty()) next.set_rows(std::uint32_t(first_row), std::uint32_t(last_row));
-                    open = &next;
-                    tile_col = col;
-                }
-                if (open->tile.is_empty()) continue;
+            set_tile(low_col / side);
+            const int first = low_col % side, last = high_col - tile_col * side;
+            if (last < side && last - first <= window &&  // most poses are decided here
+                open->are_below(std::max(open->windows[std::size_t(first)], open->highest[std::size_t(last)]), bottom))
+                continue;
+            if (out[i] != Surroundings::Clear || std::isnan(z[i])) continue;
+            const double top = z[i] + part.footprint.outer.top;
+            for (int col = tile_col; out[i] == Surroundings::Clear && col <= high_col / side; ++col) {
+                set_tile(col);
                 out[i] = open->around(std::max(low_col - col * side, 0), std::min(high_col - col * side, side - 1),
-                                      bottom);
+                                      bottom, top);
             }
         }
     }
@@ -368,13 +422,13 @@ Mask::CellRange Mask::open_cells(const Pass& pass, const CoverRow& cover, const 
 std::optional<Proof> Mask::proof_of_rectangle(const Part& part, Pass& pass, const Vec3& position) const
 {
     constexpr int side = BoundsTile::side;
-    const double cell = raster_.levels()[pass.level].cell, u = (position.x() - raster_.x0) / cell,
-                 v = (position.y() - raster_.y0) / cell, z = position.z();
+    const double per_cell = 1 / raster_.levels()[pass.level].cell, x = position.x() - raster_.x0,
+                 y = position.y() - raster_.y0, z = position.z();
     const Rect &reach = part.reach, &core = *part.core;
-    const CellRange cols{floor_of(u + reach.low_x / cell), floor_of(u + reach.high_x / cell)},
-        rows{floor_of(v + reach.low_y / cell), floor_of(v + reach.high_y / cell)},
-        core_cols{ceil_of(u + core.low_x / cell), floor_of(u + core.high_x / cell) - 1},
-        core_rows{ceil_of(v + core.low_y / cell), floor_of(v + core.high_y / cell) - 1};
+    const CellRange cols{floor_of((x + reach.low_x) * per_cell), floor_of((x + reach.high_x) * per_cell)},
+        rows{floor_of((y + reach.low_y) * per_cell), floor_of((y + reach.high_y) * per_cell)},
+        core_cols{ceil_of((x + core.low_x) * per_cell), floor_of((x + core.high_x) * per_cell) - 1},
+        core_rows{ceil_of((y + core.low_y) * per_cell), floor_of((y + core.high_y) * per_cell) - 1};
     if (cols.first < 0 || cols.last >= int(raster_.whole_cols(pass.level)) || rows.first < 0 ||
         rows.last >= int(raster_.whole_rows(pass.level)))
         return std::nullopt;
@@ -492,9 +546,9 @@ bool Mask::is_in_reach(double x, double y) const
            std::abs(y - raster_.y0) < farthest * raster_.levels()[0].cell;
 }
 
-Proof Mask::proof_of_part(Part& part, const Vec3& position, Surroundings surroundings)
+/// Returns the proof for a part whose surroundings are not clear.
+Proof Mask::proof_near(Part& part, const Vec3& position, Surroundings surroundings)
 {
-    if (surroundings == Surroundings::Clear) return Proof::Free;
     if (part.core && surroundings == Surroundings::Plain && !coarse_only_)
         if (const auto proof = proof_of_rectangle(part, part.passes[part.passes.size() > 1 ? 1 : 0], position))
             return *proof;
@@ -519,8 +573,8 @@ void Mask::prove(std::span<const double> x, double y, std::span<const double> z,
     for (Part& part : parts_) {
         look_around(part, part.passes.front(), x, y, z, surroundings_);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            if (out[i] == Proof::Blocked || std::isnan(z[i])) continue;
-            const Proof proof = proof_of_part(part, {x[i], y, z[i]}, surroundings_[i]);
+            if (surroundings_[i] == Surroundings::Clear || out[i] == Proof::Blocked || std::isnan(z[i])) continue;
+            const Proof proof = proof_near(part, {x[i], y, z[i]}, surroundings_[i]);
             if (proof != Proof::Free) out[i] = proof;
         }
     }

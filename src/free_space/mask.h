@@ -51,21 +51,32 @@ private:
         int row;
         double low, high, inner_low, inner_high;
     };
-    /// What the cells around a part are like. Clear: nothing reaches up to its lowest point. Plain: something does, and
-    /// each cell has one interval. Layered: a cell has several, and the part may be between two.
+    /// What the cells around a part are like. Clear: the part is above the lowest interval of each cell, and below the
+    /// next one, if there is one. Plain: it is not, and each cell has one interval. Layered: a cell has several.
     enum class Surroundings : std::uint8_t { Clear, Plain, Layered };
     struct OpenTile {
         BoundsTile tile;
         static constexpr std::uint32_t none = 0xffffffff;
         std::uint32_t col = none, row = none;
-        double inverse_quantum = 0;  ///< of the tile
-        /// For each column of the tile's cells, the highest top in the rows first_row .. last_row of the tile.
-        std::array<std::uint16_t, BoundsTile::side> highest{};
+        double inverse_quantum = 0;                                  ///< of the tile
+        using Values = std::array<std::uint16_t, BoundsTile::side>;  ///< for each column of the tile's cells
         std::uint32_t first_row = none, last_row = 0;
+        int window = 0;
+        /// The highest top in the rows first_row .. last_row of the tile. Then zeros.
+        std::array<std::uint16_t, 2 * BoundsTile::side> highest{};
+        Values windows{};          ///< the highest of `highest` in this column and the next ones, `window` in all
         std::uint64_t listed = 0;  ///< a bit for each column in which a cell of these rows has a list of intervals
+        /// If a column is listed: the highest top of the lowest intervals, and the lowest bottom of the second ones.
+        Values floors{}, ceilings{};
+        bool has_gaps = false;  ///< floors and ceilings are set for these rows
 
-        void set_rows(std::uint32_t first, std::uint32_t last);
-        Surroundings around(int first_col, int last_col, double z) const;
+        void set_rows(std::uint32_t first, std::uint32_t last, int wide);
+        void set_gaps();
+        bool are_below(std::uint16_t top, double z) const
+        {
+            return top < (z - tile.base) * inverse_quantum || top == 0;
+        }
+        Surroundings around(int first_col, int last_col, double bottom, double top);
     };
     struct CellRange {
         int first, last;  ///< columns, inclusive
@@ -73,6 +84,7 @@ private:
     static constexpr CellRange no_cells{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     struct Pass {
         std::size_t level;
+        int window = 1;  ///< the number of columns that the part meets, or one more
         bool is_ready = false;
         std::vector<CoverRow> rows;        ///< in the order of their numbers
         std::vector<CellRange> undecided;  ///< for each row: all other cells are proven free at the last pose
@@ -93,6 +105,7 @@ private:
     void set_y(double y);
     void cover(const Part& part, Pass& pass) const;
     OpenTile& tile_of(Pass& pass, std::uint32_t col, std::uint32_t row) const;
+    OpenTile& rows_of(Pass& pass, int tile_col, int tile_row, const CellRange& rows) const;
     void open_tile(std::size_t level, std::uint32_t col, std::uint32_t row, OpenTile& out) const;
     static CellRange open_cells(const Pass& pass, const CoverRow& cover, const Pass* coarser, double u);
     bool is_in_reach(double x, double y) const;
@@ -100,7 +113,7 @@ private:
                      std::span<Surroundings> out) const;
     static bool is_hit(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
     static bool is_free(const BoundsTile& tile, std::uint32_t cell, const Heights& heights);
-    Proof proof_of_part(Part& part, const Vec3& position, Surroundings surroundings);
+    Proof proof_near(Part& part, const Vec3& position, Surroundings surroundings);
     std::optional<Proof> proof_of_rectangle(const Part& part, Pass& pass, const Vec3& position) const;
     Proof proof_of(const Part& part, Pass& pass, const Pass* coarser, double x, double z) const;
 

@@ -159,6 +159,9 @@ struct Tile {
     {
         return marks<2>({low_x, low_y}, {high_x, high_y});
     }
+    // The same for a line along y, and for a line along x. Both together are near() for the point where they cross.
+    std::uint64_t near_x(double x) const { return marks<1>({x}, {x}); }
+    std::uint64_t near_y(double y) const { return marks<1, 1>({y}, {y}); }
     /// The same for a closed box.
     std::uint64_t near(const Bounds& space) const
     {
@@ -166,14 +169,15 @@ struct Tile {
     }
 
 private:
-    template <std::size_t Axes>
+    /// The axes are `First` and those that follow it.
+    template <std::size_t Axes, std::size_t First = 0>
     std::uint64_t marks(const std::array<double, Axes>& low, const std::array<double, Axes>& high) const
     {
         std::array<std::uint8_t, TileBoxes::most> meets;
         meets.fill(1);
-        for (std::size_t axis = 0; axis < Axes; ++axis) {
-            const std::uint8_t from = head->scales[axis].number_of(low[axis]),
-                               to = head->scales[axis].number_of(high[axis]);
+        for (std::size_t axis = First; axis < First + Axes; ++axis) {
+            const std::uint8_t from = head->scales[axis].number_of(low[axis - First]),
+                               to = head->scales[axis].number_of(high[axis - First]);
             const std::uint8_t *const min = boxes->min[axis].data(), *const max = boxes->max[axis].data();
 #pragma omp simd
             for (std::size_t e = 0; e < TileBoxes::most; ++e)

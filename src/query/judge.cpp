@@ -224,6 +224,10 @@ void PoseJudge::judge_row(std::span<const double> x, double y, std::span<const C
     mask_->prove(x, y, z_, proofs_);
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (std::isnan(z_[i])) continue;
+        if (proofs_[i] == Proof::Free) {
+            out[i] = {Verdict::Valid, false};
+            continue;
+        }
         const double terrain = ground[i].terrain;
         const Span surface{terrain, terrain, 0, true, true};
         const ColumnView column({&surface, 1}, {}, {});
