@@ -1,0 +1,170 @@
+#include "reach/way_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace spawnfield {
+namespace {
+
+constexpr double slope_arm = 1e-3;    // m: the slope of the ground at a column is measured over this length
+constexpr double limit_slack = 1e-9;  // m, in comparisons with limits
+constexpr int pieces = 4;             // of a way with a turn
+
+double radius_of(const Robot& robot)
+{
+    const Bounds box = robot.bounds();
+    return box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
+}
+
+/// Returns the position and the yaw after a part t of a way. In a curve, the robot follows the quadratic Bezier curve
+/// whose middle point is straight ahead of it at both ends, and looks along it.
+std::pair<Vec2, double> along(const StateAt& from, const StateAt& to, Way way, double t)
+{
+    const double yaw = lattice_yaw(from.heading),
+                 turn = std::remainder(lattice_yaw(to.heading) - yaw, 2 * std::numbers::pi);
+    if (turn == 0 || way == Way::Turn) return {from.at + t * (to.at - from.at), yaw + t * turn};
+    const LatticeMove first = lattice_move(from.heading), second = lattice_move(to.heading);
+    const Vec2 begin(first.cols, first.rows), end(second.cols, second.rows), both = begin + end;
+    const double step = (to.at - from.at).norm() / both.norm();
+    const Vec2 tangent = (1 - t) * begin + t * end;
+    return {from.at + step * (2 * t * (1 - t) * begin + t * t * both), std::atan2(tangent.y(), tangent.x())};
+}
+
+}  // namespace
+
+WayJudge::WayJudge(const Judge::Impl& shared, double max_step, double longest_way)
+    : shared_(shared), max_step_(max_step), longest_way_(longest_way), radius_(radius_of(shared.robot)),
+      steepest_(std::tan(shared.options.stand.max_slope)), stand_(shared), columns_(shared, 0), level_(shared),
+      sweep_(shared.map.geometry, shared.robot)
+{
+}
+
+void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
+{
+    const ColumnView column(columns_.column_at(at));
+    bool has_solids = false;
+    for (const double height : heights_within(column.layers, shared_.map.z_limits)) {
+        PlaceStates place{.ground = height};
+        bool is_level = level_.is_possible();
+        if (is_level && !has_solids) {
+            level_.set_place(at, radius_ + longest_way_);
+            has_solids = true;
+        }
+        is_level = is_level && level_.set_layer(height) && is_proven(column, {at.x(), at.y(), height});
+        place.is_open = is_level && level_.is_open();
+        for (int heading = 0; heading < lattice_headings; ++heading) {
+            StatePose& state = place.poses[std::size_t(heading)];
+            if (place.is_open || (is_level && level_.stands(lattice_yaw(heading)))) {
+                state = {.z = level_.z(), .is_exact = false};
+            } else {
+                const SettledPose pose = stand_.judge(column, {at.x(), at.y(), height}, lattice_yaw(heading));
+                if (pose.verdict != Verdict::Valid) continue;
+                state = {.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
+            }
+            place.valid |= HeadingSet(1u << heading);
+        }
+        if (place.valid != 0) out.push_back(place);
+    }
+}
+
+/// Returns whether a place has what LevelGround does not examine: ground that can be used, also for the robot at rest,
+/// and nothing filled around it.
+bool WayJudge::is_proven(const ColumnView& column, const Vec3& place)
+{
+    Judgement there, at_rest;
+    const Vec3 raised(place.x(), place.y(), level_.z() + shared_.options.stand.lift);
+    const bool is_inside = shared_.map.z_limits.contains(raised.z() - LevelGround::tolerance, 0) &&
+                           shared_.map.z_limits.contains(raised.z() + LevelGround::tolerance, 0);
+    if (!is_inside || !columns_.judge_ground(column, place, there) || !columns_.judge_ground(column, raised, at_rest))
+        return false;
+    const double above = place.z() + level_.flatness();
+    if (at_rest.ground->height > above) return false;
+    return std::none_of(column.spans.begin(), column.spans.end(),
+                        [&](const Span& span) { return span.top > above && span.bottom <= raised.z(); });
+}
+
+std::optional<std::size_t> WayJudge::place_after(const Vec2& from, const PlaceStates& place, const Vec2& to,
+                                                 std::span<const PlaceStates> others, int heading)
+{
+    // On level ground, the step cannot be larger.
+    if (others.size() == 1 && (place.is_open || others[0].is_open) && 3 * level_.flatness() <= max_step_ &&
+        std::abs(others[0].ground - place.ground) <= 2 * level_.flatness())
+        return has_heading(others[0].valid, heading) ? std::optional<std::size_t>(0) : std::nullopt;
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t best = 0;
+    for (std::size_t k = 0; k < others.size(); ++k) {
+        if (!has_heading(others[k].valid, heading)) continue;
+        const double step = step_between(from, place.ground, to, others[k].ground);
+        if (!(step < least)) continue;
+        least = step;
+        best = k;
+    }
+    return least <= max_step_ + limit_slack ? std::optional(best) : std::nullopt;
+}
+
+/// Returns the step in the ground between two places, m. Infinite: it is larger than max_step.
+double WayJudge::step_between(const Vec2& from, double ground, const Vec2& to, double other_ground)
+{
+    const double length = (to - from).norm(), rise = other_ground - ground;
+    if (std::abs(rise) > length * steepest_ + max_step_ + limit_slack) return std::numeric_limits<double>::infinity();
+    const Vec2 ahead = (to - from) / length;
+    const double s = length * slope_at(from, ground, ahead), t = -length * slope_at(to, other_ground, -ahead);
+    return std::max({0.0, rise - std::max(s, t), std::min(s, t) - rise});
+}
+
+/// Returns the slope of the ground at a place in a direction; 0 if it is steeper than the robot may stand on, or if it
+/// ends there.
+double WayJudge::slope_at(const Vec2& at, double ground, const Vec2& ahead)
+{
+    double nearest = steepest_ * slope_arm + limit_slack, out = 0;
+    for (const double height : columns_.column_at(at + slope_arm * ahead).layers) {
+        if (!(std::abs(height - ground) <= nearest)) continue;
+        nearest = std::abs(height - ground);
+        out = (height - ground) / slope_arm;
+    }
+    return out;
+}
+
+bool WayJudge::can_go(const StateAt& from, const StateAt& to, Way way)
+{
+    if (from.place.is_open || to.place.is_open) return true;
+    const StatePose &pose = from.place.poses[std::size_t(from.heading)],
+                    &other = to.place.poses[std::size_t(to.heading)];
+    const double lift = shared_.options.stand.lift;
+    if (is_free(from, pose, to, other, way, lift)) return true;
+    if (!pose.is_exact || !other.is_exact) {
+        const StatePose exact = exact_pose(from), other_exact = exact_pose(to);
+        return is_free(from, exact, to, other_exact, way, lift) ||
+               (max_step_ > lift && is_free(from, exact, to, other_exact, way, max_step_));
+    }
+    return max_step_ > lift && is_free(from, pose, to, other, way, max_step_);
+}
+
+/// Returns the settled pose of a state.
+StatePose WayJudge::exact_pose(const StateAt& state)
+{
+    const StatePose& known = state.place.poses[std::size_t(state.heading)];
+    if (known.is_exact) return known;
+    const SettledPose pose = stand_.judge({state.at.x(), state.at.y(), state.place.ground}, lattice_yaw(state.heading));
+    return {.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
+}
+
+bool WayJudge::is_free(const StateAt& from, const StatePose& pose, const StateAt& to, const StatePose& other, Way way,
+                       double lift)
+{
+    const bool is_turning = from.heading != to.heading;
+    const double growth = pose.is_exact && other.is_exact ? 0 : LevelGround::tolerance;
+    poses_.clear();
+    for (int k = 0; k <= (is_turning ? pieces : 1); ++k) {
+        const double t = is_turning ? double(k) / pieces : k;
+        const auto [at, yaw] = along(from, to, way, t);
+        const auto between = [&](double a, double b) { return a + t * (b - a); };
+        poses_.push_back({{at.x(), at.y(), between(pose.z, other.z)},
+                          rotation_from_rpy(between(pose.roll, other.roll), between(pose.pitch, other.pitch), yaw)});
+    }
+    return sweep_.is_free(poses_, lift, growth);
+}
+
+}  // namespace spawnfield
