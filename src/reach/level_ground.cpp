@@ -13,21 +13,24 @@ namespace spawnfield {
 namespace {
 
 constexpr int directions = 64;        // in which the robot's outline is examined
+constexpr double round_miss = 2e-3;   // share of the radius of round parts by which the outline may miss their points
 constexpr std::size_t most = 64;      // solids near a place; of more, the comparisons take longer than they save
 constexpr double contact_gap = 1e-3;  // m: as in Settler
 
 /// Returns the extreme points of a robot in horizontal directions that are tilted by `down`, as corners of a polygon.
-/// Points of round parts are missed by at most 0.2 % of their radius.
-template <class Keep>
-Polygon2 outline_of(const std::vector<Convex>& parts, double down, const Keep& keep)
+template <class KeepPart, class KeepPoint>
+Polygon2 outline_of(const std::vector<Convex>& parts, double down, const KeepPart& keep_part,
+                    const KeepPoint& keep_point)
 {
     Polygon2 points;
-    for (const Convex& part : parts)
+    for (const Convex& part : parts) {
+        if (!keep_part(part)) continue;
         for (int k = 0; k < directions; ++k) {
             const double angle = 2 * std::numbers::pi * k / directions;
             const Vec3 point = part.support({std::cos(angle), std::sin(angle), -down});
-            if (keep(point)) points.push_back(point.head<2>());
+            if (keep_point(point)) points.push_back(point.head<2>());
         }
+    }
     return convex_hull(std::move(points));
 }
 
@@ -85,7 +88,8 @@ double largest_flatness(double margin, double mass_height, double radius, double
 
 LevelGround::LevelGround(const Judge::Impl& shared) : shared_(shared)
 {
-    constexpr double level = 1e-6;  // m: points that are not higher than this above the lowest one stand on the ground
+    constexpr double level = 1e-6;   // m: points that are not higher than this above the lowest one stand on the ground
+    constexpr double upright = 0.5;  // cosine of the angle between the axis of a wheel and the vertical
     constexpr double least_friction = 0.1, least_slope = 0.05;  // the proof would need smaller slopes otherwise
     const StandLimits& limits = shared.options.stand;
     std::vector<Convex> parts;
@@ -94,14 +98,18 @@ LevelGround::LevelGround(const Judge::Impl& shared) : shared_(shared)
     for (const RobotPart& part : shared.robot.parts) {
         const Convex& body = parts.emplace_back(convex_of(part));
         for (const Vec3& point : body.points) radius = std::max(radius, point.norm() + body.ball + body.disc);
+        gap_ = std::max(gap_, 2 * tolerance + round_miss * (body.ball + body.disc));
         box.extend(body.bounds().min);
         box.extend(body.bounds().max);
     }
     lowest_ = box.min.z();
     highest_ = box.max.z();
-    footprint_ = outline_of(parts, 0, [](const Vec3&) { return true; });
-    const Polygon2 support = outline_of(parts, 1 / level,
-                                        [&](const Vec3& point) { return point.z() <= lowest_ + level; });
+    const auto is_any = [](const auto&) { return true; };
+    footprint_ = outline_of(parts, 0, is_any, is_any);
+    // A disc that lies on nearly level ground may touch it at a few points of its rim only.
+    const auto has_feet = [](const Convex& body) { return body.disc == 0 || std::abs(body.axis.z()) < upright; };
+    const auto is_low = [&](const Vec3& point) { return point.z() <= lowest_ + level; };
+    const Polygon2 support = outline_of(parts, 1 / level, has_feet, is_low);
     const Vec3 mass = mass_center_of(shared.robot);
     const double raised = limits.lift - lowest_;
     if (shared.options.exhaustive || limits.drop || limits.friction < least_friction ||
@@ -117,10 +125,14 @@ void LevelGround::set_place(const Vec2& place, double radius)
     origin_ = {place.x(), place.y(), 0};
     radius_ = radius;
     solids_.clear();
+    is_unsealed_ = false;
+    const std::vector<Part>& scene_parts = shared_.map.geometry.parts();
     shared_.map.geometry.impl().visit_in(
         place.x() - radius, place.y() - radius, place.x() + radius, place.y() + radius,
         [&](const Tile& tile, auto element) {
             const Label label = tile.label(element);
+            const Part& part = scene_parts[tile.part(element)];
+            is_unsealed_ |= part.open_edges > 0 && part.solid_pieces > 0;
             if (label == Label::Water || label == Label::Ignore || solids_.size() > most) return;
             if (tile.is_triangle(element))
                 add_triangle(tile.corners(element), label == Label::Terrain);
@@ -176,7 +188,7 @@ bool LevelGround::set_layer(double height)
     ground_.clear();
     others_.clear();
     ends_.clear();
-    if (solids_.size() > most) return false;
+    if (solids_.size() > most || is_unsealed_) return false;
     const double top = z() + highest_ + shared_.options.stand.lift + tolerance;
     bool is_on_ground = false;
     for (const Solid& solid : solids_) {
@@ -212,7 +224,7 @@ void LevelGround::find_ends(const Solid& solid)
 bool LevelGround::stands(double yaw) const
 {
     const Polygon2 footprint = rotated(footprint_, yaw);
-    const auto is_clear = [&](const Polygon2& outline) { return are_apart(outline, footprint, 2 * tolerance); };
+    const auto is_clear = [&](const Polygon2& outline) { return are_apart(outline, footprint, gap_); };
     return std::all_of(others_.begin(), others_.end(), [&](const Polygon2* other) { return is_clear(*other); }) &&
            std::all_of(ends_.begin(), ends_.end(), is_clear);
 }

@@ -61,9 +61,12 @@ private:
     Polygon2 footprint_;               ///< outline of the robot, seen from above, in its frame
     double lowest_ = 0, highest_ = 0;  ///< of the robot's points, in its frame, m
     double flatness_ = 0;              ///< m; 0: nothing can be proven
+    double gap_ = 0;                   ///< m; what is farther than this from the footprint does not meet the robot
     Vec3 origin_ = Vec3::Zero();
     double radius_ = 0, height_ = 0;
     std::vector<Solid> solids_;
+    /// There is a mesh that may be filled although it has holes. It can contain the robot without any face near it.
+    bool is_unsealed_ = false;
     std::vector<const Solid*> ground_;
     std::vector<const Polygon2*> others_;  ///< outlines of all else that may meet the robot
     std::vector<Polygon2> ends_;           ///< edges at which the ground ends, or may end

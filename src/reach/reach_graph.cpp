@@ -150,7 +150,9 @@ private:
         const std::span<const PlaceStates> middle = states_[std::size_t(mid_row)].at(mid_col);
         for (const int at_middle : {heading, end.heading})
             if (const auto k = judge.place_after(at(col, row), place, at(mid_col, mid_row), middle, at_middle))
-                return judge.place_after(at(mid_col, mid_row), middle[*k], at(to_col, to_row), others, end.heading);
+                if (const auto out = judge.place_after(at(mid_col, mid_row), middle[*k], at(to_col, to_row), others,
+                                                       end.heading))
+                    return out;
         return std::nullopt;
     }
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double slope_arm = 1e-3;    // m: the slope of the ground at a column is measured over this length
 constexpr double limit_slack = 1e-9;  // m, in comparisons with limits
-constexpr int pieces = 4;             // of a way with a turn
+constexpr int turn_pieces = 4;        // of a way on which the robot turns
+constexpr double large_tilt = 0.1;    // rad: if roll or pitch change by more, a way has as many pieces
 
 double radius_of(const Robot& robot)
 {
@@ -129,17 +130,32 @@ double WayJudge::slope_at(const Vec2& at, double ground, const Vec2& ahead)
 
 bool WayJudge::can_go(const StateAt& from, const StateAt& to, Way way)
 {
-    if (from.place.is_open || to.place.is_open) return true;
+    // On open ground, nothing is there that the robot could meet. The other place may be on another layer.
+    if ((from.place.is_open || to.place.is_open) &&
+        std::abs(from.place.ground - to.place.ground) <= 2 * level_.flatness())
+        return true;
     const StatePose &pose = from.place.poses[std::size_t(from.heading)],
                     &other = to.place.poses[std::size_t(to.heading)];
     const double lift = shared_.options.stand.lift;
     if (is_free(from, pose, to, other, way, lift)) return true;
-    if (!pose.is_exact || !other.is_exact) {
-        const StatePose exact = exact_pose(from), other_exact = exact_pose(to);
-        return is_free(from, exact, to, other_exact, way, lift) ||
-               (max_step_ > lift && is_free(from, exact, to, other_exact, way, max_step_));
-    }
-    return max_step_ > lift && is_free(from, pose, to, other, way, max_step_);
+    if (pose.is_exact && other.is_exact) return can_climb(from, pose, to, other, way);
+    const StatePose exact = exact_pose(from), other_exact = exact_pose(to);
+    return is_free(from, exact, to, other_exact, way, lift) || can_climb(from, exact, to, other_exact, way);
+}
+
+/// Returns whether the robot can be raised by max_step at both ends of a way, and then meets nothing.
+bool WayJudge::can_climb(const StateAt& from, const StatePose& pose, const StateAt& to, const StatePose& other, Way way)
+{
+    const double lift = shared_.options.stand.lift;
+    if (!(max_step_ > lift) || !is_free(from, pose, to, other, way, max_step_)) return false;
+    const auto can_rise = [&](const Pose& raised) {
+        const Vec3 below = raised.position - (max_step_ - lift) * Vec3::UnitZ();
+        return sweep_.is_free(std::array{Pose{below, raised.rotation}, raised}, 0);
+    };
+    Pose begin = poses_.front(), end = poses_.back();
+    begin.position.z() += max_step_;
+    end.position.z() += max_step_;
+    return can_rise(begin) && can_rise(end);
 }
 
 /// Returns the settled pose of a state.
@@ -154,11 +170,13 @@ StatePose WayJudge::exact_pose(const StateAt& state)
 bool WayJudge::is_free(const StateAt& from, const StatePose& pose, const StateAt& to, const StatePose& other, Way way,
                        double lift)
 {
-    const bool is_turning = from.heading != to.heading;
+    const bool is_turning = from.heading != to.heading || std::abs(pose.roll - other.roll) > large_tilt ||
+                            std::abs(pose.pitch - other.pitch) > large_tilt;
+    const int pieces = is_turning ? turn_pieces : 1;
     const double growth = pose.is_exact && other.is_exact ? 0 : LevelGround::tolerance;
     poses_.clear();
-    for (int k = 0; k <= (is_turning ? pieces : 1); ++k) {
-        const double t = is_turning ? double(k) / pieces : k;
+    for (int k = 0; k <= pieces; ++k) {
+        const double t = double(k) / pieces;
         const auto [at, yaw] = along(from, to, way, t);
         const auto between = [&](double a, double b) { return a + t * (b - a); };
         poses_.push_back({{at.x(), at.y(), between(pose.z, other.z)},

@@ -58,6 +58,7 @@ private:
     double slope_at(const Vec2& at, double ground, const Vec2& ahead);
     bool is_proven(const ColumnView& column, const Vec3& place);
     StatePose exact_pose(const StateAt& state);
+    bool can_climb(const StateAt& from, const StatePose& pose, const StateAt& to, const StatePose& other, Way way);
     bool is_free(const StateAt& from, const StatePose& pose, const StateAt& to, const StatePose& other, Way way,
                  double lift);
 
