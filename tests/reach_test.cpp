@@ -693,6 +693,64 @@ TEST_CASE("the graph is the same with any number of threads, and with every stat
     is_same({without_mask(judge), {.threads = 1}});
 }
 
+TEST_CASE("the island of a state is that of its settled pose")
+{
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        CAPTURE(seed);
+        const Judge judge(map_of(furnished(seed, 1), 0.1), boxy({0.5, 0.3, 0.25}));
+        const Impl graph(judge, {.step = 0.16});
+        for_each_state(graph, [&](const slow::Reach::State& state, std::size_t place) {
+            const Vec3 at(graph.grid.x_of(state[0]), graph.grid.y_of(state[1]), graph.ground[place]);
+            const auto island = graph.island_of(judge.settle(at, lattice_yaw(state[3])));
+            REQUIRE(island);
+            CHECK(*island == island_at(graph, place, state[3]));
+        });
+    }
+}
+
+TEST_CASE("the island of a pose between the columns is that of its room and its layer")
+{
+    Scene scene;  // two rooms of different sizes, a shelf in the larger one, and a closet between columns
+    add_block(scene, {-2, -1, -0.5}, {2, 1, 0});
+    add_obstacle(scene, {-0.75, -1, 0}, {-0.65, 1, 1});
+    add_block(scene, {0.4, -0.6, 0.4}, {1.8, 0.6, 0.5});
+    const Judge judge(map_of(scene), boxy({0.4, 0.3, 0.2}));
+    const ReachGraph graph(judge, {.step = 0.1});
+    Random random(5);
+    std::array<int, 3> found{};
+    for (int k = 0; k < 500; ++k) {
+        const double x = random.between(-2, 2), y = random.between(-1, 1), z = random.chance(0.5) ? 0.2 : 0.7;
+        const SettledPose pose = judge.settle({x, y, z}, random.between(-3, 3));
+        const auto island = graph.island_of(pose);
+        if (pose.verdict != Verdict::Valid) {
+            CHECK(!island);
+            continue;
+        }
+        if (!island || *island > 2) continue;  // near a wall, where the robot cannot turn
+        const std::size_t expected = pose.ground->height > 0.4 ? 2 : x < -0.7 ? 1 : 0;
+        CAPTURE(x, y, z);
+        CHECK(*island == expected);
+        ++found[expected];
+    }
+    for (const int count : found) CHECK(count >= 20);
+}
+
+TEST_CASE("a pose from which the robot can go nowhere has no island")
+{
+    Scene scene;  // in this closet, the robot stands between two columns only
+    add_block(scene, {-1, -1, -0.5}, {1, 1, 0});
+    for (const double side : {-1.0, 1.0}) {
+        const Vec3 middle(0.25, 0.25, 0);
+        add_obstacle(scene, middle + Vec3(side * 0.2 - 0.04, -0.24, 0), middle + Vec3(side * 0.2 + 0.04, 0.24, 1));
+        add_obstacle(scene, middle + Vec3(-0.24, side * 0.2 - 0.04, 0), middle + Vec3(0.24, side * 0.2 + 0.04, 1));
+    }
+    const Judge judge(map_of(scene), boxy({0.3, 0.3, 0.2}));
+    const ReachGraph graph(judge, {.step = 0.5});
+    const SettledPose pose = judge.settle({0.25, 0.25, 0}, 0);
+    CHECK(pose.verdict == Verdict::Valid);
+    CHECK(!graph.island_of(pose));
+}
+
 TEST_CASE("a fault in the options of a drivable graph is named with its value and limit")
 {
     const TestMap map = map_of(ramp(0.1, 0.2));

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <ranges>
 
 namespace spawnfield {
@@ -10,6 +12,18 @@ namespace {
 
 /// Returns the headings at which a run begins: those that no turn reaches from the heading before.
 HeadingSet starts_of(HeadingSet valid, HeadingSet turns) { return HeadingSet(valid & ~std::rotl(turns, 1)); }
+
+/// Returns the two headings around a yaw, the nearer one first.
+std::array<int, 2> headings_around(double yaw)
+{
+    const auto ahead_of_it = [&](int heading) {
+        return std::remainder(lattice_yaw(heading) - yaw, 2 * std::numbers::pi);
+    };
+    int nearest = 0;
+    for (int k = 1; k < lattice_headings; ++k)
+        if (std::abs(ahead_of_it(k)) < std::abs(ahead_of_it(nearest))) nearest = k;
+    return {nearest, lattice_heading(nearest, ahead_of_it(nearest) > 0 ? -1 : 1)};
+}
 
 }  // namespace
 
@@ -107,6 +121,38 @@ void ReachGraph::Impl::set_places()
         nearest[i] = distance;
         islands[i].place = at;
     });
+}
+
+std::optional<std::size_t> ReachGraph::Impl::island_of(const SettledPose& pose) const
+{
+    if (pose.verdict != Verdict::Valid) return std::nullopt;
+    const Vec2 at = pose.position.head<2>();
+    struct Column {
+        int col, row;
+        double distance;  ///< from the pose, m
+    };
+    std::vector<Column> columns;
+    const double col = std::floor((at.x() - grid.x0) / grid.step), row = std::floor((at.y() - grid.y0) / grid.step);
+    for (const double c : {col, col + 1})
+        for (const double r : {row, row + 1})
+            if (c >= 0 && r >= 0 && c < grid.cols && r < grid.rows)
+                columns.push_back({int(c), int(r), (Vec2(grid.x_of(int(c)), grid.y_of(int(r))) - at).norm()});
+    const auto is_nearer = [](const Column& a, const Column& b) { return a.distance < b.distance; };
+    std::stable_sort(columns.begin(), columns.end(), is_nearer);
+    for (const Column& column : columns)
+        for (const int heading : headings_around(pose.yaw))
+            if (const auto island = island_at(pose, column.col, column.row, heading)) return island;
+    return std::nullopt;
+}
+
+/// Returns the island of the state of a column to which the robot can go from a valid settled pose.
+std::optional<std::size_t> ReachGraph::Impl::island_at(const SettledPose& pose, int col, int row, int heading) const
+{
+    const std::size_t begin = first[column_of(col, row)], end = first[column_of(col, row) + 1];
+    std::vector<PlaceStates> places;
+    for (std::size_t p = begin; p < end; ++p) places.push_back({.ground = ground[p], .valid = valid[p]});
+    const auto k = way_judges.local().place_near(pose, {grid.x_of(col), grid.y_of(row)}, places, heading);
+    return k ? std::optional<std::size_t>(run_islands[run_of(begin + *k, heading)]) : std::nullopt;
 }
 
 }  // namespace spawnfield

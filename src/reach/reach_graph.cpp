@@ -31,8 +31,7 @@ double longest_way()
 class GraphBuilder {
 public:
     explicit GraphBuilder(ReachGraph::Impl& graph)
-        : graph_(graph), grid_(graph.grid), states_(std::size_t(grid_.rows)), edges_(std::size_t(grid_.rows)),
-          judges_([this] { return WayJudge(graph_.judge.impl(), graph_.options.max_step, longest_way() * grid_.step); })
+        : graph_(graph), grid_(graph.grid), states_(std::size_t(grid_.rows)), edges_(std::size_t(grid_.rows))
     {
     }
 
@@ -80,14 +79,14 @@ private:
         StateRow& out = states_[std::size_t(row)];
         for (int col = 0; col < grid_.cols; ++col) {
             out.first.push_back(std::uint32_t(out.places.size()));
-            judges_.local().find_places(at(col, row), out.places);
+            graph_.way_judges.local().find_places(at(col, row), out.places);
         }
         out.first.push_back(std::uint32_t(out.places.size()));
     }
 
     void find_edges(int row)
     {
-        WayJudge& judge = judges_.local();
+        WayJudge& judge = graph_.way_judges.local();
         EdgeRow& out = edges_[std::size_t(row)];
         for (int col = 0; col < grid_.cols; ++col) {
             const std::span<const PlaceStates> places = states_[std::size_t(row)].at(col);
@@ -176,7 +175,6 @@ private:
     const RasterGrid& grid_;
     std::vector<StateRow> states_;
     std::vector<EdgeRow> edges_;
-    PerThread<WayJudge> judges_;
 };
 
 }  // namespace
@@ -195,7 +193,9 @@ double auto_reach_step(const Robot& robot)
     return width(convex_hull(std::move(outline))) / 4;
 }
 
-ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_) : judge(judge_), options(options_)
+ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_)
+    : judge(judge_), options(options_),
+      way_judges([this] { return WayJudge(judge.impl(), options.max_step, longest_way() * grid.step); })
 {
     judge.impl().settler();  // throws if the obstacles are voxels
     if (!options.step) options.step = auto_reach_step(judge.robot());
@@ -228,5 +228,7 @@ std::vector<ReachPlace> ReachGraph::places() const
     });
     return out;
 }
+
+std::optional<std::size_t> ReachGraph::island_of(const SettledPose& pose) const { return impl_->island_of(pose); }
 
 }  // namespace spawnfield

@@ -3,6 +3,7 @@
 #include "query/raster_grid.h"
 #include "reach/disjoint_sets.h"
 #include "reach/lattice.h"
+#include "reach/way_judge.h"
 
 #include <spawnfield/reach.h>
 
@@ -40,6 +41,7 @@ struct ReachGraph::Impl {
     {
         return std::size_t(row) * std::size_t(grid.cols) + std::size_t(col);
     }
+    std::optional<std::size_t> island_of(const SettledPose& pose) const;
     /// Returns the number of the run that contains a valid heading of a place.
     std::size_t run_of(std::size_t place, int heading) const;
 
@@ -53,7 +55,10 @@ struct ReachGraph::Impl {
                 for (; p < first[column_of(col, row) + 1]; ++p) visit(p, grid.x_of(col), grid.y_of(row));
     }
 
+    mutable PerThread<WayJudge> way_judges;  ///< for poses that are not states
+
 private:
+    std::optional<std::size_t> island_at(const SettledPose& pose, int col, int row, int heading) const;
     DisjointSets joined_runs() const;
     void find_islands();
     void set_places();

@@ -19,21 +19,27 @@ double radius_of(const Robot& robot)
     return box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
 }
 
-/// Returns the position and the yaw after a part t of a way. In a curve, the robot follows the quadratic Bezier curve
-/// whose middle point is straight ahead of it at both ends, and looks along it.
-std::pair<Vec2, double> along(const StateAt& from, const StateAt& to, Way way, double t)
+double turn_between(double yaw, double other) { return std::remainder(other - yaw, 2 * std::numbers::pi); }
+
+Course course_of(const StateAt& from, const StateAt& to, Way way)
 {
-    const double yaw = lattice_yaw(from.heading),
-                 turn = std::remainder(lattice_yaw(to.heading) - yaw, 2 * std::numbers::pi);
-    if (turn == 0 || way == Way::Turn) return {from.at + t * (to.at - from.at), yaw + t * turn};
-    const LatticeMove first = lattice_move(from.heading), second = lattice_move(to.heading);
-    const Vec2 begin(first.cols, first.rows), end(second.cols, second.rows), both = begin + end;
-    const double step = (to.at - from.at).norm() / both.norm();
-    const Vec2 tangent = (1 - t) * begin + t * end;
-    return {from.at + step * (2 * t * (1 - t) * begin + t * t * both), std::atan2(tangent.y(), tangent.x())};
+    const double yaw = lattice_yaw(from.heading);
+    Course out{.begin = from.at, .end = to.at, .yaw = yaw, .turn = turn_between(yaw, lattice_yaw(to.heading))};
+    if (way != Way::Left && way != Way::Right) return out;
+    const LatticeMove first = lattice_move(from.heading), both = first + lattice_move(to.heading);
+    const double step = (to.at - from.at).norm() / both.length();
+    out.corner = from.at + step * Vec2(first.cols, first.rows);
+    return out;
 }
 
 }  // namespace
+
+std::pair<Vec2, double> Course::at(double t) const
+{
+    if (!corner) return {begin + t * (end - begin), yaw + t * turn};
+    const Vec2 first = *corner - begin, second = end - *corner, tangent = (1 - t) * first + t * second;
+    return {begin + (2 * t * (1 - t) + t * t) * first + t * t * second, std::atan2(tangent.y(), tangent.x())};
+}
 
 WayJudge::WayJudge(const Judge::Impl& shared, double max_step, double longest_way)
     : shared_(shared), max_step_(max_step), longest_way_(longest_way), radius_(radius_of(shared.robot)),
@@ -109,6 +115,7 @@ std::optional<std::size_t> WayJudge::place_after(const Vec2& from, const PlaceSt
 double WayJudge::step_between(const Vec2& from, double ground, const Vec2& to, double other_ground)
 {
     const double length = (to - from).norm(), rise = other_ground - ground;
+    if (length == 0) return std::abs(rise);
     if (std::abs(rise) > length * steepest_ + max_step_ + limit_slack) return std::numeric_limits<double>::infinity();
     const Vec2 ahead = (to - from) / length;
     const double s = length * slope_at(from, ground, ahead), t = -length * slope_at(to, other_ground, -ahead);
@@ -136,48 +143,67 @@ bool WayJudge::can_go(const StateAt& from, const StateAt& to, Way way)
         return true;
     const StatePose &pose = from.place.poses[std::size_t(from.heading)],
                     &other = to.place.poses[std::size_t(to.heading)];
-    const double lift = shared_.options.stand.lift;
-    if (is_free(from, pose, to, other, way, lift)) return true;
-    if (pose.is_exact && other.is_exact) return can_climb(from, pose, to, other, way);
-    const StatePose exact = exact_pose(from), other_exact = exact_pose(to);
-    return is_free(from, exact, to, other_exact, way, lift) || can_climb(from, exact, to, other_exact, way);
+    const Course course = course_of(from, to, way);
+    if (pose.is_exact && other.is_exact) return can_follow(course, pose, other);
+    return is_free(course, pose, other, shared_.options.stand.lift) ||
+           can_follow(course, exact_pose(from), exact_pose(to));
+}
+
+/// Returns whether the robot meets nothing on a way between two poses, both of which are exact.
+bool WayJudge::can_follow(const Course& course, const StatePose& pose, const StatePose& other)
+{
+    return is_free(course, pose, other, shared_.options.stand.lift) || can_climb(course, pose, other);
 }
 
 /// Returns whether the robot can be raised by max_step at both ends of a way, and then meets nothing.
-bool WayJudge::can_climb(const StateAt& from, const StatePose& pose, const StateAt& to, const StatePose& other, Way way)
+bool WayJudge::can_climb(const Course& course, const StatePose& pose, const StatePose& other)
 {
     const double lift = shared_.options.stand.lift;
-    if (!(max_step_ > lift) || !is_free(from, pose, to, other, way, max_step_)) return false;
-    const auto can_rise = [&](const Pose& raised) {
-        const Vec3 below = raised.position - (max_step_ - lift) * Vec3::UnitZ();
-        return sweep_.is_free(std::array{Pose{below, raised.rotation}, raised}, 0);
+    if (!(max_step_ > lift) || !is_free(course, pose, other, max_step_)) return false;
+    const auto can_rise = [&](const Pose& settled) {
+        const Pose low{settled.position + lift * Vec3::UnitZ(), settled.rotation},
+            high{settled.position + max_step_ * Vec3::UnitZ(), settled.rotation};
+        return sweep_.is_free(std::array{low, high}, 0);
     };
-    Pose begin = poses_.front(), end = poses_.back();
-    begin.position.z() += max_step_;
-    end.position.z() += max_step_;
-    return can_rise(begin) && can_rise(end);
+    return can_rise(poses_.front()) && can_rise(poses_.back());
+}
+
+std::optional<std::size_t> WayJudge::place_near(const SettledPose& pose, const Vec2& to,
+                                                std::span<const PlaceStates> places, int heading)
+{
+    const Vec2 from = pose.position.head<2>();
+    const auto k = place_after(from, {.ground = pose.ground->height}, to, places, heading);
+    if (!k) return std::nullopt;
+    const Course course{
+        .begin = from, .end = to, .yaw = pose.yaw, .turn = turn_between(pose.yaw, lattice_yaw(heading))};
+    set_start(from);
+    const StatePose begin{.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
+    return can_follow(course, begin, settled(to, places[*k].ground, heading)) ? k : std::nullopt;
 }
 
 /// Returns the settled pose of a state.
 StatePose WayJudge::exact_pose(const StateAt& state)
 {
     const StatePose& known = state.place.poses[std::size_t(state.heading)];
-    if (known.is_exact) return known;
-    const SettledPose pose = stand_.judge({state.at.x(), state.at.y(), state.place.ground}, lattice_yaw(state.heading));
+    return known.is_exact ? known : settled(state.at, state.place.ground, state.heading);
+}
+
+StatePose WayJudge::settled(const Vec2& at, double ground, int heading)
+{
+    const SettledPose pose = stand_.judge({at.x(), at.y(), ground}, lattice_yaw(heading));
     return {.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
 }
 
-bool WayJudge::is_free(const StateAt& from, const StatePose& pose, const StateAt& to, const StatePose& other, Way way,
-                       double lift)
+bool WayJudge::is_free(const Course& course, const StatePose& pose, const StatePose& other, double lift)
 {
-    const bool is_turning = from.heading != to.heading || std::abs(pose.roll - other.roll) > large_tilt ||
+    const bool is_turning = course.turn != 0 || std::abs(pose.roll - other.roll) > large_tilt ||
                             std::abs(pose.pitch - other.pitch) > large_tilt;
     const int pieces = is_turning ? turn_pieces : 1;
     const double growth = pose.is_exact && other.is_exact ? 0 : LevelGround::tolerance;
     poses_.clear();
     for (int k = 0; k <= pieces; ++k) {
         const double t = double(k) / pieces;
-        const auto [at, yaw] = along(from, to, way, t);
+        const auto [at, yaw] = course.at(t);
         const auto between = [&](double a, double b) { return a + t * (b - a); };
         poses_.push_back({{at.x(), at.y(), between(pose.z, other.z)},
                           rotation_from_rpy(between(pose.roll, other.roll), between(pose.pitch, other.pitch), yaw)});

@@ -8,7 +8,9 @@
 #include <spawnfield/reach.h>
 
 #include <array>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace spawnfield {
@@ -34,6 +36,17 @@ struct StateAt {
     int heading;
 };
 
+/// How the position and the yaw of a robot change on a way.
+struct Course {
+    Vec2 begin, end;
+    double yaw = 0, turn = 0;         ///< rad; at the beginning, and until the end
+    std::optional<Vec2> corner = {};  ///< of a curve: where the straight lines ahead and back from its ends meet
+
+    /// Returns the position and the yaw after a part t of the way. In a curve, the robot follows the quadratic Bezier
+    /// curve and looks along it.
+    std::pair<Vec2, double> at(double t) const;
+};
+
 /// Finds states, and examines the ways between them, for one thread. ReachGraph says which ways there are.
 class WayJudge {
 public:
@@ -53,14 +66,20 @@ public:
     /// Returns whether the robot meets nothing on a way from one state to another one.
     bool can_go(const StateAt& from, const StateAt& to, Way way);
 
+    /// Returns the index, in a column at most longest_way away, of the place to which the robot can go from a valid
+    /// settled pose, where it then stands at a heading. The poses of the places are not used.
+    std::optional<std::size_t> place_near(const SettledPose& pose, const Vec2& to, std::span<const PlaceStates> places,
+                                          int heading);
+
 private:
     double step_between(const Vec2& from, double ground, const Vec2& to, double other_ground);
     double slope_at(const Vec2& at, double ground, const Vec2& ahead);
     bool is_proven(const ColumnView& column, const Vec3& place);
     StatePose exact_pose(const StateAt& state);
-    bool can_climb(const StateAt& from, const StatePose& pose, const StateAt& to, const StatePose& other, Way way);
-    bool is_free(const StateAt& from, const StatePose& pose, const StateAt& to, const StatePose& other, Way way,
-                 double lift);
+    StatePose settled(const Vec2& at, double ground, int heading);
+    bool can_follow(const Course& course, const StatePose& pose, const StatePose& other);
+    bool can_climb(const Course& course, const StatePose& pose, const StatePose& other);
+    bool is_free(const Course& course, const StatePose& pose, const StatePose& other, double lift);
 
     const Judge::Impl& shared_;
     const double max_step_, longest_way_;
