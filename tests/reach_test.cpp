@@ -1,3 +1,4 @@
+#include "arena.h"
 #include "catch.h"
 #include "compare.h"
 #include "reach/disjoint_sets.h"
@@ -9,6 +10,8 @@
 #include "test_map.h"
 
 #include <spawnfield/column.h>
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -765,4 +768,20 @@ TEST_CASE("a fault in the options of a drivable graph is named with its value an
     CHECK_THROWS_WITH(make({.step = 1e-6}), Contains("columns"));
     const Judge voxels(make_map(map.scene, {}), robot, {.obstacles = Obstacles::Voxels});
     CHECK_THROWS_WITH(ReachGraph(voxels), Contains("voxels"));
+}
+
+TEST_CASE("info --islands lists the islands of a map, and needs a map and a robot")
+{
+    const Arena arena;
+    const std::string robot = " --robot box:0.9,0.6,0.3 ";
+    const ProgramRun run = arena("info map --islands --json --reach-step 0.4" + robot);
+    REQUIRE(run.status == 0);
+    const nlohmann::json reach = nlohmann::json::parse(run.out).at("reach");
+    CHECK(reach.at("reach_step") == 0.4);
+    CHECK(reach.at("islands").at(0).at("share").get<double>() > 0.9);
+    CHECK_THAT(arena("info map --islands --reach-step 0.4" + robot).out, Contains("islands of box"));
+    CHECK_THAT(arena("info map --islands").err, Contains("--islands requires --robot"));
+    CHECK_THAT(arena("info map" + robot).err, Contains("--robot requires --islands"));
+    CHECK_THAT(arena("info map --drive omni").err, Contains("--drive is only for --islands"));
+    CHECK_THAT(arena("info " + training_scene + " --islands" + robot).err, Contains("--islands is only for maps"));
 }

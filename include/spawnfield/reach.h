@@ -43,18 +43,27 @@ struct ReachPlace {
 ///
 /// States are valid settled poses (see docs/standing.md) on a grid of columns, on each layer, at 16 headings: those in
 /// which a straight way leads to another column after one or two columns or rows. There is an edge between two states
-/// if the robot can go from one to the other. It can turn on the spot to the next heading, or go straight ahead to the
-/// next column in its heading, if
+/// if there is a way from one to the other:
+///
+/// - a turn on the spot, to the next heading;
+/// - straight ahead, to the next column in its heading; with Drive::Omni also straight to the left;
+/// - a curve ahead, to the next heading or the one before. If m is the straight way at the first heading, and n the one
+///   at the last heading, it leads from column A to column A + m + n, along the quadratic Bezier curve with the control
+///   points A, A + m and A + m + n. The robot looks along the curve.
+///
+/// The robot can go if
 ///
 /// - the step in the ground between the two columns is at most max_step. Without a step, the ground would rise by
 ///   something between d * s and d * t, where d is the distance, and s and t are the slopes at both columns, in the
-///   direction of the other one. What it rises more or less than that is the step. Slopes steeper than
-///   StandLimits::max_slope count as 0, so they are steps;
-/// - the robot meets nothing on the way. For that, it is raised by StandLimits::lift, or by max_step if it meets
-///   something then. Each convex part of it covers the convex hull of the part at both poses; while it turns, also at
-///   three poses in between.
+///   direction of the other one, measured over 1 mm. What it rises more or less than that is the step. Slopes steeper
+///   than StandLimits::max_slope count as 0, so they are steps. In a curve, there are two steps: to the column A + m,
+///   and from there. The robot must also stand there, at the first or the last heading;
+/// - the robot meets no surface on the way. For that, it is raised by StandLimits::lift. If it meets something then, it
+///   is raised by max_step, if it can be raised by so much at both ends. Each convex part of it covers the convex hull
+///   of the part at both poses. If the heading changes, or if roll or pitch change by more than 0.1 rad, the way has
+///   four such pieces; z, roll and pitch change evenly.
 ///
-/// If a column has several layers, a way leads to the one with the smallest step.
+/// If a column has several layers with a state at the heading, a way leads to the one with the smallest step.
 ///
 /// Robots go back the same way, so edges have no direction. Islands are the connected parts of the graph. In a narrow
 /// corridor, in which a robot cannot turn, two islands have the same places at opposite headings.

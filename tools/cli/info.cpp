@@ -377,8 +377,7 @@ std::string floor_lines(const Json& map)
 std::string island_lines(const Json& reach)
 {
     const Json& islands = reach["islands"];
-    std::string out = "islands of " + reach["robot"].get<std::string>() +
-                      " (ground within which it can drive; --island K selects one)\n";
+    std::string out = "islands of " + reach["robot"].get<std::string>() + " (ground within which it can drive)\n";
     if (islands.empty()) return out + "  none: it can stand nowhere\n";
     for (std::size_t k = 0; k < std::min(most_lines, islands.size()); ++k) {
         char line[160];
@@ -499,6 +498,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
 {
     const std::optional<PictureFile> picture_to = args.picture.empty() ? std::nullopt
                                                                        : std::optional(picture_file(args.picture));
+    if (!args.islands) refuse(command, reach_option_names, "is only for --islands");
     const Progress listen = progress_bar(args, "info");
     Json out;
     std::vector<Part> parts;  // of a scene or a map
@@ -521,14 +521,14 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         if (args.islands) out["reach"] = islands_json(args, map, load_robot(args.robot, robot_options(args)), summary);
     } else if (robot_given) {
         refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a robot");
-        refuse(command, {"--verify"}, "is only for maps; " + args.what + " is a robot");
+        refuse(command, {"--verify", "--islands"}, "is only for maps; " + args.what + " is a robot");
         const Robot robot = load_robot(args.what, robot_options(args));
         notices(args, robot.notices);
         if (picture_to) write_robot_picture(robot, picture_to->path);
         out = robot_json(robot);
     } else {
         refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is not a robot");
-        refuse(command, {"--verify"}, "is only for maps; " + args.what + " is not a map");
+        refuse(command, {"--verify", "--islands"}, "is only for maps; " + args.what + " is not a map");
         Scene scene = load_scene(args.what, scene_options(args, args));
         notices(args, scene.notices);
         out = scene_json(scene);
@@ -563,9 +563,11 @@ void add_info(CLI::App& app, ChosenCommand& chosen)
                        "Picture of a robot to write (.png, .svg or .pdf): from above, from the side and from the front "
                        "(- for standard output)");
     command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
-    command.add_flag("--islands", args->islands,
-                     "List the islands of a map for --robot: ground within which it can drive");
-    command.add_option("--robot,-r", args->robot, "Robot for --islands");
+    CLI::Option* const islands = command.add_flag(
+        "--islands", args->islands, "List the islands of a map for --robot: ground within which it can drive");
+    CLI::Option* const robot = command.add_option("--robot,-r", args->robot, "Robot for --islands");
+    islands->needs(robot);
+    robot->needs(islands);
     add_reach(command, args->reach);
     add_label_options(command, *args);
     add_model_path(command, *args);
