@@ -494,11 +494,16 @@ TEST_CASE("what is proven of real robots is right", "[real]")
     for (const char* file : {"robot_turtlebot3/turtlebot3_description/urdf/turtlebot3_waffle.urdf",
                              "robot_anymal_c/anymal_c_simple_description/urdf/anymal.urdf"})
         robots.push_back(load_robot((*folder / file).string(), {.model_paths = {*folder}}));
-    for (const Robot& robot : robots)
-        for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-            CAPTURE(robot.name, seed);
-            check_proven(map_of(furnished(seed, 2), 0.1), robot, 0.61);
-        }
+    for (const Robot& robot : robots) {
+        CAPTURE(robot.name);
+        Scene scene;
+        Random random(1);
+        add_floor(scene, random, 4, 2, 0);
+        add_obstacle(scene, {0.5, -2, 0}, {0.6, 2, 1});
+        const std::size_t proven = check_proven(map_of(scene), robot, 0.61);
+        // The caster of the TurtleBot3 is not exactly as low as its wheels.
+        CHECK((proven > 1000) == (robot.name != "turtlebot3_waffle"));
+    }
 }
 
 TEST_CASE("a door that is wider than the robot joins two rooms, and a narrower one does not")
