@@ -21,6 +21,7 @@ OWNERS = {  # public headers that have no .cpp file of the same name
     "map": "map",
     "map_export": "export",
     "query": "query",
+    "reach": "reach",
     "settled_pose": "settle",
     "simulators": "simulators",
 }

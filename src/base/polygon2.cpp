@@ -1,6 +1,7 @@
 #include "base/polygon2.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace spawnfield {
 
@@ -22,6 +23,19 @@ Polygon2 convex_hull(Polygon2 points)
     for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
     hull.pop_back();
     return hull;
+}
+
+double width(const Polygon2& polygon)
+{
+    double out = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec2 &p = polygon[k], &q = polygon[k + 1 < polygon.size() ? k + 1 : 0];
+        const Vec2 inward = -edge_normal(p, q).normalized();
+        double across = 0;
+        for (const Vec2& corner : polygon) across = std::max(across, inward.dot(corner - p));
+        out = std::min(out, across);
+    }
+    return out;
 }
 
 }  // namespace spawnfield

@@ -60,6 +60,9 @@ Polygon cut(const Polygon& polygon, const Vec2& normal, double offset)
 /// without corners on straight edges. It has fewer than 3 corners if all points lie on one line.
 Polygon2 convex_hull(Polygon2 points);
 
+/// Returns the smallest distance of two parallel lines between which a convex polygon fits (2 or more corners).
+double width(const Polygon2& polygon);
+
 /// Returns whether a point lies in a convex polygon or on its edge. Polygons with fewer than 3 corners contain no
 /// point.
 inline bool contains(const Polygon2& polygon, const Vec2& point)

@@ -36,6 +36,18 @@ bool meets_shape(const Body& part, const Transform& frame_from_part, const Shape
 bool meets_octree(const Body& part, const Transform& frame_from_part, const Body& octree,
                   const Transform& frame_from_octree);
 
+/// A convex body by the points that are farthest in each direction.
+class SupportMap {
+public:
+    virtual ~SupportMap() = default;
+    /// Returns a point of the body that is farthest in this direction (not 0).
+    virtual Vec3 support(const Vec3& direction) const = 0;
+};
+
+/// Returns whether two convex bodies have a common point (Gilbert, Johnson, Keerthi, A fast procedure for computing the
+/// distance between complex objects, 1988; libccd). Use it for bodies that FCL has no shape for.
+bool bodies_meet(const SupportMap& a, const SupportMap& b);
+
 /// The functions that the module exports.
 struct Functions {
     static constexpr const char *module = "narrow_phase", *failure = "collisions cannot be checked";
@@ -44,6 +56,7 @@ struct Functions {
     decltype(&narrow_phase_module::meets_triangle) meets_triangle;
     decltype(&narrow_phase_module::meets_shape) meets_shape;
     decltype(&narrow_phase_module::meets_octree) meets_octree;
+    decltype(&narrow_phase_module::bodies_meet) bodies_meet;
 };
 
 }  // namespace spawnfield::narrow_phase_module

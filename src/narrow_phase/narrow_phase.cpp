@@ -1,5 +1,6 @@
 #include "collision/narrow_phase_module.h"
 
+#include <ccd/ccd.h>
 #include <fcl/geometry/octree/octree.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
@@ -72,6 +73,14 @@ bool collide(const FclGeometry* a, const Transform& frame_from_a, const FclGeome
     return fcl::collide(a, frame_from_a, b, frame_from_b, request, result) > 0;
 }
 
+/// The callback of libccd for a SupportMap.
+void support_of(const void* body, const ccd_vec3_t* direction, ccd_vec3_t* out)
+{
+    const Vec3 point = static_cast<const SupportMap*>(body)->support(
+        {direction->v[0], direction->v[1], direction->v[2]});
+    ccdVec3Set(out, point.x(), point.y(), point.z());
+}
+
 }  // namespace
 
 std::unique_ptr<const Body> make_part(const RobotPart& part)
@@ -111,6 +120,16 @@ bool meets_octree(const Body& part, const Transform& frame_from_part, const Body
 {
     return collide(&static_cast<const Octree&>(octree).tree, frame_from_octree, geometry_of(shape_of(part)),
                    frame_from_part);
+}
+
+bool bodies_meet(const SupportMap& a, const SupportMap& b)
+{
+    ccd_t ccd;
+    CCD_INIT(&ccd);
+    ccd.support1 = support_of;
+    ccd.support2 = support_of;
+    ccd.max_iterations = 500;  // as in FCL
+    return ccdGJKIntersect(&a, &b, &ccd) != 0;
 }
 
 }  // namespace spawnfield::narrow_phase_module

@@ -18,19 +18,6 @@ NearestEdge nearest_edge(const Polygon2& polygon, const Vec2& point)
     return out;
 }
 
-double width(const Polygon2& polygon)
-{
-    double out = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec2 &p = polygon[k], &q = polygon[k + 1 < polygon.size() ? k + 1 : 0];
-        const Vec2 inward = -edge_normal(p, q).normalized();
-        double across = 0;
-        for (const Vec2& corner : polygon) across = std::max(across, inward.dot(corner - p));
-        out = std::min(out, across);
-    }
-    return out;
-}
-
 Polygon2 clear_corners(const Polygon2& polygon)
 {
     constexpr double shortest_edge = 1e-6, straight = 1e-9;  // m

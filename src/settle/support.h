@@ -16,9 +16,6 @@ struct NearestEdge {
 /// Returns the nearest edge of a convex polygon (counterclockwise, 2 or more corners; two are a line with two sides).
 NearestEdge nearest_edge(const Polygon2& polygon, const Vec2& point);
 
-/// Returns the smallest distance of two parallel lines between which a convex polygon fits.
-double width(const Polygon2& polygon);
-
 /// Returns a convex polygon without corners that are there only by rounding: those very near to another corner or to
 /// the line between their neighbours.
 Polygon2 clear_corners(const Polygon2& polygon);

@@ -21,7 +21,7 @@ struct CommonArgs {
 /// Headings of --help, below a command's most common options.
 namespace help_group {
 inline const std::string ground = "Poses and ground", rest = "Robot at rest", region = "Region", robot = "Robot",
-                         scene = "Scene", picture = "Picture", simulator = "Files for simulators",
+                         reach = "Reach", scene = "Scene", picture = "Picture", simulator = "Files for simulators",
                          run = "Output and run";
 }
 

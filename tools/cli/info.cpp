@@ -3,7 +3,9 @@
 #include "numbers.h"
 #include "output.h"
 #include "picture_args.h"
+#include "reach_args.h"
 #include "scene_args.h"
+#include "session.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/frames.h>
@@ -27,10 +29,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-struct InfoArgs : CommonArgs, SceneArgs, RobotArgs {
+struct InfoArgs : QueryArgs, SceneArgs {
     std::string what;
-    bool json = false, verify = false;
+    bool json = false, verify = false, islands = false;
     std::string picture;
+    ReachArgs reach;
 };
 
 constexpr std::size_t most_lines = 60;  // of a list; --json has all
@@ -133,6 +136,25 @@ Json floors_json(const Map& map)
                        {"z", json_of(floor.z)},
                        {"area", floor.area},
                        {"share", floor.share}});
+    return out;
+}
+
+/// Returns where the robot can drive.
+Json islands_json(const InfoArgs& args, const Map& map, const Robot& robot, Summary& summary)
+{
+    const Judge judge(map, robot, judge_options(args, summary.exact_time));
+    const ReachGraph graph = make_reach_graph(args, args.reach, judge, "info");
+    Json out = {{"robot", robot.name},
+                {"drive", args.reach.drive},
+                {"max_step", graph.options().max_step},
+                {"reach_step", *graph.options().step}};
+    out["islands"] = Json::array();
+    for (const Island& island : graph.islands())
+        out["islands"].push_back({{"island", out["islands"].size()},
+                                  {"area", island.area},
+                                  {"share", island.share},
+                                  {"at", json_of(island.place)},
+                                  {"z", {island.low, island.high}}});
     return out;
 }
 
@@ -351,6 +373,24 @@ std::string floor_lines(const Json& map)
     return out;
 }
 
+/// Returns a heading, then a line for each island, the largest first.
+std::string island_lines(const Json& reach)
+{
+    const Json& islands = reach["islands"];
+    std::string out = "islands of " + reach["robot"].get<std::string>() + " (ground within which it can drive)\n";
+    if (islands.empty()) return out + "  none: it can stand nowhere\n";
+    for (std::size_t k = 0; k < std::min(most_lines, islands.size()); ++k) {
+        char line[160];
+        std::snprintf(line, sizeof line, "  %zu: %.4g m2, %.1f %%, z %.4g to %.4g m, around %.6g, %.6g, %.6g\n", k,
+                      islands[k]["area"].get<double>(), 100 * islands[k]["share"].get<double>(),
+                      islands[k]["z"][0].get<double>(), islands[k]["z"][1].get<double>(),
+                      islands[k]["at"][0].get<double>(), islands[k]["at"][1].get<double>(),
+                      islands[k]["at"][2].get<double>());
+        out += line;
+    }
+    return out + more_line(islands.size());
+}
+
 /// Returns a line about the z limits, or nothing if the map has none.
 std::string z_limits_line(const Json& map)
 {
@@ -368,7 +408,9 @@ std::string map_lines(const Json& map, std::span<const Part> parts)
                       ", hash " + map["hash"].get<std::string>() + ")\n" + extent_lines(map["bounds"]);
     out += "  terrain cells of " + map["resolution"].dump() + " m, " + counted(map["layers"], "layer") +
            "; voxels of " + map["occupancy_resolution"].dump() + " m\n" + z_limits_line(map) + origin_line(map);
-    out += floor_lines(map) + scene_lines(map, parts) + "files\n";
+    out += floor_lines(map);
+    if (map.contains("reach")) out += island_lines(map["reach"]);
+    out += scene_lines(map, parts) + "files\n";
     for (const auto& [name, bytes] : map["files"].items()) out += "  " + name + ": " + bytes.dump() + " bytes\n";
     if (map.contains("verified")) out += "all files match their checksums\n";
     return out;
@@ -456,6 +498,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
 {
     const std::optional<PictureFile> picture_to = args.picture.empty() ? std::nullopt
                                                                        : std::optional(picture_file(args.picture));
+    if (!args.islands) refuse(command, reach_option_names, "is only for --islands");
     const Progress listen = progress_bar(args, "info");
     Json out;
     std::vector<Part> parts;  // of a scene or a map
@@ -475,16 +518,17 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         summary.map_hash = map.hash;
         parts.assign(map.geometry.parts().begin(), map.geometry.parts().end());
         out = map_json(map, args.verify, args.json ? parts.size() : most_lines);
+        if (args.islands) out["reach"] = islands_json(args, map, load_robot(args.robot, robot_options(args)), summary);
     } else if (robot_given) {
         refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a robot");
-        refuse(command, {"--verify"}, "is only for maps; " + args.what + " is a robot");
+        refuse(command, {"--verify", "--islands"}, "is only for maps; " + args.what + " is a robot");
         const Robot robot = load_robot(args.what, robot_options(args));
         notices(args, robot.notices);
         if (picture_to) write_robot_picture(robot, picture_to->path);
         out = robot_json(robot);
     } else {
         refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is not a robot");
-        refuse(command, {"--verify"}, "is only for maps; " + args.what + " is not a map");
+        refuse(command, {"--verify", "--islands"}, "is only for maps; " + args.what + " is not a map");
         Scene scene = load_scene(args.what, scene_options(args, args));
         notices(args, scene.notices);
         out = scene_json(scene);
@@ -519,6 +563,12 @@ void add_info(CLI::App& app, ChosenCommand& chosen)
                        "Picture of a robot to write (.png, .svg or .pdf): from above, from the side and from the front "
                        "(- for standard output)");
     command.add_flag("--verify", args->verify, "Compare every file of a map with its checksum");
+    CLI::Option* const islands = command.add_flag(
+        "--islands", args->islands, "List the islands of a map for --robot: ground within which it can drive");
+    CLI::Option* const robot = command.add_option("--robot,-r", args->robot, "Robot for --islands");
+    islands->needs(robot);
+    robot->needs(islands);
+    add_reach(command, args->reach);
     add_label_options(command, *args);
     add_model_path(command, *args);
     add_scene_options(command, *args);

@@ -1,0 +1,158 @@
+#include "reach/reach_graph.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <ranges>
+
+namespace spawnfield {
+namespace {
+
+/// Returns the headings at which a run begins: those that no turn reaches from the heading before.
+HeadingSet starts_of(HeadingSet valid, HeadingSet turns) { return HeadingSet(valid & ~std::rotl(turns, 1)); }
+
+/// Returns the two headings around a yaw, the nearer one first.
+std::array<int, 2> headings_around(double yaw)
+{
+    const auto ahead_of_it = [&](int heading) {
+        return std::remainder(lattice_yaw(heading) - yaw, 2 * std::numbers::pi);
+    };
+    int nearest = 0;
+    for (int k = 1; k < lattice_headings; ++k)
+        if (std::abs(ahead_of_it(k)) < std::abs(ahead_of_it(nearest))) nearest = k;
+    return {nearest, lattice_heading(nearest, ahead_of_it(nearest) > 0 ? -1 : 1)};
+}
+
+}  // namespace
+
+int count_runs(HeadingSet valid, HeadingSet turns)
+{
+    if (valid == 0) return 0;
+    return std::max(1, std::popcount(starts_of(valid, turns)));  // without a start, turns connect all headings
+}
+
+std::size_t ReachGraph::Impl::run_of(std::size_t place, int heading) const
+{
+    const HeadingSet starts = starts_of(valid[place], turns[place]);
+    const int count = std::max(1, std::popcount(starts)),
+              up_to_here = std::popcount(HeadingSet(starts & ((2u << heading) - 1)));
+    return first_run[place] + std::size_t((up_to_here + count - 1) % count);
+}
+
+/// Joins the runs of all places between which there is a way.
+DisjointSets ReachGraph::Impl::joined_runs() const
+{
+    DisjointSets out(first_run.back());
+    const auto join_ways = [&](std::size_t place, int col, int row) {
+        for (const Way way : moving_ways) {
+            const std::vector<Ways>& targets = ways[std::size_t(way)];
+            if (targets.empty()) continue;
+            for (int heading = 0; heading < lattice_headings; ++heading) {
+                const std::uint8_t index = targets[place][std::size_t(heading)];
+                if (index == nowhere) continue;
+                const WayEnd end = way_end(way, heading);
+                const std::size_t to = first[column_of(col + end.move.cols, row + end.move.rows)] + index;
+                out.join(std::uint32_t(run_of(place, heading)), std::uint32_t(run_of(to, end.heading)));
+            }
+        }
+    };
+    for (int row = 0; row < grid.rows; ++row)
+        for (int col = 0; col < grid.cols; ++col)
+            for (std::size_t p = first[column_of(col, row)]; p < first[column_of(col, row) + 1]; ++p)
+                join_ways(p, col, row);
+    return out;
+}
+
+void ReachGraph::Impl::find_islands()
+{
+    first_run.assign(1, 0);
+    for (std::size_t p = 0; p < ground.size(); ++p)
+        first_run.push_back(first_run.back() + std::uint32_t(count_runs(valid[p], turns[p])));
+    DisjointSets sets = joined_runs();
+    // A place counts once for each island on which it has a heading.
+    std::vector<std::uint32_t> sizes(first_run.back(), 0);
+    for (std::size_t p = 0; p < ground.size(); ++p)
+        for (std::uint32_t run = first_run[p]; run < first_run[p + 1]; ++run) {
+            const std::uint32_t root = sets.find(run);
+            const auto is_same = [&](std::uint32_t other) { return sets.find(other) == root; };
+            const auto earlier = std::ranges::iota_view(first_run[p], run);
+            sizes[root] += std::none_of(earlier.begin(), earlier.end(), is_same);
+        }
+    std::vector<std::uint32_t> roots;
+    for (std::uint32_t run = 0; run < sizes.size(); ++run)
+        if (sizes[run] > 0) roots.push_back(run);
+    std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) { return sizes[a] > sizes[b]; });
+    std::vector<std::uint32_t> numbers(sizes.size());
+    for (std::uint32_t i = 0; i < roots.size(); ++i) numbers[roots[i]] = i;
+    run_islands.resize(sizes.size());
+    for (std::uint32_t run = 0; run < run_islands.size(); ++run) run_islands[run] = numbers[sets.find(run)];
+    islands.clear();
+    for (const std::uint32_t root : roots)
+        islands.push_back(
+            {.area = sizes[root] * grid.step * grid.step, .share = double(sizes[root]) / double(ground.size())});
+    set_places();
+}
+
+/// Sets the place and the heights of each island.
+void ReachGraph::Impl::set_places()
+{
+    const double infinity = std::numeric_limits<double>::infinity();
+    std::vector<Eigen::Vector2d> middles(islands.size(), Eigen::Vector2d::Zero());
+    std::vector<std::uint32_t> counts(islands.size(), 0);
+    std::vector<double> nearest(islands.size(), infinity);
+    for (Island& island : islands) island.low = infinity, island.high = -infinity;
+    const auto for_each_run = [&](const auto& visit) {
+        for_each_place([&](std::size_t p, double x, double y) {
+            for (std::uint32_t run = first_run[p]; run < first_run[p + 1]; ++run)
+                visit(run_islands[run], Vec3(x, y, ground[p]));
+        });
+    };
+    for_each_run([&](std::uint32_t i, const Vec3& at) {
+        islands[i].low = std::min(islands[i].low, at.z());
+        islands[i].high = std::max(islands[i].high, at.z());
+        middles[i] += at.head<2>();
+        ++counts[i];
+    });
+    for_each_run([&](std::uint32_t i, const Vec3& at) {
+        const double distance = (at.head<2>() - middles[i] / counts[i]).norm();
+        if (!(distance < nearest[i])) return;
+        nearest[i] = distance;
+        islands[i].place = at;
+    });
+}
+
+std::optional<std::size_t> ReachGraph::Impl::island_of(const SettledPose& pose) const
+{
+    if (pose.verdict != Verdict::Valid) return std::nullopt;
+    const Vec2 at = pose.position.head<2>();
+    struct Column {
+        int col, row;
+        double distance;  ///< from the pose, m
+    };
+    std::vector<Column> columns;
+    const double col = std::floor((at.x() - grid.x0) / grid.step), row = std::floor((at.y() - grid.y0) / grid.step);
+    for (const double c : {col, col + 1})
+        for (const double r : {row, row + 1})
+            if (c >= 0 && r >= 0 && c < grid.cols && r < grid.rows)
+                columns.push_back({int(c), int(r), (Vec2(grid.x_of(int(c)), grid.y_of(int(r))) - at).norm()});
+    const auto is_nearer = [](const Column& a, const Column& b) { return a.distance < b.distance; };
+    std::stable_sort(columns.begin(), columns.end(), is_nearer);
+    for (const Column& column : columns)
+        for (const int heading : headings_around(pose.yaw))
+            if (const auto island = island_at(pose, column.col, column.row, heading)) return island;
+    return std::nullopt;
+}
+
+/// Returns the island of the state of a column to which the robot can go from a valid settled pose.
+std::optional<std::size_t> ReachGraph::Impl::island_at(const SettledPose& pose, int col, int row, int heading) const
+{
+    const std::size_t begin = first[column_of(col, row)], end = first[column_of(col, row) + 1];
+    std::vector<PlaceStates> places;
+    for (std::size_t p = begin; p < end; ++p) places.push_back({.ground = ground[p], .valid = valid[p]});
+    const auto k = way_judges.local().place_near(pose, {grid.x_of(col), grid.y_of(row)}, places, heading);
+    return k ? std::optional<std::size_t>(run_islands[run_of(begin + *k, heading)]) : std::nullopt;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "base/polygon2.h"
+#include "geometry/tile_tree.h"
+
+#include <spawnfield/judge.h>
+
+#include <vector>
+
+namespace spawnfield {
+
+/// Proves that a robot stands on ground that is level, or nearly so, without letting it down. Most of all floors are.
+/// For one thread.
+///
+/// The level robot stands on a plane with its centre of mass c above it, and at least m inside its support polygon. If
+/// it tilts by an angle a, its mass is at least c cos(a) + m sin(a) above the plane. On ground that is at most e above
+/// or below the plane, its mass is at most c + e above the plane when it starts, and then sinks until the robot rests.
+/// So if 2 e <= m^2 / (2 c), it tilts at most by 4 e / m. Then all its contacts on the plane are so near to the ground
+/// that they count for the margin (Settler), which is nearly m.
+///
+/// Everything else must be farther from the robot than it moves.
+class LevelGround {
+public:
+    /// How far a point of the robot may be from where it is on the plane, m. The true limit is 1 mm.
+    static constexpr double tolerance = 2e-3;
+
+    explicit LevelGround(const Judge::Impl& shared);
+
+    /// Returns whether anything can be proven about this robot and these limits.
+    bool is_possible() const { return flatness_ > 0; }
+    /// Largest height of the ground above or below its layer, m.
+    double flatness() const { return flatness_; }
+
+    /// Looks for all solids at most `radius` from a place, m. The robot must lie within it.
+    void set_place(const Vec2& place, double radius);
+    /// Selects the layer of the place onto which the robot is let down, at a height (m). Returns false if nothing can
+    /// be proven there.
+    bool set_layer(double height);
+
+    /// Returns whether there is nothing but ground within the radius, up to above the robot.
+    bool is_open() const { return ends_.empty() && others_.empty(); }
+    /// Returns whether the robot stands at a yaw, as far as the geometry decides. False: not proven.
+    bool stands(double yaw) const;
+    /// Returns the height of its origin, m.
+    double z() const { return height_ - lowest_; }
+
+private:
+    struct Solid {
+        Polygon2 outline;       ///< of its hull seen from above, relative to the place
+        double low, high;       ///< heights, m
+        bool is_level = false;  ///< it is terrain, and its top is a plane
+        double middle = 0;      ///< height of that plane at the place, m
+        double steepness = 0;   ///< its slope
+    };
+    void add_triangle(const std::array<Vec3, 3>& corners, bool is_terrain);
+    void add_primitive(const Shape& shape, bool is_terrain);
+    bool is_ground(const Solid& solid) const;
+    void find_ends(const Solid& solid);
+
+    const Judge::Impl& shared_;
+    Polygon2 footprint_;               ///< outline of the robot, seen from above, in its frame
+    double lowest_ = 0, highest_ = 0;  ///< of the robot's points, in its frame, m
+    double flatness_ = 0;              ///< m; 0: nothing can be proven
+    double gap_ = 0;                   ///< m; what is farther than this from the footprint does not meet the robot
+    Vec3 origin_ = Vec3::Zero();
+    double radius_ = 0, height_ = 0;
+    std::vector<Solid> solids_;
+    /// There is a mesh that may be filled although it has holes. It can contain the robot without any face near it.
+    bool is_unsealed_ = false;
+    std::vector<const Solid*> ground_;
+    std::vector<const Polygon2*> others_;  ///< outlines of all else that may meet the robot
+    std::vector<Polygon2> ends_;           ///< edges at which the ground ends, or may end
+};
+
+}  // namespace spawnfield

@@ -1,0 +1,214 @@
+#include "reach/way_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace spawnfield {
+namespace {
+
+constexpr double slope_arm = 1e-3;    // m: the slope of the ground at a column is measured over this length
+constexpr double limit_slack = 1e-9;  // m, in comparisons with limits
+constexpr int turn_pieces = 4;        // of a way on which the robot turns
+constexpr double large_tilt = 0.1;    // rad: if roll or pitch change by more, a way has as many pieces
+
+double radius_of(const Robot& robot)
+{
+    const Bounds box = robot.bounds();
+    return box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
+}
+
+double turn_between(double yaw, double other) { return std::remainder(other - yaw, 2 * std::numbers::pi); }
+
+Course course_of(const StateAt& from, const StateAt& to, Way way)
+{
+    const double yaw = lattice_yaw(from.heading);
+    Course out{.begin = from.at, .end = to.at, .yaw = yaw, .turn = turn_between(yaw, lattice_yaw(to.heading))};
+    if (way != Way::Left && way != Way::Right) return out;
+    const LatticeMove first = lattice_move(from.heading), both = first + lattice_move(to.heading);
+    const double step = (to.at - from.at).norm() / both.length();
+    out.corner = from.at + step * Vec2(first.cols, first.rows);
+    return out;
+}
+
+}  // namespace
+
+std::pair<Vec2, double> Course::at(double t) const
+{
+    if (!corner) return {begin + t * (end - begin), yaw + t * turn};
+    const Vec2 first = *corner - begin, second = end - *corner, tangent = (1 - t) * first + t * second;
+    return {begin + (2 * t * (1 - t) + t * t) * first + t * t * second, std::atan2(tangent.y(), tangent.x())};
+}
+
+WayJudge::WayJudge(const Judge::Impl& shared, double max_step, double longest_way)
+    : shared_(shared), max_step_(max_step), longest_way_(longest_way), radius_(radius_of(shared.robot)),
+      steepest_(std::tan(shared.options.stand.max_slope)), stand_(shared), columns_(shared, 0), level_(shared),
+      sweep_(shared.map.geometry, shared.robot)
+{
+}
+
+void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
+{
+    const ColumnView column(columns_.column_at(at));
+    bool has_solids = false;
+    for (const double height : heights_within(column.layers, shared_.map.z_limits)) {
+        PlaceStates place{.ground = height};
+        bool is_level = level_.is_possible();
+        if (is_level && !has_solids) {
+            level_.set_place(at, radius_ + longest_way_);
+            has_solids = true;
+        }
+        is_level = is_level && level_.set_layer(height) && is_proven(column, {at.x(), at.y(), height});
+        place.is_open = is_level && level_.is_open();
+        for (int heading = 0; heading < lattice_headings; ++heading) {
+            StatePose& state = place.poses[std::size_t(heading)];
+            if (place.is_open || (is_level && level_.stands(lattice_yaw(heading)))) {
+                state = {.z = level_.z(), .is_exact = false};
+            } else {
+                const SettledPose pose = stand_.judge(column, {at.x(), at.y(), height}, lattice_yaw(heading));
+                if (pose.verdict != Verdict::Valid) continue;
+                state = {.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
+            }
+            place.valid |= HeadingSet(1u << heading);
+        }
+        if (place.valid != 0) out.push_back(place);
+    }
+}
+
+/// Returns whether a place has what LevelGround does not examine: ground that can be used, also for the robot at rest,
+/// and nothing filled around it.
+bool WayJudge::is_proven(const ColumnView& column, const Vec3& place)
+{
+    Judgement there, at_rest;
+    const Vec3 raised(place.x(), place.y(), level_.z() + shared_.options.stand.lift);
+    const bool is_inside = shared_.map.z_limits.contains(raised.z() - LevelGround::tolerance, 0) &&
+                           shared_.map.z_limits.contains(raised.z() + LevelGround::tolerance, 0);
+    if (!is_inside || !columns_.judge_ground(column, place, there) || !columns_.judge_ground(column, raised, at_rest))
+        return false;
+    const double above = place.z() + level_.flatness();
+    if (at_rest.ground->height > above) return false;
+    return std::none_of(column.spans.begin(), column.spans.end(),
+                        [&](const Span& span) { return span.top > above && span.bottom <= raised.z(); });
+}
+
+std::optional<std::size_t> WayJudge::place_after(const Vec2& from, const PlaceStates& place, const Vec2& to,
+                                                 std::span<const PlaceStates> others, int heading)
+{
+    // On level ground, the step cannot be larger.
+    if (others.size() == 1 && (place.is_open || others[0].is_open) && 3 * level_.flatness() <= max_step_ &&
+        std::abs(others[0].ground - place.ground) <= 2 * level_.flatness())
+        return has_heading(others[0].valid, heading) ? std::optional<std::size_t>(0) : std::nullopt;
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t best = 0;
+    for (std::size_t k = 0; k < others.size(); ++k) {
+        if (!has_heading(others[k].valid, heading)) continue;
+        const double step = step_between(from, place.ground, to, others[k].ground);
+        if (!(step < least)) continue;
+        least = step;
+        best = k;
+    }
+    return least <= max_step_ + limit_slack ? std::optional(best) : std::nullopt;
+}
+
+/// Returns the step in the ground between two places, m. Infinite: it is larger than max_step.
+double WayJudge::step_between(const Vec2& from, double ground, const Vec2& to, double other_ground)
+{
+    const double length = (to - from).norm(), rise = other_ground - ground;
+    if (length == 0) return std::abs(rise);
+    if (std::abs(rise) > length * steepest_ + max_step_ + limit_slack) return std::numeric_limits<double>::infinity();
+    const Vec2 ahead = (to - from) / length;
+    const double s = length * slope_at(from, ground, ahead), t = -length * slope_at(to, other_ground, -ahead);
+    return std::max({0.0, rise - std::max(s, t), std::min(s, t) - rise});
+}
+
+/// Returns the slope of the ground at a place in a direction; 0 if it is steeper than the robot may stand on, or if it
+/// ends there.
+double WayJudge::slope_at(const Vec2& at, double ground, const Vec2& ahead)
+{
+    double nearest = steepest_ * slope_arm + limit_slack, out = 0;
+    for (const double height : columns_.column_at(at + slope_arm * ahead).layers) {
+        if (!(std::abs(height - ground) <= nearest)) continue;
+        nearest = std::abs(height - ground);
+        out = (height - ground) / slope_arm;
+    }
+    return out;
+}
+
+bool WayJudge::can_go(const StateAt& from, const StateAt& to, Way way)
+{
+    // On open ground, nothing is there that the robot could meet. The other place may be on another layer.
+    if ((from.place.is_open || to.place.is_open) &&
+        std::abs(from.place.ground - to.place.ground) <= 2 * level_.flatness())
+        return true;
+    const StatePose &pose = from.place.poses[std::size_t(from.heading)],
+                    &other = to.place.poses[std::size_t(to.heading)];
+    const Course course = course_of(from, to, way);
+    if (pose.is_exact && other.is_exact) return can_follow(course, pose, other);
+    return is_free(course, pose, other, shared_.options.stand.lift) ||
+           can_follow(course, exact_pose(from), exact_pose(to));
+}
+
+/// Returns whether the robot meets nothing on a way between two poses, both of which are exact.
+bool WayJudge::can_follow(const Course& course, const StatePose& pose, const StatePose& other)
+{
+    return is_free(course, pose, other, shared_.options.stand.lift) || can_climb(course, pose, other);
+}
+
+/// Returns whether the robot can be raised by max_step at both ends of a way, and then meets nothing.
+bool WayJudge::can_climb(const Course& course, const StatePose& pose, const StatePose& other)
+{
+    const double lift = shared_.options.stand.lift;
+    if (!(max_step_ > lift) || !is_free(course, pose, other, max_step_)) return false;
+    const auto can_rise = [&](const Pose& settled) {
+        const Pose low{settled.position + lift * Vec3::UnitZ(), settled.rotation},
+            high{settled.position + max_step_ * Vec3::UnitZ(), settled.rotation};
+        return sweep_.is_free(std::array{low, high}, 0);
+    };
+    return can_rise(poses_.front()) && can_rise(poses_.back());
+}
+
+std::optional<std::size_t> WayJudge::place_near(const SettledPose& pose, const Vec2& to,
+                                                std::span<const PlaceStates> places, int heading)
+{
+    const Vec2 from = pose.position.head<2>();
+    const auto k = place_after(from, {.ground = pose.ground->height}, to, places, heading);
+    if (!k) return std::nullopt;
+    const Course course{
+        .begin = from, .end = to, .yaw = pose.yaw, .turn = turn_between(pose.yaw, lattice_yaw(heading))};
+    set_start(from);
+    const StatePose begin{.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
+    return can_follow(course, begin, settled(to, places[*k].ground, heading)) ? k : std::nullopt;
+}
+
+/// Returns the settled pose of a state.
+StatePose WayJudge::exact_pose(const StateAt& state)
+{
+    const StatePose& known = state.place.poses[std::size_t(state.heading)];
+    return known.is_exact ? known : settled(state.at, state.place.ground, state.heading);
+}
+
+StatePose WayJudge::settled(const Vec2& at, double ground, int heading)
+{
+    const SettledPose pose = stand_.judge({at.x(), at.y(), ground}, lattice_yaw(heading));
+    return {.z = pose.position.z(), .roll = pose.roll, .pitch = pose.pitch};
+}
+
+bool WayJudge::is_free(const Course& course, const StatePose& pose, const StatePose& other, double lift)
+{
+    const bool is_turning = course.turn != 0 || std::abs(pose.roll - other.roll) > large_tilt ||
+                            std::abs(pose.pitch - other.pitch) > large_tilt;
+    const int pieces = is_turning ? turn_pieces : 1;
+    const double growth = pose.is_exact && other.is_exact ? 0 : LevelGround::tolerance;
+    poses_.clear();
+    for (int k = 0; k <= pieces; ++k) {
+        const double t = double(k) / pieces;
+        const auto [at, yaw] = course.at(t);
+        const auto between = [&](double a, double b) { return a + t * (b - a); };
+        poses_.push_back({{at.x(), at.y(), between(pose.z, other.z)},
+                          rotation_from_rpy(between(pose.roll, other.roll), between(pose.pitch, other.pitch), yaw)});
+    }
+    return sweep_.is_free(poses_, lift, growth);
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "query/stand_judge.h"
+#include "reach/lattice.h"
+#include "reach/level_ground.h"
+#include "reach/sweep.h"
+
+#include <spawnfield/reach.h>
+
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace spawnfield {
+
+/// A settled pose; x, y and yaw are known from where it is.
+struct StatePose {
+    double z = 0, roll = 0, pitch = 0;  ///< m and rad; not raised
+    bool is_exact = true;               ///< false: known to LevelGround::tolerance
+};
+
+/// The states of a place.
+struct PlaceStates {
+    double ground = 0;     ///< height of the layer, m
+    HeadingSet valid = 0;  ///< at which the robot stands
+    bool is_open = false;  ///< there is nothing but level ground, as far as any way leads
+    std::array<StatePose, lattice_headings> poses{};
+};
+
+/// A state with its place.
+struct StateAt {
+    Vec2 at;
+    const PlaceStates& place;
+    int heading;
+};
+
+/// How the position and the yaw of a robot change on a way.
+struct Course {
+    Vec2 begin, end;
+    double yaw = 0, turn = 0;         ///< rad; at the beginning, and until the end
+    std::optional<Vec2> corner = {};  ///< of a curve: where the straight lines ahead and back from its ends meet
+
+    /// Returns the position and the yaw after a part t of the way. In a curve, the robot follows the quadratic Bezier
+    /// curve and looks along it.
+    std::pair<Vec2, double> at(double t) const;
+};
+
+/// Finds states, and examines the ways between them, for one thread. ReachGraph says which ways there are.
+class WayJudge {
+public:
+    /// `longest_way`: m.
+    WayJudge(const Judge::Impl& shared, double max_step, double longest_way);
+
+    /// Appends the places of a column.
+    void find_places(const Vec2& at, std::vector<PlaceStates>& out);
+
+    /// Returns the index, in another column, of the place with the smallest step from this one; it has a state at this
+    /// heading. Returns nothing if all steps are larger than max_step.
+    std::optional<std::size_t> place_after(const Vec2& from, const PlaceStates& place, const Vec2& to,
+                                           std::span<const PlaceStates> others, int heading);
+
+    /// Must be called before ways are examined that begin at a place.
+    void set_start(const Vec2& at) { sweep_.set_place(at, radius_ + longest_way_); }
+    /// Returns whether the robot meets nothing on a way from one state to another one.
+    bool can_go(const StateAt& from, const StateAt& to, Way way);
+
+    /// Returns the index, in a column at most longest_way away, of the place to which the robot can go from a valid
+    /// settled pose, where it then stands at a heading. The poses of the places are not used.
+    std::optional<std::size_t> place_near(const SettledPose& pose, const Vec2& to, std::span<const PlaceStates> places,
+                                          int heading);
+
+private:
+    double step_between(const Vec2& from, double ground, const Vec2& to, double other_ground);
+    double slope_at(const Vec2& at, double ground, const Vec2& ahead);
+    bool is_proven(const ColumnView& column, const Vec3& place);
+    StatePose exact_pose(const StateAt& state);
+    StatePose settled(const Vec2& at, double ground, int heading);
+    bool can_follow(const Course& course, const StatePose& pose, const StatePose& other);
+    bool can_climb(const Course& course, const StatePose& pose, const StatePose& other);
+    bool is_free(const Course& course, const StatePose& pose, const StatePose& other, double lift);
+
+    const Judge::Impl& shared_;
+    const double max_step_, longest_way_;
+    const double radius_;    ///< distance of the robot's farthest point from its origin, m
+    const double steepest_;  ///< slope on which it may stand
+    StandJudge stand_;
+    PoseJudge columns_;
+    LevelGround level_;
+    Sweep sweep_;
+    std::vector<Pose> poses_;  ///< of the way that was examined last
+};
+
+}  // namespace spawnfield
