@@ -127,19 +127,19 @@ std::optional<std::size_t> ReachGraph::Impl::island_of(const SettledPose& pose) 
 {
     if (pose.verdict != Verdict::Valid) return std::nullopt;
     const Vec2 at = pose.position.head<2>();
-    struct Column {
+    struct NearColumn {
         int col, row;
         double distance;  ///< from the pose, m
     };
-    std::vector<Column> columns;
+    std::vector<NearColumn> columns;
     const double col = std::floor((at.x() - grid.x0) / grid.step), row = std::floor((at.y() - grid.y0) / grid.step);
     for (const double c : {col, col + 1})
         for (const double r : {row, row + 1})
             if (c >= 0 && r >= 0 && c < grid.cols && r < grid.rows)
                 columns.push_back({int(c), int(r), (Vec2(grid.x_of(int(c)), grid.y_of(int(r))) - at).norm()});
-    const auto is_nearer = [](const Column& a, const Column& b) { return a.distance < b.distance; };
+    const auto is_nearer = [](const NearColumn& a, const NearColumn& b) { return a.distance < b.distance; };
     std::stable_sort(columns.begin(), columns.end(), is_nearer);
-    for (const Column& column : columns)
+    for (const NearColumn& column : columns)
         for (const int heading : headings_around(pose.yaw))
             if (const auto island = island_at(pose, column.col, column.row, heading)) return island;
     return std::nullopt;

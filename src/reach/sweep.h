@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/polygon2.h"
 #include "settle/convex.h"
 
 #include <spawnfield/geometry.h>
