@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <ranges>
 
 namespace spawnfield {
 namespace {
@@ -73,13 +72,13 @@ void ReachGraph::Impl::find_islands()
     DisjointSets sets = joined_runs();
     // A place counts once for each island on which it has a heading.
     std::vector<std::uint32_t> sizes(first_run.back(), 0);
-    for (std::size_t p = 0; p < ground.size(); ++p)
-        for (std::uint32_t run = first_run[p]; run < first_run[p + 1]; ++run) {
-            const std::uint32_t root = sets.find(run);
-            const auto is_same = [&](std::uint32_t other) { return sets.find(other) == root; };
-            const auto earlier = std::ranges::iota_view(first_run[p], run);
-            sizes[root] += std::none_of(earlier.begin(), earlier.end(), is_same);
-        }
+    for (std::size_t p = 0; p < ground.size(); ++p) {
+        std::vector<std::uint32_t> found;
+        for (std::uint32_t run = first_run[p]; run < first_run[p + 1]; ++run) found.push_back(sets.find(run));
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        for (const std::uint32_t root : found) ++sizes[root];
+    }
     std::vector<std::uint32_t> roots;
     for (std::uint32_t run = 0; run < sizes.size(); ++run)
         if (sizes[run] > 0) roots.push_back(run);
