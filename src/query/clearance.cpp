@@ -3,6 +3,7 @@
 #include "base/bits.h"
 #include "base/polygon2.h"
 #include "geometry/geometry_impl.h"
+#include "settle/element_body.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,16 +91,6 @@ double distance_of_boxes(const Bounds& a, const Bounds& b)
 {
     const Vec3 gap = (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0);
     return gap.z() > 0 ? std::numeric_limits<double>::infinity() : gap.head<2>().norm();
-}
-
-/// Returns an element of a tile as a body, relative to an origin.
-Convex body_of(const Tile& tile, std::uint32_t element, const Vec3& origin)
-{
-    if (!tile.is_triangle(element))
-        return moved(convex_of(tile.primitive(element).shape()), {-origin, Mat3::Identity()});
-    std::array<Vec3, 3> corners = tile.corners(element);
-    for (Vec3& corner : corners) corner -= origin;
-    return convex_of(corners);
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ StandJudge::Choice StandJudge::judge_several(const ColumnView& column, const Vec
     const bool is_all = rule.kind == HeadingRule::Kind::All;
     std::size_t chosen = 0;
     if (valid.empty() || (is_all && valid.size() < poses.size())) {
-        // Of equally frequent verdicts, the one with the smallest number, as merged() does.
+        // Of equally frequent verdicts, the one with the smallest number counts, as in merged().
         const auto rank = [&](const SettledPose& pose) {
             return is_all ? int(pose.verdict != Verdict::Valid)
                           : int(counts[pose.verdict]) * int(verdict_count) - int(pose.verdict);

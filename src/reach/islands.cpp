@@ -72,8 +72,9 @@ void ReachGraph::Impl::find_islands()
     DisjointSets sets = joined_runs();
     // A place counts once for each island on which it has a heading.
     std::vector<std::uint32_t> sizes(first_run.back(), 0);
+    std::vector<std::uint32_t> found;
     for (std::size_t p = 0; p < ground.size(); ++p) {
-        std::vector<std::uint32_t> found;
+        found.clear();
         for (std::uint32_t run = first_run[p]; run < first_run[p + 1]; ++run) found.push_back(sets.find(run));
         std::sort(found.begin(), found.end());
         found.erase(std::unique(found.begin(), found.end()), found.end());

@@ -94,10 +94,8 @@ LevelGround::LevelGround(const Judge::Impl& shared) : shared_(shared)
     const StandLimits& limits = shared.options.stand;
     std::vector<Convex> parts;
     Bounds box;
-    double radius = 0;
     for (const RobotPart& part : shared.robot.parts) {
         const Convex& body = parts.emplace_back(convex_of(part));
-        for (const Vec3& point : body.points) radius = std::max(radius, point.norm() + body.ball + body.disc);
         gap_ = std::max(gap_, 2 * tolerance + round_miss * (body.ball + body.disc));
         box.extend(body.bounds().min);
         box.extend(body.bounds().max);
@@ -117,7 +115,8 @@ LevelGround::LevelGround(const Judge::Impl& shared) : shared_(shared)
         std::abs(raised - shared.options.max_height) < tolerance || raised < tolerance ||
         !contains(footprint_, Vec2::Zero()))
         return;
-    flatness_ = largest_flatness(depth_in(support, mass.head<2>()), mass.z() - lowest_, radius, *limits.min_stability);
+    flatness_ = largest_flatness(depth_in(support, mass.head<2>()), mass.z() - lowest_, shared.settler().reach(),
+                                 *limits.min_stability);
 }
 
 void LevelGround::set_place(const Vec2& place, double radius)

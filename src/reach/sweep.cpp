@@ -3,6 +3,7 @@
 #include "base/module.h"
 #include "collision/narrow_phase_module.h"
 #include "geometry/geometry_impl.h"
+#include "settle/element_body.h"
 
 #include <algorithm>
 
@@ -75,20 +76,14 @@ void Sweep::set_place(const Vec2& place, double radius)
 {
     origin_ = {place.x(), place.y(), 0};
     solids_.clear();
-    geometry_.impl().visit_in(
-        place.x() - radius, place.y() - radius, place.x() + radius, place.y() + radius,
-        [&](const Tile& tile, auto element) {
-            if (tile.label(element) == Label::Water || tile.label(element) == Label::Ignore) return;
-            Solid& solid = solids_.emplace_back();
-            if (tile.is_triangle(element)) {
-                std::array<Vec3, 3> corners = tile.corners(element);
-                for (Vec3& corner : corners) corner -= origin_;
-                solid.body = convex_of(corners);
-            } else {
-                solid.body = moved(convex_of(tile.primitive(element).shape()), {-origin_, Mat3::Identity()});
-            }
-            solid.bounds = solid.body.bounds();
-        });
+    geometry_.impl().visit_in(place.x() - radius, place.y() - radius, place.x() + radius, place.y() + radius,
+                              [&](const Tile& tile, auto element) {
+                                  if (tile.label(element) == Label::Water || tile.label(element) == Label::Ignore)
+                                      return;
+                                  Solid& solid = solids_.emplace_back();
+                                  solid.body = body_of(tile, element, origin_);
+                                  solid.bounds = solid.body.bounds();
+                              });
 }
 
 bool Sweep::is_free(std::span<const Pose> poses, double lift, double growth)

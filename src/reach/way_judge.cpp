@@ -13,12 +13,6 @@ constexpr double limit_slack = 1e-9;  // m, in comparisons with limits
 constexpr int turn_pieces = 4;        // of a way on which the robot turns
 constexpr double large_tilt = 0.1;    // rad: if roll or pitch change by more, a way has as many pieces
 
-double radius_of(const Robot& robot)
-{
-    const Bounds box = robot.bounds();
-    return box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
-}
-
 double turn_between(double yaw, double other) { return std::remainder(other - yaw, 2 * std::numbers::pi); }
 
 Course course_of(const StateAt& from, const StateAt& to, Way way)
@@ -42,7 +36,7 @@ std::pair<Vec2, double> Course::at(double t) const
 }
 
 WayJudge::WayJudge(const Judge::Impl& shared, double max_step, double longest_way)
-    : shared_(shared), max_step_(max_step), longest_way_(longest_way), radius_(radius_of(shared.robot)),
+    : shared_(shared), max_step_(max_step), longest_way_(longest_way), radius_(shared.settler().reach()),
       steepest_(std::tan(shared.options.stand.max_slope)), stand_(shared), columns_(shared, 0), level_(shared),
       sweep_(shared.map.geometry, shared.robot)
 {

@@ -5,7 +5,6 @@
 #include "picture_args.h"
 #include "reach_args.h"
 #include "scene_args.h"
-#include "session.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/frames.h>
