@@ -61,13 +61,12 @@ void for_each_state(const Impl& graph, const Visit& visit)
 
 std::uint32_t island_at(const Impl& graph, std::size_t place, int heading)
 {
-    return graph.run_islands[graph.run_of(place, heading)];
+    return graph.node_islands[graph.node_of(place, heading)];
 }
 
 /// Returns the index of the place in its column to which a way of the graph leads.
 std::optional<int> target_of(const Impl& graph, std::size_t place, int heading, Way way)
 {
-    if (way == Way::Turn) return has_heading(graph.turns[place], heading) ? std::optional(0) : std::nullopt;
     const std::vector<Impl::Ways>& ways = graph.ways[std::size_t(way)];
     if (ways.empty()) return std::nullopt;
     const std::uint8_t index = ways[place][std::size_t(heading)];
@@ -104,7 +103,8 @@ void compare_ways(const Impl& graph, const slow::Reach& expected, Compared& out)
         numbers.emplace(state, std::uint32_t(numbers.size()));
         islands.push_back(island_at(graph, place, state[3]));
     });
-    DisjointSets sets(numbers.size());
+    DisjointSets sets;
+    sets.grow(numbers.size());
     for_each_state(graph, [&](const slow::Reach::State& state, std::size_t place) {
         for (const Way way : {Way::Ahead, Way::Left, Way::Right, Way::Aside, Way::Turn}) {
             if (way == Way::Aside && graph.options.drive != Drive::Omni) continue;
@@ -139,7 +139,8 @@ void compare_graph(const TestMap& map, const Robot& robot, const JudgeOptions& l
                    Compared& out)
 {
     const Judge judge(map, robot, limits);
-    const Impl graph(judge, options);
+    const Impl graph(judge, options, Impl::Keep::Ways), islands_only(judge, options);
+    CHECK(graph.node_islands == islands_only.node_islands);
     Scene surfaces = map.scene;
     for (Piece& piece : surfaces.pieces) piece.solid = false;
     const slow::Reach expected(judge, graph.options, graph.grid, Geometry(surfaces));
@@ -282,8 +283,8 @@ std::set<std::uint32_t> islands_near(const Impl& graph, const Vec3& point)
         if (!(distance < nearest)) return;
         nearest = distance;
         out.clear();
-        for (std::uint32_t run = graph.first_run[p]; run < graph.first_run[p + 1]; ++run)
-            out.insert(graph.run_islands[run]);
+        for (std::uint32_t node = graph.first_node[p]; node < graph.first_node[p + 1]; ++node)
+            out.insert(graph.node_islands[node]);
     });
     return out;
 }
@@ -297,9 +298,10 @@ bool is_joined(const Impl& graph, const Vec3& a, const Vec3& b)
     return std::any_of(of_a.begin(), of_a.end(), [&](std::uint32_t island) { return of_b.contains(island); });
 }
 
-Impl graph_of(const TestMap& map, const Robot& robot, const ReachOptions& options = {}, const JudgeOptions& limits = {})
+Impl graph_of(const TestMap& map, const Robot& robot, const ReachOptions& options = {}, const JudgeOptions& limits = {},
+              Impl::Keep keep = Impl::Keep::Islands)
 {
-    return {Judge(map, robot, limits), options};
+    return {Judge(map, robot, limits), options, keep};
 }
 
 /// Two floors, at 0 and at a height, with a ramp between them from x = 0.
@@ -620,8 +622,9 @@ TEST_CASE("a larger robot has no way that a smaller one does not have")
         CAPTURE(seed);
         const Scene scene = walled(seed);
         const TestMap map = map_of(scene, 0.1, box_of({-1.5, -1.5, -1}, {1.5, 1.5, 1}));
-        const Impl small = graph_of(map, boxy({0.5, 0.3, 0.2}), {.drive = Drive::Omni, .step = 0.15}),
-                   large = graph_of(map, boxy({0.6, 0.4, 0.3}), {.drive = Drive::Omni, .step = 0.15});
+        const ReachOptions options{.drive = Drive::Omni, .step = 0.15};
+        const Impl small = graph_of(map, boxy({0.5, 0.3, 0.2}), options, {}, Impl::Keep::Ways),
+                   large = graph_of(map, boxy({0.6, 0.4, 0.3}), options, {}, Impl::Keep::Ways);
         std::map<slow::Reach::State, std::size_t> places;
         std::map<std::uint32_t, std::uint32_t> islands;  // of the large robot: that of the small one there
         for_each_state(small, [&](const slow::Reach::State& state, std::size_t place) { places[state] = place; });
@@ -682,23 +685,30 @@ TEST_CASE("the graph is the same with any number of threads, and with every stat
 {
     const TestMap map = map_of(furnished(3, 2), 0.1);
     const Judge judge(map, boxy({0.7, 0.5, 0.3}));
-    const Impl one(judge, {.threads = 1});
+    const Impl one(judge, {.threads = 1}, Impl::Keep::Ways);
+    const auto islands_of = [](const Impl& graph) {
+        std::vector<std::uint32_t> out;
+        for_each_state(graph, [&](const slow::Reach::State& state, std::size_t place) {
+            out.push_back(island_at(graph, place, state[3]));
+        });
+        return out;
+    };
     const auto is_same = [&](const Impl& other) {
         CHECK(one.first == other.first);
         CHECK(one.ground == other.ground);
         CHECK(one.valid == other.valid);
-        CHECK(one.turns == other.turns);
-        CHECK(one.ways == other.ways);
-        CHECK(one.run_islands == other.run_islands);
+        if (other.keep == Impl::Keep::Ways) CHECK(one.ways == other.ways);
+        CHECK(islands_of(one) == islands_of(other));
         REQUIRE(one.islands.size() == other.islands.size());
         for (std::size_t k = 0; k < one.islands.size(); ++k) {
             CHECK(one.islands[k].area == other.islands[k].area);
             CHECK(one.islands[k].place == other.islands[k].place);
         }
     };
-    is_same({judge, {.threads = 2}});
-    is_same({judge, {.threads = 8}});
-    is_same({without_mask(judge), {.threads = 1}});
+    for (const Impl::Keep keep : {Impl::Keep::Ways, Impl::Keep::Islands}) {
+        for (const int threads : {1, 2, 8}) is_same({judge, {.threads = threads}, keep});
+        is_same({without_mask(judge), {.threads = 1}, keep});
+    }
 }
 
 TEST_CASE("the island of a state is that of its settled pose")

@@ -9,9 +9,6 @@
 namespace spawnfield {
 namespace {
 
-/// Returns the headings at which a run begins: those that no turn reaches from the heading before.
-HeadingSet starts_of(HeadingSet valid, HeadingSet turns) { return HeadingSet(valid & ~std::rotl(turns, 1)); }
-
 /// Returns the two headings around a yaw, the nearer one first.
 std::array<int, 2> headings_around(double yaw)
 {
@@ -26,68 +23,28 @@ std::array<int, 2> headings_around(double yaw)
 
 }  // namespace
 
-int count_runs(HeadingSet valid, HeadingSet turns)
+/// Numbers the sets of nodes, and adds up their places.
+void ReachGraph::Impl::find_islands(DisjointSets& nodes)
 {
-    if (valid == 0) return 0;
-    return std::max(1, std::popcount(starts_of(valid, turns)));  // without a start, turns connect all headings
-}
-
-std::size_t ReachGraph::Impl::run_of(std::size_t place, int heading) const
-{
-    const HeadingSet starts = starts_of(valid[place], turns[place]);
-    const int count = std::max(1, std::popcount(starts)),
-              up_to_here = std::popcount(HeadingSet(starts & ((2u << heading) - 1)));
-    return first_run[place] + std::size_t((up_to_here + count - 1) % count);
-}
-
-/// Joins the runs of all places between which there is a way.
-DisjointSets ReachGraph::Impl::joined_runs() const
-{
-    DisjointSets out(first_run.back());
-    const auto join_ways = [&](std::size_t place, int col, int row) {
-        for (const Way way : moving_ways) {
-            const std::vector<Ways>& targets = ways[std::size_t(way)];
-            if (targets.empty()) continue;
-            for (int heading = 0; heading < lattice_headings; ++heading) {
-                const std::uint8_t index = targets[place][std::size_t(heading)];
-                if (index == nowhere) continue;
-                const WayEnd end = way_end(way, heading);
-                const std::size_t to = first[column_of(col + end.move.cols, row + end.move.rows)] + index;
-                out.join(std::uint32_t(run_of(place, heading)), std::uint32_t(run_of(to, end.heading)));
-            }
-        }
-    };
-    for (int row = 0; row < grid.rows; ++row)
-        for (int col = 0; col < grid.cols; ++col)
-            for (std::size_t p = first[column_of(col, row)]; p < first[column_of(col, row) + 1]; ++p)
-                join_ways(p, col, row);
-    return out;
-}
-
-void ReachGraph::Impl::find_islands()
-{
-    first_run.assign(1, 0);
-    for (std::size_t p = 0; p < ground.size(); ++p)
-        first_run.push_back(first_run.back() + std::uint32_t(count_runs(valid[p], turns[p])));
-    DisjointSets sets = joined_runs();
+    const std::uint32_t count = first_node.back();
     // A place counts once for each island on which it has a heading.
-    std::vector<std::uint32_t> sizes(first_run.back(), 0);
+    std::vector<std::uint32_t> sizes(count, 0);
     std::vector<std::uint32_t> found;
     for (std::size_t p = 0; p < ground.size(); ++p) {
         found.clear();
-        for (std::uint32_t run = first_run[p]; run < first_run[p + 1]; ++run) found.push_back(sets.find(run));
+        for (std::uint32_t node = first_node[p]; node < first_node[p + 1]; ++node) found.push_back(nodes.find(node));
         std::sort(found.begin(), found.end());
         found.erase(std::unique(found.begin(), found.end()), found.end());
         for (const std::uint32_t root : found) ++sizes[root];
     }
     std::vector<std::uint32_t> roots;
-    for (std::uint32_t run = 0; run < sizes.size(); ++run)
-        if (sizes[run] > 0) roots.push_back(run);
+    for (std::uint32_t node = 0; node < count; ++node)
+        if (sizes[node] > 0) roots.push_back(node);
     std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) { return sizes[a] > sizes[b]; });
-    std::vector<std::uint32_t> numbers(sizes.size());
+    std::vector<std::uint32_t> numbers(count);
     for (std::uint32_t i = 0; i < roots.size(); ++i) numbers[roots[i]] = i;
-    run_islands.resize(sizes.size());
-    for (std::uint32_t run = 0; run < run_islands.size(); ++run) run_islands[run] = numbers[sets.find(run)];
+    node_islands.resize(count);
+    for (std::uint32_t node = 0; node < count; ++node) node_islands[node] = numbers[nodes.find(node)];
     islands.clear();
     for (const std::uint32_t root : roots)
         islands.push_back(
@@ -103,19 +60,24 @@ void ReachGraph::Impl::set_places()
     std::vector<std::uint32_t> counts(islands.size(), 0);
     std::vector<double> nearest(islands.size(), infinity);
     for (Island& island : islands) island.low = infinity, island.high = -infinity;
-    const auto for_each_run = [&](const auto& visit) {
+    // Calls visit once for each place of an island.
+    const auto for_each = [&](const auto& visit) {
         for_each_place([&](std::size_t p, double x, double y) {
-            for (std::uint32_t run = first_run[p]; run < first_run[p + 1]; ++run)
-                visit(run_islands[run], Vec3(x, y, ground[p]));
+            const std::span<const std::uint32_t> here =
+                std::span(node_islands).subspan(first_node[p], first_node[p + 1] - first_node[p]);
+            for (std::size_t k = 0; k < here.size(); ++k)
+                if (std::find(here.begin(), here.begin() + std::ptrdiff_t(k), here[k]) ==
+                    here.begin() + std::ptrdiff_t(k))
+                    visit(here[k], Vec3(x, y, ground[p]));
         });
     };
-    for_each_run([&](std::uint32_t i, const Vec3& at) {
+    for_each([&](std::uint32_t i, const Vec3& at) {
         islands[i].low = std::min(islands[i].low, at.z());
         islands[i].high = std::max(islands[i].high, at.z());
         middles[i] += at.head<2>();
         ++counts[i];
     });
-    for_each_run([&](std::uint32_t i, const Vec3& at) {
+    for_each([&](std::uint32_t i, const Vec3& at) {
         const double distance = (at.head<2>() - middles[i] / counts[i]).norm();
         if (!(distance < nearest[i])) return;
         nearest[i] = distance;
@@ -152,7 +114,7 @@ std::optional<std::size_t> ReachGraph::Impl::island_at(const SettledPose& pose, 
     std::vector<PlaceStates> places;
     for (std::size_t p = begin; p < end; ++p) places.push_back({.ground = ground[p], .valid = valid[p]});
     const auto k = way_judges.local().place_near(pose, {grid.x_of(col), grid.y_of(row)}, places, heading);
-    return k ? std::optional<std::size_t>(run_islands[run_of(begin + *k, heading)]) : std::nullopt;
+    return k ? std::optional<std::size_t>(node_islands[node_of(begin + *k, heading)]) : std::nullopt;
 }
 
 }  // namespace spawnfield

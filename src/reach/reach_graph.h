@@ -8,42 +8,49 @@
 #include <spawnfield/reach.h>
 
 #include <array>
+#include <bit>
 #include <vector>
 
 namespace spawnfield {
 
-/// The states and edges of a drivable graph. A place is a layer of a column at which the robot stands at one heading or
-/// more.
+/// The states of a drivable graph and its islands, and its ways if they are wanted. A place is a layer of a column at
+/// which the robot stands at one heading or more. A node is a state, or all 16 states of an open place.
 struct ReachGraph::Impl {
     static constexpr std::uint8_t nowhere = 255;
     /// The ways between different columns.
     static constexpr std::array moving_ways{Way::Ahead, Way::Left, Way::Right, Way::Aside};
     /// For each heading, the index of the place in its column to which a way leads, from the top; `nowhere`: there is
-    /// no way.
+    /// no way. Way::Turn leads to the place itself.
     using Ways = std::array<std::uint8_t, lattice_headings>;
+    /// What is kept. Islands need only a small part of all ways: those that join two parts of an island first.
+    enum class Keep { Islands, Ways };
 
     Judge judge;
     ReachOptions options;  ///< with all values
+    const Keep keep;
     RasterGrid grid;
-    std::vector<std::uint32_t> first;  ///< first place of each column, row by row; then their number
-    std::vector<double> ground;        ///< height of each place, m
-    std::vector<HeadingSet> valid;     ///< at which the robot stands
-    std::vector<HeadingSet> turns;     ///< from which it can turn to the next one
-    /// The ways of each place by Way; empty for those that the drive does not have. Not for Way::Turn.
-    std::array<std::vector<Ways>, way_count> ways;
-    std::vector<std::uint32_t> first_run;    ///< of each place, then their number
-    std::vector<std::uint32_t> run_islands;  ///< the island of each run: headings of a place that turns connect
+    std::vector<std::uint32_t> first;       ///< first place of each column, row by row; then their number
+    std::vector<double> ground;             ///< height of each place, m
+    std::vector<HeadingSet> valid;          ///< at which the robot stands
+    std::vector<std::uint32_t> first_node;  ///< of each place, then their number
+    std::vector<std::uint32_t> node_islands;
     std::vector<Island> islands;
+    std::array<std::vector<Ways>, way_count> ways;  ///< by Way, of each place; empty unless they are kept
 
-    Impl(const Judge& judge_, const ReachOptions& options_);
+    Impl(const Judge& judge_, const ReachOptions& options_, Keep keep_ = Keep::Islands);
 
     std::size_t column_of(int col, int row) const
     {
         return std::size_t(row) * std::size_t(grid.cols) + std::size_t(col);
     }
     std::optional<std::size_t> island_of(const SettledPose& pose) const;
-    /// Returns the number of the run that contains a valid heading of a place.
-    std::size_t run_of(std::size_t place, int heading) const;
+    /// Returns the number of a state's node; its place is valid at this heading.
+    std::uint32_t node_of(std::size_t place, int heading) const
+    {
+        const std::uint32_t node = first_node[place];
+        if (first_node[place + 1] == node + 1) return node;
+        return node + std::uint32_t(std::popcount(HeadingSet(valid[place] & ((1u << heading) - 1))));
+    }
 
     /// Calls visit(place, x, y) for each place, in their order.
     template <class Visit>
@@ -59,12 +66,8 @@ struct ReachGraph::Impl {
 
 private:
     std::optional<std::size_t> island_at(const SettledPose& pose, int col, int row, int heading) const;
-    DisjointSets joined_runs() const;
-    void find_islands();
+    void find_islands(DisjointSets& nodes);
     void set_places();
 };
-
-/// Returns how many runs a place has with these valid headings and turns.
-int count_runs(HeadingSet valid, HeadingSet turns);
 
 }  // namespace spawnfield

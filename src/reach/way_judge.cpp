@@ -105,6 +105,12 @@ std::optional<std::size_t> WayJudge::place_after(const Vec2& from, const PlaceSt
     return least <= max_step_ + limit_slack ? std::optional(best) : std::nullopt;
 }
 
+double WayJudge::largest_rise(double length) const
+{
+    // The two straight ways of a curve are longer than the straight line between its ends.
+    return std::numbers::sqrt2 * length * steepest_ + 2 * (max_step_ + limit_slack);
+}
+
 /// Returns the step in the ground between two places, m. Infinite: it is larger than max_step.
 double WayJudge::step_between(const Vec2& from, double ground, const Vec2& to, double other_ground)
 {
@@ -129,12 +135,18 @@ double WayJudge::slope_at(const Vec2& at, double ground, const Vec2& ahead)
     return out;
 }
 
+/// Prepares for ways that begin at a place.
+void WayJudge::set_start(const Vec2& at)
+{
+    if (start_ == at) return;
+    sweep_.set_place(at, radius_ + longest_way_);
+    start_ = at;
+}
+
 bool WayJudge::can_go(const StateAt& from, const StateAt& to, Way way)
 {
-    // On open ground, nothing is there that the robot could meet. The other place may be on another layer.
-    if ((from.place.is_open || to.place.is_open) &&
-        std::abs(from.place.ground - to.place.ground) <= 2 * level_.flatness())
-        return true;
+    if (is_open(from, to)) return true;
+    set_start(from.at);
     const StatePose &pose = from.place.poses[std::size_t(from.heading)],
                     &other = to.place.poses[std::size_t(to.heading)];
     const Course course = course_of(from, to, way);

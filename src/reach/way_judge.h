@@ -8,6 +8,8 @@
 #include <spawnfield/reach.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -56,13 +58,20 @@ public:
     /// Appends the places of a column.
     void find_places(const Vec2& at, std::vector<PlaceStates>& out);
 
+    /// Returns how much the ground may rise on a way of two steps or fewer with this length, m.
+    double largest_rise(double length) const;
+
     /// Returns the index, in another column, of the place with the smallest step from this one; it has a state at this
     /// heading. Returns nothing if all steps are larger than max_step.
     std::optional<std::size_t> place_after(const Vec2& from, const PlaceStates& place, const Vec2& to,
                                            std::span<const PlaceStates> others, int heading);
 
-    /// Must be called before ways are examined that begin at a place.
-    void set_start(const Vec2& at) { sweep_.set_place(at, radius_ + longest_way_); }
+    /// Returns whether there is nothing that the robot could meet on a way from one state to another one.
+    bool is_open(const StateAt& from, const StateAt& to) const
+    {
+        return (from.place.is_open || to.place.is_open) &&
+               std::abs(from.place.ground - to.place.ground) <= 2 * level_.flatness();  // it may be another layer
+    }
     /// Returns whether the robot meets nothing on a way from one state to another one.
     bool can_go(const StateAt& from, const StateAt& to, Way way);
 
@@ -75,6 +84,7 @@ private:
     double step_between(const Vec2& from, double ground, const Vec2& to, double other_ground);
     double slope_at(const Vec2& at, double ground, const Vec2& ahead);
     bool is_proven(const ColumnView& column, const Vec3& place);
+    void set_start(const Vec2& at);
     StatePose exact_pose(const StateAt& state);
     StatePose settled(const Vec2& at, double ground, int heading);
     bool can_follow(const Course& course, const StatePose& pose, const StatePose& other);
@@ -89,7 +99,8 @@ private:
     PoseJudge columns_;
     LevelGround level_;
     Sweep sweep_;
-    std::vector<Pose> poses_;  ///< of the way that was examined last
+    Vec2 start_ = Vec2::Constant(std::numeric_limits<double>::quiet_NaN());  ///< from where sweep_ examines ways
+    std::vector<Pose> poses_;                                                ///< of the way that was examined last
 };
 
 }  // namespace spawnfield

@@ -1,0 +1,164 @@
+#include "reach/graph_builder.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace spawnfield {
+namespace {
+
+constexpr int band = 16;  // rows whose states are found before the ways between them
+
+}  // namespace
+
+double longest_way()
+{
+    double out = 0;
+    for (int heading = 0; heading < lattice_headings; ++heading)
+        out = std::max(out, way_end(Way::Left, heading).move.length());
+    return out;
+}
+
+GraphBuilder::GraphBuilder(ReachGraph::Impl& graph)
+    : graph_(graph), keeps_ways_(graph.keep == ReachGraph::Impl::Keep::Ways), rows_(std::size_t(graph.grid.rows))
+{
+    for (const bool is_open : {true, false})
+        for (const Way way : {Way::Ahead, Way::Turn, Way::Left, Way::Right, Way::Aside})
+            if (way != Way::Aside || graph.options.drive == Drive::Omni) passes_.push_back({way, is_open});
+}
+
+DisjointSets GraphBuilder::run()
+{
+    const int threads = graph_.options.threads, rows = graph_.grid.rows;
+    graph_.first.assign(1, 0);
+    graph_.first_node.assign(1, 0);
+    int done = 0;  // rows whose ways are known
+    for (int begin = 0; begin < rows; begin += band) {
+        const int end = std::min(rows, begin + band), ready = end < rows ? end - longest_way_rows : end;
+        const auto report = [&](double share) {
+            if (graph_.options.progress) graph_.options.progress((begin + share * (end - begin)) / rows);
+        };
+        parallel_for(std::size_t(end - begin), threads, report, [&](std::size_t k) { find_states(begin + int(k)); });
+        for (int row = begin; row < end; ++row) append(rows_[std::size_t(row)]);
+        for (const Pass& pass : passes_)
+            parallel_for(std::size_t(ready - done), threads, {}, [&](std::size_t k) { join_row(done + int(k), pass); });
+        done = ready;
+        for (int row = std::max(0, begin - band - longest_way_rows); row < done - longest_way_rows; ++row)
+            rows_[std::size_t(row)] = {};
+    }
+    return std::move(nodes_);
+}
+
+std::span<const PlaceStates> GraphBuilder::places_at(int col, int row) const
+{
+    if (col < 0 || row < 0 || col >= graph_.grid.cols || row >= graph_.grid.rows) return {};
+    const StateRow& states = rows_[std::size_t(row)];
+    const std::uint32_t begin = states.first[std::size_t(col)];
+    return std::span(states.places).subspan(begin, states.first[std::size_t(col) + 1] - begin);
+}
+
+std::uint32_t GraphBuilder::node_of(const PlaceAt& at, int heading) const
+{
+    return graph_.node_of(graph_.first[graph_.column_of(at.col, at.row)] + at.index, heading);
+}
+
+void GraphBuilder::find_states(int row)
+{
+    StateRow& out = rows_[std::size_t(row)];
+    WayJudge& judge = graph_.way_judges.local();
+    for (int col = 0; col < graph_.grid.cols; ++col) {
+        out.first.push_back(std::uint32_t(out.places.size()));
+        judge.find_places(position(col, row), out.places);
+    }
+    out.first.push_back(std::uint32_t(out.places.size()));
+}
+
+/// Appends the places of a row to the graph.
+void GraphBuilder::append(StateRow& row)
+{
+    row.before = graph_.ground.size();
+    for (std::size_t col = 1; col < row.first.size(); ++col)
+        graph_.first.push_back(std::uint32_t(row.before) + row.first[col]);
+    for (const PlaceStates& place : row.places) {
+        graph_.ground.push_back(place.ground);
+        graph_.valid.push_back(place.valid);
+        graph_.first_node.push_back(graph_.first_node.back() +
+                                    (place.is_open ? 1 : std::uint32_t(std::popcount(place.valid))));
+    }
+    nodes_.grow(graph_.first_node.back());
+    if (!keeps_ways_) return;
+    ReachGraph::Impl::Ways none;
+    none.fill(ReachGraph::Impl::nowhere);
+    for (const Pass& pass : passes_) graph_.ways[std::size_t(pass.way)].resize(graph_.ground.size(), none);
+}
+
+void GraphBuilder::join_row(int row, const Pass& pass)
+{
+    WayJudge& judge = graph_.way_judges.local();
+    for (int col = 0; col < graph_.grid.cols; ++col)
+        for (std::size_t k = 0; k < places_at(col, row).size(); ++k)
+            for (int heading = 0; heading < lattice_headings; ++heading)
+                if (const PlaceAt from{col, row, k}; has_heading(place(from).valid, heading))
+                    examine(judge, from, heading, pass);
+}
+
+/// Joins a state and the one to which a way leads, if there is one.
+void GraphBuilder::examine(WayJudge& judge, const PlaceAt& from, int heading, const Pass& pass)
+{
+    const WayEnd end = way_end(pass.way, heading);
+    if (!keeps_ways_ && !may_join(judge, from, heading, pass.way)) return;
+    const std::optional<PlaceAt> to = end_of(judge, from, heading, pass.way);
+    if (!to || to->index >= ReachGraph::Impl::nowhere) return;
+    const StateAt start{position(from.col, from.row), place(from), heading},
+        goal{position(to->col, to->row), place(*to), end.heading};
+    if (judge.is_open(start, goal) != pass.is_open || (!pass.is_open && !judge.can_go(start, goal, pass.way))) return;
+    nodes_.join(node_of(from, heading), node_of(*to, end.heading));
+    if (keeps_ways_)
+        graph_.ways[std::size_t(pass.way)][rows_[std::size_t(from.row)].before +
+                                           rows_[std::size_t(from.row)].first[std::size_t(from.col)] +
+                                           from.index][std::size_t(heading)] = std::uint8_t(to->index);
+}
+
+/// Returns whether a way may lead to a state that is not joined with this one.
+bool GraphBuilder::may_join(const WayJudge& judge, const PlaceAt& from, int heading, Way way)
+{
+    const WayEnd end = way_end(way, heading);
+    const std::uint32_t node = node_of(from, heading);
+    const auto is_new = [&](const PlaceAt& to) {
+        return has_heading(place(to).valid, end.heading) && !nodes_.are_joined(node, node_of(to, end.heading));
+    };
+    if (way == Way::Turn) return is_new(from);
+    const int col = from.col + end.move.cols, row = from.row + end.move.rows;
+    const double largest_rise = judge.largest_rise(end.move.length() * graph_.grid.step);
+    for (std::size_t k = 0; k < places_at(col, row).size(); ++k)
+        if (const PlaceAt to{col, row, k};
+            std::abs(place(to).ground - place(from).ground) <= largest_rise && is_new(to))
+            return true;
+    return false;
+}
+
+/// Returns the place to which the ground leads on a way, at whose end the robot stands there. In a curve, the robot
+/// must also stand where the straight ways of both headings meet.
+std::optional<GraphBuilder::PlaceAt> GraphBuilder::end_of(WayJudge& judge, const PlaceAt& from, int heading,
+                                                          Way way) const
+{
+    const WayEnd end = way_end(way, heading);
+    if (way == Way::Turn) return has_heading(place(from).valid, end.heading) ? std::optional(from) : std::nullopt;
+    const auto next = [&](const PlaceAt& start, int col, int row, int at_heading) -> std::optional<PlaceAt> {
+        const std::span<const PlaceStates> others = places_at(col, row);
+        if (others.empty()) return std::nullopt;
+        const auto k = judge.place_after(position(start.col, start.row), place(start), position(col, row), others,
+                                         at_heading);
+        return k ? std::optional(PlaceAt{col, row, *k}) : std::nullopt;
+    };
+    const int to_col = from.col + end.move.cols, to_row = from.row + end.move.rows;
+    if (heading == end.heading) return next(from, to_col, to_row, heading);
+    if (places_at(to_col, to_row).empty()) return std::nullopt;
+    const LatticeMove half = lattice_move(heading);
+    for (const int at_middle : {heading, end.heading})
+        if (const auto middle = next(from, from.col + half.cols, from.row + half.rows, at_middle))
+            if (const auto out = next(*middle, to_col, to_row, end.heading)) return out;
+    return std::nullopt;
+}
+
+}  // namespace spawnfield

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "reach/disjoint_sets.h"
+#include "reach/reach_graph.h"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace spawnfield {
+
+/// Finds the states of a graph, and joins those between which there is a way, some rows at a time. Only these rows have
+/// their poses in memory.
+///
+/// The islands are the same in whatever order ways are examined. So those that need no work come first, and a way
+/// between states that are already joined is not examined, unless all ways are kept.
+class GraphBuilder {
+public:
+    /// `graph` must have its grid and its options.
+    explicit GraphBuilder(ReachGraph::Impl& graph);
+
+    /// Sets all of the graph except its islands, and returns which nodes are joined.
+    DisjointSets run();
+
+private:
+    /// The places of a row.
+    struct StateRow {
+        std::vector<std::uint32_t> first;  ///< first place of each column; then their number
+        std::vector<PlaceStates> places;
+        std::size_t before = 0;  ///< number of places in earlier rows
+    };
+    /// A column, and one of its places.
+    struct PlaceAt {
+        int col, row;
+        std::size_t index;  ///< in the column
+    };
+    /// Which ways are examined together.
+    struct Pass {
+        Way way;
+        bool is_open;  ///< only those for which can_go() needs no work
+    };
+
+    std::span<const PlaceStates> places_at(int col, int row) const;
+    const PlaceStates& place(const PlaceAt& at) const { return places_at(at.col, at.row)[at.index]; }
+    std::uint32_t node_of(const PlaceAt& at, int heading) const;
+    Vec2 position(int col, int row) const { return {graph_.grid.x_of(col), graph_.grid.y_of(row)}; }
+
+    void find_states(int row);
+    void append(StateRow& row);
+    void join_row(int row, const Pass& pass);
+    void examine(WayJudge& judge, const PlaceAt& from, int heading, const Pass& pass);
+    bool may_join(const WayJudge& judge, const PlaceAt& from, int heading, Way way);
+    std::optional<PlaceAt> end_of(WayJudge& judge, const PlaceAt& from, int heading, Way way) const;
+
+    ReachGraph::Impl& graph_;
+    const bool keeps_ways_;
+    std::vector<Pass> passes_;
+    std::vector<StateRow> rows_;
+    DisjointSets nodes_;
+};
+
+/// Returns the length of the longest way, in steps of the grid.
+double longest_way();
+
+}  // namespace spawnfield
