@@ -207,7 +207,11 @@ Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
 
 Judgement PoseJudge::judge_as_given(const Vec3& position, bool with_hit)
 {
-    const ColumnView column(column_at(position.head<2>()));
+    return judge_as_given(column_at(position.head<2>()), position, with_hit);
+}
+
+Judgement PoseJudge::judge_as_given(const ColumnView& column, const Vec3& position, bool with_hit)
+{
     Judgement out = judge(column, position, with_hit);
     if (out.verdict != Verdict::Aerial) return out;
     const std::optional<Judgement> over = judge_over_ground(column, position, false);

@@ -62,6 +62,7 @@ public:
     Judgement judge(const Vec3& position, bool with_hit = false);
     /// The same by the rule for poses as given: a pose that is aerial is valid if it is valid with the ground between
     /// its origin and the robot's underside (see judge_over_ground()).
+    Judgement judge_as_given(const ColumnView& column, const Vec3& position, bool with_hit = false);
     Judgement judge_as_given(const Vec3& position, bool with_hit = false);
     /// Judges a pose by ground that is above its origin and below the robot, for example a crest between its wheels.
     /// Ground counts up to the robot's lowest point on the vertical line through its origin. Returns nothing if there
