@@ -138,7 +138,7 @@ TEST_CASE("in a map with z limits a 3D raster and a search give the verdicts of 
         const RasterResult result = raster(judge, options);
         VerdictCounts counts;
         for_each_pose(result, true, [&](const RasterPose& pose) {
-            const Verdict wanted = exhaustive.check({{pose.x, pose.y, pose.z}, Mat3::Identity()}).verdict;
+            const Verdict wanted = verdict_in_raster(exhaustive, {{pose.x, pose.y, pose.z}, Mat3::Identity()});
             CAPTURE(seed, pose.x, pose.y, pose.z);
             CHECK(pose.verdict == wanted);
             ++counts[pose.verdict];

@@ -2,6 +2,7 @@
 #include "test_map.h"
 
 #include <spawnfield/poses.h>
+#include <spawnfield/robot_parts.h>
 #include <spawnfield/scene_parts.h>
 
 #include <tbb/global_control.h>
@@ -101,6 +102,54 @@ TEST_CASE("the reason of a pose that has sunk through a deck names the distance 
         reason(1.95) ==
         "aerial: 1.95 m above the ground, the limit is 1 m (--max-height); the next ground is 0.05 m above the origin");
     CHECK(reason(3.5) == "aerial: 1.5 m above the ground, the limit is 1 m (--max-height)");
+}
+
+TEST_CASE("a pose over a crest that is above its origin and below the robot is valid if the robot is free there")
+{
+    // A body at 0.25 m on two skids. Its origin is between them, at the height of their lowest points.
+    const Robot robot = make_robot("skids", {shape_part(box_shape({0.8, 0.8, 0.1}, {{0, 0, 0.3}})),
+                                             shape_part(box_shape({0.8, 0.1, 0.25}, {{0, 0.35, 0.125}})),
+                                             shape_part(box_shape({0.8, 0.1, 0.25}, {{0, -0.35, 0.125}}))});
+    const double crest = GENERATE(0.03, 0.1, 0.2);
+    const Label label = GENERATE(Label::Terrain, Label::Obstacle);
+    const bool is_wet = GENERATE(false, true);
+    CAPTURE(crest, to_string(label), is_wet);
+    Scene scene;  // no ground below the crest
+    const auto add_block = [&](const Vec3& low, const Vec3& high, Label of_block, const char* name) {
+        add_shape(scene, name, of_block, box_shape(high - low, {(low + high) / 2}));
+    };
+    add_block({-5, -5, -1}, {5, -0.2, 0}, Label::Terrain, "right");
+    add_block({-5, 0.2, -1}, {5, 5, 0}, Label::Terrain, "left");
+    add_block({-5, -0.2, -1}, {5, 0.2, crest}, label, "crest");
+    if (is_wet) add_block({-5, -5, -0.9}, {5, 5, crest}, Label::Water, "water");
+    const Judge judge(map_of(scene), robot), exhaustive = without_mask(judge);
+    const auto check = [&](double z) {
+        const Pose pose{{0, 0, z}};
+        const Judgement out = judge.check(pose);
+        CHECK(exhaustive.check(pose).verdict == out.verdict);
+        CHECK(judge.check(std::span(&pose, 1))[0].verdict == out.verdict);
+        CHECK(judge.is_valid(pose) == (out.verdict == Verdict::Valid));
+        return out;
+    };
+    const auto reason = [&](double z) { return judge.describe({{0, 0, z}}, judge.check({{0, 0, z}})); };
+    const std::string no_ground = "aerial: no ground below the origin; ";
+    const std::string below = no_ground + "with the ground below the robot, ";
+    const Judgement over = check(0.02);
+    if (label == Label::Terrain && !is_wet) {
+        CHECK(over.verdict == Verdict::Valid);
+        CHECK(over.ground->height == Approx(crest));
+        CHECK(check(-0.02).verdict == Verdict::Aerial);  // the skids are in the ground
+        CHECK_THAT(reason(-0.02), Contains(below) && Contains(" m above the origin, it is collision with "));
+        CHECK(check(crest + 0.02).verdict == Verdict::Valid);
+    } else {
+        CHECK(over.verdict == Verdict::Aerial);
+        CHECK_FALSE(over.ground);
+        CHECK_THAT(reason(0.02),
+                   Contains(below) && Contains(label == Label::Terrain ? "it is submerged"
+                                                                       : "it is off_terrain: the ground is crest"));
+    }
+    CHECK(check(-0.5).verdict == Verdict::Aerial);  // it is buried
+    if (label == Label::Terrain) CHECK_THAT(reason(-0.5), Contains(no_ground + "the next ground is "));
 }
 
 TEST_CASE("counts by verdict add up")

@@ -67,7 +67,8 @@ TEST_CASE("a 3D raster has the verdicts that check gives for each single pose")
                 for (int k = result.grid.heights - 1; k >= 0; --k) {
                     const RasterPose pose{result.grid.x_of(i), result.grid.y_of(j), result.grid.z_of(k), 0,
                                           Verdict::Valid};
-                    const Verdict verdict = judged(exhaustive, pose, 0.4);
+                    const Verdict verdict = verdict_in_raster(exhaustive,
+                                                              {{pose.x, pose.y, pose.z}, rotation_from_rpy(0, 0, 0.4)});
                     ++counts[verdict];
                     if (verdict == Verdict::Aerial) continue;
                     REQUIRE(next != result.poses.end());

@@ -99,6 +99,26 @@ TEST_CASE("real scenes bake, and real robots' samples in them are valid by check
     }
 }
 
+TEST_CASE("settled spawns of a robot with its origin between its wheels are valid as written, also over crests")
+{
+    const auto folder = shared_scenes();
+    if (!folder) return;
+    const TestMap map = map_of(load_scene(*folder / "dungeon/scene.yaml"));
+    const Judge judge(map, load_robot(source_folder() + "/maps/robots/husky_wheels.yaml"));
+    const SpawnList list = sample(judge, {.count = 1000, .random_yaw = true});
+    CHECK(list.spawns.size() == 1000);
+    std::vector<Pose> poses;
+    for (const Spawn& spawn : list.spawns)
+        poses.push_back({spawn.position, rotation_from_rpy(spawn.roll, spawn.pitch, spawn.yaw)});
+    const std::vector<Judgement> judged = judge.check(poses);
+    std::size_t over_crests = 0;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        CHECK(judged[i].verdict == Verdict::Valid);
+        over_crests += judged[i].ground && judged[i].ground->height > poses[i].position.z();
+    }
+    CHECK(over_crests >= 5);
+}
+
 TEST_CASE("check in real scenes agrees with the independent decision")
 {
     const auto folder = shared_scenes();

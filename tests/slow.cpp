@@ -421,6 +421,39 @@ Stretch vertical_stretch(const Shape& shape, double x, double y)
     return stretch;
 }
 
+/// The same for a part of a robot.
+Stretch vertical_stretch(const RobotPart& part, const Pose& scene_from_robot, double x, double y)
+{
+    if (part.shape.kind != ShapeKind::Hull) {
+        Shape shape = part.shape;
+        shape.pose = scene_from_robot * shape.pose;
+        return vertical_stretch(shape, x, y);
+    }
+    const Convex hull = convex_of(part, scene_from_robot, Rounding::Inscribed);
+    Stretch stretch;
+    for (std::size_t i = 0; i < hull.faces.size() && !stretch.is_empty(); ++i) {
+        const Real3 out = hull.normals[i].cast<Real>();
+        const Real at_zero = out.dot(Real3{x, y, 0} - hull.corners[hull.faces[i][0]].cast<Real>());
+        if (std::abs(out.z()) < 1e-15L)
+            stretch.clip(at_zero <= 0 ? Stretch{} : nowhere);
+        else
+            stretch.clip(out.z() > 0 ? Stretch{-infinity, -at_zero / out.z()} : Stretch{-at_zero / out.z(), infinity});
+    }
+    return stretch;
+}
+
+/// Returns how far the robot's lowest point on the vertical line through (x, y) is above its origin; 0 if it is not
+/// above the origin.
+double underside(const Robot& robot, const Pose& scene_from_robot, double x, double y)
+{
+    Real lowest = infinity;
+    for (const RobotPart& part : robot.parts) {
+        const Stretch stretch = vertical_stretch(part, scene_from_robot, x, y);
+        if (!stretch.is_empty()) lowest = std::min(lowest, stretch.from);
+    }
+    return lowest == infinity ? 0 : std::max(0.0, double(lowest) - scene_from_robot.position.z());
+}
+
 // ---- Columns ----
 
 constexpr double touch = 1e-9;  // surfaces that are closer than this are one, and terrain wins
@@ -458,6 +491,7 @@ void add_sheet(Column& column, const std::vector<Crossing>& hits, const Piece& p
 struct Limits {
     const Bounds& bounds;
     double max_height, max_water_depth;
+    double above = 0;  ///< m; ground counts up to this height above the origin
 };
 
 /// A verdict without collisions: Valid if nothing else applies.
@@ -479,7 +513,7 @@ std::optional<Span> ground_below(const Column& column, double z)
 /// Returns the verdict without collisions. Raises the water by `rise` m.
 Footing footing(const Column& column, const Vec3& position, const Limits& limits, double rise)
 {
-    const std::optional<Span> ground = ground_below(column, position.z());
+    const std::optional<Span> ground = ground_below(column, position.z() + limits.above);
     if (!limits.bounds.contains_xy(position.x(), position.y(), 0)) return {Verdict::Outside, ground};
     if (!ground || position.z() - ground->top > limits.max_height) return {Verdict::Aerial, ground};
     if (!ground->terrain) return {Verdict::OffTerrain, ground};
@@ -500,14 +534,21 @@ bool is_same(const Footing& a, const Footing& b, double margin)
     return std::abs(a.ground->top - b.ground->top) <= limit;
 }
 
+/// Returns the places around a position at distance margin.
+std::vector<Vec3> neighbours(const Vec3& position, double margin)
+{
+    std::vector<Vec3> out;
+    for (int i = 0; i < 8; ++i)
+        out.push_back(position + margin * Vec3{std::cos(M_PI / 4 * i), std::sin(M_PI / 4 * i), 0});
+    return out;
+}
+
 bool is_unchanged_nearby(const Scene& scene, const Vec3& position, const Limits& limits, const Footing& here,
                          double margin)
 {
-    for (int i = 0; i < 8; ++i) {
-        const Vec3 neighbour = position + margin * Vec3{std::cos(M_PI / 4 * i), std::sin(M_PI / 4 * i), 0};
+    for (const Vec3& neighbour : neighbours(position, margin))
         if (!is_same(here, footing(column(scene, neighbour.x(), neighbour.y()), neighbour, limits, 0), margin))
             return false;
-    }
     const Column centre = column(scene, position.x(), position.y());
     for (const double shift : {-margin, margin}) {
         if (!is_same(here, footing(centre, position + Vec3{0, 0, shift}, limits, 0), margin)) return false;
@@ -570,10 +611,12 @@ std::vector<double> layers(const Scene& scene, double x, double y)
     return tops;
 }
 
-Decision decide(const Scene& scene, const Bounds& map_bounds, const Robot& robot, const Pose& scene_from_robot,
-                double max_height, double max_water_depth, double margin)
+namespace {
+
+/// Returns the verdict with the ground up to limits.above over the origin.
+Decision decide(const Scene& scene, const Robot& robot, const Pose& scene_from_robot, const Limits& limits,
+                double margin)
 {
-    const Limits limits = {map_bounds, max_height, max_water_depth};
     const Vec3& position = scene_from_robot.position;
     const Footing here = footing(column(scene, position.x(), position.y()), position, limits, 0);
     Decision decision;
@@ -587,6 +630,26 @@ Decision decide(const Scene& scene, const Bounds& map_bounds, const Robot& robot
     case Answer::TooClose: decision.verdict.reset(); break;
     }
     return decision;
+}
+
+}  // namespace
+
+Decision decide(const Scene& scene, const Bounds& map_bounds, const Robot& robot, const Pose& scene_from_robot,
+                double max_height, double max_water_depth, double margin)
+{
+    Limits limits = {map_bounds, max_height, max_water_depth};
+    const Decision decision = decide(scene, robot, scene_from_robot, limits, margin);
+    if (decision.verdict != Verdict::Aerial) return decision;
+    // An aerial pose is valid if it is valid with the ground between its origin and its underside.
+    const Vec3& position = scene_from_robot.position;
+    limits.above = underside(robot, scene_from_robot, position.x(), position.y());
+    for (const Vec3& neighbour : neighbours(position, margin))
+        if (std::abs(underside(robot, scene_from_robot, neighbour.x(), neighbour.y()) - limits.above) > 20 * margin)
+            return {.verdict = {}, .ground = decision.ground};
+    if (limits.above == 0) return decision;
+    const Decision over = decide(scene, robot, scene_from_robot, limits, margin);
+    if (over.verdict == Verdict::Valid) return over;
+    return over.verdict ? decision : Decision{.verdict = {}, .ground = decision.ground};
 }
 
 // ---- Footing ----

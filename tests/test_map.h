@@ -50,6 +50,14 @@ inline spawnfield::Judge at_any_height(const spawnfield::Judge& judge)
     return {judge.map(), judge.robot(), options};
 }
 
+/// Returns the verdict that a raster must have at a pose: that of check, but ground above the origin does not count.
+inline spawnfield::Verdict verdict_in_raster(const spawnfield::Judge& judge, const spawnfield::Pose& pose)
+{
+    const spawnfield::Judgement judged = judge.check(pose);
+    const bool is_over = judged.ground && judged.ground->height > pose.position.z() + 1e-9;
+    return is_over ? spawnfield::Verdict::Aerial : judged.verdict;
+}
+
 inline spawnfield::CollisionChecker checker_of(const spawnfield::Map& map, const spawnfield::Robot& robot)
 {
     return {map.geometry, robot};

@@ -2,6 +2,7 @@
 
 #include <spawnfield/export.h>
 #include <spawnfield/query.h>
+#include <spawnfield/repair.h>
 #include <spawnfield/simulators.h>
 
 #include <filesystem>
@@ -45,20 +46,32 @@ SPAWNFIELD_API std::vector<RobotStart> robot_starts(const PoseTable& table, cons
 SPAWNFIELD_API std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::path& file);
 
 /// Returns the names of the table's columns that verdicts_csv() or, if `settled`, settled_csv() replaces by columns of
-/// its own.
-SPAWNFIELD_API std::vector<std::string> replaced_columns(const PoseTable& table, bool settled = false);
+/// its own; `repairs`: with those of repairs.
+SPAWNFIELD_API std::vector<std::string> replaced_columns(const PoseTable& table, bool settled = false,
+                                                         bool repairs = false);
 
 /// Returns the table's columns, except the replaced ones, and then verdict,ground,height_above,hit. Numbers read back
 /// to the same double.
+///
+/// With repairs, the columns repair,repair_distance,repair_x,repair_y,repair_z,repair_roll,repair_pitch,repair_yaw,
+/// repair_tried follow; m and rad. `repair` is "moved" if the repair has the yaw of the pose, "turned" if it has
+/// another one, and "none" if there is no valid grid pose; then only the number of grid poses follows. All are empty
+/// for a valid pose.
 SPAWNFIELD_API std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements,
-                                        const Map& map);
+                                        const Map& map, const RepairList* repairs = nullptr);
 
 /// The same for robots that were let down at the poses: height_above is that of the settled pose, and the columns
 /// settled_z,settled_roll,settled_pitch,tilt,margin,contacts,tip_over,belly,reason follow; m and rad. They are empty if
 /// the robot was not let down or has no room, except `reason`: Judge::describe() of each pose that is not valid.
 /// `contacts` lists "x y z PART on GROUND", separated by "; ". `judge` must be the one that let the robots down.
 SPAWNFIELD_API std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses,
-                                       const Judge& judge);
+                                       const Judge& judge, const RepairList* repairs = nullptr);
+
+/// Returns the table with the repaired poses in the place of those that were not valid. All other poses, and the texts
+/// of numbers that do not change, stay as they are. Columns that the verdicts replace (replaced_columns() with repairs)
+/// are left out, because they are about the old poses. If a repair needs an angle for which the table has no column,
+/// the column is added at the end, and is 0 for poses that were not repaired.
+SPAWNFIELD_API std::string repaired_csv(const PoseTable& table, const RepairList& repairs);
 
 /// Writes x,y,z,yaw,layer,verdict. With RasterResult::rests, writes
 /// x,y,z,roll,pitch,yaw,layer,verdict,tilt,margin,tip_over,belly: m and rad. If the robot has no room or the place

@@ -12,6 +12,7 @@ struct VerdictReport {
     const Judge& judge;
     /// If given: how the robots rest that were let down at the poses, one for each. The judgements are of these.
     const std::vector<SettledPose>* settled = nullptr;
+    const RepairList* repairs = nullptr;  ///< if given: the repairs of the poses
 };
 
 /// Returns a name for each pose: the text in the table's column `name`, or "pose N" if there is none; N begins with 1.
@@ -21,10 +22,12 @@ SPAWNFIELD_API std::vector<std::string> pose_names(const PoseTable& table);
 /// Returns the verdict on a pose of the report and its cause in words.
 SPAWNFIELD_API std::string reason(const VerdictReport& report, std::size_t index);
 
+/// Returns whether a pose of the report is not valid and has no repair.
+SPAWNFIELD_API bool remains_invalid(const VerdictReport& report, std::size_t index);
+
 /// Writes JSON in the format spawnfield-verdicts/1: the map, robot and settings, and the counts. For each pose, it has
-/// one line with the row, name, pose, verdict, ground, hit, the settled pose if there is one, and the fields of the
-/// row as text. Passes the text to `sink`
-/// in pieces.
+/// one line with the row, name, pose, verdict, ground, hit, the settled pose and the repair if there is one, and the
+/// fields of the row as text. Passes the text to `sink` in pieces.
 SPAWNFIELD_API void write_verdicts_json(const VerdictReport& report, const std::function<void(std::string_view)>& sink);
 
 /// Writes JUnit XML that Jenkins and GitLab read, with one test case for each pose; the test case fails if the pose is

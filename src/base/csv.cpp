@@ -47,6 +47,21 @@ std::vector<std::string> csv_fields(std::string_view line)
     return fields;
 }
 
+std::vector<std::string_view> raw_csv_fields(std::string_view line)
+{
+    std::vector<std::string_view> fields;
+    std::size_t start = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        quoted ^= line[i] == '"';
+        if (line[i] != ',' || quoted) continue;
+        fields.push_back(line.substr(start, i - start));
+        start = i + 1;
+    }
+    fields.push_back(line.substr(start));
+    return fields;
+}
+
 bool are_numbers(const std::vector<std::string>& fields)
 {
     double ignored = 0;

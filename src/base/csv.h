@@ -13,6 +13,9 @@ inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 /// two quotes within it mean one. Spaces around a field are removed.
 std::vector<std::string> csv_fields(std::string_view line);
 
+/// Returns the fields of one line as they are written, with their quotes and spaces. They refer to `line`.
+std::vector<std::string_view> raw_csv_fields(std::string_view line);
+
 /// Returns whether all fields are numbers, as in a file without a header line. False if there are no fields.
 bool are_numbers(const std::vector<std::string>& fields);
 

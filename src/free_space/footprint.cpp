@@ -172,6 +172,13 @@ Interval height_of(const RobotPart& part, const Mat3& rotation)
     return {box.min.z(), box.max.z()};
 }
 
+double lowest_point(const Robot& robot, const Mat3& rotation)
+{
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const RobotPart& part : robot.parts) lowest = std::min(lowest, height_of(part, rotation).bottom);
+    return lowest;
+}
+
 std::vector<Footprint> footprints(const Robot& robot, const Mat3& rotation, bool with_inner)
 {
     std::vector<Footprint> out;

@@ -24,6 +24,9 @@ struct Footprint {
 /// `rotation` about its origin.
 Interval height_of(const RobotPart& part, const Mat3& rotation);
 
+/// Returns the height of the robot's lowest point above its origin, m, when the robot is turned in the same way.
+double lowest_point(const Robot& robot, const Mat3& rotation);
+
 /// Returns the footprints of all parts when the robot is turned by `rotation`. Without `with_inner`, the inner prisms
 /// have no corners.
 std::vector<Footprint> footprints(const Robot& robot, const Mat3& rotation, bool with_inner);

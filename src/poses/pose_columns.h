@@ -20,12 +20,17 @@ inline const std::vector<std::string> verdict_columns{"verdict", "ground", "heig
 inline const std::vector<std::string> settled_columns{"settled_z", "settled_roll", "settled_pitch", "tilt",  "margin",
                                                       "contacts",  "tip_over",     "belly",         "reason"};
 
+/// The columns that it adds for the repairs of poses.
+inline const std::vector<std::string> repair_columns{"repair",       "repair_distance", "repair_x",
+                                                     "repair_y",     "repair_z",        "repair_roll",
+                                                     "repair_pitch", "repair_yaw",      "repair_tried"};
+
 /// Returns whether `check` writes a column with this name: one of the pose as given, or, if `settled`, also one of a
-/// robot that was let down.
-inline bool is_verdict_column(const std::string& name, bool settled)
+/// robot that was let down, or, with `repairs`, one of a repair.
+inline bool is_verdict_column(const std::string& name, bool settled, bool repairs)
 {
     const auto is_in = [&](const auto& names) { return std::find(names.begin(), names.end(), name) != names.end(); };
-    return is_in(verdict_columns) || (settled && is_in(settled_columns));
+    return is_in(verdict_columns) || (settled && is_in(settled_columns)) || (repairs && is_in(repair_columns));
 }
 
 }  // namespace spawnfield

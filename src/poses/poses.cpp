@@ -27,14 +27,9 @@ void append_fields(std::string& text, const std::string& line, const std::vector
         text += line + ',';
         return;
     }
-    std::size_t field = 0, start = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i <= line.size(); ++i) {
-        if (i < line.size() && line[i] == '"') quoted = !quoted;
-        if (i < line.size() && (line[i] != ',' || quoted)) continue;
-        if (left_out[field++] == 0) text.append(line, start, i - start) += ',';
-        start = i + 1;
-    }
+    const std::vector<std::string_view> fields = raw_csv_fields(line);
+    for (std::size_t i = 0; i < fields.size(); ++i)
+        if (left_out[i] == 0) text.append(fields[i]) += ',';
 }
 
 void append_numbers(std::string& text, std::initializer_list<double> values)
@@ -188,14 +183,35 @@ std::string with_spawns(Json out, const SpawnList& list, std::span<const RobotSt
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns the table with the columns that append(text, index) writes.
+/// Appends the repair of a pose, each field after a comma. Nothing: the pose is valid.
+void append_repair(std::string& text, const std::optional<Repair>& repair)
+{
+    if (!repair) {
+        text.append(repair_columns.size(), ',');
+        return;
+    }
+    if (repair->pose) {
+        const Spawn& to = *repair->pose;
+        text += repair->turn == 0 ? ",moved," : ",turned,";
+        append_numbers(
+            text, {repair->distance, to.position.x(), to.position.y(), to.position.z(), to.roll, to.pitch, to.yaw});
+    } else {
+        text += ",none";
+        text.append(repair_columns.size() - 2, ',');
+    }
+    (text += ',') += std::to_string(repair->tried);
+}
+
+/// Returns the table with the columns that append(text, index) writes, and the repairs if they are given.
 template <class Append>
-std::string table_csv(const PoseTable& table, bool settled, const Append& append)
+std::string table_csv(const PoseTable& table, bool settled, const RepairList* repairs, const Append& append)
 {
     std::vector<std::uint8_t> replaced;
-    for (const std::string& name : csv_fields(table.header)) replaced.push_back(is_verdict_column(name, settled));
+    for (const std::string& name : csv_fields(table.header))
+        replaced.push_back(is_verdict_column(name, settled, repairs != nullptr));
     std::vector<std::string> names = verdict_columns;
     if (settled) names.insert(names.end(), settled_columns.begin(), settled_columns.end());
+    if (repairs != nullptr) names.insert(names.end(), repair_columns.begin(), repair_columns.end());
     std::string text;
     append_fields(text, table.header, replaced);
     for (std::size_t k = 0; k < names.size(); ++k) text += (k > 0 ? "," : "") + names[k];
@@ -203,6 +219,7 @@ std::string table_csv(const PoseTable& table, bool settled, const Append& append
     for (std::size_t i = 0; i < table.poses.size(); ++i) {
         append_fields(text, table.rows[i], replaced);
         append(text, i);
+        if (repairs != nullptr) append_repair(text, repairs->repairs[i]);
         text += '\n';
     }
     return text;
@@ -272,24 +289,26 @@ std::vector<Verdict> verdicts_of(const PoseTable& table, const std::filesystem::
     return out;
 }
 
-std::vector<std::string> replaced_columns(const PoseTable& table, bool settled)
+std::vector<std::string> replaced_columns(const PoseTable& table, bool settled, bool repairs)
 {
     std::vector<std::string> names = csv_fields(table.header);
-    std::erase_if(names, [&](const std::string& name) { return !is_verdict_column(name, settled); });
+    std::erase_if(names, [&](const std::string& name) { return !is_verdict_column(name, settled, repairs); });
     return names;
 }
 
-std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Map& map)
+std::string verdicts_csv(const PoseTable& table, const std::vector<Judgement>& judgements, const Map& map,
+                         const RepairList* repairs)
 {
     const auto append = [&](std::string& text, std::size_t i) {
         const Judgement& judged = judgements[i];
         append_verdict(text, judged, map,
                        judged.ground ? table.poses[i].position.z() - judged.ground->height : no_number);
     };
-    return table_csv(table, false, append);
+    return table_csv(table, false, repairs, append);
 }
 
-std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Judge& judge)
+std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& poses, const Judge& judge,
+                        const RepairList* repairs)
 {
     const auto append = [&](std::string& text, std::size_t i) {
         const SettledPose& pose = poses[i];
@@ -306,7 +325,7 @@ std::string settled_csv(const PoseTable& table, const std::vector<SettledPose>& 
         text += ',';
         if (pose.verdict != Verdict::Valid) text += csv_quoted(judge.describe(pose));
     };
-    return table_csv(table, true, append);
+    return table_csv(table, true, repairs, append);
 }
 
 void write_raster_csv(const RasterResult& raster, bool aerial, const std::function<void(std::string_view)>& sink,

@@ -243,7 +243,7 @@ private:
     void refuse_poses(const std::vector<std::string>& names) const
     {
         const auto is_of_pose = [](const std::string& name) {
-            return name != "x" && name != "y" && (is_pose_column(name) || is_verdict_column(name, true));
+            return name != "x" && name != "y" && (is_pose_column(name) || is_verdict_column(name, true, true));
         };
         const auto found = std::find_if(names.begin(), names.end(), is_of_pose);
         if (found != names.end())

@@ -53,6 +53,10 @@ Json settings_json(const VerdictReport& report)
     else if (std::isfinite(options.max_slope))
         out["max_slope"] = options.max_slope;
     out["collision"] = options.obstacles == Obstacles::Voxels ? "octree" : "geometry";
+    if (report.repairs != nullptr) {
+        const RepairOptions& search = report.repairs->options;
+        out["repair"] = {{"radius", search.radius}, {"step", *search.step}, {"headings", search.headings}};
+    }
     return out;
 }
 
@@ -80,11 +84,38 @@ Json settled_json(const VerdictReport& report, const SettledPose& pose)
     return out;
 }
 
+/// Returns the repair of a pose; null if the pose is valid.
+Json repair_json(const std::optional<Repair>& repair)
+{
+    if (!repair) return {};
+    Json out = {{"found", repair->pose.has_value()}};
+    if (repair->pose) {
+        const Spawn& to = *repair->pose;
+        out.update(pose_json({{}, {}, to.position, {to.roll, to.pitch, to.yaw}}));
+        out["distance"] = repair->distance;
+        out["turn"] = repair->turn;
+    }
+    out["tried"] = repair->tried;
+    return out;
+}
+
+/// Returns the repair of a pose in words.
+std::string repair_words(const Repair& repair, const RepairOptions& options)
+{
+    if (!repair.pose)
+        return "no repair: none of " + std::to_string(repair.tried) + " grid poses within " + rounded(options.radius) +
+               " m is valid";
+    const Spawn& to = *repair.pose;
+    return "repair: position " + listed(to.position) + " m; roll, pitch, yaw " + listed({to.roll, to.pitch, to.yaw}) +
+           " rad; " + rounded(repair.distance) + " m away";
+}
+
 /// Returns the fields of a row by the names of their columns, without those that the new verdict replaces.
 Json fields_json(const VerdictReport& report, std::size_t index, const std::vector<std::string>& columns)
 {
     const std::vector<std::string> fields = csv_fields(report.table.rows[index]);
-    const std::vector<std::string> replaced = replaced_columns(report.table, report.settled != nullptr);
+    const std::vector<std::string> replaced = replaced_columns(report.table, report.settled != nullptr,
+                                                               report.repairs != nullptr);
     Json out = Json::object();
     for (std::size_t i = 0; i < columns.size(); ++i)
         if (std::count(replaced.begin(), replaced.end(), columns[i]) == 0) out[columns[i]] = fields[i];
@@ -107,6 +138,7 @@ Json verdict_json(const VerdictReport& report, std::size_t index, const std::str
         out["reason"] = judged.verdict == Verdict::Valid ? Json() : Json(reason(report, index));
         out["settled"] = settled_json(report, (*report.settled)[index]);
     }
+    if (report.repairs != nullptr) out["repair"] = repair_json(report.repairs->repairs[index]);
     out["columns"] = fields_json(report, index, columns);
     return out;
 }
@@ -209,9 +241,12 @@ private:
         text += "position " + listed({p.x(), p.y(), p.z()}) + " m; ";
         text += "roll, pitch, yaw " + listed({rpy.roll, rpy.pitch, rpy.yaw}) + " rad\n";
         text += judged.ground ? "ground at " + rounded(judged.ground->height) + " m" : "no ground below the origin";
-        if (const auto above = height_above(report_, index)) text += ", " + rounded(*above) + " m below the origin";
+        if (const auto above = height_above(report_, index))
+            text += ", " + rounded(std::abs(*above)) + (*above < 0 ? " m above the origin" : " m below the origin");
         text += "\n";
         if (judged.hit) text += "hit " + xml_text(name_of(*judged.hit, report_.judge.map())) + "\n";
+        if (report_.repairs != nullptr && report_.repairs->repairs[index])
+            text += repair_words(*report_.repairs->repairs[index], report_.repairs->options) + "\n";
         return text;
     }
 
@@ -253,6 +288,13 @@ std::string reason(const VerdictReport& report, std::size_t index)
 {
     return report.settled != nullptr ? report.judge.describe((*report.settled)[index])
                                      : report.judge.describe(report.table.poses[index], report.judgements[index]);
+}
+
+bool remains_invalid(const VerdictReport& report, std::size_t index)
+{
+    if (report.repairs == nullptr) return report.judgements[index].verdict != Verdict::Valid;
+    const std::optional<Repair>& repair = report.repairs->repairs[index];
+    return repair && !repair->pose;
 }
 
 void write_verdicts_json(const VerdictReport& report, const Sink& sink)

@@ -45,11 +45,7 @@ Footing::Footing(const Geometry& geometry, const Robot& robot, double max_slope)
 
 void Footing::set_rotation(const Mat3& rotation)
 {
-    double lowest = lowest_;
-    if (rotation(2, 2) != 1) {
-        lowest = std::numeric_limits<double>::infinity();
-        for (const RobotPart& part : robot_->parts) lowest = std::min(lowest, height_of(part, rotation).bottom);
-    }
+    const double lowest = rotation(2, 2) == 1 ? lowest_ : lowest_point(*robot_, rotation);
     std::vector<Vec3> turned;
     for (const Vec3& point : points_) turned.push_back(rotation * point);
     contacts_.clear();

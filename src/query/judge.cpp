@@ -167,8 +167,14 @@ void PoseJudge::set_rotation(const Mat3& rotation)
 
 Judgement PoseJudge::judge(const ColumnView& column, const Vec3& position, bool with_hit)
 {
+    return judge(column, position, with_hit, 0);
+}
+
+/// The ground is at most `above` higher than the position, m.
+Judgement PoseJudge::judge(const ColumnView& column, const Vec3& position, bool with_hit, double above)
+{
     Judgement out;
-    if (!judge_ground(column, position, out)) return out;
+    if (!judge_ground(column, position, out, above)) return out;
     judge_collision(column, position, with_hit, out);
     judge_footing(position, out);
     return out;
@@ -197,6 +203,30 @@ void PoseJudge::judge_footing(const Vec3& position, Judgement& out)
 Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
 {
     return judge(column_at(position.head<2>()), position, with_hit);
+}
+
+Judgement PoseJudge::judge_as_given(const Vec3& position, bool with_hit)
+{
+    return judge_as_given(column_at(position.head<2>()), position, with_hit);
+}
+
+Judgement PoseJudge::judge_as_given(const ColumnView& column, const Vec3& position, bool with_hit)
+{
+    Judgement out = judge(column, position, with_hit);
+    if (out.verdict != Verdict::Aerial) return out;
+    const std::optional<Judgement> over = judge_over_ground(column, position, false);
+    if (over && over->verdict == Verdict::Valid) return *over;
+    out.exact_check = over && over->exact_check;
+    return out;
+}
+
+std::optional<Judgement> PoseJudge::judge_over_ground(const ColumnView& column, const Vec3& position, bool with_hit)
+{
+    if (!underside_) underside_.emplace(shared_.robot);
+    const double above = underside_->above_origin(rotation_);
+    if (above == 0) return std::nullopt;
+    const Judgement out = judge(column, position, with_hit, above);
+    return out.verdict == Verdict::Aerial ? std::nullopt : std::optional(out);
 }
 
 const Column& PoseJudge::column_at(const Vec2& place)
@@ -290,14 +320,14 @@ Judgement Judge::check(const Pose& pose) const
 {
     PoseJudge& judge = impl_->pose_judges.local();
     judge.set_rotation(pose.rotation);
-    return judge.judge(pose.position, true);
+    return judge.judge_as_given(pose.position, true);
 }
 
 bool Judge::is_valid(const Pose& pose) const
 {
     PoseJudge& judge = impl_->pose_judges.local();
     judge.set_rotation(pose.rotation);
-    return judge.judge(pose.position).verdict == Verdict::Valid;
+    return judge.judge_as_given(pose.position).verdict == Verdict::Valid;
 }
 
 namespace {
@@ -328,7 +358,7 @@ std::vector<Judgement> Judge::check(std::span<const Pose> poses, const RunOption
         poses, options, [&] { return PoseJudge(*impl_, 0); },
         [&](std::uint32_t i, PoseJudge& judge) {
             judge.set_rotation(poses[i].rotation);
-            out[i] = judge.judge(poses[i].position, true);
+            out[i] = judge.judge_as_given(poses[i].position, true);
         });
     return out;
 }
@@ -348,17 +378,36 @@ std::vector<SettledPose> Judge::settle(std::span<const Pose> poses, const RunOpt
 
 namespace {
 
-/// Returns a hint if ground is at most `limit` (m) above the origin: the robot may have sunk into it, or stand over it.
-/// `lowest`: height of the robot's lowest point above its origin, m.
-std::string ground_above(const Map& map, const Vec3& origin, double limit, double lowest)
+/// Returns why a place is aerial. `ground` is the one below it.
+std::string aerial_reason(const Vec3& origin, const std::optional<Ground>& ground, double max_height)
+{
+    const std::string verdict = to_string(Verdict::Aerial);
+    if (!ground) return verdict + ": no ground below the origin";
+    return verdict + ": " + rounded(origin.z() - ground->height) + " m above the ground, the limit is " +
+           rounded(max_height) + " m (--max-height)";
+}
+
+/// Returns a hint for an aerial place if ground is above it: the robot may have sunk into that ground. If there is also
+/// ground below the place, higher ground than `limit` (m) is no hint.
+std::string ground_above(const Map& map, const Vec3& origin, const std::optional<Ground>& below, double limit)
 {
     const Column column = column_at(map.geometry, origin.x(), origin.y());
     const std::span<const double> layers = heights_within(column.layers, map.z_limits);
     const auto next = std::find_if(layers.rbegin(), layers.rend(), [&](double z) { return z > origin.z(); });
-    if (next == layers.rend() || *next - origin.z() > limit) return {};
-    const bool may_stand_over = *next - origin.z() <= lowest + touch_tolerance;
-    return "; the next ground is " + rounded(*next - origin.z()) + " m above the origin" +
-           (may_stand_over ? ", but not above the robot's lowest point: --settle counts it" : "");
+    if (next == layers.rend() || (below && *next - origin.z() > limit)) return {};
+    return "; the next ground is " + rounded(*next - origin.z()) + " m above the origin";
+}
+
+/// Returns a hint for an aerial pose if ground is above its origin and below the robot: why it is not valid over it.
+std::string below_robot(const Judge& judge, const Pose& pose)
+{
+    PoseJudge& pose_judge = judge.impl().pose_judges.local();
+    pose_judge.set_rotation(pose.rotation);
+    const Column column = column_at(judge.map().geometry, pose.position.x(), pose.position.y());
+    const std::optional<Judgement> over = pose_judge.judge_over_ground(ColumnView(column), pose.position, true);
+    if (!over) return {};
+    return "; with the ground below the robot, " + rounded(over->ground->height - pose.position.z()) +
+           " m above the origin, it is " + judge.describe(pose, *over);
 }
 
 }  // namespace
@@ -366,16 +415,14 @@ std::string ground_above(const Map& map, const Vec3& origin, double limit, doubl
 std::string Judge::describe(const Pose& pose, const Judgement& judgement) const
 {
     const std::string verdict = to_string(judgement.verdict);
-    const double lowest = impl_->robot.bounds().min.z();
     switch (judgement.verdict) {
     case Verdict::Outside: return verdict + " the map's bounds";
-    case Verdict::Aerial:
-        if (!judgement.ground)
-            return verdict + ": no ground below the origin" +
-                   ground_above(impl_->map, pose.position, std::numeric_limits<double>::infinity(), lowest);
-        return verdict + ": " + rounded(pose.position.z() - judgement.ground->height) +
-               " m above the ground, the limit is " + rounded(impl_->options.max_height) + " m (--max-height)" +
-               ground_above(impl_->map, pose.position, impl_->options.max_height, lowest);
+    case Verdict::Aerial: {
+        const double max_height = impl_->options.max_height;
+        const std::string hint = below_robot(*this, pose);
+        return aerial_reason(pose.position, judgement.ground, max_height) +
+               (hint.empty() ? ground_above(impl_->map, pose.position, judgement.ground, max_height) : hint);
+    }
     case Verdict::OffTerrain:
         return verdict + ": the ground is " + impl_->map.geometry.parts()[judgement.ground->part].name;
     case Verdict::Collision: return judgement.hit ? verdict + " with " + name_of(*judgement.hit, impl_->map) : verdict;
@@ -414,12 +461,13 @@ std::string Judge::describe(const SettledPose& pose) const
         return verdict + ": its margin is " + rounded(pose.margin) + " m, the limit is " +
                rounded(*limits.min_stability) + " m";
     case Verdict::Obstructed: return verdict + (pose.hit ? " by " + what : "") + obstruction(pose, limits);
-    case Verdict::Aerial:
-        if (pose.has_pose)
-            return describe(pose.lifted(limits.lift), judgement_of(pose)) +
-                   "; this is where it rests, "
-                   "raised by --lift";
-        break;
+    case Verdict::Aerial: {
+        const Vec3 origin = pose.has_pose ? pose.lifted(limits.lift).position : pose.position;
+        const double max_height = impl_->options.max_height;
+        return aerial_reason(origin, pose.ground, max_height) +
+               ground_above(impl_->map, origin, pose.ground, max_height) +
+               (pose.has_pose ? "; this is where it rests, raised by --lift" : "");
+    }
     default: break;
     }
     return describe(Pose{.position = pose.position}, judgement_of(pose));

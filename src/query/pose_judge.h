@@ -6,6 +6,7 @@
 #include "free_space/mask.h"
 #include "query/footing.h"
 #include "settle/settle.h"
+#include "settle/underside.h"
 
 #include <spawnfield/heading_rule.h>
 #include <spawnfield/judge.h>
@@ -59,6 +60,14 @@ public:
     Judgement judge(const ColumnView& column, const Vec3& position, bool with_hit = false);
     /// The same, but looks up the column of the pose itself.
     Judgement judge(const Vec3& position, bool with_hit = false);
+    /// The same by the rule for poses as given: a pose that is aerial is valid if it is valid with the ground between
+    /// its origin and the robot's underside (see judge_over_ground()).
+    Judgement judge_as_given(const ColumnView& column, const Vec3& position, bool with_hit = false);
+    Judgement judge_as_given(const Vec3& position, bool with_hit = false);
+    /// Judges a pose by ground that is above its origin and below the robot, for example a crest between its wheels.
+    /// Ground counts up to the robot's lowest point on the vertical line through its origin. Returns nothing if there
+    /// is none. The pose must be aerial for judge().
+    std::optional<Judgement> judge_over_ground(const ColumnView& column, const Vec3& position, bool with_hit);
     /// Returns the column at (x, y). It is valid until the next column is looked up.
     const Column& column_at(const Vec2& place);
     struct RowVerdict {
@@ -85,14 +94,16 @@ public:
     void judge_footing(const Vec3& position, Judgement& out);
 
 private:
+    Judgement judge(const ColumnView& column, const Vec3& position, bool with_hit, double above);
     void judge_collision(Proof proof, const ColumnView* column, const Vec3& position, bool with_hit, Judgement& out);
     void check_exactly(const ColumnView* column, const Vec3& position, bool with_hit, Judgement& out);
 
     const Judge::Impl& shared_;
     const double max_height_;
     PoseChecker checker_;
-    std::optional<Mask> mask_;        ///< empty: every pose is checked exactly
-    std::optional<Footing> footing_;  ///< empty: footings are not examined
+    std::optional<Mask> mask_;            ///< empty: every pose is checked exactly
+    std::optional<Footing> footing_;      ///< empty: footings are not examined
+    std::optional<Underside> underside_;  ///< made when it is first needed
     Mat3 rotation_;
     double yaw_;                 ///< the yaw given to set_rotation(); NaN after a matrix
     Column column_;              ///< the one that was looked up last

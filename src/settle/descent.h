@@ -122,7 +122,6 @@ private:
     void turn_parts(const Mat3& rotation);
     void find_pairs(double z);
     double touch(const PlacedBody& part, const NearSolid& solid, const WantedTouches& wanted = {});
-    static std::optional<double> underside(std::span<const PlacedBody> parts);
     void level(Lowered& out);
     std::optional<Between> solid_between_parts(double z);
     Pair* highest_above(double z);

@@ -1,5 +1,7 @@
 #include "settle/descent.h"
 
+#include "settle/underside.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -53,7 +55,7 @@ const Settler::Descent::Level& Settler::Descent::level_robot(double yaw)
     out.joints = placed(settler_.joints_);
     double top = -std::numeric_limits<double>::infinity();
     for (const PlacedBody& part : out.parts) top = std::max(top, part.bounds.max.z());
-    out.bottom = underside(out.parts).value_or(top);
+    out.bottom = underside_of(out.parts).value_or(top);
     return out;
 }
 
@@ -94,15 +96,6 @@ double Settler::Descent::touch(const PlacedBody& part, const NearSolid& solid, c
     else
         add_touches(part.body, *solid.body, touches_, wanted);
     return highest_of(touches_);
-}
-
-/// Returns the lowest point of the robot on the vertical line through its origin, relative to the origin.
-std::optional<double> Settler::Descent::underside(std::span<const PlacedBody> parts)
-{
-    std::optional<double> out;
-    for (const PlacedBody& part : parts)
-        if (const auto end = lower_end(part, 0, 0)) out = std::min(out.value_or(*end), *end);
-    return out;
 }
 
 /// Lets the level robot down to the lowest height where it has room above its layer.

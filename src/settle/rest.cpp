@@ -1,6 +1,7 @@
 #include "settle/descent.h"
 
 #include "settle/support.h"
+#include "settle/underside.h"
 
 #include <Eigen/Geometry>
 
@@ -93,7 +94,7 @@ Rest Settler::Descent::rest(Rest::State state)
     out.headroom = ceiling_above(at_) - at_.z;
     out.contacts = rest_contacts(at_);
     out.belly = belly(out.contacts);
-    out.underside = underside(parts_).value_or(0);
+    out.underside = underside_of(parts_).value_or(0);
     if (polygon.size() == 1) out.margin = -(mass.head<2>() - polygon[0]).norm();
     if (polygon.size() >= 2) out.margin = nearest_edge(polygon, mass.head<2>()).distance;
     if (polygon.size() < 3) return out;

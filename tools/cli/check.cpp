@@ -8,7 +8,8 @@
 
 #include <spawnfield/verdict_report.h>
 
-#include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace spawnfield::cli {
 namespace {
@@ -16,55 +17,132 @@ namespace {
 struct CheckArgs : QueryArgs {
     std::string poses, out, format = "csv";
     bool require_valid = false;
+    std::optional<double> repair, repair_step;  ///< m
+    std::string repaired;
 };
 
-void write_verdicts(const CheckArgs& args, const VerdictReport& report)
+/// Returns how poses are repaired; nothing without --repair. Throws ArgumentError for values beyond their limits.
+std::optional<RepairOptions> repair_options(const CheckArgs& args, const CLI::App& command)
 {
-    write_output(args.out, [&](const auto& sink) {
+    if (!args.repair) {
+        refuse(command, {"--repair-step", "--repaired"}, "needs --repair M");
+        return std::nullopt;
+    }
+    if (!(*args.repair > 0) || !std::isfinite(*args.repair)) throw bad_value("--repair", *args.repair, "> 0 m");
+    const double smallest = *args.repair / largest_repair_grid;
+    if (args.repair_step && (!(*args.repair_step >= smallest) || !std::isfinite(*args.repair_step)))
+        throw bad_value("--repair-step", *args.repair_step,
+                        "at least " + number(smallest) + " m, so that the grid has at most 3 million places");
+    return RepairOptions{.radius = *args.repair,
+                         .step = args.repair_step,
+                         .stance = args.stance(),
+                         .threads = args.threads,
+                         .progress = progress_bar(args, "repair")};
+}
+
+/// Writes the verdicts and, with --repaired, the repaired poses: both files, or none.
+void write_results(const CheckArgs& args, const VerdictReport& report)
+{
+    const auto write_verdicts = [&](const auto& sink) {
         if (args.format == "json")
             write_verdicts_json(report, sink);
         else if (args.format == "junit")
             write_verdicts_junit(report, sink);
         else if (report.settled != nullptr)
-            sink(settled_csv(report.table, *report.settled, report.judge));
+            sink(settled_csv(report.table, *report.settled, report.judge, report.repairs));
         else
-            sink(verdicts_csv(report.table, report.judgements, report.judge.map()));
+            sink(verdicts_csv(report.table, report.judgements, report.judge.map(), report.repairs));
+    };
+    write_output(args.out, write_verdicts, [&] {
+        if (args.repaired.empty()) return;
+        write_output(args.repaired, [&](const auto& sink) { sink(repaired_csv(report.table, *report.repairs)); });
     });
 }
 
-Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summary)
+/// Prints a notice about columns of the input that the verdicts replace.
+void notice_about_columns(const CheckArgs& args, const PoseTable& table)
 {
-    const PoseTable table = open_poses(args, args.poses);
-    if (const std::vector<std::string> replaced = replaced_columns(table, args.is_settled()); replaced.size() == 1)
+    const std::vector<std::string> replaced = replaced_columns(table, args.is_settled(), args.repair.has_value());
+    if (replaced.size() == 1)
         notice(args, input_name(args.poses) + ": the new column " + replaced[0] + " replaces the old one");
     else if (!replaced.empty())
         notice(args,
                input_name(args.poses) + ": new columns replace the old ones: " + CLI::detail::join(replaced, ", "));
+}
+
+/// The verdicts on all poses.
+struct Checked {
+    std::vector<SettledPose> settled;  ///< empty for poses as given
+    std::vector<Judgement> judgements;
+};
+
+Checked check_poses(const CheckArgs& args, const Judge& judge, const PoseTable& table)
+{
+    const RunOptions run{.threads = args.threads, .progress = progress_bar(args, "check")};
+    Checked out;
+    if (!args.is_settled()) {
+        out.judgements = judge.check(table.poses, run);
+        return out;
+    }
+    out.settled = judge.settle(table.poses, run);
+    for (const SettledPose& pose : out.settled) out.judgements.push_back(judgement_of(pose));
+    return out;
+}
+
+/// Puts the verdicts and the repairs, if there are any, into the summary.
+void summarize(const Checked& checked, const RepairList* repairs, Summary& summary)
+{
+    VerdictCounts counts;
+    std::uint64_t exact_checks = 0;
+    for (const Judgement& judged : checked.judgements) {
+        ++counts[judged.verdict];
+        exact_checks += judged.exact_check;
+    }
+    if (repairs != nullptr) {
+        for (const std::optional<Repair>& repair : repairs->repairs) exact_checks += repair ? repair->exact_checks : 0;
+        summary.repairs = {repairs->repaired, repairs->turned, repairs->unrepaired};
+        summary.extra.push_back(std::to_string(repairs->repaired) + " repaired (" + std::to_string(repairs->turned) +
+                                " turned), " + std::to_string(repairs->unrepaired) + " without a repair");
+    }
+    summary.set_verdicts(counts, exact_checks);
+}
+
+/// Returns what "no repair" means, if there are such poses; otherwise "".
+std::string unrepaired_words(const CheckArgs& args, const RepairList& repairs)
+{
+    if (repairs.unrepaired == 0) return "";
+    const RepairOptions& search = repairs.options;
+    return counted(repairs.unrepaired, "pose") + (repairs.unrepaired == 1 ? " has" : " have") + " no repair: within " +
+           rounded(search.radius) + " m, no place on a grid with a step of " + rounded(*search.step) +
+           " m is valid at any of " + counted(std::uint64_t(search.headings), "heading") +
+           "; a larger --repair or a smaller --repair-step may find one" +
+           (args.repaired.empty() ? "" : "; " + args.repaired + " has the old poses there");
+}
+
+Ending run_check(const CheckArgs& args, const CLI::App& command, Summary& summary)
+{
+    const std::optional<RepairOptions> repair = repair_options(args, command);
+    const PoseTable table = open_poses(args, args.poses);
+    notice_about_columns(args, table);
     if (args.is_settled()) notice_about_tilted(args, args.poses, table);
     const Session session = open_session(args, summary);
     notices_about_stance(args, command, session.robot);
     summary.lap("load");
-    const RunOptions run{.threads = args.threads, .progress = progress_bar(args, "check")};
-    std::vector<SettledPose> settled;
-    std::vector<Judgement> judgements;
-    if (args.is_settled()) {
-        settled = session.judge->settle(table.poses, run);
-        for (const SettledPose& pose : settled) judgements.push_back(judgement_of(pose));
-    } else {
-        judgements = session.judge->check(table.poses, run);
-    }
+    const Checked checked = check_poses(args, *session.judge, table);
+    std::optional<RepairList> repairs;
+    if (repair) repairs = repair_poses(*session.judge, table.poses, checked.judgements, *repair);
     summary.lap("query");
-    VerdictCounts counts;
-    std::uint64_t exact_checks = 0;
-    for (const Judgement& judged : judgements) {
-        ++counts[judged.verdict];
-        exact_checks += judged.exact_check;
-    }
-    summary.set_verdicts(counts, exact_checks);
-    const VerdictReport report{table, judgements, *session.judge, args.is_settled() ? &settled : nullptr};
-    write_verdicts(args, report);
-    if (!args.require_valid || counts[Verdict::Valid] == judgements.size()) return {};
-    return {.status = not_valid, .complaint = "--require-valid: " + not_valid_words(report)};
+    summarize(checked, repairs ? &*repairs : nullptr, summary);
+    const VerdictReport report{table, checked.judgements, *session.judge,
+                               args.is_settled() ? &checked.settled : nullptr, repairs ? &*repairs : nullptr};
+    write_results(args, report);
+    Ending ending{.notice = repairs ? unrepaired_words(args, *repairs) : ""};
+    bool is_refused = false;
+    for (std::size_t i = 0; i < table.poses.size() && args.require_valid; ++i) is_refused |= remains_invalid(report, i);
+    if (!is_refused) return ending;
+    ending.status = not_valid;
+    ending.complaint = "--require-valid: " + not_valid_words(report);
+    return ending;
 }
 
 }  // namespace
@@ -85,7 +163,20 @@ void add_check(CLI::App& app, ChosenCommand& chosen)
                     "csv: the input's columns and the verdict; json; or junit: a test case for each pose (default csv)")
         ->check(one_of({"csv", "json", "junit"}));
     command.add_flag("--require-valid", args->require_valid,
-                     "End with status 3 if a pose is not valid; all rows are written in any case");
+                     "End with status 3 if a pose is not valid, or with --repair if it is also not repaired; all rows "
+                     "are written in any case");
+    start_group(command, help_group::repair);
+    command.add_option("--repair", args->repair,
+                       "m. For each pose that is not valid, add the nearest valid pose within this distance: with the "
+                       "same heading if there is one, otherwise with one of 15 others");
+    command.add_option("--repair-step", args->repair_step,
+                       "m. Places for repairs lie on a grid with this step (default: a twentieth of --repair, or a "
+                       "quarter of the robot's shorter side if that is less)");
+    command
+        .add_option("--repaired", args->repaired,
+                    "CSV file to write: the poses of --poses with repairs in the place of those that are not valid "
+                    "(- for standard output)")
+        ->check(not_empty());
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Level);
     add_robot_and_run(command, *args);
@@ -93,7 +184,9 @@ void add_check(CLI::App& app, ChosenCommand& chosen)
     command.footer(
         "Example:\n"
         "  printf 'x,y,z,yaw\\n0,0,0.1,0\\n7,7,0.1,0\\n' > /tmp/two_poses.csv\n"
-        "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv");
+        "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv\n"
+        "  spawnfield check /tmp/training --robot box:0.99,0.67,0.39 --poses /tmp/two_poses.csv --repair 1 --repaired "
+        "/tmp/repaired_poses.csv");
     set_work(command, args, chosen, run_check);
 }
 

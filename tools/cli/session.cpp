@@ -100,11 +100,10 @@ std::string not_valid_words(const VerdictReport& report)
     std::string first;
     std::size_t count = 0;
     for (std::size_t i = 0; i < names.size(); ++i)
-        if (report.judgements[i].verdict != Verdict::Valid && ++count <= shown)
-            first += "\n  " + names[i] + ": " + reason(report, i);
+        if (remains_invalid(report, i) && ++count <= shown) first += "\n  " + names[i] + ": " + reason(report, i);
     if (count > shown) first += "\n  and " + std::to_string(count - shown) + " more";
-    return std::to_string(count) + " of " + counted(names.size(), "pose") + (count == 1 ? " is" : " are") +
-           " not valid:" + first;
+    return std::to_string(count) + " of " + counted(names.size(), "pose") + (count == 1 ? " is " : " are ") +
+           (report.repairs == nullptr ? "not valid:" : "neither valid nor repaired:") + first;
 }
 
 }  // namespace spawnfield::cli

@@ -28,7 +28,7 @@ PoseTable open_poses(const CommonArgs& args, const std::string& file);
 /// Prints a notice if poses are tilted although the robot is let down level.
 void notice_about_tilted(const CommonArgs& args, const std::string& file, const PoseTable& table);
 
-/// Returns how many poses are not valid, and why the first ones are not.
+/// Returns how many poses are not valid and not repaired, and why the first ones are not valid.
 std::string not_valid_words(const VerdictReport& report);
 
 /// Prints a notice if a rule needs obstacles, and the map has none.

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array inputs{"--poses", "--spawns", "--avoid", "--region", "--keep-out"};
 
 /// Options whose value goes to standard output if it is `-`.
-constexpr std::array outputs{"--out", "--summary", "--heatmap", "--picture"};
+constexpr std::array outputs{"--out", "--repaired", "--summary", "--heatmap", "--picture"};
 
 /// An option that cannot be read from standard input, and its meaning.
 struct Unable {

@@ -96,6 +96,9 @@ std::string Summary::json(double total) const
         out["undecided_area"] = fullness->undecided_area;
     }
     if (offset) out["offset"] = *offset;
+    if (repairs)
+        out["repairs"] = {
+            {"repaired", repairs->repaired}, {"turned", repairs->turned}, {"unrepaired", repairs->unrepaired}};
     for (const auto& [what, count] : draws) out["draws"][what] = count;
     const double load = seconds_of("load"), write = seconds_of("write");
     // Exact checks run on all threads, so their seconds are divided by the number of threads.

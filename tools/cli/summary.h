@@ -38,6 +38,12 @@ public:
     /// For a sample or search: the number of draws, and how many were dropped for each reason.
     std::vector<std::pair<std::string, std::uint64_t>> draws;
 
+    /// Of a check with --repair: numbers of poses, as in RepairList.
+    struct Repairs {
+        std::uint64_t repaired, turned, unrepaired;
+    };
+    std::optional<Repairs> repairs;
+
     void finish();  ///< prints the line and writes the JSON
 
 private:
