@@ -97,12 +97,10 @@ Lab seen(std::uint32_t colour, const Vision& vision)
     return lab((vision.seen * linear(colour)).cwiseMax(0).cwiseMin(1));
 }
 
-/// Returns all ten verdicts of the design, also the one that no query gives yet.
 std::vector<std::pair<std::string, std::uint32_t>> coloured_verdicts()
 {
     std::vector<std::pair<std::string, std::uint32_t>> out;
     for (std::size_t v = 0; v < verdict_count; ++v) out.emplace_back(to_string(Verdict(v)), verdict_palette[v]);
-    out.emplace_back("unreachable", unreachable_colour);
     return out;
 }
 

@@ -180,17 +180,12 @@ void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend
 /// Returns a legend of the kinds that occur or are usual, with the number of columns of each kind.
 Legend verdict_legend(const RasterResult& raster, const Kinds& kinds, const HeatmapOptions& options)
 {
-    constexpr std::array order{kind_of(Verdict::Valid),
-                               some_headings,
-                               kind_of(Verdict::Steep),
-                               kind_of(Verdict::Unstable),
-                               kind_of(Verdict::Obstructed),
-                               kind_of(Verdict::Collision),
-                               obstacle,
-                               kind_of(Verdict::Submerged),
-                               kind_of(Verdict::OffTerrain),
-                               kind_of(Verdict::Aerial),
-                               kind_of(Verdict::Outside)};
+    constexpr std::array order{kind_of(Verdict::Valid),      some_headings,
+                               kind_of(Verdict::Steep),      kind_of(Verdict::Unstable),
+                               kind_of(Verdict::Obstructed), kind_of(Verdict::Unreachable),
+                               kind_of(Verdict::Collision),  obstacle,
+                               kind_of(Verdict::Submerged),  kind_of(Verdict::OffTerrain),
+                               kind_of(Verdict::Aerial),     kind_of(Verdict::Outside)};
     constexpr std::array always{kind_of(Verdict::Valid), kind_of(Verdict::Collision), kind_of(Verdict::Submerged),
                                 kind_of(Verdict::OffTerrain)};
     const KindCounts counts = counts_of(kinds);

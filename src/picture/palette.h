@@ -12,10 +12,7 @@ namespace spawnfield {
 
 /// The colour of each Verdict, by its number.
 inline constexpr std::array<std::uint32_t, verdict_count> verdict_palette{
-    0x726e77, 0xfff516, 0x9182ff, 0x033cd9, 0xa54c31, 0xc99102, 0x4eedff, 0xbdd5a7, 0x570901};
-
-/// The colour of the verdict of DESIGN.md that no query returns yet.
-inline constexpr std::uint32_t unreachable_colour = 0x371d4a;
+    0x726e77, 0xfff516, 0x9182ff, 0x033cd9, 0xa54c31, 0xc99102, 0x4eedff, 0xbdd5a7, 0x570901, 0x371d4a};
 
 /// The colours of heat maps for columns without a verdict's colour. They differ by at least 11 (CIEDE2000) from those
 /// of the verdicts and from each other.
