@@ -26,8 +26,8 @@ struct LayerChoice {
     }
 };
 
-/// Returns whether the robot can get to a valid settled pose (not raised), for example an IslandFilter. Queries call it
-/// only for such poses, from several threads at the same time. It must always give the same answer for a pose.
+/// Returns whether the robot can get to a valid settled pose (not raised), for example from on_islands(). Queries call
+/// it only for such poses, from several threads at the same time. It must always give the same answer for a pose.
 using ReachFilter = std::function<bool(const SettledPose&)>;
 
 struct RasterOptions {

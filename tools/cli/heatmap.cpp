@@ -5,6 +5,7 @@
 #include "messages.h"
 #include "numbers.h"
 #include "picture_args.h"
+#include "reach_args.h"
 #include "session.h"
 #include "spelling.h"
 
@@ -22,6 +23,7 @@ namespace {
 struct HeatmapArgs : QueryArgs {
     AreaArgs area;
     GroundArgs ground;
+    IslandArgs islands;
     std::string out, format, quantity = "verdict", spawns, bounds, yaw;
     double step = 0;
     int size = 1000;
@@ -154,6 +156,7 @@ void crop_to_ground(const HeatmapArgs& args, const Map& map, const TerrainMap& t
 Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& summary)
 {
     const PictureFile file = picture_file(args.out, args.format);
+    const IslandChoice islands = island_choice(args, args.islands, command);
     RasterOptions options = raster_options(args, command);
     HeatmapOptions picture = picture_options(args);
     if (is_of_rest(picture.quantity) && !args.is_settled())
@@ -180,11 +183,15 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
                                                : default_step(session.map, options);
     summary.lap("load");
+    const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "heatmap");
+    if (!chosen.why_none.empty()) notice(args, chosen.why_none);
+    options.is_reachable = chosen.filter;
     const RasterResult result = shown_raster(session, options, facing.is_any, picture);
     summary.lap("query");
     picture.title = session.map.name + ", " + session.robot.name;
     const std::string headings = facing.is_any ? std::to_string(picture.headings) + " headings" : "";
     picture.caption = heatmap_caption(options, args.ground, *session.judge, headings);
+    if (!islands.selects_all()) picture.caption += ", " + words_of(args.islands);
     picture.robot = &session.robot;
     picture.format = file.format;
     write_heatmap(session.map, terrain, result, picture, file.path);
@@ -232,6 +239,7 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
         "all (a column is valid if one of its layers is), top, bottom, or N from the top (0 first; default all)");
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);
+    add_islands(command, args->islands);
     add_area(command, args->area);
     command.add_option(
         "--bounds", args->bounds,
