@@ -1,9 +1,12 @@
 #include "arena.h"
+#include "figure_text.h"
 #include "rest_robots.h"
 #include "test_map.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/heatmap.h>
 #include <spawnfield/island_choice.h>
+#include <spawnfield/raster_islands.h>
 
 #include <nlohmann/json.hpp>
 
@@ -142,6 +145,43 @@ TEST_CASE("all samples lie on the chosen island, and a raster has unreachable po
     }
 }
 
+TEST_CASE("the islands of a raster are those of its settled poses, at any number of threads")
+{
+    const Rooms& here = rooms();
+    const RasterResult result = raster(here.judge, {.step = 0.19, .stance = Stance::Settled, .yaw = 0.3});
+    const std::vector<std::int32_t> islands = islands_of(here.graph, here.judge, result, {.threads = 1});
+    REQUIRE(islands.size() == result.poses.size());
+    std::array<int, 3> found{};
+    for (std::size_t p = 0; p < islands.size(); ++p) {
+        const RasterPose& pose = result.poses[p];
+        const auto expected = here.graph.island_of(
+            here.judge.settle({pose.x, pose.y, result.rests[p].layer_height}, result.rests[p].yaw));
+        CHECK(islands[p] == (expected ? std::int32_t(*expected) : no_island));
+        if (pose.verdict != Verdict::Valid) CHECK(islands[p] == no_island);
+        if (islands[p] >= 0 && islands[p] < 3) ++found[std::size_t(islands[p])];
+    }
+    for (const int count : found) CHECK(count > 10);
+    CHECK(islands_of(here.graph, here.judge, result, {.threads = 8}) == islands);
+    CHECK_THROWS_WITH(islands_of(here.graph, here.judge, raster(here.judge, {.step = 0.5})),
+                      Contains("islands_of: size of raster.rests is 0, needs as many as its poses"));
+}
+
+TEST_CASE("a picture of islands needs the island of each pose, and the area of each island")
+{
+    const Rooms& here = rooms();
+    const TempFolder folder;
+    const RasterResult result = raster(here.judge, {.step = 0.5, .stance = Stance::Settled});
+    const TerrainMap terrain = rasterize_terrain(here.map.geometry, frame_around(here.map.bounds, 0.5));
+    HeatmapOptions options{.quantity = HeatmapQuantity::Island};
+    const auto draw = [&] { write_heatmap(here.map, terrain, result, options, folder / "a.svg"); };
+    CHECK_THROWS_WITH(draw(),
+                      "write_heatmap: size of islands is 0, needs as many as the raster's poses for this quantity");
+    options.islands.assign(result.poses.size(), no_island);
+    draw();
+    options.islands.back() = 0;
+    CHECK_THROWS_WITH(draw(), "write_heatmap: islands is 0, needs less than the number of island_areas, 0");
+}
+
 // ---------------------------------------------------------------- commands
 
 namespace {
@@ -183,7 +223,7 @@ TEST_CASE("sample --island puts all spawns into one room, the same at any number
     for (const double x : RoomsFolder::xs(large.out)) CHECK(x < 0);
     for (const double x : RoomsFolder::xs(small.out)) CHECK(x > 0.1);
     CHECK(RoomsFolder::xs(small.out).size() == 80);
-    CHECK_THAT(large.err, Contains("island 0 of ") && Contains(" (found in ") && Contains(" unreachable"));
+    CHECK_THAT(large.err, Contains(" islands found in ") && Contains("; only island 0;") && Contains(" unreachable"));
     const nlohmann::json summary = nlohmann::json::parse(bytes_of(rooms / "small.json"));
     CHECK(summary.at("counts").at("unreachable") > 20);
     CHECK(summary.at("seconds").at("islands") > 0);
@@ -229,6 +269,32 @@ TEST_CASE("heatmap and export have unreachable poses in the other room")
                Contains("--island is not for --format glb; it is for nav2, geotiff, ply"));
 }
 
+TEST_CASE("heatmap --quantity island draws the islands with their numbers and areas")
+{
+    const RoomsFolder rooms;
+    REQUIRE(rooms("heatmap", "-o a.svg --quantity island --step 0.1").status == 0);
+    const std::vector<std::string> texts = svg_texts(bytes_of(rooms / "a.svg"));
+    const auto after = [&](const std::string& text) {
+        const auto found = std::find(texts.begin(), texts.end(), text);
+        return found == texts.end() || found + 1 == texts.end() ? std::string() : *(found + 1);
+    };
+    CHECK_THAT(after("island 0"), Contains(" m2"));
+    // The robot can overhang the edges of the floor, but not the wall.
+    CHECK(std::stod(after("island 0")) == Approx((4 - 0.15) * 4).margin(0.8));
+    CHECK(std::stod(after("island 1")) == Approx((2 - 0.15) * 4).margin(0.5));
+    CHECK(!after("not valid").empty());
+    for (const char* const number : {"0", "1"}) CHECK(std::count(texts.begin(), texts.end(), number) >= 1);
+
+    const ProgramRun one = rooms("heatmap", "-o b.svg --quantity island --step 0.1 --island at:1,0");
+    REQUIRE(one.status == 0);
+    const std::vector<std::string> fewer = svg_texts(bytes_of(rooms / "b.svg"));
+    CHECK(std::count(fewer.begin(), fewer.end(), "island 0") == 0);
+    CHECK(std::count(fewer.begin(), fewer.end(), "island 1") == 1);
+    CHECK_THAT(rooms("heatmap", "-o c.svg --quantity island --yaw random").err, Contains("needs one heading"));
+    CHECK_THAT(run_program(rooms, "heatmap rooms --robot box:1,1,1 -o c.svg --quantity island --stance level").err,
+               Contains("--quantity island is about the robot at rest; leave --stance level out"));
+}
+
 TEST_CASE("faults in the options of islands are named with their values and what to do")
 {
     const RoomsFolder rooms;
@@ -252,4 +318,19 @@ TEST_CASE("faults in the options of islands are named with their values and what
                Contains("--island is only for settled robots, because islands are where they can drive; leave "
                         "--stance level out"));
     CHECK_THAT(message(""), Contains("--reach-step is only for --island, --min-island and --reachable-from; give one"));
+}
+
+TEST_CASE("info --islands lists the floors of each island, and prints notices about the robot")
+{
+    const Arena arena;
+    const std::string command = "info map --islands --reach-step 0.4 --robot box:0.9,0.6,0.3";
+    const ProgramRun run = arena(command);
+    REQUIRE(run.status == 0);
+    CHECK_THAT(run.out, Contains(", floors 0, 1\n") && Contains(", floor 1\n"));
+    CHECK_THAT(run.err, Contains("notice: box:0.9,0.6,0.3 has no centre of mass") && Contains(" islands found in "));
+    const nlohmann::json islands = nlohmann::json::parse(arena(command + " --json").out).at("reach").at("islands");
+    CHECK(islands.at(0).at("floors") == nlohmann::json{0, 1});  // the ground, and the platform at the ramp's end
+    for (const nlohmann::json& island : islands)
+        if (island.at("z").at(0) > 2) CHECK(island.at("floors") == nlohmann::json{1});
+    CHECK_THAT(arena("info map --islands --robot box:90,90,1 --reach-step 2").err, Contains("larger than the map"));
 }

@@ -143,6 +143,19 @@ TEST_CASE("no two of the ten verdicts are closer than 20 (CIEDE2000 and CIE76), 
             }
 }
 
+TEST_CASE("the colours of islands differ from each other and from the ground beside them, in every kind of vision")
+{
+    std::vector<std::uint32_t> colours(island_palette.begin(), island_palette.end());
+    colours.insert(colours.end(),
+                   {other_islands_colour, no_way_colour, not_valid_colour, obstacle_colour, no_pose_colour});
+    for (const Vision& vision : visions())
+        for (std::size_t i = 0; i < colours.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                CAPTURE(vision.name, i, j);
+                CHECK(difference(seen(colours[i], vision), seen(colours[j], vision)) >= 11);
+            }
+}
+
 TEST_CASE("the other colours of a heat map differ from verdicts and from each other, in every kind of vision")
 {
     auto colours = coloured_verdicts();

@@ -38,14 +38,15 @@ void parse_island(const std::string& text, IslandChoice& choice)
                             "lists them), or at:x,y or at:x,y,z in m");
 }
 
-/// Returns "island 0 of 7", "islands 0, 2, 5 of 7" or "12 of 30 islands".
-std::string island_words(const std::vector<std::size_t>& chosen, std::size_t all)
+/// Returns "only island 3", "only islands 0, 2, 5", "12 islands selected" or "no island selected".
+std::string island_words(const std::vector<std::size_t>& chosen)
 {
     constexpr std::size_t most_listed = 5;
-    if (chosen.size() > most_listed) return std::to_string(chosen.size()) + " of " + counted(all, "island");
+    if (chosen.empty()) return "no island selected";
+    if (chosen.size() > most_listed) return std::to_string(chosen.size()) + " islands selected";
     std::string list;
     for (const std::size_t island : chosen) list += (list.empty() ? "" : ", ") + std::to_string(island);
-    return (chosen.size() == 1 ? "island " : "islands ") + list + " of " + std::to_string(all);
+    return (chosen.size() == 1 ? "only island " : "only islands ") + list;
 }
 
 /// Returns why a choice selects no island.
@@ -91,18 +92,22 @@ void add_islands(CLI::App& command, IslandArgs& args)
     add_reach(command, args);
 }
 
-ReachGraph make_reach_graph(const CommonArgs& common, const ReachArgs& args, const Judge& judge,
-                            const std::string& command)
+ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
+                        const std::string& command)
 {
-    return {judge,
-            {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
-             .max_step = args.max_step,
-             .step = args.reach_step,
-             .threads = common.threads,
-             .progress = progress_bar(common, command)}};
+    ReachGraph graph(*session.judge, {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
+                                      .max_step = args.max_step,
+                                      .step = args.reach_step,
+                                      .threads = query.threads,
+                                      .progress = progress_bar(query, command + ", islands")});
+    summary.lap("islands");
+    char seconds[40];
+    std::snprintf(seconds, sizeof seconds, " found in %.2f s", summary.seconds_of("islands"));
+    summary.extra.push_back(counted(graph.islands().size(), "island") + seconds);
+    return graph;
 }
 
-IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const CLI::App& command)
+IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const CLI::App& command, bool needs_graph)
 {
     if (!query.is_settled())
         refuse(command, island_option_names,
@@ -112,7 +117,7 @@ IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const
     if (command.count("--island") > 0) parse_island(args.island, out);
     for (const std::string& text : args.reachable_from)
         out.reachable_from.push_back(parse_place("--reachable-from", text));
-    if (out.selects_all())
+    if (out.selects_all() && !needs_graph)
         refuse(command, reach_option_names,
                "is only for --island, --min-island and --reachable-from; give one of them");
     return out;
@@ -135,13 +140,10 @@ ChosenIslands choose_islands(const QueryArgs& query, const IslandArgs& args, con
                              const Session& session, Summary& summary, const std::string& command)
 {
     if (choice.selects_all()) return {};
-    const ReachGraph graph = make_reach_graph(query, args, *session.judge, command + ", islands");
+    const ReachGraph graph = find_islands(query, args, session, summary, command);
     const std::vector<std::size_t> islands = chosen_islands(graph, *session.judge, choice);
-    summary.lap("islands");
-    char seconds[40];
-    std::snprintf(seconds, sizeof seconds, " (found in %.2f s)", summary.seconds_of("islands"));
-    summary.extra.push_back(island_words(islands, graph.islands().size()) + seconds);
-    return {on_islands(graph, islands), islands.empty() ? why_none(choice, graph) : ""};
+    summary.extra.push_back(island_words(islands));
+    return {graph, on_islands(graph, islands), islands.empty() ? why_none(choice, graph) : ""};
 }
 
 }  // namespace spawnfield::cli
