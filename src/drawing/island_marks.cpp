@@ -34,9 +34,11 @@ std::string area_text(double area)
 
 /// Where an island has most room.
 struct Middle {
-    cv::Point column = {0, 0};
-    float distance = -1;  ///< from there to the island's edge, columns
-    int columns = 0;      ///< number of the island's columns
+    std::vector<cv::Point> places = {};  ///< the columns that are farthest from the island's edge
+    float distance = -1;                 ///< from there to the edge, columns
+    int columns = 0;                     ///< number of the island's columns
+
+    cv::Point place() const { return places[places.size() / 2]; }
 };
 
 /// Returns 1 for each column whose four neighbours are on the same island, and 0 for all others.
@@ -64,10 +66,10 @@ std::vector<Middle> middles_of(const ShownIslands& islands)
             if (number < 0) continue;
             Middle& middle = out[rank_of(islands, number)];
             ++middle.columns;
-            if (distances(row, col) > middle.distance) {
-                middle.distance = distances(row, col);
-                middle.column = {col, row};
-            }
+            if (distances(row, col) < middle.distance) continue;
+            if (distances(row, col) > middle.distance) middle.places.clear();
+            middle.distance = distances(row, col);
+            middle.places.emplace_back(col, row);
         }
     return out;
 }
@@ -140,8 +142,8 @@ void write_island_numbers(Figure& figure, const ShownIslands& islands, const Vie
         const std::string text = std::to_string(islands.numbers[rank]);
         const double width = text_width(text, cap), area = middles[rank].columns * std::pow(step * scale, 2);
         if (!has_own_colour(rank) && area < width * cap) continue;
-        const double x = columns.x0 + (middles[rank].column.x + 0.5) * step,
-                     y = columns.y0 + columns.height - (middles[rank].column.y + 0.5) * step;
+        const cv::Point place = middles[rank].place();
+        const double x = columns.x0 + (place.x + 0.5) * step, y = columns.y0 + columns.height - (place.y + 0.5) * step;
         room.draw(figure, text,
                   {layout.plot.x + (x - view.x0) * scale - width / 2,
                    layout.plot.y + (view.y0 + view.height - y) * scale + cap / 2});
