@@ -231,6 +231,10 @@ TEST_CASE("sample --island puts all spawns into one room, the same at any number
         CHECK(rooms("sample", std::string("-n 80 --yaw random --island largest --threads ") + threads).out ==
               large.out);
 
+    // The map may follow after a place.
+    const ProgramRun one = run_program(rooms, "sample --reachable-from 1,0 rooms --robot box:0.3,0.3,0.2 -n 9");
+    REQUIRE(one.status == 0);
+    for (const double x : RoomsFolder::xs(one.out)) CHECK(x > 0.1);
     const ProgramRun both = rooms("sample", "-n 80 --reachable-from 1,0 --reachable-from -1,0,0.1");
     const std::vector<double> xs = RoomsFolder::xs(both.out);
     CHECK(std::any_of(xs.begin(), xs.end(), [](double x) { return x < 0; }));

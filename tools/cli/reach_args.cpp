@@ -86,9 +86,11 @@ void add_islands(CLI::App& command, IslandArgs& args)
                        "`spawnfield info MAP --robot R --islands`, or at:x,y or at:x,y,z in m. Other poses are "
                        "unreachable");
     command.add_option("--min-island", args.min_island, "m2: only poses on islands of at least this area");
-    command.add_option("--reachable-from", args.reachable_from,
-                       "Only poses to which the robot can drive from this place, " + place_help +
-                           ". Given several times: from one of these places or more");
+    command
+        .add_option("--reachable-from", args.reachable_from,
+                    "Only poses to which the robot can drive from this place, " + place_help +
+                        ". Repeatable: from one of these places or more")
+        ->allow_extra_args(false);
     add_reach(command, args);
 }
 
