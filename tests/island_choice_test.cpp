@@ -231,6 +231,11 @@ TEST_CASE("sample --island puts all spawns into one room, the same at any number
         CHECK(rooms("sample", std::string("-n 80 --yaw random --island largest --threads ") + threads).out ==
               large.out);
 
+    const ProgramRun json = rooms("sample", "-n 1 --format json --island largest --reachable-from -1,0");
+    CHECK(nlohmann::json::parse(json.out)["settings"]["islands"] == "island largest, reachable from -1,0");
+    CHECK(!nlohmann::json::parse(
+               run_program(rooms, "sample rooms --robot box:0.3,0.3,0.2 -n 1 --format json").out)["settings"]
+               .contains("islands"));
     // The map may follow after a place.
     const ProgramRun one = run_program(rooms, "sample --reachable-from 1,0 rooms --robot box:0.3,0.3,0.2 -n 9");
     REQUIRE(one.status == 0);

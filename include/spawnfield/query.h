@@ -221,7 +221,8 @@ struct SampleOptions {
     /// Only for settled robots: chooses the yaw of each spawn, in place of `yaw` and `random_yaw`. For All and Any, it
     /// is a random one of the headings at which the pose is valid.
     std::optional<HeadingRule> heading = {};
-    ReachFilter is_reachable = {};  ///< the same as RasterOptions::is_reachable
+    ReachFilter is_reachable = {};    ///< the same as RasterOptions::is_reachable
+    std::string reachable_name = {};  ///< for the user: what is_reachable accepts; spawns_json() writes it
     /// Height of the origin of a level robot above its layer, m, at most max_height; no value: auto_offset(). Must not
     /// be given for settled robots.
     std::optional<double> offset = {};

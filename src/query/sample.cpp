@@ -306,9 +306,9 @@ private:
     const SampleOptions& options_;
     const double offset_;
     const bool is_settled_ = options_.stance == Stance::Settled;
-    mutable PerThread<StandJudge> stand_judges_{
-        [this] { return StandJudge(shared_, options_.is_reachable); }};  ///< only for settled poses
-    const ZRange ground_z_;                                              ///< layers beyond it are not ground
+    /// Only for settled poses.
+    mutable PerThread<StandJudge> stand_judges_{[this] { return StandJudge(shared_, options_.is_reachable); }};
+    const ZRange ground_z_;  ///< layers beyond it are not ground
     const AreaIndex area_;
     const Bounds box_;
     const std::size_t slots_;

@@ -264,6 +264,7 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
         if (asked.offset) return flat_ground_complaint(session.robot, *asked.offset);
         const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "sample");
         asked.is_reachable = chosen.filter;
+        asked.reachable_name = words_of(args.islands);
         return chosen.why_none;
     };
     return run_spawn<SampleOptions>({prepare, sample, before_draws}, summary, args, command, options);
