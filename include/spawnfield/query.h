@@ -26,6 +26,10 @@ struct LayerChoice {
     }
 };
 
+/// Returns whether the robot can get to a valid settled pose (not raised), for example from on_islands(). Queries call
+/// it only for such poses, from several threads at the same time. It must always give the same answer for a pose.
+using ReachFilter = std::function<bool(const SettledPose&)>;
+
 struct RasterOptions {
     int dims = 2;        ///< 2: a pose for each column and layer; 3: a pose for each column and height
     double step = 1.0;   ///< m between columns, > 0
@@ -45,6 +49,9 @@ struct RasterOptions {
     /// Only for settled robots: chooses the yaw of each pose, in place of `yaw`. For All and Any, it is that of the
     /// first heading at which the pose is valid.
     std::optional<HeadingRule> heading = {};
+    /// Only for settled robots: valid poses that it refuses are `unreachable`. With several headings, a heading at
+    /// which it refuses the pose is not valid.
+    ReachFilter is_reachable = {};
     /// The layers that count. For 3D rasters, the layer is the pose's ground: unless all layers are chosen, aerial
     /// poses and poses over other ground are left out.
     LayerChoice layers = {};
@@ -214,6 +221,8 @@ struct SampleOptions {
     /// Only for settled robots: chooses the yaw of each spawn, in place of `yaw` and `random_yaw`. For All and Any, it
     /// is a random one of the headings at which the pose is valid.
     std::optional<HeadingRule> heading = {};
+    ReachFilter is_reachable = {};    ///< the same as RasterOptions::is_reachable
+    std::string reachable_name = {};  ///< for the user: what is_reachable accepts; spawns_json() writes it
     /// Height of the origin of a level robot above its layer, m, at most max_height; no value: auto_offset(). Must not
     /// be given for settled robots.
     std::optional<double> offset = {};

@@ -81,22 +81,23 @@ enum class Label : std::uint8_t { Terrain, Obstacle, Water, Ignore };
 
 /// The verdict on a pose. The numbers are those in files, so they never change.
 enum class Verdict : std::uint8_t {
-    Outside = 0,     ///< beyond the map's bounds in x and y, or beyond its z limits
-    Aerial = 1,      ///< no ground below the origin, or more than JudgeOptions::max_height below it
-    OffTerrain = 2,  ///< the ground is an obstacle, or the robot comes to rest on one
-    Submerged = 3,   ///< the ground is under water, at most JudgeOptions::max_water_depth deep
-    Collision = 4,   ///< the robot touches or overlaps something solid, or is inside it, or has no room to settle
-    Steep = 5,       ///< the robot at rest, or the ground under its contacts, is too steep
-    Unstable = 6,    ///< the robot tips over, or a contact hangs over an edge or stands against a wall
-    Obstructed = 8,  ///< only settled poses: the robot cannot be raised off its rest, or cannot drop onto it
-    Valid = 7        ///< none of the others applies
+    Outside = 0,      ///< beyond the map's bounds in x and y, or beyond its z limits
+    Aerial = 1,       ///< no ground below the origin, or more than JudgeOptions::max_height below it
+    OffTerrain = 2,   ///< the ground is an obstacle, or the robot comes to rest on one
+    Submerged = 3,    ///< the ground is under water, at most JudgeOptions::max_water_depth deep
+    Collision = 4,    ///< the robot touches or overlaps something solid, or is inside it, or has no room to settle
+    Steep = 5,        ///< the robot at rest, or the ground under its contacts, is too steep
+    Unstable = 6,     ///< the robot tips over, or a contact hangs over an edge or stands against a wall
+    Obstructed = 8,   ///< only settled poses: the robot cannot be raised off its rest, or cannot drop onto it
+    Unreachable = 9,  ///< only settled poses: the query's ReachFilter refuses it
+    Valid = 7         ///< none of the others applies
 };
-inline constexpr std::size_t verdict_count = 9;
+inline constexpr std::size_t verdict_count = 10;
 
 /// All verdicts in the order of the definition: a pose has the first one that applies.
 inline constexpr std::array<Verdict, verdict_count> all_verdicts{
-    Verdict::Outside, Verdict::Aerial,   Verdict::OffTerrain, Verdict::Submerged, Verdict::Collision,
-    Verdict::Steep,   Verdict::Unstable, Verdict::Obstructed, Verdict::Valid};
+    Verdict::Outside, Verdict::Aerial,   Verdict::OffTerrain, Verdict::Submerged,   Verdict::Collision,
+    Verdict::Steep,   Verdict::Unstable, Verdict::Obstructed, Verdict::Unreachable, Verdict::Valid};
 
 /// Number of poses for each verdict.
 class VerdictCounts {

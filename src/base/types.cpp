@@ -44,8 +44,9 @@ const char* to_string(Label label)
 
 const char* to_string(Verdict verdict)
 {
-    constexpr std::array<const char*, verdict_count> names{
-        "outside", "aerial", "off_terrain", "submerged", "collision", "steep", "unstable", "valid", "obstructed"};
+    constexpr std::array<const char*, verdict_count> names{"outside",    "aerial",     "off_terrain", "submerged",
+                                                           "collision",  "steep",      "unstable",    "valid",
+                                                           "obstructed", "unreachable"};
     return names[static_cast<std::size_t>(verdict)];
 }
 

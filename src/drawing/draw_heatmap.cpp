@@ -1,3 +1,4 @@
+#include "drawing/island_marks.h"
 #include "drawing/obstacle_mask.h"
 #include "drawing/quantities.h"
 #include "drawing/relief.h"
@@ -17,7 +18,7 @@ namespace {
 
 // ---------------------------------------------------------------- colours and words
 
-const Colour not_valid = rgb(0x9a9a9a), beyond = rgb(0xffffff);
+const Colour not_valid = rgb(not_valid_colour), beyond = rgb(0xffffff);
 
 std::string name_of(Kind kind, const HeatmapOptions& options)
 {
@@ -50,6 +51,17 @@ void check_size(const char* what, std::size_t size, std::size_t wanted, const ch
         throw ArgumentError("write_heatmap", std::string("size of ") + what, static_cast<double>(size), limit);
 }
 
+void check_islands(const RasterResult& raster, const HeatmapOptions& options)
+{
+    if (options.islands.size() != raster.poses.size())
+        throw ArgumentError("write_heatmap", "size of islands", double(options.islands.size()),
+                            "as many as the raster's poses for this quantity");
+    for (const std::int32_t island : options.islands)
+        if (island >= std::int32_t(options.island_areas.size()))
+            throw ArgumentError("write_heatmap", "islands", island,
+                                "less than the number of island_areas, " + std::to_string(options.island_areas.size()));
+}
+
 void check(const RasterResult& raster, const HeatmapOptions& options)
 {
     const RasterGrid& grid = raster.grid;
@@ -68,6 +80,7 @@ void check(const RasterResult& raster, const HeatmapOptions& options)
     if (is_of_rest(options.quantity) && raster.rests.size() != raster.poses.size())
         throw ArgumentError("write_heatmap", "size of raster.rests", double(raster.rests.size()),
                             "as many as its poses for this quantity: a raster of settled poses at one yaw");
+    if (options.quantity == HeatmapQuantity::Island) check_islands(raster, options);
 }
 
 // ---------------------------------------------------------------- obstacles
@@ -180,17 +193,12 @@ void append_no_pose(const RasterResult& raster, const KindCounts& counts, Legend
 /// Returns a legend of the kinds that occur or are usual, with the number of columns of each kind.
 Legend verdict_legend(const RasterResult& raster, const Kinds& kinds, const HeatmapOptions& options)
 {
-    constexpr std::array order{kind_of(Verdict::Valid),
-                               some_headings,
-                               kind_of(Verdict::Steep),
-                               kind_of(Verdict::Unstable),
-                               kind_of(Verdict::Obstructed),
-                               kind_of(Verdict::Collision),
-                               obstacle,
-                               kind_of(Verdict::Submerged),
-                               kind_of(Verdict::OffTerrain),
-                               kind_of(Verdict::Aerial),
-                               kind_of(Verdict::Outside)};
+    constexpr std::array order{kind_of(Verdict::Valid),      some_headings,
+                               kind_of(Verdict::Steep),      kind_of(Verdict::Unstable),
+                               kind_of(Verdict::Obstructed), kind_of(Verdict::Unreachable),
+                               kind_of(Verdict::Collision),  obstacle,
+                               kind_of(Verdict::Submerged),  kind_of(Verdict::OffTerrain),
+                               kind_of(Verdict::Aerial),     kind_of(Verdict::Outside)};
     constexpr std::array always{kind_of(Verdict::Valid), kind_of(Verdict::Collision), kind_of(Verdict::Submerged),
                                 kind_of(Verdict::OffTerrain)};
     const KindCounts counts = counts_of(kinds);
@@ -208,21 +216,38 @@ Legend verdict_legend(const RasterResult& raster, const Kinds& kinds, const Heat
     return legend;
 }
 
-Legend quantity_legend(const RasterResult& raster, const Kinds& kinds, const ColourScale& scale,
-                       const HeatmapOptions& options)
+/// Adds the legend entries for columns that are not valid.
+void append_others(const RasterResult& raster, const KindCounts& counts, const HeatmapOptions& options, Legend& legend)
 {
-    const KindCounts counts = counts_of(kinds);
-    const std::uint64_t columns = answered(counts);
-    const std::uint64_t valid = counts[kind_of(Verdict::Valid)], others = columns - valid - counts[obstacle];
-    Legend legend;
-    legend.heading = columns_heading(raster, columns);
-    legend.scale = scale;
-    legend.scale->detail = "valid   " + count_and_share(valid, columns);
+    const std::uint64_t columns = answered(counts),
+                        others = columns - counts[kind_of(Verdict::Valid)] - counts[obstacle];
     legend.entries.push_back({not_valid, options.headings > 1 ? "not valid at all headings" : "not valid",
                               count_and_share(others, columns)});
     if (counts[obstacle] > 0)
         legend.entries.push_back({colour_of(obstacle), "obstacle", count_and_share(counts[obstacle], columns)});
     append_no_pose(raster, counts, legend);
+}
+
+Legend island_legend(const RasterResult& raster, const Kinds& kinds, const ShownIslands& islands,
+                     const HeatmapOptions& options)
+{
+    const KindCounts counts = counts_of(kinds);
+    Legend legend{
+        .heading = columns_heading(raster, answered(counts)), .scale = {}, .entries = island_entries(islands, options)};
+    append_others(raster, counts, options, legend);
+    return legend;
+}
+
+Legend quantity_legend(const RasterResult& raster, const Kinds& kinds, const ColourScale& scale,
+                       const HeatmapOptions& options)
+{
+    const KindCounts counts = counts_of(kinds);
+    const std::uint64_t columns = answered(counts);
+    Legend legend;
+    legend.heading = columns_heading(raster, columns);
+    legend.scale = scale;
+    legend.scale->detail = "valid   " + count_and_share(counts[kind_of(Verdict::Valid)], columns);
+    append_others(raster, counts, options, legend);
     return legend;
 }
 
@@ -384,9 +409,14 @@ void drawing_module::write_heatmap(const Map& map, const TerrainMap& terrain, co
         with_room(columns), options.pixels, options.title.empty() ? map.name : options.title, {}, options.caption};
 
     Image colours;
+    ShownIslands islands;
     if (options.quantity == HeatmapQuantity::Verdict) {
         colours = kind_colours(kinds);
         frame.legend = verdict_legend(raster, kinds, options);
+    } else if (options.quantity == HeatmapQuantity::Island) {
+        islands = shown_islands(shown, raster, options);
+        colours = island_colours(islands, kinds);
+        frame.legend = island_legend(raster, kinds, islands, options);
     } else {
         const cv::Mat_<float> values = quantity_values(shown, raster, terrain, options);
         const ColourScale scale = scale_for(values, options.quantity);
@@ -410,6 +440,7 @@ void drawing_module::write_heatmap(const Map& map, const TerrainMap& terrain, co
 
     Figure figure{layout.size, {}};
     draw_image(figure, layout.plot.tl(), plot);
+    if (!islands.numbers.empty()) write_island_numbers(figure, islands, columns, frame.view, layout);
     draw_spawns(figure, options, visible, look, layout, frame.legend);
     draw_surroundings(figure, frame, layout);
     write_figure(figure, format, file);

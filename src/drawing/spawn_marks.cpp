@@ -1,5 +1,6 @@
 #include "drawing/spawn_marks.h"
 
+#include "drawing/text_room.h"
 #include "picture/silhouette.h"
 
 #include <algorithm>
@@ -173,15 +174,11 @@ void draw_spawn_symbol(Figure& figure, const SpawnLook& look, cv::Point2d centre
 std::size_t write_names(Figure& figure, const SpawnLook& look, const std::vector<cv::Point2d>& places,
                         const std::vector<std::string>& names, const cv::Rect& area)
 {
-    const double cap = std::max(9 * look.unit, 5.0), radius = radius_of(look), away = radius + 0.5 * cap,
-                 room = 0.3 * cap;
-    std::vector<cv::Rect2d> taken, marks;
+    const double cap = std::max(9 * look.unit, 5.0), radius = radius_of(look), away = radius + 0.5 * cap;
+    TextRoom room(area, cap);
     for (const cv::Point2d& place : places)
-        marks.emplace_back(place.x - 0.7 * radius, place.y - 0.7 * radius, 1.4 * radius, 1.4 * radius);
-    const auto covers = [](const std::vector<cv::Rect2d>& boxes, const cv::Rect2d& box) {
-        return std::any_of(boxes.begin(), boxes.end(),
-                           [&](const cv::Rect2d& other) { return (box & other).area() > 0; });
-    };
+        room.add_mark({place.x - 0.7 * radius, place.y - 0.7 * radius, 1.4 * radius, 1.4 * radius});
+    std::size_t written = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const double width = text_width(names[i], cap);
         const cv::Point2d& place = places[i];
@@ -190,14 +187,12 @@ std::size_t write_names(Figure& figure, const SpawnLook& look, const std::vector
              {cv::Point2d(place.x + away, place.y + cap / 2), cv::Point2d(place.x - away - width, place.y + cap / 2),
               cv::Point2d(place.x - width / 2, place.y - away),
               cv::Point2d(place.x - width / 2, place.y + away + cap)}) {
-            const cv::Rect2d box(corner.x - room, corner.y - cap - room, width + 2 * room, cap + 2 * room);
-            if ((box & cv::Rect2d(area)).area() < box.area() || covers(marks, box) || covers(taken, box)) continue;
-            draw_text(figure, names[i], corner, {cap, ink, Align::Left, white});
-            taken.push_back(box);
+            if (!room.draw(figure, names[i], corner)) continue;
+            ++written;
             break;
         }
     }
-    return taken.size();
+    return written;
 }
 
 }  // namespace spawnfield

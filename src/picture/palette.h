@@ -12,13 +12,17 @@ namespace spawnfield {
 
 /// The colour of each Verdict, by its number.
 inline constexpr std::array<std::uint32_t, verdict_count> verdict_palette{
-    0x726e77, 0xfff516, 0x9182ff, 0x033cd9, 0xa54c31, 0xc99102, 0x4eedff, 0xbdd5a7, 0x570901};
-
-/// The colour of the verdict of DESIGN.md that no query returns yet.
-inline constexpr std::uint32_t unreachable_colour = 0x371d4a;
+    0x726e77, 0xfff516, 0x9182ff, 0x033cd9, 0xa54c31, 0xc99102, 0x4eedff, 0xbdd5a7, 0x570901, 0x371d4a};
 
 /// The colours of heat maps for columns without a verdict's colour. They differ by at least 11 (CIEDE2000) from those
 /// of the verdicts and from each other.
 inline constexpr std::uint32_t some_headings_colour = 0x5a9c78, obstacle_colour = 0x141414, no_pose_colour = 0xe9e9e9;
+
+/// The colours of islands in a picture: the largest one, then the next ones, then all others together. Places from
+/// which no way leads, and the ground beside all islands, have their own colours. All of these differ by at least 11
+/// (CIEDE2000), also from obstacle_colour and no_pose_colour.
+inline constexpr std::array<std::uint32_t, 6> island_palette{0xbdd5a7, 0x033cd9, 0xfff516,
+                                                             0xa54c31, 0x4eedff, 0x9182ff};
+inline constexpr std::uint32_t other_islands_colour = 0x371d4a, no_way_colour = 0xc99102, not_valid_colour = 0x9a9a9a;
 
 }  // namespace spawnfield

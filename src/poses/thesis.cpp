@@ -56,7 +56,8 @@ ThesisClass thesis_class_of(Verdict verdict)
     case Verdict::Collision:
     case Verdict::Steep:
     case Verdict::Unstable:
-    case Verdict::Obstructed: break;
+    case Verdict::Obstructed:
+    case Verdict::Unreachable: break;
     }
     return ThesisClass::Invalid;
 }

@@ -50,6 +50,7 @@ void check(const RasterOptions& options)
     if (options.stance == Stance::Settled && options.dims != 2)
         throw ArgumentError("raster", "settled poses need dims 2: the robot is let down onto the layers of a column");
     check_heading("raster", options.heading, options.stance);
+    check_filter("raster", options.is_reachable, options.stance);
     if (!options.snap) return;
     if (options.dims != 3)
         throw ArgumentError("raster", "snap needs dims 3: a pose of a 2D raster stands on its layer by definition");
@@ -180,7 +181,7 @@ private:
         explicit Worker(const RasterJudge& raster)
         {
             if (raster.is_settled_)
-                stand.emplace(raster.shared_);
+                stand.emplace(raster.shared_, raster.options_.is_reachable);
             else if (raster.headings_ > 0)
                 at_headings.emplace(raster.shared_, raster.headings_, raster.max_height());
             else

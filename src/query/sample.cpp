@@ -306,7 +306,8 @@ private:
     const SampleOptions& options_;
     const double offset_;
     const bool is_settled_ = options_.stance == Stance::Settled;
-    mutable PerThread<StandJudge> stand_judges_{[this] { return StandJudge(shared_); }};  ///< only for settled poses
+    /// Only for settled poses.
+    mutable PerThread<StandJudge> stand_judges_{[this] { return StandJudge(shared_, options_.is_reachable); }};
     const ZRange ground_z_;  ///< layers beyond it are not ground
     const AreaIndex area_;
     const Bounds box_;
@@ -324,6 +325,7 @@ SpawnList sample(const Judge& judge, const SampleOptions& wanted)
     check_spawn_options("sample", wanted);
     check_ground("sample", wanted.z, wanted.stance, wanted.offset);
     check_heading("sample", wanted.heading, wanted.stance);
+    check_filter("sample", wanted.is_reachable, wanted.stance);
     SampleOptions options = wanted;
     options.offset = wanted.offset.value_or(auto_offset(judge.robot()));
     if (options.stance == Stance::Settled)

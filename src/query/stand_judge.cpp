@@ -3,6 +3,8 @@
 #include "query/timed_part.h"
 #include "settle/friction.h"
 
+#include <spawnfield/error.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -44,6 +46,14 @@ std::size_t first_largest(const std::vector<std::size_t>& headings, double equal
 
 }  // namespace
 
+void check_filter(const char* function, const ReachFilter& is_reachable, Stance stance)
+{
+    if (is_reachable && stance == Stance::Level)
+        throw ArgumentError(function,
+                            "is_reachable is given, but stance is Level: only settled robots have islands; give stance "
+                            "Settled, or no filter");
+}
+
 SettledPose StandJudge::judge(const Vec3& place, double yaw)
 {
     return judge(ColumnView(upright_.column_at(place.head<2>())), place, yaw);
@@ -75,6 +85,7 @@ SettledPose StandJudge::judge(const ColumnView& column, const Vec3& place, doubl
     out.belly = rest.belly;
     out.contacts = std::move(rest.contacts);
     judge_rest(column, rest, out);
+    if (out.verdict == Verdict::Valid && is_reachable_ && !is_reachable_(out)) out.verdict = Verdict::Unreachable;
     return out;
 }
 

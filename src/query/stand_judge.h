@@ -4,14 +4,22 @@
 #include "query/pose_judge.h"
 
 #include <spawnfield/heading_rule.h>
+#include <spawnfield/query.h>
+
+#include <utility>
 
 namespace spawnfield {
+
+/// Throws ArgumentError if the filter is given for level robots.
+void check_filter(const char* function, const ReachFilter& is_reachable, Stance stance);
 
 /// Lets the robot down and judges its settled poses, for one thread.
 class StandJudge {
 public:
-    explicit StandJudge(const Judge::Impl& shared)
-        : shared_(shared), settler_(shared.settler()), upright_(shared, 0), checker_(shared.checker)
+    /// Valid poses that the filter refuses are `unreachable`. Without a filter, there are no such poses.
+    explicit StandJudge(const Judge::Impl& shared, ReachFilter is_reachable = {})
+        : shared_(shared), settler_(shared.settler()), upright_(shared, 0), checker_(shared.checker),
+          is_reachable_(std::move(is_reachable))
     {
     }
 
@@ -57,6 +65,7 @@ private:
     Settler::Workspace workspace_;
     PoseJudge upright_;
     PoseChecker checker_;
+    const ReachFilter is_reachable_;
     std::optional<ClearanceMeter> clearances_;  ///< made when it is first needed
 };
 

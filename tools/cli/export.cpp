@@ -104,7 +104,8 @@ const std::vector<std::string>& pose_options()
     static const std::vector<std::string> options = [] {
         std::vector<std::string> all{"--model-path", "--joints",    "--mesh-parts", "--max-height", "--max-water-depth",
                                      "--max-slope",  "--collision", "--exhaustive", "--offset",     "--yaw"};
-        all.insert(all.end(), stance_options().begin(), stance_options().end());
+        for (const auto* const more : {&stance_options(), &island_option_names, &reach_option_names})
+            all.insert(all.end(), more->begin(), more->end());
         return all;
     }();
     return options;
@@ -133,6 +134,7 @@ void add_export(CLI::App& app, ChosenCommand& chosen)
     command.add_option("--yaw", args->yaw, "Yaw of all poses: " + yaw_help + " (default 0)");
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);
+    add_islands(command, args->islands);
     start_group(command, help_group::region);
     command.add_option(
         "--bounds", args->bounds,

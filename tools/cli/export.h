@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ground_args.h"
+#include "reach_args.h"
 #include "session.h"
 #include "simulator_output.h"
 
@@ -9,6 +10,7 @@ namespace spawnfield::cli {
 /// Options of `export`. The table of formats says which of them a format accepts.
 struct ExportArgs : QueryArgs {
     GroundArgs ground;
+    IslandArgs islands;
     std::string format, out, bounds, poses, yaw = "0";
     bool local = false;
     SimulatorArgs simulator;

@@ -5,12 +5,14 @@
 #include "messages.h"
 #include "numbers.h"
 #include "picture_args.h"
+#include "reach_args.h"
 #include "session.h"
 #include "spelling.h"
 
 #include <spawnfield/error.h>
 #include <spawnfield/headings.h>
 #include <spawnfield/heatmap.h>
+#include <spawnfield/raster_islands.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +24,7 @@ namespace {
 struct HeatmapArgs : QueryArgs {
     AreaArgs area;
     GroundArgs ground;
+    IslandArgs islands;
     std::string out, format, quantity = "verdict", spawns, bounds, yaw;
     double step = 0;
     int size = 1000;
@@ -38,7 +41,7 @@ double default_step(const Map& map, const RasterOptions& options)
 
 /// The values of --quantity, in the order of HeatmapQuantity.
 const std::vector<std::string> quantities{"verdict", "height", "clearance", "slope", "tilt",
-                                          "roll",    "pitch",  "margin",    "belly"};
+                                          "roll",    "pitch",  "margin",    "belly", "island"};
 
 HeatmapQuantity quantity_of(const std::string& name)
 {
@@ -151,9 +154,23 @@ void crop_to_ground(const HeatmapArgs& args, const Map& map, const TerrainMap& t
                      ", where there is ground at these heights (--bounds shows another part)");
 }
 
+/// Fills the picture's options about islands.
+void add_islands_to(HeatmapOptions& picture, const HeatmapArgs& args, const Session& session,
+                    const ChosenIslands& chosen, const RasterResult& result, Summary& summary)
+{
+    const ReachGraph graph = chosen.graph ? *chosen.graph
+                                          : find_islands(args, args.islands, session, summary, "heatmap");
+    picture.islands = islands_of(graph, *session.judge, result,
+                                 {.threads = args.threads, .progress = progress_bar(args, "heatmap")});
+    for (const Island& island : graph.islands()) picture.island_areas.push_back(island.area);
+    summary.lap("query");
+}
+
 Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& summary)
 {
     const PictureFile file = picture_file(args.out, args.format);
+    const bool shows_islands = args.quantity == "island";
+    const IslandChoice islands = island_choice(args, args.islands, command, shows_islands);
     RasterOptions options = raster_options(args, command);
     HeatmapOptions picture = picture_options(args);
     if (is_of_rest(picture.quantity) && !args.is_settled())
@@ -180,11 +197,16 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
                                                : default_step(session.map, options);
     summary.lap("load");
+    const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "heatmap");
+    if (!chosen.why_none.empty()) notice(args, chosen.why_none);
+    options.is_reachable = chosen.filter;
     const RasterResult result = shown_raster(session, options, facing.is_any, picture);
     summary.lap("query");
+    if (shows_islands) add_islands_to(picture, args, session, chosen, result, summary);
     picture.title = session.map.name + ", " + session.robot.name;
     const std::string headings = facing.is_any ? std::to_string(picture.headings) + " headings" : "";
     picture.caption = heatmap_caption(options, args.ground, *session.judge, headings);
+    if (!islands.selects_all()) picture.caption += ", " + words_of(args.islands);
     picture.robot = &session.robot;
     picture.format = file.format;
     write_heatmap(session.map, terrain, result, picture, file.path);
@@ -206,8 +228,8 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
         ->check(not_empty());
     command
         .add_option("--quantity", args->quantity,
-                    "verdict, height, clearance or slope; for settled robots also tilt, roll, pitch, margin or belly "
-                    "(default verdict)")
+                    "verdict, height, clearance or slope; for settled robots also tilt, roll, pitch, margin, belly or "
+                    "island: ground within which the robot can drive (default verdict)")
         ->check(one_of(quantities));
     command.add_option("--spawns", args->spawns,
                        "CSV file of spawns to draw, as footprints of the robot or as arrows. A column verdict (from "
@@ -232,13 +254,16 @@ void add_heatmap(CLI::App& app, ChosenCommand& chosen)
         "all (a column is valid if one of its layers is), top, bottom, or N from the top (0 first; default all)");
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);
+    add_islands(command, args->islands);
     add_area(command, args->area);
     command.add_option(
         "--bounds", args->bounds,
         "x0,y0,x1,y1 in m, or x0,y0,z0,x1,y1,z1: layers beyond z0 .. z1 are not ground (default: the map's)");
     add_robot_and_run(command, *args);
     add_allow_empty(command, *args);
-    command.footer("Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png");
+    command.footer(
+        "Example:\n  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 -o /tmp/training.png\n"
+        "  spawnfield heatmap /tmp/training --robot box:0.99,0.67,0.39 --quantity island -o /tmp/islands.png");
     set_work(command, args, chosen, run_heatmap);
 }
 

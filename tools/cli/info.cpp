@@ -138,12 +138,25 @@ Json floors_json(const Map& map)
     return out;
 }
 
-/// Returns where the robot can drive.
-Json islands_json(const InfoArgs& args, const Map& map, const Robot& robot, Summary& summary)
+/// Returns the numbers of the floors on which an island has ground. It has ground at all heights between its lowest and
+/// its highest one, except for steps that the robot overcomes.
+Json floors_of_island(const Island& island, const std::vector<Floor>& floors)
 {
-    const Judge judge(map, robot, judge_options(args, summary.exact_time));
-    const ReachGraph graph = make_reach_graph(args, args.reach, judge, "info");
-    Json out = {{"robot", robot.name},
+    Json out = Json::array();
+    for (std::size_t k = 0; k < floors.size(); ++k)
+        if (island.low <= floors[k].z.high + touch_tolerance && island.high >= floors[k].z.low - touch_tolerance)
+            out.push_back(k);
+    return out;
+}
+
+/// Returns where the robot can drive.
+Json islands_json(const InfoArgs& args, const Session& session, Summary& summary)
+{
+    notice_about_mass(args, session.robot);
+    summary.lap("load");
+    const ReachGraph graph = find_islands(args, args.reach, session, summary, "info");
+    const std::vector<Floor> floors = floors_of(session.map);
+    Json out = {{"robot", session.robot.name},
                 {"drive", args.reach.drive},
                 {"max_step", graph.options().max_step},
                 {"reach_step", *graph.options().step}};
@@ -153,7 +166,8 @@ Json islands_json(const InfoArgs& args, const Map& map, const Robot& robot, Summ
                                   {"area", island.area},
                                   {"share", island.share},
                                   {"at", json_of(island.place)},
-                                  {"z", {island.low, island.high}}});
+                                  {"z", {island.low, island.high}},
+                                  {"floors", floors_of_island(island, floors)}});
     return out;
 }
 
@@ -372,6 +386,15 @@ std::string floor_lines(const Json& map)
     return out;
 }
 
+/// Returns ", floor 0" or ", floors 0, 1, 2".
+std::string floor_words(const Json& floors)
+{
+    if (floors.empty()) return "";
+    std::string out = floors.size() == 1 ? ", floor " : ", floors ";
+    for (std::size_t k = 0; k < floors.size(); ++k) out += (k > 0 ? ", " : "") + floors[k].dump();
+    return out;
+}
+
 /// Returns a heading, then a line for each island, the largest first.
 std::string island_lines(const Json& reach)
 {
@@ -380,12 +403,12 @@ std::string island_lines(const Json& reach)
     if (islands.empty()) return out + "  none: it can stand nowhere\n";
     for (std::size_t k = 0; k < std::min(most_lines, islands.size()); ++k) {
         char line[160];
-        std::snprintf(line, sizeof line, "  %zu: %.4g m2, %.1f %%, z %.4g to %.4g m, around %.6g, %.6g, %.6g\n", k,
+        std::snprintf(line, sizeof line, "  %zu: %.4g m2, %.1f %%, z %.4g to %.4g m, around %.6g, %.6g, %.6g", k,
                       islands[k]["area"].get<double>(), 100 * islands[k]["share"].get<double>(),
                       islands[k]["z"][0].get<double>(), islands[k]["z"][1].get<double>(),
                       islands[k]["at"][0].get<double>(), islands[k]["at"][1].get<double>(),
                       islands[k]["at"][2].get<double>());
-        out += line;
+        out += line + floor_words(islands[k]["floors"]) + "\n";
     }
     return out + more_line(islands.size());
 }
@@ -513,11 +536,13 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
         refuse(command, robot_options_of_info, "is only for robots; " + args.what + " is a map");
         refuse(command, {"--model-path"}, "is only for scenes and robots; " + args.what + " is a map");
         if (args.verify) verify_map(args.what);
-        const Map map = read_map(args.what);
-        summary.map_hash = map.hash;
+        QueryArgs query = args;
+        query.map = args.what;
+        const Session session = open_session(query, summary);
+        const Map& map = session.map;
         parts.assign(map.geometry.parts().begin(), map.geometry.parts().end());
         out = map_json(map, args.verify, args.json ? parts.size() : most_lines);
-        if (args.islands) out["reach"] = islands_json(args, map, load_robot(args.robot, robot_options(args)), summary);
+        if (args.islands) out["reach"] = islands_json(args, session, summary);
     } else if (robot_given) {
         refuse(command, scene_option_names, "is only for scenes; " + args.what + " is a robot");
         refuse(command, {"--verify", "--islands"}, "is only for maps; " + args.what + " is a robot");
@@ -543,7 +568,7 @@ Ending run_info(const InfoArgs& args, const CLI::App& command, Summary& summary)
                                  : "scene " + out["name"].get<std::string>() + "\n" + extent_lines(out["bounds"]) +
                                        origin_line(out) + scene_lines(out, parts);
     write_output("", [&](const auto& sink) { sink(text); });
-    summary.extra = {args.what};
+    summary.extra.insert(summary.extra.begin(), args.what);
     return {};
 }
 

@@ -129,6 +129,11 @@ void notices_about_stance(const QueryArgs& args, const CLI::App& command, const 
         notice(args, "--lift " + number(args.lift) +
                          " m leaves the robots in contact with the ground, which check calls collision and a simulator "
                          "may push apart");
+    notice_about_mass(args, robot);
+}
+
+void notice_about_mass(const CommonArgs& args, const Robot& robot)
+{
     if (robot.mass_center) return;
     const Vec3 mass = mass_center_of(robot);
     notice(args, robot.name + " has no centre of mass; that of its parts' volume is used, " + rounded(mass.x()) + ", " +

@@ -42,6 +42,9 @@ const std::vector<std::string>& stance_options();
 /// Prints notices about options of settled poses without effect, and about a robot whose centre of mass is not known.
 void notices_about_stance(const QueryArgs& args, const CLI::App& command, const Robot& robot);
 
+/// Prints a notice about a robot whose centre of mass is not known.
+void notice_about_mass(const CommonArgs& args, const Robot& robot);
+
 /// Adds the map and --robot.
 void add_map_and_robot(CLI::App& command, QueryArgs& args);
 

@@ -1,9 +1,67 @@
 #include "reach_args.h"
 
 #include "messages.h"
+#include "numbers.h"
 #include "spelling.h"
 
+#include <algorithm>
+#include <cstdio>
+
 namespace spawnfield::cli {
+namespace {
+
+const std::string place_help = "x,y or x,y,z in m";
+
+StartPlace parse_place(const std::string& option, const std::string& text)
+{
+    const std::vector<double> values = parse_numbers(option, text);
+    if (values.size() != 2 && values.size() != 3)
+        throw ArgumentError(option + " is \"" + text + "\", needs " + place_help + ", for example 1.5,-2");
+    StartPlace out{values[0], values[1]};
+    if (values.size() == 3) out.z = values[2];
+    return out;
+}
+
+/// Reads the value of --island.
+void parse_island(const std::string& text, IslandChoice& choice)
+{
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (text == "largest")
+        choice.largest = true;
+    else if (text.starts_with("at:"))
+        choice.at = parse_place("the place of --island", text.substr(3));
+    else if (!text.empty() && text.size() < 10 && std::all_of(text.begin(), text.end(), is_digit))
+        choice.number = std::stoul(text);
+    else
+        throw ArgumentError("--island is \"" + text +
+                            "\", needs largest, the number of an island (`spawnfield info MAP --robot R --islands` "
+                            "lists them), or at:x,y or at:x,y,z in m");
+}
+
+/// Returns "only island 3", "only islands 0, 2, 5", "12 islands selected" or "no island selected".
+std::string island_words(const std::vector<std::size_t>& chosen)
+{
+    constexpr std::size_t most_listed = 5;
+    if (chosen.empty()) return "no island selected";
+    if (chosen.size() > most_listed) return std::to_string(chosen.size()) + " islands selected";
+    std::string list;
+    for (const std::size_t island : chosen) list += (list.empty() ? "" : ", ") + std::to_string(island);
+    return (chosen.size() == 1 ? "only island " : "only islands ") + list;
+}
+
+/// Returns why a choice selects no island.
+std::string why_none(const IslandChoice& choice, const ReachGraph& graph)
+{
+    if (graph.islands().empty()) return "no island is selected: there is none, because the robot can stand nowhere";
+    const double largest = graph.islands()[0].area;
+    if (choice.min_area > largest)
+        return "no island is selected: --min-island is " + number(choice.min_area) +
+               " m2, but the largest island has " + rounded(largest) + " m2; give a smaller --min-island";
+    return "no island is selected: none fulfils --island, --min-island and --reachable-from together; leave one of "
+           "them out";
+}
+
+}  // namespace
 
 void add_reach(CLI::App& command, ReachArgs& args)
 {
@@ -20,15 +78,74 @@ void add_reach(CLI::App& command, ReachArgs& args)
                        "width)");
 }
 
-ReachGraph make_reach_graph(const CommonArgs& common, const ReachArgs& args, const Judge& judge,
-                            const std::string& command)
+void add_islands(CLI::App& command, IslandArgs& args)
 {
-    return {judge,
-            {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
-             .max_step = args.max_step,
-             .step = args.reach_step,
-             .threads = common.threads,
-             .progress = progress_bar(common, command)}};
+    start_group(command, help_group::reach);
+    command.add_option("--island", args.island,
+                       "Only poses on this island (ground within which the robot can drive): largest, its number in "
+                       "`spawnfield info MAP --robot R --islands`, or at:x,y or at:x,y,z in m. Other poses are "
+                       "unreachable");
+    command.add_option("--min-island", args.min_island, "m2: only poses on islands of at least this area");
+    command
+        .add_option("--reachable-from", args.reachable_from,
+                    "Only poses to which the robot can drive from this place, " + place_help +
+                        ". Repeatable: from one of these places or more")
+        ->allow_extra_args(false);
+    add_reach(command, args);
+}
+
+ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
+                        const std::string& command)
+{
+    ReachGraph graph(*session.judge, {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
+                                      .max_step = args.max_step,
+                                      .step = args.reach_step,
+                                      .threads = query.threads,
+                                      .progress = progress_bar(query, command + ", islands")});
+    summary.lap("islands");
+    char seconds[40];
+    std::snprintf(seconds, sizeof seconds, " found in %.2f s", summary.seconds_of("islands"));
+    summary.extra.push_back(counted(graph.islands().size(), "island") + seconds);
+    return graph;
+}
+
+IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const CLI::App& command, bool needs_graph)
+{
+    if (!query.is_settled())
+        refuse(command, island_option_names,
+               "is only for settled robots, because islands are where they can drive; leave --stance level out");
+    IslandChoice out{.min_area = args.min_island};
+    if (command.count("--min-island") > 0) parse_positive("--min-island", args.min_island);
+    if (command.count("--island") > 0) parse_island(args.island, out);
+    for (const std::string& text : args.reachable_from)
+        out.reachable_from.push_back(parse_place("--reachable-from", text));
+    if (out.selects_all() && !needs_graph)
+        refuse(command, reach_option_names,
+               "is only for --island, --min-island and --reachable-from; give one of them");
+    return out;
+}
+
+std::string words_of(const IslandArgs& args)
+{
+    std::string places, out;
+    for (const std::string& place : args.reachable_from) places += (places.empty() ? "" : " or ") + place;
+    const auto add = [&](bool is_given, const std::string& text) {
+        if (is_given) out += (out.empty() ? "" : ", ") + text;
+    };
+    add(!args.island.empty(), "island " + args.island);
+    add(args.min_island > 0, "islands from " + number(args.min_island) + " m2");
+    add(!places.empty(), "reachable from " + places);
+    return out;
+}
+
+ChosenIslands choose_islands(const QueryArgs& query, const IslandArgs& args, const IslandChoice& choice,
+                             const Session& session, Summary& summary, const std::string& command)
+{
+    if (choice.selects_all()) return {};
+    const ReachGraph graph = find_islands(query, args, session, summary, command);
+    const std::vector<std::size_t> islands = chosen_islands(graph, *session.judge, choice);
+    summary.extra.push_back(island_words(islands));
+    return {graph, on_islands(graph, islands), islands.empty() ? why_none(choice, graph) : ""};
 }
 
 }  // namespace spawnfield::cli

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "query_args.h"
+#include "session.h"
 
-#include <spawnfield/reach.h>
+#include <spawnfield/island_choice.h>
 
 namespace spawnfield::cli {
 
@@ -13,12 +13,45 @@ struct ReachArgs {
     std::optional<double> reach_step;  ///< m
 };
 
+/// Options on the islands on which poses must be.
+struct IslandArgs : ReachArgs {
+    std::string island;
+    double min_island = 0;  ///< m2
+    std::vector<std::string> reachable_from;
+};
+
 /// Adds, below the heading "Reach", --drive, --max-step and --reach-step.
 void add_reach(CLI::App& command, ReachArgs& args);
 inline const std::vector<std::string> reach_option_names{"--drive", "--max-step", "--reach-step"};
 
-/// Finds where the robot can drive. `command` is the name that the progress bar shows.
-ReachGraph make_reach_graph(const CommonArgs& common, const ReachArgs& args, const Judge& judge,
-                            const std::string& command);
+/// Adds, below the heading "Reach", --island, --min-island and --reachable-from, and the options of add_reach().
+void add_islands(CLI::App& command, IslandArgs& args);
+inline const std::vector<std::string> island_option_names{"--island", "--min-island", "--reachable-from"};
+
+/// Finds where the robot can drive, and puts the number of islands and the time into the summary. `command` is what the
+/// progress bar shows.
+ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
+                        const std::string& command);
+
+/// Returns the choice that the options describe. Call it before all work. Throws ArgumentError for values that cannot
+/// be read, for level robots, and for options about the graph without effect: those of a command that needs no graph
+/// if all islands are selected.
+IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const CLI::App& command,
+                           bool needs_graph = false);
+
+/// Returns the islands that the options select, in words: "island largest, reachable from 1,2". Empty: all islands.
+std::string words_of(const IslandArgs& args);
+
+/// The islands that a command uses.
+struct ChosenIslands {
+    std::optional<ReachGraph> graph = {};
+    ReachFilter filter = {};    ///< empty: poses are not filtered
+    std::string why_none = {};  ///< why no island was selected; empty if there is one, and without a filter
+};
+
+/// Finds the islands, selects some, and puts them into the summary. Does nothing if the choice selects all islands.
+/// Throws what chosen_islands() throws.
+ChosenIslands choose_islands(const QueryArgs& query, const IslandArgs& args, const IslandChoice& choice,
+                             const Session& session, Summary& summary, const std::string& command);
 
 }  // namespace spawnfield::cli

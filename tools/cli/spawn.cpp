@@ -6,6 +6,7 @@
 #include "messages.h"
 #include "numbers.h"
 #include "output.h"
+#include "reach_args.h"
 #include "simulator_output.h"
 #include "spawn_advice.h"
 #include "spawn_args.h"
@@ -26,6 +27,7 @@ struct SpawnArgs : QueryArgs {
     AreaArgs area;
     AvoidArgs avoid;
     GroundArgs ground;
+    IslandArgs islands;  ///< only for `sample`
     std::string bounds, yaw = "0", format = "csv", out;
 
     bool is_thesis() const { return format == "thesis"; }
@@ -142,10 +144,8 @@ struct SpawnQuery {
     /// Completes the options when the map and the robot are known. Returns the settings that only this command has.
     std::function<Settings(const Session&, Options&)> prepare;
     SpawnList (*run)(const Judge&, const Options&);
-    /// Returns why no pose can be valid, or an empty text.
-    std::function<std::string(const Session&, const Options&)> find_hopeless = [](const auto&, const auto&) {
-        return "";
-    };
+    /// Does the work before the first draw. Returns why no pose can be valid, or an empty text.
+    std::function<std::string(const Session&, Options&)> before_draws = [](const auto&, auto&) { return ""; };
 };
 
 /// Returns the result without any draw: the whole region is undecided.
@@ -192,9 +192,9 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
         output->notice_about_world(session.map);
     }
     const Settings own = query.prepare(session, options);
-    const std::string hopeless = query.find_hopeless(session, options);
     notice_about_avoided(args, session.map, options.avoid);
     summary.lap("load");
+    const std::string hopeless = query.before_draws(session, options);
     const SpawnList list = hopeless.empty() ? query.run(*session.judge, options)
                                             : nothing_drawn(session.map, options.bounds);
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
@@ -232,6 +232,7 @@ Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summa
 Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summary)
 {
     check_draws(args.draws);
+    const IslandChoice islands = island_choice(args, args.islands, command);
     SampleOptions options{.count = std::size_t(args.draws.count),
                           .min_distance = args.draws.min_distance,
                           .seed = args.draws.seed,
@@ -256,12 +257,17 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
         Settings own{{"Layers", args.ground.layers}};
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
+        if (!islands.selects_all()) own.emplace_back("Islands", words_of(args.islands));
         return own;
     };
-    const auto find_hopeless = [](const Session& session, const SampleOptions& asked) {
-        return asked.offset ? flat_ground_complaint(session.robot, *asked.offset) : "";
+    const auto before_draws = [&](const Session& session, SampleOptions& asked) {
+        if (asked.offset) return flat_ground_complaint(session.robot, *asked.offset);
+        const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "sample");
+        asked.is_reachable = chosen.filter;
+        asked.reachable_name = words_of(args.islands);
+        return chosen.why_none;
     };
-    return run_spawn<SampleOptions>({prepare, sample, find_hopeless}, summary, args, command, options);
+    return run_spawn<SampleOptions>({prepare, sample, before_draws}, summary, args, command, options);
 }
 
 /// Adds the most common options.
@@ -325,9 +331,11 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     add_ground(command, args->ground, "all, top, bottom, or N from the top (0 first; default all)");
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);
+    add_islands(command, args->islands);
     add_spawn_groups(command, *args);
     command.footer(
-        "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random");
+        "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random\n"
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --island largest --reach-step 0.3");
     set_work(command, args, chosen, run_sample);
 }
 

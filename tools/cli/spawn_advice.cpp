@@ -17,6 +17,7 @@ std::vector<std::string> changes_against(Verdict verdict, const QueryArgs& args,
         if (!is_settled) return {"a larger --max-slope"};
         return {"a smaller --min-stability", "a larger --friction", "a larger --max-tilt"};
     case Verdict::Obstructed: return {args.drop ? "a smaller --drop or --lift" : "a smaller --lift"};
+    case Verdict::Unreachable: return {"a choice of more islands"};
     case Verdict::Aerial:  // draws of a search are aerial for another reason, see change_of_heights()
         if (!is_search) return {"a larger --max-height"};
         break;

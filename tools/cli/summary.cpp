@@ -102,10 +102,11 @@ std::string Summary::json(double total) const
     for (const auto& [what, count] : draws) out["draws"][what] = count;
     const double load = seconds_of("load"), write = seconds_of("write");
     // Exact checks run on all threads, so their seconds are divided by the number of threads.
-    const double query = total - load - write, judging = seconds_of("query");
+    const double islands = seconds_of("islands"), query = total - load - write - islands, judging = seconds_of("query");
     const double exact = std::min(judging, double(exact_time.nanoseconds) * 1e-9 / threads());
     out["seconds"] = {{"load", load},   {"query", query}, {"mask", judging - exact},
                       {"exact", exact}, {"write", write}, {"total", total}};
+    if (islands > 0) out["seconds"]["islands"] = islands;
     for (const auto& [stage, seconds] : more_stages) out["seconds"][stage] = seconds_of(stage);
     out["peak_memory_bytes"] = peak_memory_bytes();
     out["threads"] = threads();
