@@ -221,7 +221,7 @@ private:
     const RepairQuery& query_;
     std::optional<StandJudge> stand_;  ///< nothing: level poses
     std::deque<PoseJudge> judges_;     ///< of level poses, one for each facing; a deque never moves its elements
-    // Of the pose that is repaired:
+    // These belong to the pose that is repaired:
     Repair out_;
     Vec3 position_ = Vec3::Zero();
     Rpy rpy_;

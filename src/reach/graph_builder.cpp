@@ -57,9 +57,9 @@ std::span<const PlaceStates> GraphBuilder::places_at(int col, int row) const
     return std::span(states.places).subspan(begin, states.first[std::size_t(col) + 1] - begin);
 }
 
-std::uint32_t GraphBuilder::node_of(const PlaceAt& at, int heading) const
+std::size_t GraphBuilder::number_of(const PlaceAt& at) const
 {
-    return graph_.node_of(graph_.first[graph_.column_of(at.col, at.row)] + at.index, heading);
+    return graph_.first[graph_.column_of(at.col, at.row)] + at.index;
 }
 
 void GraphBuilder::find_states(int row)
@@ -74,11 +74,10 @@ void GraphBuilder::find_states(int row)
 }
 
 /// Appends the places of a row to the graph.
-void GraphBuilder::append(StateRow& row)
+void GraphBuilder::append(const StateRow& row)
 {
-    row.before = graph_.ground.size();
-    for (std::size_t col = 1; col < row.first.size(); ++col)
-        graph_.first.push_back(std::uint32_t(row.before) + row.first[col]);
+    const std::uint32_t before = graph_.first.back();
+    for (std::size_t col = 1; col < row.first.size(); ++col) graph_.first.push_back(before + row.first[col]);
     for (const PlaceStates& place : row.places) {
         graph_.ground.push_back(place.ground);
         graph_.valid.push_back(place.valid);
@@ -114,9 +113,7 @@ void GraphBuilder::examine(WayJudge& judge, const PlaceAt& from, int heading, co
     if (judge.is_open(start, goal) != pass.is_open || (!pass.is_open && !judge.can_go(start, goal, pass.way))) return;
     nodes_.join(node_of(from, heading), node_of(*to, end.heading));
     if (keeps_ways_)
-        graph_.ways[std::size_t(pass.way)][rows_[std::size_t(from.row)].before +
-                                           rows_[std::size_t(from.row)].first[std::size_t(from.col)] +
-                                           from.index][std::size_t(heading)] = std::uint8_t(to->index);
+        graph_.ways[std::size_t(pass.way)][number_of(from)][std::size_t(heading)] = std::uint8_t(to->index);
 }
 
 /// Returns whether a way may lead to a state that is not joined with this one.

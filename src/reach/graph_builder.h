@@ -28,7 +28,6 @@ private:
     struct StateRow {
         std::vector<std::uint32_t> first;  ///< first place of each column; then their number
         std::vector<PlaceStates> places;
-        std::size_t before = 0;  ///< number of places in earlier rows
     };
     /// A column, and one of its places.
     struct PlaceAt {
@@ -43,11 +42,13 @@ private:
 
     std::span<const PlaceStates> places_at(int col, int row) const;
     const PlaceStates& place(const PlaceAt& at) const { return places_at(at.col, at.row)[at.index]; }
-    std::uint32_t node_of(const PlaceAt& at, int heading) const;
+    /// Returns the number of a place in the graph.
+    std::size_t number_of(const PlaceAt& at) const;
+    std::uint32_t node_of(const PlaceAt& at, int heading) const { return graph_.node_of(number_of(at), heading); }
     Vec2 position(int col, int row) const { return {graph_.grid.x_of(col), graph_.grid.y_of(row)}; }
 
     void find_states(int row);
-    void append(StateRow& row);
+    void append(const StateRow& row);
     void join_row(int row, const Pass& pass);
     void examine(WayJudge& judge, const PlaceAt& from, int heading, const Pass& pass);
     bool may_join(const WayJudge& judge, const PlaceAt& from, int heading, Way way);
