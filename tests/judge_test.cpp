@@ -152,6 +152,30 @@ TEST_CASE("a pose over a crest that is above its origin and below the robot is v
     if (label == Label::Terrain) CHECK_THAT(reason(-0.5), Contains(no_ground + "the next ground is "));
 }
 
+TEST_CASE("a pose over a crest is valid also if an obstacle or water is below its origin")
+{
+    // Skids as above, on two rails that join at a sheet between the skids. Below the sheet is what refuses the robot.
+    const Robot robot = make_robot("skids", {shape_part(box_shape({0.8, 0.8, 0.1}, {{0, 0, 0.3}})),
+                                             shape_part(box_shape({0.8, 0.1, 0.25}, {{0, 0.35, 0.125}})),
+                                             shape_part(box_shape({0.8, 0.1, 0.25}, {{0, -0.35, 0.125}}))});
+    const bool is_wet = GENERATE(false, true);
+    CAPTURE(is_wet);
+    Scene scene;
+    add_shape(scene, "right", Label::Terrain, box_shape({10, 4.8, 1}, {{0, -2.6, -0.5}}));
+    add_shape(scene, "left", Label::Terrain, box_shape({10, 4.8, 1}, {{0, 2.6, -0.5}}));
+    add_shape(scene, "crest", Label::Terrain, box_shape({10, 0.4, 0.05}, {{0, 0, 0.125}}));  // 0.1 to 0.15 m
+    add_shape(scene, "bed", is_wet ? Label::Terrain : Label::Obstacle, box_shape({10, 0.4, 0.5}, {{0, 0, -0.5}}));
+    if (is_wet) add_shape(scene, "water", Label::Water, box_shape({10, 0.4, 0.1}, {{0, 0, -0.2}}));
+    const Judge judge(map_of(scene), robot);
+    const auto check = [&](double z) { return judge.check({{0, 0, z}}); };
+    const Verdict below = is_wet ? Verdict::Submerged : Verdict::OffTerrain;
+    CHECK(check(0.02).verdict == Verdict::Valid);
+    CHECK(check(0.02).ground->height == Approx(0.15));
+    CHECK(check(-0.02).verdict == below);   // the skids are in the rails
+    CHECK(check(-0.105).verdict == below);  // no crest below the robot, which would collide
+    CHECK(check(-0.02).ground->height == Approx(-0.25));
+}
+
 TEST_CASE("counts by verdict add up")
 {
     VerdictCounts counts, more;

@@ -79,9 +79,9 @@ public:
 
     /// Returns the verdict on a pose, with its ground and the part that the robot collides with.
     ///
-    /// A pose that is aerial is judged again with the highest surface at or below the robot's lowest point on the
-    /// vertical line through its origin, for example a crest between its wheels. If it is then Valid, it is Valid with
-    /// that ground, which is above its origin.
+    /// A pose that is aerial, off_terrain or submerged is judged again with the highest surface at or below the robot's
+    /// lowest point on the vertical line through its origin, for example a crest between its wheels. If it is then
+    /// Valid, it is Valid with that ground, which is above its origin.
     Judgement check(const Pose& scene_from_robot) const;
     /// Returns the judgement of each pose, in their order. Throws what options.progress throws.
     std::vector<Judgement> check(std::span<const Pose> poses, const RunOptions& options = {}) const;

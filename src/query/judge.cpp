@@ -200,6 +200,16 @@ void PoseJudge::judge_footing(const Vec3& position, Judgement& out)
     if (footing_ && out.verdict == Verdict::Valid) out.verdict = footing_->judge(position, out.ground->height);
 }
 
+namespace {
+
+/// Returns whether a verdict is about the ground of a pose. Other ground may be below the robot.
+bool is_refused_for_ground(Verdict verdict)
+{
+    return verdict == Verdict::Aerial || verdict == Verdict::OffTerrain || verdict == Verdict::Submerged;
+}
+
+}  // namespace
+
 Judgement PoseJudge::judge(const Vec3& position, bool with_hit)
 {
     return judge(column_at(position.head<2>()), position, with_hit);
@@ -213,7 +223,7 @@ Judgement PoseJudge::judge_as_given(const Vec3& position, bool with_hit)
 Judgement PoseJudge::judge_as_given(const ColumnView& column, const Vec3& position, bool with_hit)
 {
     Judgement out = judge(column, position, with_hit);
-    if (out.verdict != Verdict::Aerial) return out;
+    if (!is_refused_for_ground(out.verdict)) return out;
     const std::optional<Judgement> over = judge_over_ground(column, position, false);
     if (over && over->verdict == Verdict::Valid) return *over;
     out.exact_check = over && over->exact_check;

@@ -60,13 +60,13 @@ public:
     Judgement judge(const ColumnView& column, const Vec3& position, bool with_hit = false);
     /// The same, but looks up the column of the pose itself.
     Judgement judge(const Vec3& position, bool with_hit = false);
-    /// The same by the rule for poses as given: a pose that is aerial is valid if it is valid with the ground between
-    /// its origin and the robot's underside (see judge_over_ground()).
+    /// The same by the rule for poses as given: a pose that is aerial, off_terrain or submerged is valid if it is valid
+    /// with the ground between its origin and the robot's underside (see judge_over_ground()).
     Judgement judge_as_given(const ColumnView& column, const Vec3& position, bool with_hit = false);
     Judgement judge_as_given(const Vec3& position, bool with_hit = false);
     /// Judges a pose by ground that is above its origin and below the robot, for example a crest between its wheels.
     /// Ground counts up to the robot's lowest point on the vertical line through its origin. Returns nothing if there
-    /// is none. The pose must be aerial for judge().
+    /// is none.
     std::optional<Judgement> judge_over_ground(const ColumnView& column, const Vec3& position, bool with_hit);
     /// Returns the column at (x, y). It is valid until the next column is looked up.
     const Column& column_at(const Vec2& place);
