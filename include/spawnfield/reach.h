@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace spawnfield {
@@ -88,6 +89,7 @@ public:
     std::optional<std::size_t> island_of(const SettledPose& pose) const;
 
     struct Impl;
+    explicit ReachGraph(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
 private:
     std::shared_ptr<const Impl> impl_;

@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <regex>
 
 namespace spawnfield {
 namespace {
@@ -35,13 +36,16 @@ std::string objection_to(const fs::path& folder)
 }
 
 /// Moves files that do not belong to the map, which users put into its folder, from the old folder to the new one.
-void keep_foreign_files(const fs::path& old, const fs::path& now)
+/// Drivable graphs of maps with another hash than the new one are left out.
+void keep_foreign_files(const fs::path& old, const fs::path& now, const std::string& hash)
 {
+    const std::regex graph_file("reach-([0-9a-f]{16})-[0-9a-f]{16}\\.bin");  // as kept_graph_file() names it
     const std::vector<fs::directory_entry> entries(fs::directory_iterator(old),
                                                    {});  // listed first, because the loop moves some
     for (const fs::directory_entry& entry : entries) {
         const fs::path name = entry.path().filename();
         if (name == "map.yaml" || std::find(map_files.begin(), map_files.end(), name) != map_files.end()) continue;
+        if (std::smatch found; std::regex_match(name.native(), found, graph_file) && found[1] != hash) continue;
         std::error_code error;
         fs::rename(entry.path(), now / name, error);
         if (error) throw OutputError(entry.path().string(), "cannot be moved into the new map: " + error.message());
@@ -241,7 +245,7 @@ BakeReport bake(Scene scene, const fs::path& scene_file, const fs::path& folder,
     report.hash = write_map_yaml(target.path(), map, terrain, files.heightmap_z, {files.bounds, files.geometry});
     if (options.progress) options.progress(1);
     for (const auto& entry : fs::directory_iterator(target.path())) report.bytes += entry.file_size();
-    target.commit(keep_foreign_files);
+    target.commit([&](const fs::path& old, const fs::path& now) { keep_foreign_files(old, now, report.hash); });
     report.layers = map.layers;
     lap("write");
     return report;

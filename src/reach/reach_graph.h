@@ -9,6 +9,8 @@
 
 #include <array>
 #include <bit>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace spawnfield {
@@ -38,6 +40,11 @@ struct ReachGraph::Impl {
     std::array<std::vector<Ways>, way_count> ways;  ///< by Way, of each place; empty unless they are kept
 
     Impl(const Judge& judge_, const ReachOptions& options_, Keep keep_ = Keep::Islands);
+    /// Takes places, nodes and islands from bytes(). Throws std::exception if they do not fit the grid, or each other.
+    Impl(const Judge& judge_, const ReachOptions& options_, std::string_view bytes);
+
+    /// Returns the places, nodes and islands as bytes. Ways are not in them.
+    std::string bytes() const;
 
     std::size_t column_of(int col, int row) const
     {
@@ -65,9 +72,12 @@ struct ReachGraph::Impl {
     mutable PerThread<WayJudge> way_judges;  ///< for poses that are not states
 
 private:
+    struct Empty {};
+    Impl(const Judge& judge_, const ReachOptions& options_, Keep keep_, Empty);  ///< makes a graph without places
     std::optional<std::size_t> island_at(const SettledPose& pose, int col, int row, int heading) const;
     void find_islands(DisjointSets& nodes);
     void set_places();
+    bool is_consistent() const;
 };
 
 }  // namespace spawnfield

@@ -4,6 +4,8 @@
 #include "numbers.h"
 #include "spelling.h"
 
+#include <spawnfield/kept_graph.h>
+
 #include <algorithm>
 #include <cstdio>
 
@@ -97,16 +99,19 @@ void add_islands(CLI::App& command, IslandArgs& args)
 ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
                         const std::string& command)
 {
-    ReachGraph graph(*session.judge, {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
-                                      .max_step = args.max_step,
-                                      .step = args.reach_step,
-                                      .threads = query.threads,
-                                      .progress = progress_bar(query, command + ", islands")});
+    const KeptGraph kept = kept_graph(*session.judge,
+                                      {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
+                                       .max_step = args.max_step,
+                                       .step = args.reach_step,
+                                       .threads = query.threads,
+                                       .progress = progress_bar(query, command + ", islands")});
+    if (!kept.notice.empty()) notice(query, kept.notice);
     summary.lap("islands");
     char seconds[40];
-    std::snprintf(seconds, sizeof seconds, " found in %.2f s", summary.seconds_of("islands"));
-    summary.extra.push_back(counted(graph.islands().size(), "island") + seconds);
-    return graph;
+    std::snprintf(seconds, sizeof seconds, kept.is_read ? " read in %.3f s" : " found in %.2f s",
+                  summary.seconds_of("islands"));
+    summary.extra.push_back(counted(kept.graph.islands().size(), "island") + seconds);
+    return kept.graph;
 }
 
 IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const CLI::App& command, bool needs_graph)
