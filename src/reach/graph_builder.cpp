@@ -141,20 +141,20 @@ std::optional<GraphBuilder::PlaceAt> GraphBuilder::end_of(WayJudge& judge, const
 {
     const WayEnd end = way_end(way, heading);
     if (way == Way::Turn) return has_heading(place(from).valid, end.heading) ? std::optional(from) : std::nullopt;
-    const auto next = [&](const PlaceAt& start, int col, int row, int at_heading) -> std::optional<PlaceAt> {
+    const auto next = [&](const PlaceAt& start, int direction, int at_heading) -> std::optional<PlaceAt> {
+        const LatticeMove move = lattice_move(direction);
+        const int col = start.col + move.cols, row = start.row + move.rows;
         const std::span<const PlaceStates> others = places_at(col, row);
         if (others.empty()) return std::nullopt;
-        const auto k = judge.place_after(position(start.col, start.row), place(start), position(col, row), others,
-                                         at_heading);
+        const auto k = judge.place_ahead(position(start.col, start.row), place(start), position(col, row), others,
+                                         direction, at_heading);
         return k ? std::optional(PlaceAt{col, row, *k}) : std::nullopt;
     };
-    const int to_col = from.col + end.move.cols, to_row = from.row + end.move.rows;
-    if (heading == end.heading) return next(from, to_col, to_row, heading);
-    if (places_at(to_col, to_row).empty()) return std::nullopt;
-    const LatticeMove half = lattice_move(heading);
+    if (heading == end.heading) return next(from, way == Way::Aside ? to_the_left(heading) : heading, heading);
+    if (places_at(from.col + end.move.cols, from.row + end.move.rows).empty()) return std::nullopt;
     for (const int at_middle : {heading, end.heading})
-        if (const auto middle = next(from, from.col + half.cols, from.row + half.rows, at_middle))
-            if (const auto out = next(*middle, to_col, to_row, end.heading)) return out;
+        if (const auto middle = next(from, heading, at_middle))
+            if (const auto out = next(*middle, end.heading, end.heading)) return out;
     return std::nullopt;
 }
 

@@ -38,6 +38,9 @@ inline double lattice_yaw(int heading)
     return std::atan2(double(move.rows), double(move.cols));
 }
 
+constexpr int to_the_left(int heading) { return lattice_heading(heading, lattice_headings / 4); }
+constexpr int opposite(int heading) { return lattice_heading(heading, lattice_headings / 2); }
+
 /// How a robot goes from one state to another one.
 enum class Way : std::uint8_t {
     Ahead,  ///< straight ahead
@@ -61,7 +64,7 @@ constexpr WayEnd way_end(Way way, int heading)
     switch (way) {
     case Way::Left: return {lattice_move(heading) + lattice_move(next), next};
     case Way::Right: return {lattice_move(heading) + lattice_move(before), before};
-    case Way::Aside: return {lattice_move(lattice_heading(heading, lattice_headings / 4)), heading};
+    case Way::Aside: return {lattice_move(to_the_left(heading)), heading};
     case Way::Turn: return {{0, 0}, next};
     case Way::Ahead: break;
     }

@@ -15,6 +15,13 @@ constexpr double large_tilt = 0.1;    // rad: if roll or pitch change by more, a
 
 double turn_between(double yaw, double other) { return std::remainder(other - yaw, 2 * std::numbers::pi); }
 
+/// Returns the direction of a heading, of length 1.
+Vec2 direction_of(int heading)
+{
+    const LatticeMove move = lattice_move(heading);
+    return Vec2(move.cols, move.rows) / move.length();
+}
+
 Course course_of(const StateAt& from, const StateAt& to, Way way)
 {
     const double yaw = lattice_yaw(from.heading);
@@ -44,6 +51,7 @@ WayJudge::WayJudge(const Judge::Impl& shared, double max_step, double longest_wa
 
 void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
 {
+    const std::size_t first = out.size();
     const ColumnView column(columns_.column_at(at));
     bool has_solids = false;
     for (const double height : heights_within(column.layers, shared_.map.z_limits)) {
@@ -68,6 +76,10 @@ void WayJudge::find_places(const Vec2& at, std::vector<PlaceStates>& out)
         }
         if (place.valid != 0) out.push_back(place);
     }
+    // Only now, because this looks up other columns.
+    for (PlaceStates& place : std::span(out).subspan(first))
+        for (int heading = 0; heading < lattice_headings && !place.is_open; ++heading)
+            place.slopes[std::size_t(heading)] = slope_at(at, place.ground, direction_of(heading));
 }
 
 /// Returns whether a place has what LevelGround does not examine: ground that can be used, also for the robot at rest,
@@ -86,23 +98,16 @@ bool WayJudge::is_proven(const ColumnView& column, const Vec3& place)
                         [&](const Span& span) { return span.top > above && span.bottom <= raised.z(); });
 }
 
-std::optional<std::size_t> WayJudge::place_after(const Vec2& from, const PlaceStates& place, const Vec2& to,
-                                                 std::span<const PlaceStates> others, int heading)
+std::optional<std::size_t> WayJudge::place_ahead(const Vec2& from, const PlaceStates& place, const Vec2& to,
+                                                 std::span<const PlaceStates> others, int direction, int at_heading)
 {
     // On level ground, the step cannot be larger.
     if (others.size() == 1 && (place.is_open || others[0].is_open) && 3 * level_.flatness() <= max_step_ &&
         std::abs(others[0].ground - place.ground) <= 2 * level_.flatness())
-        return has_heading(others[0].valid, heading) ? std::optional<std::size_t>(0) : std::nullopt;
-    double least = std::numeric_limits<double>::infinity();
-    std::size_t best = 0;
-    for (std::size_t k = 0; k < others.size(); ++k) {
-        if (!has_heading(others[k].valid, heading)) continue;
-        const double step = step_between(from, place.ground, to, others[k].ground);
-        if (!(step < least)) continue;
-        least = step;
-        best = k;
-    }
-    return least <= max_step_ + limit_slack ? std::optional(best) : std::nullopt;
+        return has_heading(others[0].valid, at_heading) ? std::optional<std::size_t>(0) : std::nullopt;
+    return lowest_step((to - from).norm(), place.ground, others, at_heading,
+                       [&] { return slope_at(from, place, direction); },
+                       [&](const PlaceStates& other) { return slope_at(to, other, opposite(direction)); });
 }
 
 double WayJudge::largest_rise(double length) const
@@ -111,15 +116,35 @@ double WayJudge::largest_rise(double length) const
     return std::numbers::sqrt2 * length * steepest_ + 2 * (max_step_ + limit_slack);
 }
 
-/// Returns the step in the ground between two places, m. Infinite: it is larger than max_step.
-double WayJudge::step_between(const Vec2& from, double ground, const Vec2& to, double other_ground)
+/// Returns the index of the place with the smallest step that has a state at a heading, if the step is at most
+/// max_step. `length`: between the columns, m. `slope` and `other_slope` return the slopes at the ends of the way, each
+/// in the direction of the other end.
+template <class Slope, class OtherSlope>
+std::optional<std::size_t> WayJudge::lowest_step(double length, double ground, std::span<const PlaceStates> others,
+                                                 int heading, const Slope& slope, const OtherSlope& other_slope) const
 {
-    const double length = (to - from).norm(), rise = other_ground - ground;
-    if (length == 0) return std::abs(rise);
-    if (std::abs(rise) > length * steepest_ + max_step_ + limit_slack) return std::numeric_limits<double>::infinity();
-    const Vec2 ahead = (to - from) / length;
-    const double s = length * slope_at(from, ground, ahead), t = -length * slope_at(to, other_ground, -ahead);
-    return std::max({0.0, rise - std::max(s, t), std::min(s, t) - rise});
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t best = 0;
+    for (std::size_t k = 0; k < others.size(); ++k) {
+        const double rise = others[k].ground - ground;
+        if (!has_heading(others[k].valid, heading) || std::abs(rise) > length * steepest_ + max_step_ + limit_slack)
+            continue;
+        double step = std::abs(rise);
+        if (length > 0) {
+            const double s = length * slope(), t = -length * other_slope(others[k]);
+            step = std::max({0.0, rise - std::max(s, t), std::min(s, t) - rise});
+        }
+        if (!(step < least)) continue;
+        least = step;
+        best = k;
+    }
+    return least <= max_step_ + limit_slack ? std::optional(best) : std::nullopt;
+}
+
+/// Returns the slope of the ground at a place in the direction of a heading.
+double WayJudge::slope_at(const Vec2& at, const PlaceStates& place, int heading)
+{
+    return place.is_open ? slope_at(at, place.ground, direction_of(heading)) : place.slopes[std::size_t(heading)];
 }
 
 /// Returns the slope of the ground at a place in a direction; 0 if it is steeper than the robot may stand on, or if it
@@ -178,7 +203,11 @@ std::optional<std::size_t> WayJudge::place_near(const SettledPose& pose, const V
                                                 std::span<const PlaceStates> places, int heading)
 {
     const Vec2 from = pose.position.head<2>();
-    const auto k = place_after(from, {.ground = pose.ground->height}, to, places, heading);
+    const double ground = pose.ground->height, length = (to - from).norm();
+    const Vec2 ahead = (to - from) / length;  // not used if the length is 0
+    const auto k = lowest_step(
+        length, ground, places, heading, [&] { return slope_at(from, ground, ahead); },
+        [&](const PlaceStates& other) { return slope_at(to, other.ground, -ahead); });
     if (!k) return std::nullopt;
     const Course course{
         .begin = from, .end = to, .yaw = pose.yaw, .turn = turn_between(pose.yaw, lattice_yaw(heading))};

@@ -28,6 +28,8 @@ struct PlaceStates {
     double ground = 0;     ///< height of the layer, m
     HeadingSet valid = 0;  ///< at which the robot stands
     bool is_open = false;  ///< there is nothing but level ground, as far as any way leads
+    /// Slope of the ground in the direction of each heading, positive: upwards. Not known if the place is open.
+    std::array<double, lattice_headings> slopes{};
     std::array<StatePose, lattice_headings> poses{};
 };
 
@@ -61,10 +63,10 @@ public:
     /// Returns how much the ground may rise on a way of two steps or fewer with this length, m.
     double largest_rise(double length) const;
 
-    /// Returns the index, in another column, of the place with the smallest step from this one; it has a state at this
-    /// heading. Returns nothing if all steps are larger than max_step.
-    std::optional<std::size_t> place_after(const Vec2& from, const PlaceStates& place, const Vec2& to,
-                                           std::span<const PlaceStates> others, int heading);
+    /// Returns the index, in the next column `to` in the direction of a heading, of the place with the smallest step
+    /// from this one; it has a state at `at_heading`. Returns nothing if all steps are larger than max_step.
+    std::optional<std::size_t> place_ahead(const Vec2& from, const PlaceStates& place, const Vec2& to,
+                                           std::span<const PlaceStates> others, int direction, int at_heading);
 
     /// Returns whether there is nothing that the robot could meet on a way from one state to another one.
     bool is_open(const StateAt& from, const StateAt& to) const
@@ -81,7 +83,10 @@ public:
                                           int heading);
 
 private:
-    double step_between(const Vec2& from, double ground, const Vec2& to, double other_ground);
+    template <class Slope, class OtherSlope>
+    std::optional<std::size_t> lowest_step(double length, double ground, std::span<const PlaceStates> others,
+                                           int heading, const Slope& slope, const OtherSlope& other_slope) const;
+    double slope_at(const Vec2& at, const PlaceStates& place, int heading);
     double slope_at(const Vec2& at, double ground, const Vec2& ahead);
     bool is_proven(const ColumnView& column, const Vec3& place);
     void set_start(const Vec2& at);
