@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <sstream>
 
 using namespace spawnfield;
 using rest_robots::add_block;
@@ -246,6 +247,54 @@ TEST_CASE("sample --island puts all spawns into one room, the same at any number
     CHECK(std::any_of(xs.begin(), xs.end(), [](double x) { return x > 0; }));
 }
 
+TEST_CASE("sample prints a notice if its spawns stand on several islands, unless --island was given")
+{
+    const RoomsFolder rooms;
+    const std::string robot = " rooms --robot box:0.3,0.3,0.2 -n 80";
+    const ProgramRun plain = run_program(rooms, "sample" + robot);
+    CHECK_THAT(plain.err, Contains("notice: the spawns stand on ") &&
+                              Contains(" islands, between which box:0.3,0.3,0.2 "
+                                       "cannot drive: ") &&
+                              Contains("--island largest excludes all but the largest"));
+    for (const char* const more : {" --island all", " --island largest", " --stance level"})
+        CHECK_THAT(run_program(rooms, "sample" + robot + more).err, !Contains("the spawns stand on"));
+    CHECK(run_program(rooms, "sample" + robot + " --island all").out == plain.out);
+    CHECK_THAT(run_program(rooms, "sample" + robot + " --region 1,-1,2,1").err, !Contains("the spawns stand on"));
+}
+
+TEST_CASE("only the largest island is used if no label was given for the scene")
+{
+    const TempFolder folder;
+    // A floor of 4 x 4 m and, 1 m above it, a shelf of 2 x 2 m.
+    folder.write("room.obj",
+                 "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 0 0 1\nv 2 0 1\nv 2 2 1\nv 0 2 1\nf 1 2 3 4\nf 5 6 7 8\n");
+    REQUIRE(run_program(folder, "bake room.obj --up z -o bare").status == 0);
+    REQUIRE(run_program(folder, "bake room.obj --up z --label '*=terrain' -o labelled").status == 0);
+    const auto heights = [&](const std::string& arguments) {
+        const ProgramRun run = run_program(folder, "sample " + arguments + " --robot box:0.3,0.3,0.2 -n 100");
+        const bool has_notice = run.err.find("notice: no label was given for the scene of room") != std::string::npos;
+        std::size_t high = 0;
+        std::istringstream lines(run.out);
+        std::string line;
+        std::getline(lines, line);
+        while (std::getline(lines, line)) high += std::stod(line.substr(line.find(',', line.find(',') + 1) + 1)) > 0.5;
+        return std::pair(high, has_notice);
+    };
+    CHECK(heights("bare") == std::pair<std::size_t, bool>(0, true));
+    CHECK(heights("bare --island all").first > 5);
+    CHECK(!heights("bare --island all").second);
+    CHECK(heights("labelled").first > 5);
+    CHECK(!heights("labelled").second);
+    CHECK(!heights("bare --stance level").second);
+    CHECK(heights("bare --island 1").first == 100);
+    CHECK_THAT(run_program(folder, "heatmap bare --robot box:0.3,0.3,0.2 -o a.png").err,
+               Contains("no label was given") && Contains(" unreachable"));
+    CHECK_THAT(run_program(folder, "export bare --robot box:0.3,0.3,0.2 --format ply --step 0.2 -o a.ply").err,
+               Contains("no label was given"));
+    CHECK_THAT(run_program(folder, "sample bare --robot box:0.3,0.3,0.2 -n 1 --reach-step 0.2").err,
+               Contains("only island 0"));
+}
+
 TEST_CASE("if no island is selected, sample ends with status 3 and the reason")
 {
     const RoomsFolder rooms;
@@ -313,7 +362,7 @@ TEST_CASE("faults in the options of islands are named with their values and what
         CHECK(run.out.empty());
         return run.err;
     };
-    CHECK_THAT(message("--island big"), Contains("--island is \"big\", needs largest, the number of an island ("));
+    CHECK_THAT(message("--island big"), Contains("--island is \"big\", needs largest, all, the number of an island ("));
     CHECK_THAT(message("--island -1"), Contains("--island is \"-1\", needs largest"));
     CHECK_THAT(message("--island ''"), Contains("--island is \"\", needs largest"));
     CHECK_THAT(message("--island at:1"),

@@ -26,6 +26,7 @@ struct Map {
     Geometry geometry;
     SolidBounds solid_bounds;                  ///< for the cells of the terrain's raster
     std::optional<GeoOrigin> origin;           ///< the scene's place in the coordinates of a survey
+    bool is_unlabelled = false;                ///< as in Scene: also desks and wall tops are terrain
     int layers = 0;                            ///< largest number of terrain layers in the column of a cell's centre
     std::optional<std::vector<Floor>> floors;  ///< from find_floors(); no value for a map of format version 2
     std::string scene_file;                    ///< name of the file from which it was baked

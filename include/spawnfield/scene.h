@@ -83,6 +83,7 @@ struct Scene {
     std::vector<std::string> notices;    ///< for the user: for example, defaults that influenced the scene
     std::vector<NameRule> rules;         ///< the rules that labelled an SDF or URDF world, in their order
     std::vector<FaceGroup> face_groups;  ///< of all meshes, part after part, in the order of their files
+    bool is_unlabelled = false;          ///< no label was given, so everything became terrain
     /// The bounds of a map of this scene, unless the caller chooses others; empty: those of the whole scene. Infinite
     /// planes extend beyond them.
     Bounds map_bounds = {};

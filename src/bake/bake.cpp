@@ -185,6 +185,7 @@ Map plan_map(const char* function, const Scene& scene, const BakeOptions& option
         report.notices.push_back("the map is only " + number(size.x()) + " x " + number(size.y()) +
                                  " m; is a part of the scene missing or in the wrong unit?");
     map.origin = scene.origin;
+    map.is_unlabelled = scene.is_unlabelled;
     map.resolution = options.resolution > 0 ? options.resolution : default_resolution(map.bounds, report);
     map.occupancy_resolution = options.occupancy_resolution > 0
                                    ? options.occupancy_resolution

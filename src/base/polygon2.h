@@ -65,7 +65,8 @@ double width(const Polygon2& polygon);
 
 /// Returns whether a point lies in a convex polygon or on its edge. Polygons with fewer than 3 corners contain no
 /// point.
-inline bool contains(const Polygon2& polygon, const Vec2& point)
+template <class Polygon>
+bool contains(const Polygon& polygon, const Vec2& point)
 {
     if (polygon.size() < 3) return false;
     for (std::size_t k = 0; k < polygon.size(); ++k) {

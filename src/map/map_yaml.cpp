@@ -220,6 +220,7 @@ std::string write_map_yaml(const fs::path& folder, const Map& map, const Terrain
             ", rows: " + std::to_string(frame.rows) + ", cols: " + std::to_string(frame.cols) + "}\n";
     if (map.origin)
         text += "# survey coordinates of 0, 0, in units of so many metres\norigin: " + origin_text(*map.origin) + "\n";
+    if (map.is_unlabelled) text += "unlabelled: true  # no label was given, so everything is terrain\n";
     text += "layers: " + std::to_string(map.layers) + "\n";
     text +=
         "# from the lowest up: z has the layers that belong to it, area is m2 of ground, share is of all "
@@ -258,6 +259,7 @@ MapYaml read_map_yaml(const fs::path& folder)
     if (root.has("z_limits")) out.map.z_limits = read_z(root, "z_limits");
     if (format > oldest_format) out.map.floors = read_floors(root);
     if (root.has("origin")) out.map.origin = read_origin(root.map("origin"));
+    out.map.is_unlabelled = root.has("unlabelled");
     out.map.layers = int(root.finite("layers"));
     out.map.scene_file = root.map("scene").text("file");
     out.map.scene_hash = root.map("scene").text("xxh64");

@@ -14,7 +14,8 @@ namespace {
 
 constexpr int directions = 64;        // in which the robot's outline is examined
 constexpr double round_miss = 2e-3;   // share of the radius of round parts by which the outline may miss their points
-constexpr std::size_t most = 64;      // solids near a place; of more, the comparisons take longer than they save
+constexpr std::size_t most = 256;     // solids near a layer; of more, the comparisons take longer than they save
+constexpr double crack = 1e-7;        // m: nothing gets into a narrower gap between two pieces of ground
 constexpr double contact_gap = 1e-3;  // m: as in Settler
 
 /// Returns the extreme points of a robot in horizontal directions that are tilted by `down`, as corners of a polygon.
@@ -47,7 +48,7 @@ double depth_in(const Polygon2& polygon, const Vec2& point)
 
 /// Returns whether a line at right angles to an edge of `a` separates two convex polygons (1 or more corners) by more
 /// than a gap.
-bool edges_separate(const Polygon2& a, const Polygon2& b, double gap)
+bool edges_separate(std::span<const Vec2> a, std::span<const Vec2> b, double gap)
 {
     for (std::size_t k = 0; k < a.size(); ++k) {
         const Vec2 &p = a[k], &q = a[k + 1 < a.size() ? k + 1 : 0];
@@ -60,9 +61,42 @@ bool edges_separate(const Polygon2& a, const Polygon2& b, double gap)
     return false;
 }
 
-bool are_apart(const Polygon2& a, const Polygon2& b, double gap)
+bool are_apart(std::span<const Vec2> a, std::span<const Vec2> b, double gap)
 {
     return edges_separate(a, b, gap) || edges_separate(b, a, gap);
+}
+
+Rect box_around(std::span<const Vec2> points)
+{
+    Rect out{points[0].x(), points[0].y(), points[0].x(), points[0].y()};
+    for (const Vec2& point : points.subspan(1)) {
+        out.low_x = std::min(out.low_x, point.x());
+        out.low_y = std::min(out.low_y, point.y());
+        out.high_x = std::max(out.high_x, point.x());
+        out.high_y = std::max(out.high_y, point.y());
+    }
+    return out;
+}
+
+bool overlap(const Rect& a, const Rect& b, double gap)
+{
+    return a.low_x <= b.high_x + gap && b.low_x <= a.high_x + gap && a.low_y <= b.high_y + gap &&
+           b.low_y <= a.high_y + gap;
+}
+
+/// Returns the part of the line from p to q, 0 .. 1, that is in a convex polygon; empty (first > second) if it misses
+/// the polygon.
+std::pair<double, double> part_in(const Vec2& p, const Vec2& q, std::span<const Vec2> polygon)
+{
+    double low = 0, high = 1;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec2 &a = polygon[k], &b = polygon[k + 1 < polygon.size() ? k + 1 : 0];
+        const double at_p = cross(b - a, p - a), at_q = cross(b - a, q - a);  // >= 0: inside
+        if (at_p < 0 && at_q < 0) return {1, 0};
+        if (at_p < 0) low = std::max(low, at_p / (at_p - at_q));
+        if (at_q < 0) high = std::min(high, at_p / (at_p - at_q));
+    }
+    return {low, high};
 }
 
 Polygon2 rotated(const Polygon2& polygon, double yaw)
@@ -104,6 +138,7 @@ LevelGround::LevelGround(const Judge::Impl& shared) : shared_(shared)
     highest_ = box.max.z();
     const auto is_any = [](const auto&) { return true; };
     footprint_ = outline_of(parts, 0, is_any, is_any);
+    for (const Vec2& corner : footprint_) reach_ = std::max(reach_, corner.norm() + gap_);
     // A disc that lies on nearly level ground may touch it at a few points of its rim only.
     const auto has_feet = [](const Convex& body) { return body.disc == 0 || std::abs(body.axis.z()) < upright; };
     const auto is_low = [&](const Vec3& point) { return point.z() <= lowest_ + level; };
@@ -125,53 +160,51 @@ void LevelGround::set_place(const Vec2& place, double radius)
     radius_ = radius;
     solids_.clear();
     is_unsealed_ = false;
-    const std::vector<Part>& scene_parts = shared_.map.geometry.parts();
     shared_.map.geometry.impl().visit_in(
         place.x() - radius, place.y() - radius, place.x() + radius, place.y() + radius,
         [&](const Tile& tile, auto element) {
             const Label label = tile.label(element);
-            const Part& part = scene_parts[tile.part(element)];
-            is_unsealed_ |= part.open_edges > 0 && part.solid_pieces > 0;
-            if (label == Label::Water || label == Label::Ignore || solids_.size() > most) return;
-            if (tile.is_triangle(element))
-                add_triangle(tile.corners(element), label == Label::Terrain);
-            else
-                add_primitive(tile.primitive(element).shape(), label == Label::Terrain);
+            is_unsealed_ |= tile.is_triangle(element) && tile.piece(element).open != 0;
+            if (label == Label::Water || label == Label::Ignore) return;
+            solids_.push_back(tile.is_triangle(element)
+                                  ? triangle(tile.corners(element), label == Label::Terrain)
+                                  : primitive(tile.primitive(element).shape(), label == Label::Terrain));
         });
 }
 
-void LevelGround::add_triangle(const std::array<Vec3, 3>& corners, bool is_terrain)
+LevelGround::Solid LevelGround::triangle(const std::array<Vec3, 3>& corners, bool is_terrain) const
 {
-    Solid& solid = solids_.emplace_back();
+    Solid out;
     const Vec3 a = corners[0] - origin_, b = corners[1] - origin_, c = corners[2] - origin_;
-    solid.outline = convex_hull({a.head<2>(), b.head<2>(), c.head<2>()});
-    solid.low = std::min({a.z(), b.z(), c.z()});
-    solid.high = std::max({a.z(), b.z(), c.z()});
     const Vec3 normal = (b - a).cross(c - a);
-    solid.is_level = is_terrain && solid.outline.size() == 3 && normal.z() != 0;
-    if (!solid.is_level) return;
-    solid.middle = normal.dot(a) / normal.z();
-    solid.steepness = normal.head<2>().norm() / std::abs(normal.z());
+    out.outline = {{a.head<2>(), b.head<2>(), c.head<2>(), Vec2::Zero()}, 3};
+    if (normal.z() < 0) std::swap(out.outline.corners[1], out.outline.corners[2]);
+    out.box = box_around(out.outline.span());
+    out.low = std::min({a.z(), b.z(), c.z()});
+    out.high = std::max({a.z(), b.z(), c.z()});
+    out.is_level = is_terrain && normal.z() != 0;
+    if (!out.is_level) return out;
+    out.middle = normal.dot(a) / normal.z();
+    out.steepness = normal.head<2>().norm() / std::abs(normal.z());
+    return out;
 }
 
-void LevelGround::add_primitive(const Shape& shape, bool is_terrain)
+LevelGround::Solid LevelGround::primitive(const Shape& shape, bool is_terrain) const
 {
-    Solid& solid = solids_.emplace_back();
-    const Convex body = convex_of(shape);
-    Bounds box = body.bounds();
-    box.min -= origin_;
-    box.max -= origin_;
-    solid.low = box.min.z();
-    solid.high = box.max.z();
+    Solid out;
+    const Bounds box = bounds_of(shape);
     const bool is_upright = shape.kind == ShapeKind::Box && shape.pose.rotation(2, 2) == 1;
-    solid.is_level = is_terrain && is_upright;
-    solid.middle = solid.high;
-    Polygon2 points{box.min.head<2>(), box.max.head<2>(), {box.min.x(), box.max.y()}, {box.max.x(), box.min.y()}};
-    if (is_upright) {
-        points.clear();
-        for (const Vec3& point : body.points) points.push_back((point - origin_).head<2>());
-    }
-    solid.outline = convex_hull(std::move(points));
+    const Vec2 half = is_upright ? Vec2(shape.size.head<2>() / 2) : Vec2((box.max - box.min).head<2>() / 2);
+    const Eigen::Matrix2d rotation = is_upright ? Eigen::Matrix2d(shape.pose.rotation.topLeftCorner<2, 2>())
+                                                : Eigen::Matrix2d::Identity();
+    const Vec2 middle = ((box.min + box.max) / 2 - origin_).head<2>();
+    const auto corner = [&](double x, double y) -> Vec2 { return middle + rotation * half.cwiseProduct(Vec2(x, y)); };
+    out.outline = {{corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)}, 4};
+    out.box = box_around(out.outline.span());
+    out.low = box.min.z();
+    out.high = out.middle = box.max.z();
+    out.is_level = is_terrain && is_upright;
+    return out;
 }
 
 /// Returns whether the top of a solid is everywhere near the height of the layer, as far as the robot may reach.
@@ -185,47 +218,70 @@ bool LevelGround::set_layer(double height)
 {
     height_ = height;
     ground_.clear();
-    others_.clear();
-    ends_.clear();
-    if (solids_.size() > most || is_unsealed_) return false;
+    obstacles_.clear();
+    is_open_ = true;
+    if (is_unsealed_) return false;
     const double top = z() + highest_ + shared_.options.stand.lift + tolerance;
     bool is_on_ground = false;
+    std::size_t others = 0;
     for (const Solid& solid : solids_) {
+        if (solid.high < height_ - flatness_ || solid.low > top) continue;
         if (is_ground(solid)) {
             ground_.push_back(&solid);
             is_on_ground |= contains(solid.outline, Vec2::Zero());
-        } else if (solid.high >= height_ - flatness_ && solid.low <= top) {
-            others_.push_back(&solid.outline);
+        } else {
+            add_obstacle(solid.outline, solid.box);
+            ++others;
         }
+        if (ground_.size() + others > most) return false;
     }
-    for (const Solid* const solid : ground_) find_ends(*solid);
+    for (std::size_t k = 0; k < ground_.size() && is_on_ground; ++k) find_ends(*ground_[k]);
     return is_on_ground;
 }
 
-/// Adds the edges of a piece of ground on whose other side no piece begins.
+void LevelGround::add_obstacle(const Outline& outline, const Rect& box)
+{
+    is_open_ = false;
+    if (overlap(box, {-reach_, -reach_, reach_, reach_}, 0)) obstacles_.push_back(outline);
+}
+
+/// Adds the parts of the edges of a piece of ground on whose other side there is no ground.
 void LevelGround::find_ends(const Solid& solid)
 {
-    const Polygon2 square{{-radius_, -radius_}, {radius_, -radius_}, {radius_, radius_}, {-radius_, radius_}};
-    const Polygon2& corners = solid.outline;
+    const double half = is_open_ ? radius_ : reach_;  // what is farther away only matters to is_open()
+    const std::array<Vec2, 4> square{{{-half, -half}, {half, -half}, {half, half}, {-half, half}}};
+    const Outline& corners = solid.outline;
     for (std::size_t k = 0; k < corners.size(); ++k) {
         const Vec2 &p = corners[k], &q = corners[k + 1 < corners.size() ? k + 1 : 0];
-        const auto goes_on = [&](const Solid* other) {
-            const Polygon2& polygon = other->outline;  // counterclockwise, too: a neighbour has the edge from q to p
-            for (std::size_t l = 0; l < polygon.size(); ++l)
-                if (polygon[l] == q && polygon[l + 1 < polygon.size() ? l + 1 : 0] == p) return true;
-            return false;
-        };
-        if (!std::any_of(ground_.begin(), ground_.end(), goes_on) && !are_apart({p, q}, square, 0))
-            ends_.push_back({p, q});
+        const Rect edge = box_around(std::array{p, q});
+        const double length = (q - p).norm();
+        if (length == 0 || are_apart(std::array{p, q}, square, 0)) continue;
+        const Vec2 outside = crack / length * edge_normal(p, q);
+        covered_.clear();
+        for (const Solid* const other : ground_) {
+            if (other == &solid || !overlap(edge, other->box, crack)) continue;
+            const auto part = part_in(p + outside, q + outside, other->outline.span());
+            if (part.first < part.second) covered_.push_back(part);
+        }
+        std::sort(covered_.begin(), covered_.end());
+        covered_.emplace_back(1, 1);
+        double end = 0;  // up to here, the edge is covered
+        for (const auto& [low, high] : covered_) {
+            if ((low - end) * length > crack) {
+                const Vec2 from = p + end * (q - p), to = p + low * (q - p);
+                if (!are_apart(std::array{from, to}, square, 0))
+                    add_obstacle({{from, to}, 2}, box_around(std::array{from, to}));
+            }
+            end = std::max(end, high);
+        }
     }
 }
 
 bool LevelGround::stands(double yaw) const
 {
     const Polygon2 footprint = rotated(footprint_, yaw);
-    const auto is_clear = [&](const Polygon2& outline) { return are_apart(outline, footprint, gap_); };
-    return std::all_of(others_.begin(), others_.end(), [&](const Polygon2* other) { return is_clear(*other); }) &&
-           std::all_of(ends_.begin(), ends_.end(), is_clear);
+    return std::all_of(obstacles_.begin(), obstacles_.end(),
+                       [&](const Outline& outline) { return are_apart(outline.span(), footprint, gap_); });
 }
 
 }  // namespace spawnfield

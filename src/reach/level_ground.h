@@ -1,10 +1,14 @@
 #pragma once
 
 #include "base/polygon2.h"
+#include "base/rect.h"
 #include "geometry/tile_tree.h"
 
 #include <spawnfield/judge.h>
 
+#include <array>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace spawnfield {
@@ -38,38 +42,53 @@ public:
     bool set_layer(double height);
 
     /// Returns whether there is nothing but ground within the radius, up to above the robot.
-    bool is_open() const { return ends_.empty() && others_.empty(); }
+    bool is_open() const { return is_open_; }
     /// Returns whether the robot stands at a yaw, as far as the geometry decides. False: not proven.
     bool stands(double yaw) const;
     /// Returns the height of its origin, m.
     double z() const { return height_ - lowest_; }
 
 private:
+    /// A convex polygon with 2 to 4 corners, counterclockwise. The corners may lie on one line.
+    struct Outline {
+        std::array<Vec2, 4> corners;
+        std::size_t count = 0;
+
+        std::size_t size() const { return count; }
+        const Vec2& operator[](std::size_t k) const { return corners[k]; }
+        std::span<const Vec2> span() const { return {corners.data(), count}; }
+    };
     struct Solid {
-        Polygon2 outline;       ///< of its hull seen from above, relative to the place
+        Outline outline;        ///< of its hull seen from above, relative to the place
+        Rect box;               ///< around the outline
         double low, high;       ///< heights, m
         bool is_level = false;  ///< it is terrain, and its top is a plane
         double middle = 0;      ///< height of that plane at the place, m
         double steepness = 0;   ///< its slope
     };
-    void add_triangle(const std::array<Vec3, 3>& corners, bool is_terrain);
-    void add_primitive(const Shape& shape, bool is_terrain);
+    Solid triangle(const std::array<Vec3, 3>& corners, bool is_terrain) const;
+    Solid primitive(const Shape& shape, bool is_terrain) const;
     bool is_ground(const Solid& solid) const;
     void find_ends(const Solid& solid);
+    void add_obstacle(const Outline& outline, const Rect& box);
 
     const Judge::Impl& shared_;
     Polygon2 footprint_;               ///< outline of the robot, seen from above, in its frame
     double lowest_ = 0, highest_ = 0;  ///< of the robot's points, in its frame, m
     double flatness_ = 0;              ///< m; 0: nothing can be proven
     double gap_ = 0;                   ///< m; what is farther than this from the footprint does not meet the robot
+    double reach_ = 0;                 ///< m; largest distance of the footprint from its origin, and the gap
     Vec3 origin_ = Vec3::Zero();
     double radius_ = 0, height_ = 0;
     std::vector<Solid> solids_;
-    /// There is a mesh that may be filled although it has holes. It can contain the robot without any face near it.
-    bool is_unsealed_ = false;
+    /// There is a face of a mesh that is filled although it has holes. It can contain the robot without any face below
+    /// or beside it.
+    bool is_unsealed_ = false, is_open_ = false;
     std::vector<const Solid*> ground_;
-    std::vector<const Polygon2*> others_;  ///< outlines of all else that may meet the robot
-    std::vector<Polygon2> ends_;           ///< edges at which the ground ends, or may end
+    /// Outlines of all else that may meet the robot, and edges at which the ground ends or may end; without those that
+    /// are too far away at every yaw.
+    std::vector<Outline> obstacles_;
+    std::vector<std::pair<double, double>> covered_;  ///< parts of the edge that was examined last, 0 .. 1
 };
 
 }  // namespace spawnfield

@@ -125,6 +125,7 @@ Scene read_bare_scene(const fs::path& file, const SceneOptions& options)
     const Label fallback = is_unlabelled ? Label::Terrain : Label::Obstacle;
     scene = is_octomap(extension) ? read_octomap_scene(file, std::move(scene), fallback, options)
                                   : read_mesh_scene(file, std::move(scene), fallback, options);
+    scene.is_unlabelled = is_unlabelled;
     if (is_unlabelled)
         scene.notices.insert(scene.notices.begin(),
                              file.string() +

@@ -151,7 +151,7 @@ private:
         }
         const bool is_unlabelled = !rules.has_ground() && options_.labels.empty() && !options_.auto_slope;
         if (is_unlabelled && !is_incomplete_) {
-            everything_is_terrain_ = true;
+            everything_is_terrain_ = scene_.is_unlabelled = true;
             scene_.rules.push_back(
                 {"all: nothing is a plane, a heightmap or named as ground", Label::Terrain, bodies.size() - unknown});
             std::replace(labels_.begin(), labels_.end(), Label::Obstacle, Label::Terrain);

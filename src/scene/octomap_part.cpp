@@ -8,20 +8,38 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 namespace spawnfield {
 namespace {
 
-void append_box(Scene& scene, std::uint32_t part, const Vec3& centre, const Vec3& size, const Pose& pose, Label label)
+void append_boxes(Scene& scene, std::uint32_t part, const octomap::OcTree& tree, const std::vector<VoxelBox>& boxes,
+                  const Pose& pose, Label label)
 {
-    Primitive primitive;
-    primitive.shape.kind = ShapeKind::Box;
-    primitive.shape.size = size;
-    primitive.shape.pose = pose * Pose{centre, Mat3::Identity()};
-    primitive.part = part;
-    primitive.label = label;
-    scene.primitives.push_back(primitive);
-    ++scene.parts[part].solid_pieces;
+    for (const VoxelBox& box : boxes) {
+        const Bounds bounds = bounds_of(tree, box);
+        Primitive primitive;
+        primitive.shape = box_shape(bounds.max - bounds.min,
+                                    pose * Pose{(bounds.min + bounds.max) / 2, Mat3::Identity()});
+        primitive.part = part;
+        primitive.label = label;
+        scene.primitives.push_back(primitive);
+        ++scene.parts[part].solid_pieces;
+    }
+}
+
+/// Returns the voxels of a leaf.
+VoxelBox voxels_of(const octomap::OcTree& tree, const octomap::OcTree::leaf_iterator& leaf)
+{
+    const octomap::OcTreeKey low = leaf.getIndexKey();
+    const std::uint32_t side = 1u << (tree.getTreeDepth() - leaf.getDepth());
+    VoxelBox out;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        out.lo[axis] = low[axis];
+        out.hi[axis] = low[axis] + side;
+    }
+    return out;
 }
 
 void append_unknown(Scene& scene, const std::string& name, const octomap::OcTree& tree, const VoxelBox& extent,
@@ -33,10 +51,7 @@ void append_unknown(Scene& scene, const std::string& name, const octomap::OcTree
     unknown.label = Label::Obstacle;
     scene.parts.push_back(std::move(unknown));
     const auto part = std::uint32_t(scene.parts.size() - 1);
-    for (const VoxelBox& box : unknown_boxes(tree, extent)) {
-        const Bounds bounds = bounds_of(tree, box);
-        append_box(scene, part, (bounds.min + bounds.max) / 2, bounds.max - bounds.min, pose, Label::Obstacle);
-    }
+    append_boxes(scene, part, tree, unknown_boxes(tree, extent), pose, Label::Obstacle);
 }
 
 std::string unknown_notice(const octomap::OcTree& tree, const VoxelBox& extent, Unknown unknown)
@@ -64,18 +79,16 @@ void append_octomap(Scene& scene, std::uint32_t part, const std::filesystem::pat
     const std::vector<bool> is_ground = auto_slope ? ground_leaves(*tree, *auto_slope, file.string())
                                                    : std::vector<bool>();
     std::size_t occupied = 0;
+    std::vector<VoxelBox> terrain, others;
     for (auto leaf = tree->begin_leafs(), end = tree->end_leafs(); leaf != end; ++leaf) {
         if (!tree->isNodeOccupied(*leaf)) continue;
-        const octomap::OcTreeKey key = leaf.getKey();
-        Vec3 centre;
-        for (int axis = 0; axis < 3; ++axis) centre[axis] = tree->keyToCoord(key[axis], leaf.getDepth());
-        const Label label = !auto_slope           ? scene.parts[part].label
-                            : is_ground[occupied] ? Label::Terrain
-                                                  : Label::Obstacle;
-        append_box(scene, part, centre, Vec3::Constant(tree->getNodeSize(leaf.getDepth())), pose, label);
+        (auto_slope && is_ground[occupied] ? terrain : others).push_back(voxels_of(*tree, leaf));
         ++occupied;
     }
-    if (scene.parts[part].solid_pieces == 0) throw FileError(file.string(), "has no occupied leaf, needs at least one");
+    if (occupied == 0) throw FileError(file.string(), "has no occupied leaf, needs at least one");
+    append_boxes(scene, part, *tree, joined(std::move(terrain)), pose, Label::Terrain);
+    append_boxes(scene, part, *tree, joined(std::move(others)), pose,
+                 auto_slope ? Label::Obstacle : scene.parts[part].label);
     const VoxelBox extent = known_extent(*tree);
     if (unknown == Unknown::Blocked) append_unknown(scene, scene.parts[part].name, *tree, extent, pose);
     scene.notices.push_back(file.string() + ": " + unknown_notice(*tree, extent, unknown));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace spawnfield {
 namespace {
@@ -97,11 +98,16 @@ std::vector<VoxelBox> unknown_boxes(const octomap::OcTree& tree, const VoxelBox&
     };
     visit(
         tree, [](const VoxelBox&) {}, missing);
-    for (bool joined = true; joined;) {
-        joined = false;
-        for (std::size_t axis = 0; axis < 3; ++axis) joined |= join(out, axis);
+    return joined(std::move(out));
+}
+
+std::vector<VoxelBox> joined(std::vector<VoxelBox> boxes)
+{
+    for (bool any = true; any;) {
+        any = false;
+        for (const std::size_t axis : {2, 0, 1}) any |= join(boxes, axis);  // walls first
     }
-    return out;
+    return boxes;
 }
 
 double known_volume(const octomap::OcTree& tree)

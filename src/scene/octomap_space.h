@@ -19,8 +19,11 @@ struct VoxelBox {
 /// Returns the smallest box around all known space, free or occupied; empty if nothing is known.
 VoxelBox known_extent(const octomap::OcTree& tree);
 
-/// Returns the unknown space of a box as few boxes that do not overlap: the children that nodes lack, joined where they
-/// share a whole side. O(nodes log nodes).
+/// Returns the same space as fewer boxes: those that share a whole side are joined. The boxes must not overlap.
+/// O(boxes log boxes).
+std::vector<VoxelBox> joined(std::vector<VoxelBox> boxes);
+
+/// Returns the unknown space of a box as few boxes that do not overlap: the children that nodes lack, joined.
 std::vector<VoxelBox> unknown_boxes(const octomap::OcTree& tree, const VoxelBox& within);
 
 /// Returns the volume of the known space, free or occupied, in voxels.

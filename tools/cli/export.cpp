@@ -78,7 +78,11 @@ Ending run_export(const ExportArgs& args, const CLI::App& command, Summary& summ
     check_options(args, command);
     const Session session = open_session(args, summary);
     summary.lap("load");
-    format_of(args.format).write({args, command, session, summary});
+    const ExportFormat& format = format_of(args.format);
+    IslandChoice islands;
+    if (session.judge && uses(format, "--island"))
+        islands = choice_for(session.map, args, args.islands, command, island_choice(args, args.islands, command));
+    format.write({args, command, session, summary, islands});
     if (!args.out.empty() && args.out != "-") summary.extra.push_back(args.out);
     return {};
 }

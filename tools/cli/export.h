@@ -23,6 +23,7 @@ struct ExportJob {
     const CLI::App& command;
     const Session& session;  ///< only the map if no --robot was given
     Summary& summary;        ///< lap("load") is done; the time after the last lap is that of "write"
+    IslandChoice islands;    ///< without --robot: all
 
     bool has_robot() const { return session.judge.has_value(); }
     bool was_given(const std::string& option) const { return command.count(option) > 0; }

@@ -30,8 +30,7 @@ RasterOptions raster_options(const ExportJob& job, const std::string& layers)
     options.offset = choose_offset(args, options.offset, job.session.robot, job.summary);
     notice_if_no_layer(args, job.session.map, options.layers);
     require_above_ground(job.session.robot, options.offset);
-    const ChosenIslands chosen = choose_islands(args, args.islands, island_choice(args, args.islands, job.command),
-                                                job.session, job.summary, "export");
+    const ChosenIslands chosen = choose_islands(args, args.islands, job.islands, job.session, job.summary, "export");
     if (!chosen.why_none.empty()) notice(args, chosen.why_none);
     options.is_reachable = chosen.filter;
     return options;
@@ -46,7 +45,7 @@ std::vector<std::string> comment_of(const ExportJob& job, const RasterOptions& o
     const std::string robot = session.robot.name,
                       layer = "layer (" + (job.args.ground.layers.empty() ? layers : job.args.ground.layers) + heights +
                               "), yaw " + number(options.yaw) + " rad",
-                      lift = number(session.judge->options().stand.lift), islands = words_of(job.args.islands);
+                      lift = number(session.judge->options().stand.lift), islands = words_of(job.islands);
     return {"spawnfield " + version() + ", map " + session.map.name + " (" + session.map.hash + "): " +
             (options.offset
                  ? "where the origin of " + robot + " can be, " + number(*options.offset) + " m above its " + layer

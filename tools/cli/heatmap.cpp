@@ -170,7 +170,7 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
 {
     const PictureFile file = picture_file(args.out, args.format);
     const bool shows_islands = args.quantity == "island";
-    const IslandChoice islands = island_choice(args, args.islands, command, shows_islands);
+    const IslandChoice asked_islands = island_choice(args, args.islands, command);
     RasterOptions options = raster_options(args, command);
     HeatmapOptions picture = picture_options(args);
     if (is_of_rest(picture.quantity) && !args.is_settled())
@@ -197,6 +197,7 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     options.step = command.count("--step") > 0 ? parse_positive("--step", args.step)
                                                : default_step(session.map, options);
     summary.lap("load");
+    const IslandChoice islands = choice_for(session.map, args, args.islands, command, asked_islands, shows_islands);
     const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "heatmap");
     if (!chosen.why_none.empty()) notice(args, chosen.why_none);
     options.is_reachable = chosen.filter;
@@ -206,7 +207,7 @@ Ending run_heatmap(const HeatmapArgs& args, const CLI::App& command, Summary& su
     picture.title = session.map.name + ", " + session.robot.name;
     const std::string headings = facing.is_any ? std::to_string(picture.headings) + " headings" : "";
     picture.caption = heatmap_caption(options, args.ground, *session.judge, headings);
-    if (!islands.selects_all()) picture.caption += ", " + words_of(args.islands);
+    if (!islands.selects_all()) picture.caption += ", " + words_of(islands);
     picture.robot = &session.robot;
     picture.format = file.format;
     write_heatmap(session.map, terrain, result, picture, file.path);

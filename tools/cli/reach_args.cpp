@@ -7,7 +7,10 @@
 #include <spawnfield/kept_graph.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 
 namespace spawnfield::cli {
 namespace {
@@ -30,14 +33,17 @@ void parse_island(const std::string& text, IslandChoice& choice)
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     if (text == "largest")
         choice.largest = true;
+    else if (text == "all")
+        choice.largest = false;
     else if (text.starts_with("at:"))
         choice.at = parse_place("the place of --island", text.substr(3));
     else if (!text.empty() && text.size() < 10 && std::all_of(text.begin(), text.end(), is_digit))
         choice.number = std::stoul(text);
     else
-        throw ArgumentError("--island is \"" + text +
-                            "\", needs largest, the number of an island (`spawnfield info MAP --robot R --islands` "
-                            "lists them), or at:x,y or at:x,y,z in m");
+        throw ArgumentError(
+            "--island is \"" + text +
+            "\", needs largest, all, the number of an island (`spawnfield info MAP --robot R --islands` "
+            "lists them), or at:x,y or at:x,y,z in m");
 }
 
 /// Returns "only island 3", "only islands 0, 2, 5", "12 islands selected" or "no island selected".
@@ -86,7 +92,7 @@ void add_islands(CLI::App& command, IslandArgs& args)
     command.add_option("--island", args.island,
                        "Only poses on this island (ground within which the robot can drive): largest, its number in "
                        "`spawnfield info MAP --robot R --islands`, or at:x,y or at:x,y,z in m. Other poses are "
-                       "unreachable");
+                       "unreachable (default all; largest if no label was given for the scene)");
     command.add_option("--min-island", args.min_island, "m2: only poses on islands of at least this area");
     command
         .add_option("--reachable-from", args.reachable_from,
@@ -96,15 +102,24 @@ void add_islands(CLI::App& command, IslandArgs& args)
     add_reach(command, args);
 }
 
+namespace {
+
+ReachOptions reach_options(const QueryArgs& query, const ReachArgs& args)
+{
+    return {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
+            .max_step = args.max_step,
+            .step = args.reach_step,
+            .threads = query.threads};
+}
+
+}  // namespace
+
 ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
                         const std::string& command)
 {
-    const KeptGraph kept = kept_graph(*session.judge,
-                                      {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
-                                       .max_step = args.max_step,
-                                       .step = args.reach_step,
-                                       .threads = query.threads,
-                                       .progress = progress_bar(query, command + ", islands")});
+    ReachOptions options = reach_options(query, args);
+    options.progress = progress_bar(query, command + ", islands");
+    const KeptGraph kept = kept_graph(*session.judge, options);
     if (!kept.notice.empty()) notice(query, kept.notice);
     summary.lap("islands");
     char seconds[40];
@@ -114,7 +129,7 @@ ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Ses
     return kept.graph;
 }
 
-IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const CLI::App& command, bool needs_graph)
+IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const CLI::App& command)
 {
     if (!query.is_settled())
         refuse(command, island_option_names,
@@ -124,23 +139,75 @@ IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const
     if (command.count("--island") > 0) parse_island(args.island, out);
     for (const std::string& text : args.reachable_from)
         out.reachable_from.push_back(parse_place("--reachable-from", text));
+    return out;
+}
+
+IslandChoice choice_for(const Map& map, const QueryArgs& query, const IslandArgs& args, const CLI::App& command,
+                        const IslandChoice& choice, bool needs_graph)
+{
+    IslandChoice out = choice;
+    if (map.is_unlabelled && query.is_settled() && args.island.empty() && choice.selects_all()) {
+        out.largest = true;
+        notice(query, "no label was given for the scene of " + map.name +
+                          ", so everything is terrain, also desks and wall tops; only the largest island is used "
+                          "(--island all uses all ground)");
+    }
     if (out.selects_all() && !needs_graph)
         refuse(command, reach_option_names,
                "is only for --island, --min-island and --reachable-from; give one of them");
     return out;
 }
 
-std::string words_of(const IslandArgs& args)
+std::string words_of(const IslandChoice& choice)
 {
     std::string places, out;
-    for (const std::string& place : args.reachable_from) places += (places.empty() ? "" : " or ") + place;
+    for (const StartPlace& place : choice.reachable_from) places += (places.empty() ? "" : " or ") + to_string(place);
     const auto add = [&](bool is_given, const std::string& text) {
         if (is_given) out += (out.empty() ? "" : ", ") + text;
     };
-    add(!args.island.empty(), "island " + args.island);
-    add(args.min_island > 0, "islands from " + number(args.min_island) + " m2");
+    add(choice.largest, "island largest");
+    if (choice.number) add(true, "island " + std::to_string(*choice.number));
+    if (choice.at) add(true, "island at:" + to_string(*choice.at));
+    add(choice.min_area > 0, "islands from " + number(choice.min_area) + " m2");
     add(!places.empty(), "reachable from " + places);
     return out;
+}
+
+void notice_about_islands(const QueryArgs& query, const IslandArgs& args, const Session& session, const SpawnList& list)
+{
+    // A graph of so many columns, and with so few triangles and primitives, mostly takes a fraction of a second.
+    constexpr double small_map = 5000;
+    constexpr std::uint64_t few_elements = 20000;
+    constexpr std::size_t examined = 1000;  // spawns
+    constexpr double small_island = 5;      // m2
+    const ReachOptions options = reach_options(query, args);
+    const double step = options.step.value_or(auto_reach_step(session.robot));
+    const Vec3 size = session.map.bounds.max - session.map.bounds.min;
+    const bool is_kept = std::filesystem::exists(kept_graph_file(*session.judge, options));
+    std::uint64_t elements = 0;
+    for (const LabelCount& label : session.map.geometry.labels()) elements += label.triangles + label.primitives;
+    if (!is_kept && (size.x() * size.y() > small_map * step * step || elements > few_elements)) return;
+    const ReachGraph graph = kept_graph(*session.judge, options).graph;
+    std::vector<Pose> poses;
+    for (std::size_t i = 0; i < std::min(examined, list.spawns.size()); ++i)
+        poses.push_back({list.spawns[i].position, rotation_from_rpy(0, 0, list.spawns[i].yaw)});
+    std::map<std::size_t, std::size_t> counts;  // by island; the number of islands: none
+    std::size_t on_small = 0;
+    for (const SettledPose& pose : session.judge->settle(poses, {.threads = query.threads})) {
+        if (pose.verdict != Verdict::Valid) continue;  // it has other ground below its origin
+        const std::size_t island = graph.island_of(pose).value_or(graph.islands().size());
+        ++counts[island];
+        on_small += island == graph.islands().size() || graph.islands()[island].area < small_island;
+    }
+    if (counts.size() < 2) return;
+    const auto share = [&](std::size_t count) {
+        return std::to_string(std::lround(100 * double(count) / double(poses.size()))) + " %";
+    };
+    const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+    notice(query, "the spawns stand on " + std::to_string(counts.size()) + " islands, between which " +
+                      session.robot.name + " cannot drive: " + share(most->second) + " on one, " + share(on_small) +
+                      " on islands smaller than " + number(small_island) +
+                      " m2; --island largest excludes all but the largest (--island all: no notice)");
 }
 
 ChosenIslands choose_islands(const QueryArgs& query, const IslandArgs& args, const IslandChoice& choice,

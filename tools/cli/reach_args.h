@@ -3,6 +3,7 @@
 #include "session.h"
 
 #include <spawnfield/island_choice.h>
+#include <spawnfield/query.h>
 
 namespace spawnfield::cli {
 
@@ -34,13 +35,22 @@ ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Ses
                         const std::string& command);
 
 /// Returns the choice that the options describe. Call it before all work. Throws ArgumentError for values that cannot
-/// be read, for level robots, and for options about the graph without effect: those of a command that needs no graph
-/// if all islands are selected.
-IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const CLI::App& command,
-                           bool needs_graph = false);
+/// be read, and for level robots.
+IslandChoice island_choice(const QueryArgs& query, const IslandArgs& args, const CLI::App& command);
 
-/// Returns the islands that the options select, in words: "island largest, reachable from 1,2". Empty: all islands.
-std::string words_of(const IslandArgs& args);
+/// Returns the choice for a map: if no option about islands was given, and the map is of a scene without labels, only
+/// the largest island, because robots would also stand on desks and wall tops. Throws ArgumentError for options about
+/// the graph without effect: those of a command that needs no graph if all islands are selected.
+IslandChoice choice_for(const Map& map, const QueryArgs& query, const IslandArgs& args, const CLI::App& command,
+                        const IslandChoice& choice, bool needs_graph = false);
+
+/// Returns the islands that are selected, in words: "island largest, reachable from 1,2". Empty: all islands.
+std::string words_of(const IslandChoice& choice);
+
+/// Prints a notice if spawns that were drawn from all islands stand on more than one. Does nothing if the graph is not
+/// kept in the map's folder yet, and would take long.
+void notice_about_islands(const QueryArgs& query, const IslandArgs& args, const Session& session,
+                          const SpawnList& list);
 
 /// The islands that a command uses.
 struct ChosenIslands {

@@ -146,6 +146,8 @@ struct SpawnQuery {
     SpawnList (*run)(const Judge&, const Options&);
     /// Does the work before the first draw. Returns why no pose can be valid, or an empty text.
     std::function<std::string(const Session&, Options&)> before_draws = [](const auto&, auto&) { return ""; };
+    /// Prints notices about the result.
+    std::function<void(const Session&, const SpawnList&)> after_draws = [](const auto&, const auto&) {};
 };
 
 /// Returns the result without any draw: the whole region is undecided.
@@ -200,6 +202,7 @@ Ending run_spawn(const SpawnQuery<Options>& query, Summary& summary, const Spawn
     if (command == "sample") summary.fullness = {list.is_full, list.undecided_area};
     summary.lap("query");
     notice_about_double_ground(args, list);
+    query.after_draws(session, list);
     if (folder)
         write_thesis(*folder, settings_of(args, session, options, list, command, own), list.counts, summary,
                      [&](const auto& into) { return write_thesis_locations(into, list); });
@@ -232,7 +235,7 @@ Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summa
 Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summary)
 {
     check_draws(args.draws);
-    const IslandChoice islands = island_choice(args, args.islands, command);
+    IslandChoice islands = island_choice(args, args.islands, command);
     SampleOptions options{.count = std::size_t(args.draws.count),
                           .min_distance = args.draws.min_distance,
                           .seed = args.draws.seed,
@@ -254,20 +257,25 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
         notice_if_no_layer(args, session.map, asked.layers);
         notices_about_stance(args, command, session.robot);
         notice_about_heading(args, session.map, asked.heading);
+        islands = choice_for(session.map, args, args.islands, command, islands);
         Settings own{{"Layers", args.ground.layers}};
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
         if (!asked.z.is_unlimited()) own.emplace_back("Heights of layers (m)", z_text(asked.z));
-        if (!islands.selects_all()) own.emplace_back("Islands", words_of(args.islands));
+        if (!islands.selects_all()) own.emplace_back("Islands", words_of(islands));
         return own;
     };
     const auto before_draws = [&](const Session& session, SampleOptions& asked) {
         if (asked.offset) return flat_ground_complaint(session.robot, *asked.offset);
         const ChosenIslands chosen = choose_islands(args, args.islands, islands, session, summary, "sample");
         asked.is_reachable = chosen.filter;
-        asked.reachable_name = words_of(args.islands);
+        asked.reachable_name = words_of(islands);
         return chosen.why_none;
     };
-    return run_spawn<SampleOptions>({prepare, sample, before_draws}, summary, args, command, options);
+    const auto after_draws = [&](const Session& session, const SpawnList& list) {
+        if (args.is_settled() && args.islands.island.empty() && islands.selects_all())
+            notice_about_islands(args, args.islands, session, list);
+    };
+    return run_spawn<SampleOptions>({prepare, sample, before_draws, after_draws}, summary, args, command, options);
 }
 
 /// Adds the most common options.
