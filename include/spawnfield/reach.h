@@ -21,6 +21,9 @@ struct ReachOptions {
     double max_step = 0.03;
     /// m between columns, > 0; no value: auto_reach_step().
     std::optional<double> step = {};
+    /// Whether all ways are examined and kept, for PathSearch: 64 bytes for each place (Omni: 80), and a longer time.
+    /// Otherwise, only those are examined that may join islands, and none is kept.
+    bool keep_ways = false;
     int threads = 0;  ///< 0: all cores; results are the same for any number
     Progress progress = {};
 };
@@ -88,6 +91,7 @@ public:
     std::optional<std::size_t> island_of(const SettledPose& pose) const;
 
     struct Impl;
+    std::shared_ptr<const Impl> impl() const { return impl_; }  ///< for the library itself
 
 private:
     std::shared_ptr<const Impl> impl_;

@@ -43,7 +43,7 @@ ReachGraph::Impl::Impl(const Judge& judge_, const ReachOptions& options_, Keep k
 }
 
 ReachGraph::ReachGraph(const Judge& judge, const ReachOptions& options)
-    : impl_(std::make_shared<const Impl>(judge, options))
+    : impl_(std::make_shared<const Impl>(judge, options, options.keep_ways ? Impl::Keep::Ways : Impl::Keep::Islands))
 {
 }
 
