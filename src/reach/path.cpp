@@ -167,25 +167,34 @@ PathSearch::Impl::Found PathSearch::Impl::trace(StateId start, StateId goal)
     return out;
 }
 
-std::optional<PathSearch::Impl::Found> PathSearch::Impl::find(const SettledPose& start, const SettledPose& goal,
-                                                              double longest)
+std::optional<PathSearch::Impl::End> PathSearch::Impl::end_of(const SettledPose& pose) const
 {
-    const auto first = graph_->state_of(start), last = graph_->state_of(goal);
-    if (!first || !last) return std::nullopt;
-    if (graph_->node_islands[graph_->node_of(first->place, first->heading)] !=
-        graph_->node_islands[graph_->node_of(last->place, last->heading)])
-        return std::nullopt;
-    const auto end_length = [&](const SettledPose& pose, std::size_t place) {
-        return (Vec3(pose.position.x(), pose.position.y(), pose.ground->height) - ground_of(place)).norm();
-    };
-    const double ends = end_length(start, first->place) + end_length(goal, last->place);
-    const auto id = [](const ReachGraph::Impl::State& state) {
-        return StateId(state.place) * lattice_headings + StateId(state.heading);
-    };
-    auto out = find(id(*first), id(*last), longest);
+    const auto state = graph_->state_of(pose);
+    if (!state) return std::nullopt;
+    const Vec3 ground(pose.position.x(), pose.position.y(), pose.ground->height);
+    return End{.state = StateId(state->place) * lattice_headings + StateId(state->heading),
+               .island = graph_->node_islands[graph_->node_of(state->place, state->heading)],
+               .ground = ground,
+               .length = (ground - ground_of(state->place)).norm()};
+}
+
+std::optional<PathSearch::Impl::Found> PathSearch::Impl::find(const End& start, const End& goal, double longest)
+{
+    if (start.island != goal.island) return std::nullopt;
+    auto out = find(start.state, goal.state, longest);
     if (!out) return std::nullopt;
-    out->length += ends;
+    out->length += start.length + goal.length;
     return out->length <= longest ? out : std::nullopt;
+}
+
+Path PathSearch::Impl::path_of(const Found& found, const SettledPose& start, const SettledPose& goal) const
+{
+    Path out{.poses = {start}, .length = found.length};
+    for (const StateId state : found.states)
+        out.poses.push_back(
+            graph_->judge.settle(ground_of(state / lattice_headings), lattice_yaw(int(state % lattice_headings))));
+    out.poses.push_back(goal);
+    return out;
 }
 
 PathSearch::PathSearch(const ReachGraph& graph) : impl_(std::make_unique<Impl>(graph.impl())) {}
@@ -194,20 +203,18 @@ PathSearch::~PathSearch() = default;
 
 std::optional<double> PathSearch::length(const SettledPose& start, const SettledPose& goal, double longest)
 {
-    const auto found = impl_->find(start, goal, longest);
+    const auto first = impl_->end_of(start), last = impl_->end_of(goal);
+    if (!first || !last) return std::nullopt;
+    const auto found = impl_->find(*first, *last, longest);
     return found ? std::optional(found->length) : std::nullopt;
 }
 
 std::optional<Path> PathSearch::path(const SettledPose& start, const SettledPose& goal, double longest)
 {
-    const auto found = impl_->find(start, goal, longest);
-    if (!found) return std::nullopt;
-    Path out{.poses = {start}, .length = found->length};
-    for (const Impl::StateId state : found->states)
-        out.poses.push_back(impl_->graph().judge.settle(impl_->ground_of(state / lattice_headings),
-                                                        lattice_yaw(int(state % lattice_headings))));
-    out.poses.push_back(goal);
-    return out;
+    const auto first = impl_->end_of(start), last = impl_->end_of(goal);
+    if (!first || !last) return std::nullopt;
+    const auto found = impl_->find(*first, *last, longest);
+    return found ? std::optional(impl_->path_of(*found, start, goal)) : std::nullopt;
 }
 
 }  // namespace spawnfield

@@ -35,8 +35,20 @@ public:
     /// Returns the shortest path between two states that is not longer than `longest` (m).
     std::optional<Found> find(StateId start, StateId goal, double longest);
 
-    /// Returns the same for poses, whose ends on the way to the grid count, too.
-    std::optional<Found> find(const SettledPose& start, const SettledPose& goal, double longest);
+    /// How a settled pose is joined with the graph.
+    struct End {
+        StateId state;
+        std::size_t island;
+        Vec3 ground;    ///< below the pose, m
+        double length;  ///< from the ground below the pose to that of the state, m
+    };
+    /// Returns nothing for a pose that is not valid or on no island.
+    std::optional<End> end_of(const SettledPose& pose) const;
+
+    /// Returns the same between two poses; its cost is that between their states.
+    std::optional<Found> find(const End& start, const End& goal, double longest);
+    /// Returns the path with its poses.
+    Path path_of(const Found& found, const SettledPose& start, const SettledPose& goal) const;
 
     const ReachGraph::Impl& graph() const { return *graph_; }
     Vec3 ground_of(std::size_t place) const;

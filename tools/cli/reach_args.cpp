@@ -95,11 +95,12 @@ void add_islands(CLI::App& command, IslandArgs& args)
 }
 
 ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
-                        const std::string& command)
+                        const std::string& command, bool keep_ways)
 {
     ReachGraph graph(*session.judge, {.drive = args.drive == "omni" ? Drive::Omni : Drive::Differential,
                                       .max_step = args.max_step,
                                       .step = args.reach_step,
+                                      .keep_ways = keep_ways,
                                       .threads = query.threads,
                                       .progress = progress_bar(query, command + ", islands")});
     summary.lap("islands");
