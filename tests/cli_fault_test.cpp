@@ -49,10 +49,12 @@ public:
     void remember() { before_ = names(); }
 
 private:
+    /// Returns all files, without drivable graphs that queries keep in the map's folder.
     std::set<std::string> names() const
     {
         std::set<std::string> out;
-        for (const auto& entry : fs::recursive_directory_iterator(path())) out.insert(entry.path().string());
+        for (const auto& entry : fs::recursive_directory_iterator(path()))
+            if (!entry.path().filename().string().starts_with("reach-")) out.insert(entry.path().string());
         return out;
     }
     std::set<std::string> before_;

@@ -22,6 +22,9 @@ struct ReachOptions {
     double max_step = 0.03;
     /// m between columns, > 0; no value: auto_reach_step().
     std::optional<double> step = {};
+    /// Whether all ways are examined and kept, for PathSearch: 64 bytes for each place (Omni: 80), and a longer time.
+    /// Otherwise, only those are examined that may join islands, and none is kept.
+    bool keep_ways = false;
     int threads = 0;  ///< 0: all cores; results are the same for any number
     Progress progress = {};
 };
@@ -90,6 +93,7 @@ public:
 
     struct Impl;
     explicit ReachGraph(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+    std::shared_ptr<const Impl> impl() const { return impl_; }  ///< for the library itself
 
 private:
     std::shared_ptr<const Impl> impl_;

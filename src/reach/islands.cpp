@@ -87,6 +87,12 @@ void ReachGraph::Impl::set_places()
 
 std::optional<std::size_t> ReachGraph::Impl::island_of(const SettledPose& pose) const
 {
+    const auto state = state_of(pose);
+    return state ? std::optional<std::size_t>(node_islands[node_of(state->place, state->heading)]) : std::nullopt;
+}
+
+std::optional<ReachGraph::Impl::State> ReachGraph::Impl::state_of(const SettledPose& pose) const
+{
     if (pose.verdict != Verdict::Valid) return std::nullopt;
     const Vec2 at = pose.position.head<2>();
     struct NearColumn {
@@ -103,18 +109,19 @@ std::optional<std::size_t> ReachGraph::Impl::island_of(const SettledPose& pose) 
     std::stable_sort(columns.begin(), columns.end(), is_nearer);
     for (const NearColumn& column : columns)
         for (const int heading : headings_around(pose.yaw))
-            if (const auto island = island_at(pose, column.col, column.row, heading)) return island;
+            if (const auto place = place_near(pose, column.col, column.row, heading)) return State{*place, heading};
     return std::nullopt;
 }
 
-/// Returns the island of the state of a column to which the robot can go from a valid settled pose.
-std::optional<std::size_t> ReachGraph::Impl::island_at(const SettledPose& pose, int col, int row, int heading) const
+/// Returns the place of a column to which the robot can go from a valid settled pose, where it then stands at a
+/// heading.
+std::optional<std::size_t> ReachGraph::Impl::place_near(const SettledPose& pose, int col, int row, int heading) const
 {
     const std::size_t begin = first[column_of(col, row)], end = first[column_of(col, row) + 1];
     std::vector<PlaceStates> places;
     for (std::size_t p = begin; p < end; ++p) places.push_back({.ground = ground[p], .valid = valid[p]});
     const auto k = way_judges.local().place_near(pose, {grid.x_of(col), grid.y_of(row)}, places, heading);
-    return k ? std::optional<std::size_t>(node_islands[node_of(begin + *k, heading)]) : std::nullopt;
+    return k ? std::optional(begin + *k) : std::nullopt;
 }
 
 }  // namespace spawnfield

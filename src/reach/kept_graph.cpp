@@ -93,7 +93,7 @@ std::string values_in(std::string_view file)
 fs::path kept_graph_file(const Judge& judge, const ReachOptions& options)
 {
     const Map& map = judge.map();
-    if (map.folder.empty() || map.hash.empty() || judge.impl().options.exhaustive) return {};
+    if (map.folder.empty() || map.hash.empty() || judge.impl().options.exhaustive || options.keep_ways) return {};
     return map.folder / ("reach-" + map.hash + "-" + key_of(judge, options) + ".bin");
 }
 
@@ -101,8 +101,9 @@ KeptGraph kept_graph(const Judge& judge, const ReachOptions& options)
 {
     using Impl = ReachGraph::Impl;
     const fs::path file = kept_graph_file(judge, options);
+    if (file.empty()) return {ReachGraph(judge, options)};
     std::string notice;
-    if (!file.empty() && fs::exists(file)) {
+    if (fs::exists(file)) {
         try {
             return {ReachGraph(std::make_shared<const Impl>(judge, options, values_in(read_file(file)))), true, ""};
         } catch (const std::exception& error) {
@@ -111,7 +112,7 @@ KeptGraph kept_graph(const Judge& judge, const ReachOptions& options)
     }
     const auto graph = std::make_shared<const Impl>(judge, options);
     try {
-        if (!file.empty()) write_file_atomically(file, file_bytes(*graph));
+        write_file_atomically(file, file_bytes(*graph));
     } catch (const OutputError& error) {
         notice = std::string("the graph is not kept, and will be built again next time: ") + error.what();
     }

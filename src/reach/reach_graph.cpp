@@ -99,7 +99,7 @@ bool ReachGraph::Impl::is_consistent() const
 }
 
 ReachGraph::ReachGraph(const Judge& judge, const ReachOptions& options)
-    : impl_(std::make_shared<const Impl>(judge, options))
+    : impl_(std::make_shared<const Impl>(judge, options, options.keep_ways ? Impl::Keep::Ways : Impl::Keep::Islands))
 {
 }
 

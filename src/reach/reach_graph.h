@@ -51,6 +51,12 @@ struct ReachGraph::Impl {
         return std::size_t(row) * std::size_t(grid.cols) + std::size_t(col);
     }
     std::optional<std::size_t> island_of(const SettledPose& pose) const;
+    struct State {
+        std::size_t place;
+        int heading;
+    };
+    /// Returns the state with which a valid settled pose is joined; see ReachGraph::island_of.
+    std::optional<State> state_of(const SettledPose& pose) const;
     /// Returns the number of a state's node; its place is valid at this heading.
     std::uint32_t node_of(std::size_t place, int heading) const
     {
@@ -74,7 +80,7 @@ struct ReachGraph::Impl {
 private:
     struct Empty {};
     Impl(const Judge& judge_, const ReachOptions& options_, Keep keep_, Empty);  ///< makes a graph without places
-    std::optional<std::size_t> island_at(const SettledPose& pose, int col, int row, int heading) const;
+    std::optional<std::size_t> place_near(const SettledPose& pose, int col, int row, int heading) const;
     void find_islands(DisjointSets& nodes);
     void set_places();
     bool is_consistent() const;

@@ -115,9 +115,10 @@ ReachOptions reach_options(const QueryArgs& query, const ReachArgs& args)
 }  // namespace
 
 ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
-                        const std::string& command)
+                        const std::string& command, bool keep_ways)
 {
     ReachOptions options = reach_options(query, args);
+    options.keep_ways = keep_ways;
     options.progress = progress_bar(query, command + ", islands");
     const KeptGraph kept = kept_graph(*session.judge, options);
     if (!kept.notice.empty()) notice(query, kept.notice);

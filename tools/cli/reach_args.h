@@ -30,9 +30,9 @@ void add_islands(CLI::App& command, IslandArgs& args);
 inline const std::vector<std::string> island_option_names{"--island", "--min-island", "--reachable-from"};
 
 /// Finds where the robot can drive, and puts the number of islands and the time into the summary. `command` is what the
-/// progress bar shows.
+/// progress bar shows; `keep_ways`: ReachOptions::keep_ways.
 ReachGraph find_islands(const QueryArgs& query, const ReachArgs& args, const Session& session, Summary& summary,
-                        const std::string& command);
+                        const std::string& command, bool keep_ways = false);
 
 /// Returns the choice that the options describe. Call it before all work. Throws ArgumentError for values that cannot
 /// be read, and for level robots.

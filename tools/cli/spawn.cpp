@@ -14,12 +14,22 @@
 #include "thesis_output.h"
 
 #include <spawnfield/error.h>
+#include <spawnfield/pairs.h>
 
 #include <cctype>
 #include <cstdio>
+#include <limits>
 
 namespace spawnfield::cli {
 namespace {
+
+/// Options on pairs of a start and a goal.
+struct PairArgs {
+    long long count = 0;
+    double min_path = 0, max_path = std::numeric_limits<double>::infinity(), detour = 1;  ///< m, m, ratio
+    std::string path;                                                                     ///< file
+};
+const std::vector<std::string> pair_option_names{"--min-path", "--max-path", "--detour", "--path"};
 
 struct SpawnArgs : QueryArgs {
     DrawArgs draws;
@@ -28,6 +38,7 @@ struct SpawnArgs : QueryArgs {
     AvoidArgs avoid;
     GroundArgs ground;
     IslandArgs islands;  ///< only for `sample`
+    PairArgs pairs;      ///< only for `sample`
     std::string bounds, yaw = "0", format = "csv", out;
 
     bool is_thesis() const { return format == "thesis"; }
@@ -232,10 +243,9 @@ Ending run_search(const SpawnArgs& args, const CLI::App& command, Summary& summa
     return run_spawn<SearchOptions>({prepare, search}, summary, args, command, options);
 }
 
-Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summary)
+/// Returns the options of `sample` without the yaw.
+SampleOptions sample_options(const SpawnArgs& args, const CLI::App& command)
 {
-    check_draws(args.draws);
-    IslandChoice islands = island_choice(args, args.islands, command);
     SampleOptions options{.count = std::size_t(args.draws.count),
                           .min_distance = args.draws.min_distance,
                           .seed = args.draws.seed,
@@ -248,15 +258,107 @@ Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summa
         options.bounds = *box;
         options.area.within.clear();
     }
+    return options;
+}
+
+/// Completes the options of `sample` when the map and the robot are known, and prints the notices about them.
+/// `heights`: heights_of() the ground.
+void complete(SampleOptions& asked, const ZRange& heights, const SpawnArgs& args, const CLI::App& command,
+              const Session& session, Summary& summary)
+{
+    asked.z = with_floor(heights, args.ground, session.map);
+    asked.offset = choose_offset(args, asked.offset, session.robot, summary);
+    notice_if_off_map(args, session.map, "--region", asked.bounds);
+    notice_about_area(args, session.map, asked.area);
+    notice_if_no_layer(args, session.map, asked.layers);
+    notices_about_stance(args, command, session.robot);
+    notice_about_heading(args, session.map, asked.heading);
+}
+
+/// Throws ArgumentError for options that pairs do not have.
+void check_pairs(const SpawnArgs& args, const CLI::App& command)
+{
+    refuse(command, {"--count", "--min-distance"}, "has no effect with --pairs; leave it out");
+    if (!args.is_settled())
+        throw ArgumentError(
+            "--pairs is only for settled robots, because paths lead between settled poses; leave "
+            "--stance level out");
+    if (args.format != "csv") throw ArgumentError("--format is " + args.format + ", but --pairs writes only csv");
+    if (args.pairs.count < 1 || args.pairs.count > static_cast<long long>(max_spawns))
+        throw bad_value("--pairs", double(args.pairs.count), "1 to " + std::to_string(max_spawns));
+    parse_finite("--min-path", args.pairs.min_path, "m");
+    parse_finite("--detour", args.pairs.detour, "");
+    if (args.pairs.min_path < 0) throw bad_value("--min-path", args.pairs.min_path, ">= 0 m");
+    if (!(args.pairs.max_path >= args.pairs.min_path) || args.pairs.max_path <= 0)
+        throw bad_value("--max-path", args.pairs.max_path, "> 0 m, and not below --min-path");
+    if (args.pairs.detour < 1) throw bad_value("--detour", args.pairs.detour, ">= 1");
+}
+
+/// Returns why there are fewer pairs than wanted, and what may give more.
+std::string shortfall_of_pairs(const PairList& list, std::size_t wanted)
+{
+    return "only " + std::to_string(list.pairs.size()) + " of " + std::to_string(wanted) +
+           " pairs were found: " + std::to_string(list.without_goal) + " of " + counted(list.starts, "drawn start") +
+           " have no goal that was found (" + counted(list.searches, "path") +
+           " searched); a smaller --min-path or --detour, a larger --max-path or region, or other islands may give "
+           "more";
+}
+
+void write_pairs(const SpawnArgs& args, const PairList& list, double lift)
+{
+    const auto write_paths = [&] {
+        if (!args.pairs.path.empty())
+            write_output(args.pairs.path, [&](const auto& sink) { sink(paths_csv(list, lift)); });
+    };
+    write_output(
+        args.out, [&](const auto& sink) { sink(pairs_csv(list, lift)); }, write_paths);
+}
+
+Ending run_pairs(const SpawnArgs& args, const CLI::App& command, Summary& summary)
+{
+    check_pairs(args, command);
+    const IslandChoice asked_islands = island_choice(args, args.islands, command);
+    PairOptions options{.spawns = sample_options(args, command),
+                        .min_path = args.pairs.min_path,
+                        .max_path = args.pairs.max_path,
+                        .min_detour = args.pairs.detour,
+                        .keep_paths = !args.pairs.path.empty()};
+    options.spawns.count = std::size_t(args.pairs.count);
+    const ZRange heights = heights_of(args.ground, options.spawns.bounds, "--region");
+    const YawChoice yaw = parse_yaw_choice(args, args.yaw, args.is_settled(), true);
+    options.spawns.random_yaw = yaw.is_random;
+    options.spawns.yaw = yaw.yaw;
+    options.spawns.heading = yaw.rule;
+    options.spawns.avoid = read_avoided(args, args.avoid, 0);
+    const Session session = open_session(args, summary);
+    complete(options.spawns, heights, args, command, session, summary);
+    notice_about_avoided(args, session.map, options.spawns.avoid);
+    summary.lap("load");
+    const IslandChoice islands = choice_for(session.map, args, args.islands, command, asked_islands, true);
+    const ReachGraph graph = find_islands(args, args.islands, session, summary, "sample", true);
+    if (!islands.selects_all())
+        options.spawns.is_reachable = on_islands(graph, chosen_islands(graph, *session.judge, islands));
+    const PairList list = sample_pairs(*session.judge, graph, options);
+    summary.lap("query");
+    write_pairs(args, list, session.judge->options().stand.lift);
+    summary.seed = options.spawns.seed;
+    summary.extra.push_back(std::to_string(list.pairs.size()) + " of " + std::to_string(options.spawns.count) +
+                            " pairs, " + counted(list.searches, "path") + " searched");
+    if (list.pairs.size() == options.spawns.count) return {};
+    return {.status = fewer_found, .notice = shortfall_of_pairs(list, options.spawns.count)};
+}
+
+Ending run_sample(const SpawnArgs& args, const CLI::App& command, Summary& summary)
+{
+    if (command.count("--pairs") > 0) return run_pairs(args, command, summary);
+    if (command.count("--count") == 0) throw ArgumentError("--count is required, or --pairs");
+    refuse(command, pair_option_names, "is only for --pairs; give it, or leave this option out");
+    check_draws(args.draws);
+    IslandChoice islands = island_choice(args, args.islands, command);
+    SampleOptions options = sample_options(args, command);
     const ZRange heights = heights_of(args.ground, options.bounds, "--region");
     const auto prepare = [&](const Session& session, SampleOptions& asked) {
-        asked.z = with_floor(heights, args.ground, session.map);
-        asked.offset = choose_offset(args, asked.offset, session.robot, summary);
-        notice_if_off_map(args, session.map, "--region", asked.bounds);
-        notice_about_area(args, session.map, asked.area);
-        notice_if_no_layer(args, session.map, asked.layers);
-        notices_about_stance(args, command, session.robot);
-        notice_about_heading(args, session.map, asked.heading);
+        complete(asked, heights, args, command, session, summary);
         islands = choice_for(session.map, args, args.islands, command, islands);
         Settings own{{"Layers", args.ground.layers}};
         if (asked.offset) own.insert(own.begin(), {"Offset (m)", number(*asked.offset)});
@@ -283,7 +385,6 @@ void add_common_spawn_options(CLI::App& command, SpawnArgs& args)
 {
     add_map_and_robot(command, args);
     add_draws(command, args.draws);
-    command.get_option("--count")->required();
     command.add_option("--yaw", args.yaw,
                        "Yaw of all spawns: " + yaw_help + ", or random; for " + heading_help + " (default 0)");
     command.add_option("--out,-o", args.out, "File, or folder, to write (default: standard output)");
@@ -315,6 +416,7 @@ void add_search(CLI::App& app, ChosenCommand& chosen)
     CLI::App& command = *app.add_subcommand(
         "search", "N spawns by random search in a box, at a distance from all positions checked before");
     add_common_spawn_options(command, *args);
+    command.get_option("--count")->required();
     add_max_failures(command, args->draws);
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Level);
@@ -340,10 +442,19 @@ void add_sample(CLI::App& app, ChosenCommand& chosen)
     add_verdict_options(command, *args);
     add_stance(command, *args, Stance::Settled);
     add_islands(command, args->islands);
+    command.add_option("--pairs", args->pairs.count,
+                       "Write this number of pairs of a start and a goal on one island, in place of spawns, with the "
+                       "length of the shortest path");
+    command.add_option("--min-path", args->pairs.min_path, "m: shortest path of a pair (default 0)");
+    command.add_option("--max-path", args->pairs.max_path, "m: longest path of a pair (default: any)");
+    command.add_option("--detour", args->pairs.detour,
+                       "Smallest ratio of the path's length to the straight line, >= 1 (default 1)");
+    command.add_option("--path", args->pairs.path, "CSV file to write: the poses on the path of each pair");
     add_spawn_groups(command, *args);
     command.footer(
         "Example:\n  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --min-distance 1 --yaw random\n"
-        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --island largest --reach-step 0.3");
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 -n 50 --island largest --reach-step 0.3\n"
+        "  spawnfield sample /tmp/training --robot box:0.99,0.67,0.39 --pairs 20 --min-path 5 --reach-step 0.3");
     set_work(command, args, chosen, run_sample);
 }
 

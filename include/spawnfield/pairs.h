@@ -1,0 +1,58 @@
+#pragma once
+
+#include <spawnfield/path.h>
+#include <spawnfield/query.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace spawnfield {
+
+struct PairOptions {
+    /// How starts and goals are drawn; `count` is the number of pairs. The stance must be Settled, and min_distance 0.
+    SampleOptions spawns = {};
+    double min_path = 0;                                        ///< m, >= 0; shortest path from start to goal
+    double max_path = std::numeric_limits<double>::infinity();  ///< m, >= min_path
+    double min_detour = 1;                                      ///< >= 1; limit of StartGoal::detour()
+    bool keep_paths = false;                                    ///< whether StartGoal::path is filled
+};
+
+/// A start and a goal, both valid settled poses (not raised) on one island.
+struct StartGoal {
+    SettledPose start = {}, goal = {};
+    double path_length = 0;              ///< m, see PathSearch
+    double straight = 0;                 ///< m, between the ground at the start and at the goal
+    std::size_t island = 0;              ///< index in ReachGraph::islands()
+    std::vector<SettledPose> path = {};  ///< Path::poses, if they were wanted
+
+    /// Returns how many times the path is as long as the straight line, >= 1.
+    double detour() const { return straight > 0 ? path_length / straight : 1; }
+};
+
+struct PairList {
+    std::vector<StartGoal> pairs;
+    std::uint64_t starts = 0;        ///< number of starts that were drawn
+    std::uint64_t without_goal = 0;  ///< of these, those for which no goal was found
+    std::uint64_t searches = 0;      ///< number of paths that were searched
+};
+
+/// Returns pairs of a start and a goal. Starts are drawn by sample(). Goals are drawn by sample(), too, until the path
+/// to one of them has a length of min_path to max_path, and a detour of at least min_detour. So the goal is uniform by
+/// area among those that fit. A start for which no goal is found among 100 paths and one list of goals is replaced by
+/// another one; thus, starts with few goals are rarer. The result has fewer than `count` pairs if some are missing
+/// after ten rounds.
+///
+/// The result is the same for any number of threads. The judge must be that of the graph. Throws ArgumentError for
+/// options beyond their limits and for a graph that does not keep its ways, FileError for a damaged map.
+SPAWNFIELD_API PairList sample_pairs(const Judge& judge, const ReachGraph& graph, const PairOptions& options);
+
+/// Returns a table with start_x,start_y,start_z,start_roll,start_pitch,start_yaw, the same of the goal (goal_x, …), and
+/// path_length,straight,detour,island. m and rad; poses are raised by StandLimits::lift.
+SPAWNFIELD_API std::string pairs_csv(const PairList& list, double lift);
+
+/// Returns a table with pair,pose,x,y,z,roll,pitch,yaw: the poses of all paths, raised by the lift. Pairs and poses
+/// count from 0.
+SPAWNFIELD_API std::string paths_csv(const PairList& list, double lift);
+
+}  // namespace spawnfield

@@ -1,0 +1,178 @@
+#include "catch.h"
+#include "program.h"
+#include "rest_robots.h"
+#include "temp_folder.h"
+#include "test_map.h"
+
+#include <spawnfield/pairs.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace spawnfield;
+using rest_robots::add_block;
+using rest_robots::boxy;
+
+// Tests of start and goal pairs.
+
+namespace {
+
+/// Two rooms without a door between them; a wall with a gap divides the left one.
+Scene two_rooms()
+{
+    Scene scene;
+    add_block(scene, {-3, -2, -0.5}, {3, 2, 0});
+    const auto wall = [&](double x, double low, double high) {
+        add_shape(scene, "wall", Label::Obstacle, box_shape({0.1, high - low, 0.6}, {{x, (low + high) / 2, 0.3}}));
+    };
+    wall(1, -2, 2);
+    wall(-1, -2, 1);
+    return scene;
+}
+
+struct Rooms {
+    TestMap map = map_of(two_rooms());
+    Judge judge{map, boxy({0.3, 0.3, 0.2})};
+    ReachGraph graph{judge, {.step = 0.1, .keep_ways = true}};
+
+    PairList operator()(const PairOptions& options) const { return sample_pairs(judge, graph, options); }
+};
+
+/// A folder with a map of two rooms without a door between them.
+class RoomsFolder : public TempFolder {
+public:
+    RoomsFolder()
+    {
+        write("rooms.yaml",
+              "format: spawnfield-scene/1\nparts:\n"
+              "- {name: floor, box: [6.1, 4, 0.2], xyz: [-0.95, 0, -0.1], label: terrain}\n"
+              "- {name: wall, box: [0.1, 4, 1], xyz: [0.05, 0, 0.5], label: obstacle}\n");
+        REQUIRE(run_program(*this, "bake rooms.yaml -o rooms").status == 0);
+    }
+    ProgramRun sample(const std::string& options) const
+    {
+        return run_program(*this, "sample rooms --robot box:0.3,0.3,0.2 " + options);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("pairs are on one island, within the limits, and their path lengths are those of a search")
+{
+    const Rooms rooms;
+    const PairOptions options{
+        .spawns = {.count = 100, .random_yaw = true, .seed = 5}, .min_path = 1, .max_path = 4, .min_detour = 1.1};
+    const PairList list = rooms(options);
+    REQUIRE(list.pairs.size() == 100);
+    PathSearch search(rooms.graph);
+    std::size_t left = 0;
+    for (const StartGoal& pair : list.pairs) {
+        REQUIRE((pair.start.verdict == Verdict::Valid && pair.goal.verdict == Verdict::Valid));
+        CHECK(rooms.graph.island_of(pair.start) == pair.island);
+        CHECK(rooms.graph.island_of(pair.goal) == pair.island);
+        CHECK((pair.start.position.x() < 1) == (pair.goal.position.x() < 1));
+        CHECK((pair.path_length >= 1 && pair.path_length <= 4 && pair.detour() >= 1.1));
+        CHECK(pair.path_length >= pair.straight);
+        CHECK(pair.path_length == search.length(pair.start, pair.goal));
+        left += pair.start.position.x() < 1;
+    }
+    CHECK((left > 50 && left < 100));  // two thirds of the floor, and more of the detours
+}
+
+TEST_CASE("pairs are the same at any number of threads, and differ between seeds")
+{
+    const Rooms rooms;
+    const auto text = [&](int threads, std::uint64_t seed) {
+        PairOptions options{.spawns = {.count = 40, .random_yaw = true, .seed = seed, .threads = threads},
+                            .keep_paths = true};
+        options.min_path = 1;
+        const PairList list = rooms(options);
+        return pairs_csv(list, 0.02) + paths_csv(list, 0.02);
+    };
+    const std::string one = text(1, 3);
+    CHECK(one == text(2, 3));
+    CHECK(one == text(8, 3));
+    CHECK(one != text(1, 4));
+}
+
+TEST_CASE("goals are uniform by area among those that fit")
+{
+    const Rooms rooms;
+    const PairList list = rooms({.spawns = {.count = 3000, .random_yaw = true, .seed = 1}});
+    REQUIRE(list.pairs.size() == 3000);
+    // Without limits, goals fill the room of the start. The left one has the width 4 m, less margins.
+    std::size_t low = 0, all = 0;
+    for (const StartGoal& pair : list.pairs) {
+        if (pair.goal.position.x() > -1.3) continue;  // beside the wall, both halves are not alike
+        ++all;
+        low += pair.goal.position.y() < 0;
+    }
+    REQUIRE(all > 500);
+    CHECK(std::abs(double(low) / double(all) - 0.5) < 4 * 0.5 / std::sqrt(double(all)));
+}
+
+TEST_CASE("pairs that cannot exist are missing, and faults in the options are named")
+{
+    const Rooms rooms;
+    const PairList none = rooms({.spawns = {.count = 2}, .min_path = 100});
+    CHECK(none.pairs.empty());
+    CHECK((none.starts == 20 && none.without_goal == 20));
+    CHECK_THROWS_WITH(rooms({.min_path = -1}), Contains("min_path") && Contains("-1"));
+    CHECK_THROWS_WITH(rooms({.min_path = 2, .max_path = 1}), Contains("max_path"));
+    CHECK_THROWS_WITH(rooms({.min_detour = 0.5}), Contains("min_detour") && Contains("0.5"));
+    CHECK_THROWS_WITH(rooms({.spawns = {.min_distance = 1}}), Contains("min_distance"));
+    CHECK_THROWS_WITH(rooms({.spawns = {.stance = Stance::Level}}), Contains("Settled"));
+    const ReachGraph islands_only(rooms.judge, {.step = 0.5});
+    CHECK_THROWS_WITH(sample_pairs(rooms.judge, islands_only, {}), Contains("does not keep its ways"));
+}
+
+TEST_CASE("sample --pairs writes pairs and paths, all poses of which are valid for check --settle")
+{
+    const RoomsFolder rooms;
+    const std::string options = "--pairs 20 --min-path 1 --max-path 2.5 --yaw random --reach-step 0.1 --seed 4 ";
+    const ProgramRun run = rooms.sample(options + "--path paths.csv --threads 1");
+    REQUIRE(run.status == 0);
+    CHECK(std::count(run.out.begin(), run.out.end(), '\n') == 21);
+    CHECK_THAT(run.err, Contains("20 of 20 pairs"));
+    const PoseTable paths = parse_poses(bytes_of(rooms / "paths.csv"), "paths.csv");
+    CHECK(paths.poses.size() > 100);
+    CHECK(column_of(paths, "pair").back() == "19");
+    const ProgramRun check = run_program(
+        rooms, "check rooms --robot box:0.3,0.3,0.2 --poses paths.csv --settle --require-valid");
+    CHECK(check.status == 0);
+    const std::string first = bytes_of(rooms / "paths.csv");
+    for (const char* const threads : {"2", "8"}) {
+        CHECK(rooms.sample(options + "--path paths.csv --threads " + threads).out == run.out);
+        CHECK(bytes_of(rooms / "paths.csv") == first);
+    }
+    const ProgramRun few = rooms.sample("--pairs 3 --min-path 50 --reach-step 0.2");
+    CHECK(few.status == 3);
+    CHECK_THAT(few.err, Contains("only 0 of 3 pairs were found") && Contains("--min-path"));
+    for (const std::string& line : {std::string("--pairs 5 --island at:1,0"), std::string("--pairs 5 --island 0")}) {
+        const ProgramRun one = rooms.sample(line + " --reach-step 0.2");
+        CHECK(one.status == 0);
+        CHECK(std::count(one.out.begin(), one.out.end(), '\n') == 6);
+    }
+}
+
+TEST_CASE("faults in the options of pairs are named with their values and what to do")
+{
+    const RoomsFolder rooms;
+    const auto refuses = [&](const std::string& options, const std::string& message) {
+        CAPTURE(options);
+        const ProgramRun run = rooms.sample(options);
+        CHECK(run.status == 2);
+        CHECK(run.out.empty());
+        CHECK_THAT(run.err, Contains(message));
+    };
+    refuses("--seed 1", "--count is required, or --pairs");
+    refuses("-n 5 --min-path 2", "--min-path is only for --pairs");
+    refuses("--pairs 5 -n 5", "has no effect with --pairs; leave it out");
+    refuses("--pairs 5 --min-distance 1", "--min-distance has no effect with --pairs");
+    refuses("--pairs 0", "--pairs is 0, needs 1 to");
+    refuses("--pairs 5 --min-path -1", "--min-path is -1");
+    refuses("--pairs 5 --min-path 3 --max-path 2", "--max-path is 2");
+    refuses("--pairs 5 --detour 0.9", "--detour is 0.9");
+    refuses("--pairs 5 --stance level", "only for settled robots");
+    refuses("--pairs 5 --format json", "--pairs writes only csv");
+}

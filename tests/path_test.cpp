@@ -1,0 +1,235 @@
+#include "catch.h"
+#include "random_scene.h"
+#include "reach/path_search.h"
+#include "rest_robots.h"
+#include "slow_reach.h"
+#include "test_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+using namespace spawnfield;
+using rest_robots::add_block;
+using rest_robots::boxy;
+
+// Tests of shortest paths on the drivable graph.
+
+namespace {
+
+constexpr double floor_half = 2;
+
+Scene level_floor()
+{
+    Scene scene;
+    add_block(scene, {-floor_half, -floor_half, -0.5}, {floor_half, floor_half, 0});
+    return scene;
+}
+
+void add_wall(Scene& scene, const Vec2& low, const Vec2& high)
+{
+    add_shape(scene, "wall", Label::Obstacle,
+              box_shape({high.x() - low.x(), high.y() - low.y(), 0.6},
+                        {{(low.x() + high.x()) / 2, (low.y() + high.y()) / 2, 0.3}}));
+}
+
+/// A floor with walls at random.
+Scene random_walls(std::uint64_t seed)
+{
+    Scene scene = level_floor();
+    Random random(seed);
+    for (int k = 0; k < 5; ++k) {
+        const Vec2 at(random.between(-1.5, 1.5), random.between(-1.5, 1.5));
+        const bool is_along = random.chance(0.5);
+        add_wall(scene, at,
+                 at + (is_along ? Vec2(random.between(0.2, 1.5), 0.1) : Vec2(0.1, random.between(0.2, 1.5))));
+    }
+    return scene;
+}
+
+/// The length in nanometres, and the turns on the spot.
+using SlowCost = std::pair<std::int64_t, int>;
+
+/// Returns the shortest paths from one state to all others by definition: relaxes all ways until nothing changes.
+std::map<slow::Reach::State, SlowCost> slow_paths(const slow::Reach& reach, const RasterGrid& grid, Drive drive,
+                                                  const slow::Reach::State& start)
+{
+    struct Edge {
+        slow::Reach::State a, b;
+        SlowCost cost;
+    };
+    std::vector<Edge> edges;
+    const auto ground = [&](const slow::Reach::State& s) { return reach.places(s[0], s[1])[std::size_t(s[2])].ground; };
+    for (int row = 0; row < grid.rows; ++row)
+        for (int col = 0; col < grid.cols; ++col)
+            for (int k = 0; k < int(reach.places(col, row).size()); ++k)
+                for (int h = 0; h < lattice_headings; ++h) {
+                    if (!reach.places(col, row)[std::size_t(k)].poses[std::size_t(h)]) continue;
+                    for (const Way way : {Way::Ahead, Way::Left, Way::Right, Way::Aside, Way::Turn}) {
+                        if (way == Way::Aside && drive != Drive::Omni) continue;
+                        const slow::Reach::State from{col, row, k, h};
+                        const auto target = reach.target(from, way);
+                        if (!target) continue;
+                        const WayEnd end = way_end(way, h);
+                        const slow::Reach::State to{col + end.move.cols, row + end.move.rows, *target, end.heading};
+                        // The length of a curve: a sum of many short lines.
+                        double flat = end.move.length();
+                        if (way == Way::Left || way == Way::Right) {
+                            const LatticeMove m = lattice_move(h), n = lattice_move(end.heading);
+                            const Vec2 first(m.cols, m.rows), second(n.cols, n.rows);
+                            flat = 0;
+                            constexpr int pieces = 20000;
+                            for (int p = 0; p < pieces; ++p) {
+                                const double t = (p + 0.5) / pieces;
+                                flat += 2 * ((1 - t) * first + t * second).norm() / pieces;
+                            }
+                        }
+                        const double length = std::hypot(flat * grid.step, ground(to) - ground(from));
+                        edges.push_back(
+                            {from, to, way == Way::Turn ? SlowCost{0, 1} : SlowCost{std::llround(length * 1e9), 0}});
+                    }
+                }
+    std::map<slow::Reach::State, SlowCost> out{{start, {0, 0}}};
+    for (bool changes = true; changes;) {
+        changes = false;
+        for (const Edge& edge : edges)
+            for (const auto& [from, to] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)}) {
+                const auto known = out.find(from);
+                if (known == out.end()) continue;
+                const SlowCost sum{known->second.first + edge.cost.first, known->second.second + edge.cost.second};
+                const auto [there, is_new] = out.emplace(to, sum);
+                if (!is_new && sum >= there->second) continue;
+                there->second = sum;
+                changes = true;
+            }
+    }
+    return out;
+}
+
+struct PathWorld {
+    TestMap map;
+    Judge judge;
+    ReachGraph graph;
+
+    PathWorld(Scene scene, const Robot& robot, ReachOptions options)
+        : map(map_of(std::move(scene))), judge(map, robot), graph(judge, with_ways(options))
+    {
+    }
+    static ReachOptions with_ways(ReachOptions options)
+    {
+        options.keep_ways = true;
+        return options;
+    }
+    SettledPose at(double x, double y, double yaw = 0) const { return judge.settle({x, y, 0}, yaw); }
+};
+
+}  // namespace
+
+TEST_CASE("Shortest paths are those of a slow search on the slow graph")
+{
+    std::size_t reached = 0, unreached = 0;
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        const Drive drive = seed == 2 ? Drive::Omni : Drive::Differential;
+        Scene scene = random_walls(seed);
+        if (seed == 3) add_wall(scene, {0.3, -2}, {0.4, 2});  // two islands
+        const PathWorld world(std::move(scene), boxy({0.5, 0.3, 0.25}), {.drive = drive, .step = 0.4});
+        const ReachGraph::Impl& graph = *world.graph.impl();
+        Scene surfaces = world.map.scene;
+        for (Piece& piece : surfaces.pieces) piece.solid = false;
+        const slow::Reach reach(world.judge, graph.options, graph.grid, Geometry(surfaces));
+        std::vector<slow::Reach::State> states;
+        std::vector<std::uint64_t> ids;
+        for (int row = 0; row < graph.grid.rows; ++row)
+            for (int col = 0; col < graph.grid.cols; ++col)
+                for (std::size_t p = graph.first[graph.column_of(col, row)];
+                     p < graph.first[graph.column_of(col, row) + 1]; ++p)
+                    for (int h = 0; h < lattice_headings; ++h)
+                        if (has_heading(graph.valid[p], h)) {
+                            states.push_back({col, row, int(p - graph.first[graph.column_of(col, row)]), h});
+                            ids.push_back(p * lattice_headings + std::uint64_t(h));
+                        }
+        PathSearch::Impl search(world.graph.impl());
+        for (const std::size_t start : {std::size_t(0), states.size() / 2}) {
+            const auto expected = slow_paths(reach, graph.grid, drive, states[start]);
+            for (std::size_t goal = 0; goal < states.size(); ++goal) {
+                const auto found = search.find(ids[start], ids[goal], 1e3);
+                const auto known = expected.find(states[goal]);
+                CAPTURE(seed, start, goal);
+                REQUIRE(found.has_value() == (known != expected.end()));
+                ++(found ? reached : unreached);
+                if (!found) continue;
+                // The rounding of each way is at most 1 nm.
+                CHECK(std::abs(found->length - double(known->second.first) * 1e-9) <
+                      2e-9 * double(found->states.size()));
+                // A limit just below the length finds nothing, and one at the length finds the path.
+                if (found->length == 0) continue;
+                CHECK_FALSE(search.find(ids[start], ids[goal], found->length - 1e-6));
+                CHECK(search.find(ids[start], ids[goal], found->length)->length == found->length);
+            }
+        }
+    }
+    CHECK(reached > 500);
+    CHECK(unreached > 20);
+}
+
+TEST_CASE("A path has the same length in both directions, and its poses are valid")
+{
+    const PathWorld world(random_walls(4), boxy({0.5, 0.3, 0.25}), {.step = 0.2});
+    PathSearch search(world.graph);
+    Random random(7);
+    int paths = 0;
+    for (int k = 0; k < 60; ++k) {
+        const auto pose = [&] { return world.at(random.between(-2, 2), random.between(-2, 2), random.between(-3, 3)); };
+        const SettledPose start = pose(), goal = pose();
+        const auto path = search.path(start, goal);
+        const auto island = world.graph.island_of(start);
+        CHECK(path.has_value() == (island && island == world.graph.island_of(goal)));
+        if (!path) continue;
+        ++paths;
+        CHECK(path->length >= (goal.position - start.position).head<2>().norm() - 1e-9);
+        CHECK(std::abs(*search.length(goal, start) - path->length) < 1e-12 + 1e-9);
+        for (const SettledPose& stop : path->poses) CHECK(stop.verdict == Verdict::Valid);
+        CHECK(path->poses.front().position == start.position);
+        CHECK(path->poses.back().position == goal.position);
+    }
+    CHECK(paths > 10);
+}
+
+TEST_CASE("A straight path along a lattice heading has the length of the line, and turns count nothing")
+{
+    const PathWorld world(level_floor(), boxy({0.5, 0.3, 0.25}), {.step = 0.25});
+    PathSearch search(world.graph);
+    CHECK_THAT(*search.length(world.at(-1, 0), world.at(1, 0)), Catch::Matchers::WithinAbs(2, 1e-7));
+    CHECK_THAT(*search.length(world.at(-1, 0, std::numbers::pi / 2), world.at(1, 0, std::numbers::pi)),
+               Catch::Matchers::WithinAbs(2, 1e-7));
+    CHECK_THAT(*search.length(world.at(-1, -1), world.at(1, 1)), Catch::Matchers::WithinAbs(std::sqrt(8), 1e-7));
+    CHECK_THAT(*search.length(world.at(-1, -0.5), world.at(1, 0.5)), Catch::Matchers::WithinAbs(std::sqrt(5), 1e-7));
+    // No unneeded turn: one pose for the start and the goal each, nine states.
+    CHECK(search.path(world.at(-1, 0), world.at(1, 0))->poses.size() == 2 + 9);
+    CHECK_FALSE(search.length(world.at(-1, 0), world.at(1, 0), 1.99));
+    CHECK(search.length(world.at(-1, 0), world.at(1, 0), 2.01));
+}
+
+TEST_CASE("A path goes around a wall")
+{
+    Scene scene = level_floor();
+    add_wall(scene, {-0.05, -2}, {0.05, 1});
+    const PathWorld world(std::move(scene), boxy({0.2, 0.2, 0.2}), {.step = 0.05});
+    PathSearch search(world.graph);
+    // The origin keeps half a width (0.1 m) from the wall, so no path is shorter than two lines past its corners. The
+    // longest lattice path along two lines has 2.8 % more, and some grid steps for the corners.
+    const Vec2 corner(-0.15, 1.1), other(0.15, 1.1), start(-1, -1), goal(1, -1);
+    const double least = (corner - start).norm() + (other - corner).norm() + (goal - other).norm();
+    const double found = *search.length(world.at(start.x(), start.y()), world.at(goal.x(), goal.y()));
+    CHECK(found >= least - 0.02);
+    CHECK(found <= 1.028 * least + 0.15);
+}
+
+TEST_CASE("A path search needs a graph that keeps its ways")
+{
+    const TestMap map = map_of(level_floor());
+    const Judge judge(map, boxy({0.5, 0.3, 0.25}));
+    const ReachGraph graph(judge, {.step = 0.5});
+    CHECK_THROWS_WITH(PathSearch(graph), Contains("does not keep its ways"));
+}
